@@ -1,0 +1,43 @@
+"""fracparticles: particle methods for fractional diffusion, as a study that anyone can re-run.
+
+>>> import fracparticles as fp
+>>> case = fp.Case(scheme="KPSE", order=4, beta=0.5, truncation=20.0, spacing=0.05, dt=2.0e-4, exterior="open")
+>>> run = fp.solve(case)
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+# Name -> module. Imported at first use: a caller of `green` pays for neither numba kernels nor xarray.
+_HOME = {
+    "Case": "case",
+    "FracparticlesError": "errors",
+    "InvalidInput": "errors",
+    "NonFiniteSolution": "errors",
+    "StabilityWarning": "errors",
+    "green": "special.stable",
+    "kernel": "kernels",
+    "mean_radius": "special.stable",
+    "read_run": "dataset",
+    "solve": "solver",
+    "stability_limit": "stability",
+    "write": "dataset",
+}
+
+__all__ = ["__version__", *_HOME]  # noqa: PLE0604
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,361 @@
+"""One run, validated: a `Case` holds every parameter and what follows from them."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cached_property
+from math import ceil
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from fracparticles.errors import InvalidInput
+from fracparticles.integrators import STEP_POLYNOMIALS
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.special.stable import mean_radius
+from fracparticles.stability import stability_limit
+
+__all__ = ["FUNDAMENTAL", "Case"]
+
+FUNDAMENTAL = "fundamental"
+_BYTES_PER_PARTICLE = 200  # measured: about 20 arrays of float64 at the peak
+_STEP_SLACK = 1e-9  # a time span of n (1 + 1e-9) steps still takes n steps
+
+SchemeName = Literal["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD", "PSE29", "RIESZ"]
+Positive = Field(gt=0.0)
+
+
+class Case(BaseModel):
+    """One run of one scheme for u_t = -D (-Laplacian)^(alpha/2) u, alpha = 1 + beta, on a lattice.
+
+    `spacing` and `dt` are what is asked for; the lattice ends at the half-width exactly and the last step at
+    `t_final` exactly, so that the realised `particle_spacing` and `time_step` may differ slightly.
+
+    Attributes
+    ----------
+    scheme : str
+        DD, DPSE, FPSE, KPSE, GPSE, FD, or one of the rejected PSE29 and RIESZ.
+    order : {2, 4}
+        Order of the kernels.
+    beta : float
+        0 < beta < 1.
+    dim : {1}
+        Space dimension.
+    truncation : float, optional
+        C of D = C (D t_f)^(1/alpha) R_alpha, Eq. (46). Either this or `half_width`.
+    half_width : float, optional
+        The half-width of the lattice itself.
+    spacing : float
+        Particle spacing h.
+    overlap : float, optional
+        epsilon / h; 2 if left out. For GPSE it follows from `dt` if that is given.
+    dt : float, optional
+        Time step; needed by the explicit integrators. GPSE takes (epsilon)^alpha / D if left out.
+    diffusivity : float
+        D of Eq. (2).
+    t_initial, t_final : float
+        The time span.
+    initial : str
+        "fundamental" for the fundamental solution at `t_initial`, or the path of a NetCDF file with u(x).
+    integrator : {"euler", "rk2", "rk4", "exponential"}, optional
+        rk2 if left out; GPSE is an Euler step by construction.
+    evaluation : {"series", "stepping"}
+        How the integrator's polynomial is evaluated: one Chebyshev series, or step by step.
+    summation : {"fft", "naive"}
+        How sums over particles are done.
+    exterior : {"truncated", "open"}
+        The papers' truncation of the lattice, or the far-field closure.
+    store : {"field", "profile", "metrics"}
+        What a data set keeps: u everywhere, u for |x| <= 5 R_alpha, or scalars only.
+
+    Raises
+    ------
+    InvalidInput
+        With the field, the value, what is allowed and what to do.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    scheme: SchemeName
+    order: Literal[2, 4] = 2
+    beta: float = Field(gt=0.0, lt=1.0)
+    dim: Literal[1] = 1
+    truncation: float | None = Field(default=None, gt=0.0)
+    half_width: float | None = Field(default=None, gt=0.0)
+    spacing: float = Positive
+    overlap: float | None = Field(default=None, ge=0.25, le=1000.0)
+    dt: float | None = Field(default=None, gt=0.0)
+    diffusivity: float = Field(default=1.0, gt=0.0)
+    t_initial: float = Field(default=0.5, ge=0.0)
+    t_final: float = Field(default=1.5, gt=0.0)
+    initial: str = FUNDAMENTAL
+    integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = None
+    evaluation: Literal["series", "stepping"] = "series"
+    summation: Literal["fft", "naive"] = "fft"
+    exterior: Literal["truncated", "open"] = "truncated"
+    store: Literal["field", "profile", "metrics"] = "field"
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise _one_line(error, type(self)) from None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Case:
+        _check_time(self)
+        _check_domain(self)
+        _check_scheme(self)
+        _check_integrator(self)
+        return self
+
+    # --- what follows from the parameters -------------------------------------------------------------------
+
+    @property
+    def alpha(self) -> float:
+        """Fractional order alpha = 1 + beta."""
+        return 1.0 + self.beta
+
+    @property
+    def domain(self) -> float:
+        """The half-width of the lattice, Eq. (46)."""
+        if self.half_width is not None:
+            return self.half_width
+        assert self.truncation is not None  # noqa: S101  (one of the two is always given)
+        spread = (self.diffusivity * self.t_final) ** (1.0 / self.alpha)
+        return self.truncation * spread * mean_radius(self.alpha)
+
+    @property
+    def n(self) -> int:
+        """Half the number of lattice intervals: the particles are x_i = i h, i = -n .. n."""
+        return max(1, round(self.domain / self.spacing))
+
+    @property
+    def particles(self) -> int:
+        """The number N = 2 n + 1 of particles."""
+        return 2 * self.n + 1
+
+    @property
+    def particle_spacing(self) -> float:
+        """The realised spacing h = D / n."""
+        return self.domain / self.n
+
+    @property
+    def x(self) -> np.ndarray:
+        """The particle positions, shape (N,)."""
+        return np.arange(-self.n, self.n + 1) * self.particle_spacing
+
+    @property
+    def method(self) -> str:
+        """The integrator, the default resolved."""
+        if self.integrator is not None:
+            return self.integrator
+        return "euler" if self.scheme == "GPSE" else "rk2"
+
+    @cached_property
+    def steps(self) -> int:
+        """The number of time steps; 0 for the exponential."""
+        if self.method == "exponential":
+            return 0
+        return max(1, ceil((self.t_final - self.t_initial) / self._asked_step * (1 - _STEP_SLACK)))
+
+    @property
+    def time_step(self) -> float:
+        """The realised step (t_final - t_initial) / steps; 0 for the exponential."""
+        return (self.t_final - self.t_initial) / self.steps if self.steps else 0.0
+
+    @property
+    def _asked_step(self) -> float:
+        if self.dt is not None:
+            return self.dt
+        return ((self.overlap or 2.0) * self.particle_spacing) ** self.alpha / self.diffusivity
+
+    @property
+    def epsilon_over_h(self) -> float:
+        """The realised overlap s = epsilon / h; for GPSE from the realised step, Eq. (40)."""
+        if self.scheme == "GPSE":
+            epsilon = (self.diffusivity * self.time_step) ** (1.0 / self.alpha)
+            return epsilon / self.particle_spacing
+        return 2.0 if self.overlap is None else self.overlap
+
+    @property
+    def setting(self) -> Setting:
+        """The scheme on its lattice."""
+        return Setting(
+            n=self.n,
+            spacing=self.particle_spacing,
+            alpha=self.alpha,
+            order=self.order,
+            overlap=self.epsilon_over_h,
+            diffusivity=self.diffusivity,
+            summation=self.summation,
+            exterior=self.exterior,
+        )
+
+    @cached_property
+    def largest_stable_step(self) -> float:
+        """The largest dt inside the stability interval; infinite for the exponential."""
+        if self.method == "exponential":
+            return float("inf")
+        limit = stability_limit(self.scheme, self.beta, self.order, self.epsilon_over_h)
+        reach = STEP_POLYNOMIALS[self.method].stability_interval / 2.0
+        return float(reach * limit * self.particle_spacing**self.alpha / self.diffusivity)
+
+    # --- identity -------------------------------------------------------------------------------------------
+
+    def to_json(self) -> str:
+        """Return the case as one JSON object; `Case.from_json` reads it."""
+        return json.dumps(self.model_dump(exclude_none=True), sort_keys=True)
+
+    @classmethod
+    def from_json(cls, text: str) -> Case:
+        """Return the case that `to_json` wrote."""
+        return cls(**json.loads(text))
+
+    @property
+    def path(self) -> str:
+        """A relative file name that shows every parameter: equal cases, equal paths."""
+        width = f"C{self.truncation:g}" if self.truncation is not None else f"D{self.half_width:g}"
+        step = self.method if self.dt is None else f"{self.method}_dt{self.dt:.6g}"
+        parts = [
+            f"{width}_h{self.spacing:.7g}",
+            *([] if self.overlap is None else [f"s{self.overlap:g}"]),
+            step,
+            f"t{self.t_initial:g}-{self.t_final:g}",
+            *([] if self.diffusivity == 1.0 else [f"diffusivity{self.diffusivity:g}"]),
+            *([] if self.initial == FUNDAMENTAL else [f"from-{_slug(self.initial)}"]),
+            *([] if self.evaluation == "series" else [self.evaluation]),
+            *([] if self.summation == "fft" else [self.summation]),
+            self.exterior,
+            self.store,
+        ]
+        return f"{self.scheme}-{self.order}/beta{self.beta:g}/{'_'.join(parts)}.nc"
+
+
+def _slug(text: str) -> str:
+    return "".join(c if c.isalnum() else "-" for c in text)
+
+
+def _check_time(case: Case) -> None:
+    if case.t_final <= case.t_initial:
+        raise InvalidInput(
+            "t_final",
+            case.t_final,
+            f"a number > t_initial = {case.t_initial:g}",
+            "Give a later final time.",
+        )
+    if case.initial == FUNDAMENTAL and case.t_initial <= 0.0:
+        raise InvalidInput(
+            "t_initial",
+            case.t_initial,
+            "a number > 0 when the run starts from the fundamental solution, a point mass at t = 0",
+            "Give a positive time, or initial data of your own.",
+        )
+
+
+def _check_domain(case: Case) -> None:
+    if (case.truncation is None) == (case.half_width is None):
+        raise InvalidInput(
+            "truncation",
+            case.truncation,
+            "exactly one of truncation and half_width",
+            "Give the factor C of Eq. (46) or the half-width itself.",
+        )
+    if case.spacing > case.domain / 8.0:
+        raise InvalidInput(
+            "spacing",
+            case.spacing,
+            f"at most an eighth of the half-width, {case.domain / 8.0:.6g}",
+            "Take a smaller spacing or a wider domain.",
+        )
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    needed = _BYTES_PER_PARTICLE * 2.0 * case.domain / case.spacing
+    if needed > 0.5 * memory:
+        least = _BYTES_PER_PARTICLE * 4.0 * case.domain / memory
+        raise InvalidInput(
+            "spacing",
+            case.spacing,
+            f"at least {least:.3g} on this domain and this machine: "
+            f"{2.0 * case.domain / case.spacing:.3g} particles would take {needed / 2**30:.3g} GiB, "
+            f"half of the memory is {memory / 2**31:.3g} GiB",
+            "Take a larger spacing or a narrower domain.",
+        )
+
+
+def _check_scheme(case: Case) -> None:
+    scheme = SCHEMES[case.scheme]
+    if case.order not in scheme.ORDERS:
+        raise InvalidInput(
+            "order",
+            case.order,
+            f"{' or '.join(map(str, scheme.ORDERS))} for {case.scheme}",
+            "Choose one of these.",
+        )
+    if case.exterior not in scheme.EXTERIORS:
+        raise InvalidInput(
+            "exterior",
+            case.exterior,
+            f"{' or '.join(scheme.EXTERIORS)} for {case.scheme}",
+            "The far-field closure exists for DD, FPSE, KPSE and GPSE.",
+        )
+    if case.scheme == "FD" and case.overlap is not None:
+        raise InvalidInput(
+            "overlap", case.overlap, "nothing for FD, which has no kernel", "Leave it out."
+        )
+
+
+def _check_integrator(case: Case) -> None:
+    if case.method == "exponential":
+        if case.dt is not None:
+            raise InvalidInput(
+                "dt", case.dt, "nothing for integrator='exponential'", "Leave dt out."
+            )
+        if case.evaluation == "stepping":
+            raise InvalidInput(
+                "evaluation",
+                case.evaluation,
+                "'series' for integrator='exponential', which takes no steps",
+                "Leave it out.",
+            )
+    if case.scheme == "GPSE":
+        if case.method != "euler":
+            raise InvalidInput(
+                "integrator",
+                case.method,
+                "nothing or 'euler' for GPSE, whose step is part of the scheme",
+                "Leave it out.",
+            )
+        if case.dt is not None and case.overlap is not None:
+            raise InvalidInput(
+                "overlap",
+                case.overlap,
+                "one of dt and overlap for GPSE, since epsilon = (D dt)^(1/alpha), Eq. (40)",
+                "Leave one of them out.",
+            )
+    elif case.dt is None and case.method != "exponential":
+        limit = stability_limit(case.scheme, case.beta, case.order, case.epsilon_over_h)
+        largest = limit * case.particle_spacing**case.alpha / case.diffusivity
+        raise InvalidInput(
+            "dt",
+            None,
+            f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}",
+            "Give dt, or integrator='exponential', which needs none.",
+        )
+
+
+def _one_line(error: ValidationError, model: type[BaseModel]) -> InvalidInput:
+    """Turn the first complaint of pydantic into one line of ours."""
+    first = error.errors()[0]
+    field = ".".join(str(part) for part in first["loc"]) or "case"
+    if first["type"] == "extra_forbidden":
+        import difflib
+
+        close = difflib.get_close_matches(field, model.model_fields, n=1)
+        remedy = f"Did you mean {close[0]!r}?" if close else "Leave it out."
+        return InvalidInput(field, first["input"], f"one of {', '.join(model.model_fields)}", remedy)
+    if first["type"] == "missing":
+        return InvalidInput(field, None, "needed", f"Give {field}.")
+    allowed = first["msg"].removeprefix("Input should be ")
+    return InvalidInput(field, first["input"], allowed, "Give such a value.")

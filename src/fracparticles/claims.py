@@ -1,0 +1,442 @@
+"""The claims ledger: what the documents print, against what we find.
+
+A claim is a printed number or a checkable statement (`report/printed/*.yaml`); a finding is what a
+study measured for it (`results/findings/*.json`). The ledger joins the two, one row a claim.
+
+With p the printed number, u one unit of its last printed digit and o ours, a value is
+
+    reproduced                               |o - p| <= u/2   (o rounds to the printed digits),
+    reproduced within the print's rounding   |o - p| <= u     (a truncated print, 8.83 for 8.8354),
+    deviates                                 otherwise,
+
+and a statement is reproduced or refuted as its verdict says. Either may turn out not testable.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from enum import StrEnum
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, Self
+
+import yaml
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    model_validator,
+)
+
+from fracparticles.errors import FracparticlesError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = [
+    "COLUMNS",
+    "Claim",
+    "Finding",
+    "LedgerError",
+    "Status",
+    "judge_value",
+    "ledger",
+    "ledger_markdown",
+    "read_claims",
+    "read_findings",
+    "read_ledger",
+    "summary_line",
+    "write_findings",
+    "write_ledger",
+    "write_text",
+]
+
+COLUMNS = (
+    "id",
+    "item",
+    "what",
+    "printed",
+    "ours",
+    "relative_deviation",
+    "status",
+    "reason",
+    "runs",
+)
+
+PRINTED_NUMBER = r"^-?[0-9]+(\.[0-9]+)?(e-?[0-9]{1,3})?$"
+
+
+class LedgerError(FracparticlesError, ValueError):
+    """Claims and findings that do not fit together; says which claim and why."""
+
+
+class Status(StrEnum):
+    """What became of a claim, in the words of the ledger."""
+
+    REPRODUCED = "reproduced"
+    WITHIN_ROUNDING = "reproduced within the print's rounding"
+    DEVIATES = "deviates"
+    REFUTED = "refuted"
+    NOT_TESTABLE = "not testable"
+
+    @property
+    def sign(self) -> str:
+        """The sign that stands before the word in a table."""
+        return _SIGNS[self]
+
+    @property
+    def needs_reason(self) -> bool:
+        """Whether the ledger must say why."""
+        return self in (Status.DEVIATES, Status.REFUTED, Status.NOT_TESTABLE)
+
+
+_SIGNS = {
+    Status.REPRODUCED: "✓",
+    Status.WITHIN_ROUNDING: "≈",
+    Status.DEVIATES: "≠",
+    Status.REFUTED: "✗",
+    Status.NOT_TESTABLE: "?",
+}
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class Claim(_Record):
+    """One printed number or one checkable statement of a document.
+
+    Parameters
+    ----------
+    id : str
+        The item and what of it, in dots: ``L-T3.DD.beta0.1``.
+    item : str
+        The figure, table or statement it belongs to: ``L-T3``.
+    kind : {"value", "statement"}
+        Whether a number or a sentence is claimed.
+    what : str
+        One plain sentence of what is claimed.
+    where : str
+        Table, section or equation.
+    printed : str, for a value
+        The number with exactly the digits of the print.
+    statement : str, for a statement
+        What the document says.
+    """
+
+    id: str = Field(min_length=1)
+    item: str = Field(min_length=1)
+    kind: Literal["value", "statement"]
+    what: str = Field(min_length=1)
+    where: str = Field(min_length=1)
+    printed: str | None = Field(default=None, pattern=PRINTED_NUMBER)
+    statement: str | None = Field(default=None, min_length=1)
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if not self.id.startswith(f"{self.item}."):
+            raise ValueError(f"the id {self.id} does not begin with its item {self.item}")
+        if (self.kind == "value") != (self.printed is not None):
+            raise ValueError(f"{self.id}: a value, and nothing else, has `printed`")
+        if (self.kind == "statement") != (self.statement is not None):
+            raise ValueError(f"{self.id}: a statement, and nothing else, has `statement`")
+        return self
+
+    @property
+    def text(self) -> str:
+        """What is printed: the digits of a value, the words of a statement."""
+        text = self.printed if self.kind == "value" else self.statement
+        assert text is not None  # by _is_consistent
+        return text
+
+
+class Finding(_Record):
+    """What a study found for one claim.
+
+    Parameters
+    ----------
+    claim : str
+        Id of the claim.
+    ours : float, optional
+        Our number for a value; None where it could not be had (then not testable).
+    verdict : bool, optional
+        Whether a statement holds; None where it cannot be tested. Left out for values.
+    evidence : str
+        One sentence with our figures; statements only.
+    reason : str
+        Why it deviates, is refuted or cannot be tested; empty otherwise or a remark.
+    runs : tuple of str
+        Relative paths of the runs behind it.
+    """
+
+    claim: str = Field(min_length=1)
+    ours: float | None = Field(default=None, allow_inf_nan=False)
+    verdict: bool | None = None
+    evidence: str = ""
+    reason: str = ""
+    runs: tuple[str, ...] = Field(default=(), strict=False)
+
+    @property
+    def has_verdict(self) -> bool:
+        """Whether a verdict was given, be it None: what tells a statement's finding."""
+        return "verdict" in self.model_fields_set
+
+
+def read_claims(path: str | os.PathLike[str]) -> list[Claim]:
+    """Read the claims of a document from its YAML file.
+
+    Raises
+    ------
+    LedgerError
+        If the file is not a list of valid claims, or an id occurs twice.
+    """
+    path = Path(path)
+    try:
+        claims = TypeAdapter(list[Claim]).validate_python(yaml.safe_load(path.read_text("utf-8")))
+    except (yaml.YAMLError, ValidationError) as error:
+        raise LedgerError(f"{path}: {error}") from error
+    _refuse_repeats([claim.id for claim in claims], f"{path}: claimed twice")
+    return claims
+
+
+def read_findings(paths: Iterable[str | os.PathLike[str]]) -> list[Finding]:
+    """Read the findings of several scenes, each a JSON list.
+
+    Raises
+    ------
+    LedgerError
+        If a file is not a list of valid findings.
+    """
+    findings: list[Finding] = []
+    for path in map(Path, paths):
+        try:
+            findings += TypeAdapter(list[Finding]).validate_json(path.read_text("utf-8"))
+        except ValidationError as error:
+            raise LedgerError(f"{path}: {error}") from error
+    return findings
+
+
+def write_findings(findings: Iterable[Finding], path: str | os.PathLike[str]) -> None:
+    """Write the findings of a scene as a JSON list, with the fields that were given."""
+    records = [finding.model_dump(mode="json", exclude_unset=True) for finding in findings]
+    write_text(path, json.dumps(records, indent=2, ensure_ascii=False) + "\n")
+
+
+def unit_of_last_digit(printed: str) -> Fraction:
+    """One unit of the last printed digit: 1/100 for 8.83, 1/10000 for 1.11e-2."""
+    mantissa, _, exponent = printed.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    return Fraction(10) ** (int(exponent or 0) - decimals)
+
+
+def judge_value(printed: str, ours: float) -> Status:
+    """Hold our number against the printed digits, in exact arithmetic.
+
+    Parameters
+    ----------
+    printed : str
+        The number as printed.
+    ours : float
+        Our number, finite.
+
+    Returns
+    -------
+    Status
+        REPRODUCED up to half a unit of the last printed digit, WITHIN_ROUNDING up to one unit,
+        DEVIATES beyond.
+    """
+    units = abs(Fraction(ours) - Fraction(printed)) / unit_of_last_digit(printed)
+    if units <= Fraction(1, 2):
+        return Status.REPRODUCED
+    return Status.WITHIN_ROUNDING if units <= 1 else Status.DEVIATES
+
+
+def relative_deviation(printed: str, ours: float) -> float:
+    """(ours - printed)/printed; nan where 0 is printed."""
+    p = float(printed)
+    return (ours - p) / p if p else math.nan
+
+
+def ledger(printed: Sequence[Claim], findings: Sequence[Finding]) -> pd.DataFrame:
+    """Join claims and findings, one row a claim, in the order of the claims.
+
+    Parameters
+    ----------
+    printed : sequence of Claim
+        What the documents print.
+    findings : sequence of Finding
+        What we found, exactly one for each claim.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns `COLUMNS`. `printed` is text; `ours` is our number for a value and the evidence for
+        a statement; `relative_deviation` is nan for statements; `status` is a word of `Status`;
+        `runs` are joined by "; ".
+
+    Raises
+    ------
+    LedgerError
+        For a claim without a finding or with two, a finding for an unknown claim, a finding of the
+        wrong kind, and a deviation, refutation or untestable claim without a reason. A deviation
+        with its reason never raises.
+    """
+    import pandas as pd
+
+    known = [claim.id for claim in printed]
+    _refuse_repeats(known, "claimed twice")
+    _refuse_repeats([finding.claim for finding in findings], "found twice")
+    found = {finding.claim: finding for finding in findings}
+    if unknown := sorted(found.keys() - set(known)):
+        raise LedgerError(f"finding for an unknown claim: {', '.join(unknown)}")
+    if missing := [claim for claim in known if claim not in found]:
+        raise LedgerError(f"claim without a finding: {', '.join(missing)}")
+    rows = [_row(claim, found[claim.id]) for claim in printed]
+    return pd.DataFrame(rows, columns=list(COLUMNS)).astype({"relative_deviation": float})
+
+
+def _row(claim: Claim, finding: Finding) -> dict[str, object]:
+    judge = _judge_number if claim.kind == "value" else _judge_statement
+    status, ours, deviation = judge(claim, finding)
+    reason = finding.reason.strip()
+    if status.needs_reason and not reason:
+        raise LedgerError(f"{claim.id}: the status is {status!s}, and no reason is given")
+    values = (
+        claim.id, claim.item, claim.what, claim.text, ours, deviation, str(status), reason,
+        "; ".join(finding.runs),
+    )  # fmt: skip
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def _judge_number(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
+    if finding.has_verdict:
+        raise LedgerError(f"{claim.id}: a value has a number of ours, not a verdict")
+    if finding.evidence:
+        raise LedgerError(f"{claim.id}: evidence is for statements; a value explains by its reason")
+    if finding.ours is None:
+        return Status.NOT_TESTABLE, "", math.nan
+    status = judge_value(claim.text, finding.ours)
+    return status, finding.ours, relative_deviation(claim.text, finding.ours)
+
+
+def _judge_statement(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
+    if not finding.has_verdict:
+        raise LedgerError(f"{claim.id}: a statement needs a verdict: true, false or null")
+    if finding.ours is not None:
+        raise LedgerError(f"{claim.id}: a statement has no number of ours; put it in the evidence")
+    if not finding.evidence.strip():
+        raise LedgerError(f"{claim.id}: a statement needs evidence, one sentence with our figures")
+    words = {True: Status.REPRODUCED, False: Status.REFUTED, None: Status.NOT_TESTABLE}
+    return words[finding.verdict], finding.evidence.strip(), math.nan
+
+
+def _refuse_repeats(ids: Iterable[str], complaint: str) -> None:
+    if repeated := sorted(name for name, count in Counter(ids).items() if count > 1):
+        raise LedgerError(f"{complaint}: {', '.join(repeated)}")
+
+
+def summary_line(df: pd.DataFrame) -> str:
+    """Count the ledger in one line.
+
+    Returns
+    -------
+    str
+        As in "71 claims: 52 reproduced, 9 within the print's rounding, 6 deviate, 4 refuted,
+        0 not testable".
+    """
+    count = Counter(Status(word) for word in df["status"])
+    return (
+        f"{len(df)} {'claim' if len(df) == 1 else 'claims'}: {count[Status.REPRODUCED]} reproduced, "
+        f"{count[Status.WITHIN_ROUNDING]} within the print's rounding, "
+        f"{count[Status.DEVIATES]} deviate, {count[Status.REFUTED]} refuted, "
+        f"{count[Status.NOT_TESTABLE]} not testable"
+    )
+
+
+def ledger_markdown(df: pd.DataFrame) -> str:
+    """Render rows of the ledger as a Markdown table: printed, ours, deviation, status, reason."""
+    lines = [
+        "| claim | what | printed | ours | deviation | status | reason |",
+        "|:--|:--|:--|:--|--:|:--|:--|",
+    ]
+    for row in df.to_dict("records"):
+        status = Status(row["status"])
+        cells = (
+            f"`{row['id']}`",
+            _cell(row["what"]),
+            _cell(row["printed"]),
+            _cell(_digits(row["printed"], row["ours"])),
+            _percent(row["relative_deviation"]),
+            f"{status.sign} {status}",
+            _cell(row["reason"]),
+        )
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _digits(printed: str, ours: float | str) -> str:
+    """Our number with two digits more than the print, or our evidence as it is."""
+    if isinstance(ours, str):
+        return ours
+    mantissa, _, exponent = printed.partition("e")
+    decimals = len(mantissa.partition(".")[2]) + 2
+    if not exponent:
+        return f"{ours:.{decimals}f}"
+    return f"{ours / 10.0 ** int(exponent):.{decimals}f}e{exponent}"
+
+
+def _percent(deviation: float) -> str:
+    return "" if math.isnan(deviation) else f"{100 * deviation:+.2g} %".replace("+0 %", "0 %")
+
+
+def _cell(text: str) -> str:
+    """Text that a Markdown table shows as it is, on one line."""
+    for mark in ("\\", "|", "*", "`"):
+        text = text.replace(mark, f"\\{mark}")
+    return " ".join(text.replace("&", "&amp;").replace("<", "&lt;").split())
+
+
+def write_ledger(
+    df: pd.DataFrame, csv_path: str | os.PathLike[str], md_path: str | os.PathLike[str]
+) -> None:
+    """Write the ledger as CSV and as Markdown, each whole or not at all."""
+    write_text(csv_path, df.to_csv(index=False, lineterminator="\n"))
+    write_text(md_path, f"{summary_line(df)}\n\n{ledger_markdown(df)}")
+
+
+def read_ledger(csv_path: str | os.PathLike[str]) -> pd.DataFrame:
+    """Read back what `write_ledger` wrote as CSV.
+
+    Raises
+    ------
+    LedgerError
+        If the columns are not those of a ledger.
+    """
+    import pandas as pd
+
+    df = pd.read_csv(csv_path, dtype=str, keep_default_na=False, encoding="utf-8")
+    if tuple(df.columns) != COLUMNS:
+        raise LedgerError(f"{csv_path}: the columns are {[*df.columns]}, not those of a ledger")
+    is_value = df["printed"].str.match(PRINTED_NUMBER) & (df["ours"] != "")
+    ours = [float(o) if number else o for o, number in zip(df["ours"], is_value, strict=True)]
+    df["ours"] = pd.Series(ours, dtype=object)
+    df["relative_deviation"] = pd.to_numeric(df["relative_deviation"].replace("", "nan"))
+    return df
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a text file under a temporary name and rename it when whole."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)

@@ -1,0 +1,92 @@
+"""The far-field closure: the particles that a truncated lattice leaves out.
+
+Beyond the half-width D the solution falls like the fundamental solution, whose leading term (A.2) is
+proportional to |x|^(-1-alpha). Continue the lattice to infinity with the strengths
+
+    u_j = u_n (n / |j|)^(1+alpha),   |j| > n,      (u_{-n} on the left)
+
+and a sum over particles gains the exterior sum u_n right_i + u_{-n} left_i with
+
+    right_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j},   left_i = parity * right_{-i},
+
+a rank-two update of the operator, computed once. Not in the papers, which truncate the lattice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.signal import fftconvolve
+from scipy.special import roots_jacobi
+
+from fracparticles.operators import FarField
+
+__all__ = ["far_field"]
+
+# Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
+# varies on the scale n and two terms leave a relative error of order n^-4.
+_NEAR = 4
+# Sums over j > 4 n are analytic in i / n in |i| <= 4 n and in n / j: these many nodes give round-off.
+_NODES = 24
+
+
+def far_field(
+    weight: Callable[[np.ndarray], np.ndarray],
+    decay: float,
+    alpha: float,
+    n: int,
+    parity: int = 1,
+    pad: int = 0,
+) -> FarField:
+    """Return the exterior sums for the lattice -n .. n, at i = -n-pad .. n+pad.
+
+    Parameters
+    ----------
+    weight : callable
+        w_m as a function of any real offset m, even or odd.
+    decay : float
+        w_m ~ |m|^(-decay) far away.
+    alpha : float
+        Fractional order; the solution is continued like |x|^(-1-alpha).
+    n : int
+        Half the number of lattice intervals.
+    parity : {1, -1}
+        Whether w is even or odd.
+    pad : int
+        How many points beyond each end are wanted.
+    """
+    i = np.arange(-n - pad, n + pad + 1)
+    tail_power = 1.0 + alpha
+
+    j = np.arange(n + 1, _NEAR * n + 1)
+    offsets = np.arange(i[0] - j[-1], i[-1] - j[0] + 1)
+    near = fftconvolve((n / j) ** tail_power, weight(offsets.astype(float)), mode="valid")
+
+    # The tail at Chebyshev points of i, and from there to every i by barycentric interpolation.
+    angle = (np.arange(_NODES) + 0.5) * (np.pi / _NODES)
+    nodes = (n + pad) * np.cos(angle)
+    tail = np.array([_tail(weight, decay, tail_power, n, node) for node in nodes])
+    right = near + np.polynomial.chebyshev.Chebyshev.fit(
+        nodes, tail, _NODES - 1, domain=[-(n + pad), n + pad]
+    )(i)
+    return FarField(right=right, left=parity * right[::-1])
+
+
+def _tail(
+    weight: Callable[[np.ndarray], np.ndarray], decay: float, tail_power: float, n: int, i: float
+) -> float:
+    """Return sum_{j > 4 n} (n / j)^(1+alpha) w_{i-j}.
+
+    Euler-Maclaurin from the midpoint X = 4 n + 1/2: sum f(j) = int_X^inf f + f'(X) / 24 - ...; the integral
+    by Gauss-Jacobi quadrature in v = X / j, where f(j) dj is v^(1+alpha+decay-2) times a smooth function.
+    """
+    start = _NEAR * n + 0.5
+    exponent = tail_power + decay - 2.0
+    nodes, quadrature = roots_jacobi(_NODES, 0.0, exponent)
+    v = 0.5 * (1.0 + nodes)
+    smooth = weight(i - start / v) * v**-decay
+    integral = start * (n / start) ** tail_power * (quadrature @ smooth) / 2.0 ** (exponent + 1.0)
+    before, after = np.array([start - 0.5, start + 0.5])
+    f = (n / np.array([before, after])) ** tail_power * weight(i - np.array([before, after]))
+    return float(integral + (f[1] - f[0]) / 24.0)

@@ -1,0 +1,21 @@
+"""Time integration of du/dt = A u with a constant operator A.
+
+An explicit Runge-Kutta scheme multiplies the solution by its step polynomial p(A dt) (Eq. 52); n steps give
+p(A dt)^n u0. `stepping` does just that; `chebyshev` evaluates the same polynomial, or the exponential
+exp(A t), as one Chebyshev series on the interval that holds the spectrum of A.
+"""
+
+from __future__ import annotations
+
+from fracparticles.integrators.chebyshev import ChebyshevSeries, exponential, power
+from fracparticles.integrators.polynomial import STEP_POLYNOMIALS, StepPolynomial
+from fracparticles.integrators.stepping import step
+
+__all__ = [
+    "STEP_POLYNOMIALS",
+    "ChebyshevSeries",
+    "StepPolynomial",
+    "exponential",
+    "power",
+    "step",
+]

@@ -1,0 +1,145 @@
+"""Functions of an operator by one Chebyshev series: the whole time integration in a few hundred products.
+
+If the spectrum of A lies in [low, high] (or close to it),
+
+    f(A) u = sum_k c_k T_k(B) u,   B = (2 A - high - low) / (high - low),
+
+where c_k are the Chebyshev coefficients of f on the interval and T_k(B) u follows from the three-term
+recurrence T_{k+1} = 2 B T_k - T_{k-1}. For f = p(A dt)^n, n steps of a Runge-Kutta scheme, the sum is the same
+discrete solution as stepping gives, up to round-off; but p^n is so smooth on the interval that its
+coefficients fall below round-off after about sqrt(74 T |low| / 2) terms, whatever the number of steps.
+Tal-Ezer & Kosloff, J. Chem. Phys. 81 (1984) 3967, for the exponential.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+from scipy.fft import dct
+
+from fracparticles.errors import NonFiniteSolution
+from fracparticles.integrators.polynomial import StepPolynomial
+from fracparticles.operators import Operator
+
+__all__ = ["ChebyshevSeries", "exponential", "power"]
+
+_ROUND_OFF = 2.0**-54
+_LARGEST_EXPONENT = np.log(np.finfo(float).max)
+
+
+@dataclass(frozen=True)
+class ChebyshevSeries:
+    """f(z) = sum_k c_k T_k((2 z - high - low) / (high - low)).
+
+    Attributes
+    ----------
+    coefficients : array, shape (degree + 1,)
+        c_k; those at the end that are nil against the largest are left out.
+    low, high : float
+        The interval.
+    """
+
+    coefficients: np.ndarray
+    low: float
+    high: float
+
+    @classmethod
+    def of(
+        cls,
+        f: Callable[[np.ndarray], np.ndarray],
+        low: float,
+        high: float,
+        noise: float = _ROUND_OFF,
+    ) -> ChebyshevSeries:
+        """Interpolate f at Chebyshev points, of which there are enough when the last third of the
+        coefficients is nil: below `noise`, the relative round-off in the largest values of f."""
+        points = 32
+        while True:
+            angle = (np.arange(points) + 0.5) * (np.pi / points)
+            # (1 + cos) / 2 = cos^2(angle / 2): the distance to `low` keeps its relative accuracy.
+            values = f(high - (high - low) * np.sin(0.5 * angle) ** 2)
+            coefficients = dct(values, type=2) / points
+            coefficients[0] /= 2.0
+            size = np.abs(coefficients)
+            significant = np.flatnonzero(size > noise * np.abs(values).max())
+            degree = significant[-1] if significant.size else 0
+            if degree < 2 * points // 3:
+                return cls(coefficients[: degree + 1], low, high)
+            points *= 2
+
+    @property
+    def degree(self) -> int:
+        """The number of operator applications that an evaluation takes."""
+        return self.coefficients.size - 1
+
+    def __call__(self, operator: Operator, u: np.ndarray) -> np.ndarray:
+        """Return f(A) u, shape (N,).
+
+        Raises
+        ------
+        NonFiniteSolution
+            If a particle strength is not finite.
+        """
+        c = self.coefficients
+        scale = 2.0 / (self.high - self.low)
+        shift = -(self.high + self.low) / (self.high - self.low)
+        current = np.array(u, dtype=float)
+        total = c[0] * current
+        if self.degree > 0:
+            previous, current = current, np.zeros_like(current)
+            operator.update(previous, scale, shift, 0.0, current)
+            _accumulate(total, c[1], current)
+        for k in range(2, c.size):
+            operator.update(current, 2.0 * scale, 2.0 * shift, -1.0, previous)
+            previous, current = current, previous
+            _accumulate(total, c[k], current)
+        if not np.isfinite(total).all():
+            raise NonFiniteSolution(
+                "the particle strengths overflow: the time step lies far outside the stability interval. "
+                "Take a smaller dt or integrator='exponential'."
+            )
+        return total
+
+
+def power(
+    polynomial: StepPolynomial, dt: float, steps: int, low: float, high: float
+) -> ChebyshevSeries:
+    """Return the series of p(z dt)^steps on [low, high].
+
+    Raises
+    ------
+    NonFiniteSolution
+        If p(z dt)^steps overflows on the interval: then stepping overflows too, at the step named.
+    """
+
+    def amplification(z: np.ndarray) -> np.ndarray:
+        sign, exponent = polynomial.log_power(z * dt, steps)
+        growth = exponent.max() / steps
+        if growth * steps > _LARGEST_EXPONENT:
+            overflow = int(np.ceil(_LARGEST_EXPONENT / growth))
+            raise NonFiniteSolution(
+                f"{polynomial.name} with dt = {dt:.6g} amplifies the shortest wave by {np.exp(growth):.6g} a "
+                f"step and overflows near step {overflow} of {steps}, {overflow * dt:.6g} after the start: "
+                f"dt is outside the stability interval (limit {polynomial.stability_interval / -low:.6g}). "
+                "Take a smaller dt or integrator='exponential'."
+            )
+        return sign * np.exp(exponent)
+
+    _, exponent = polynomial.log_power(np.array([low, high]) * dt, steps)
+    # exp(y) carries a relative error of y times that of y.
+    noise = _ROUND_OFF * (1.0 + 4.0 * max(0.0, exponent.max()))
+    return ChebyshevSeries.of(amplification, low, high, noise)
+
+
+def exponential(time: float, low: float, high: float) -> ChebyshevSeries:
+    """Return the series of exp(z time) on [low, high]: exact in time."""
+    return ChebyshevSeries.of(lambda z: np.exp(z * time), low, high)
+
+
+@nb.njit(cache=True, nogil=True)
+def _accumulate(total, coefficient, term):
+    for i in range(total.size):
+        total[i] += coefficient * term[i]

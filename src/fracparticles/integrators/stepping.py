@@ -1,0 +1,52 @@
+"""Explicit Runge-Kutta stepping, the papers' own time integration."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fracparticles.errors import NonFiniteSolution
+from fracparticles.integrators.polynomial import StepPolynomial
+from fracparticles.operators import Operator
+
+__all__ = ["step"]
+
+_CHECK_EVERY = 16  # steps between two looks at the solution
+
+
+def step(
+    operator: Operator, polynomial: StepPolynomial, dt: float, steps: int, u: np.ndarray
+) -> tuple[np.ndarray, int]:
+    """Advance du/dt = A u by `steps` steps of size `dt`: u <- p(A dt) u, Eq. (51).
+
+    For a constant linear A, the s stages are Horner's rule for p: with v = u at first,
+    v <- u + (dt / k) A v for k = s, ..., 1. For s = 2 this is the midpoint rule.
+
+    Returns
+    -------
+    u : array, shape (N,)
+    applications : int
+        How often A was applied.
+
+    Raises
+    ------
+    NonFiniteSolution
+        As soon as a particle strength is not finite; names the step and the time since the start.
+    """
+    u = np.array(u, dtype=float)
+    spare = [np.empty_like(u), np.empty_like(u)]
+    for n in range(1, steps + 1):
+        v = u
+        for k in range(polynomial.stages, 0, -1):
+            target = spare[0] if v is not spare[0] else spare[1]
+            np.copyto(target, u)
+            operator.update(v, dt / k, 0.0, 1.0, target)
+            v = target
+        kept = [w for w in spare if w is not v]
+        u, spare = v, [u, *kept]
+        if (n % _CHECK_EVERY == 0 or n == steps) and not np.isfinite(u).all():
+            raise NonFiniteSolution(
+                f"the particle strengths are no longer finite after step {n} of {steps}, "
+                f"{n * dt:.6g} after the start: {polynomial.name} with dt = {dt:.6g} is unstable here. "
+                "Take a smaller dt or integrator='exponential'."
+            )
+    return u, steps * polynomial.stages

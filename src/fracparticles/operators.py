@@ -1,0 +1,132 @@
+"""Linear operators on the lattice, as the integrators see them: du/dt = A u.
+
+Every operator has `size`, `apply(u)` and the fused `update(u, a, b, c, v)`, which writes
+a (A u) + b u + c v into v in one pass over memory: stepping and Chebyshev recurrences are made of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numba as nb
+import numpy as np
+
+from fracparticles.sums import BandedConvolution
+
+__all__ = ["ConvolutionOperator", "FarField", "Operator", "TwoPassOperator"]
+
+Convolution = Callable[[np.ndarray], np.ndarray]
+
+
+class Operator(Protocol):
+    """What an integrator needs to know of a scheme."""
+
+    size: int
+
+    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+        """Write a (A u) + b u + c v into v; u and v are different arrays."""
+
+    def apply(self, u: np.ndarray) -> np.ndarray:
+        """Return A u as a new array."""
+
+
+@dataclass(frozen=True)
+class FarField:
+    """The sum over the exterior, u_n right_i + u_{-n} left_i: the last and the first strength extended.
+
+    A truncated problem has no far field: its operators take None instead.
+    """
+
+    right: np.ndarray
+    left: np.ndarray
+
+    def add(self, u: np.ndarray, y: np.ndarray) -> None:
+        """Add the contribution of the exterior to the sums y."""
+        _add_far_field(self.right, self.left, u, y)
+
+
+class _Appliable:
+    size: int
+
+    def apply(self, u: np.ndarray) -> np.ndarray:
+        """Return A u as a new array."""
+        out = np.zeros(self.size)
+        self.update(np.ascontiguousarray(u, dtype=float), 1.0, 0.0, 0.0, out)
+        return out
+
+
+class ConvolutionOperator(_Appliable):
+    """(A u)_i = sum_j w_{i-j} u_j + d_i u_i + u_n right_i + u_{-n} left_i.
+
+    Parameters
+    ----------
+    convolve : callable
+        The sum over the particles, see `sums`.
+    diagonal : array, shape (N,)
+        d_i; for a particle strength exchange minus the sum of the weights.
+    far_field : FarField or None
+        The contribution of the exterior.
+    """
+
+    def __init__(self, convolve: Convolution, diagonal: np.ndarray, far_field: FarField | None) -> None:
+        self.size = diagonal.size
+        self._convolve, self._diagonal, self._far = convolve, diagonal, far_field
+
+    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+        """Write a (A u) + b u + c v into v."""
+        y = self._convolve(u)
+        if self._far is not None:
+            self._far.add(u, y)
+        _update(y, self._diagonal, u, u, a, b, c, v)
+
+
+class TwoPassOperator(_Appliable):
+    """A u = S q + d q with q = (w * u + far field): a slow kernel first, a Gaussian one second.
+
+    Parameters
+    ----------
+    convolve : callable
+        First pass: the sum with the slowly decaying kernel, on the lattice or a little beyond it.
+    stencil : BandedConvolution
+        Second pass S.
+    diagonal : array, shape (N,)
+        d_i; what the second pass adds of particle i's own value.
+    far_field : FarField or None
+        The contribution of the exterior to q.
+    """
+
+    def __init__(
+        self,
+        convolve: Convolution,
+        stencil: BandedConvolution,
+        diagonal: np.ndarray,
+        far_field: FarField | None,
+    ) -> None:
+        self.size = diagonal.size
+        self._convolve, self._stencil = convolve, stencil
+        self._diagonal, self._far = diagonal, far_field
+        self._work = np.empty(self.size)
+
+    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+        """Write a (A u) + b u + c v into v."""
+        q = self._convolve(u)
+        if self._far is not None:
+            self._far.add(u, q)
+        y = self._stencil(q, self._work)
+        inside = (q.size - self.size) // 2
+        _update(y, self._diagonal, q[inside : inside + self.size], u, a, b, c, v)
+
+
+@nb.njit(cache=True, nogil=True)
+def _update(y, diagonal, q, u, a, b, c, v):
+    for i in range(v.size):
+        v[i] = a * (y[i] + diagonal[i] * q[i]) + b * u[i] + c * v[i]
+
+
+@nb.njit(cache=True, nogil=True)
+def _add_far_field(right, left, u, y):
+    last, first = u[-1], u[0]
+    for i in range(y.size):
+        y[i] += last * right[i] + first * left[i]

@@ -1,0 +1,42 @@
+"""Direct differentiation (DD), Eq. (10):
+
+    du_i/dt = (D / epsilon^alpha) sum_j V_j u_j G_epsilon(x_i - x_j),
+
+the fractional Laplacian of the particle representation, collocated at the particles. Not conservative.
+Stable for D dt / h^alpha <= a; order II, aliases neglected: a = 2 (s/2)^alpha (2 e / alpha)^(alpha/2).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fracparticles.kernels import kernel
+from fracparticles.operators import Operator
+from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
+
+NAME = "DD"
+TITLE = "Direct differentiation"
+EQUATION = "Eq. (10)"
+KERNEL = "Eq. (11)"
+ORDERS = (2, 4)
+EXTERIORS = ("truncated", "open")
+CONSERVATIVE = False
+DISSIPATIVE = True
+
+
+def weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
+    """a_m = s^(-1-alpha) G(m / s)."""
+    return overlap ** (-1.0 - alpha) * kernel("G", m / overlap, alpha, order=order)
+
+
+def operator(setting: Setting) -> Operator:
+    """Return A of Eq. (10)."""
+    alpha, order, overlap = setting.alpha, setting.order, setting.overlap
+    return one_pass_operator(
+        setting, lambda m: weights(m, alpha, order, overlap), decay=1.0 + alpha
+    )
+
+
+def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
+    """A(theta) h^alpha / D = s^(-alpha) sum_l G^(s (theta + 2 pi l)),  G^(k) = -|k|^alpha eta^(k)."""
+    return overlap**-alpha * lattice_transform("G", theta, alpha, order, overlap)

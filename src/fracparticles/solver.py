@@ -1,0 +1,172 @@
+"""Run a case: `integrate` on bare arrays, `solve` to a data set."""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fracparticles import integrators
+from fracparticles.case import FUNDAMENTAL, Case
+from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
+from fracparticles.operators import Operator
+from fracparticles.schemes import SCHEMES
+from fracparticles.special.stable import central_mass, green, mean_radius
+from fracparticles.spectrum import spectral_interval
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Solution", "initial_strengths", "integrate", "relative_l1_error", "solve"]
+
+Initial = str | Path | np.ndarray | Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a run computes.
+
+    Attributes
+    ----------
+    case : Case
+    x, u0, u : array, shape (N,)
+        Positions, initial and final strengths.
+    operator_applications : int
+        How often the operator was applied.
+    initial : str
+        Where the initial data came from.
+    """
+
+    case: Case
+    x: np.ndarray
+    u0: np.ndarray
+    u: np.ndarray
+    operator_applications: int
+    initial: str
+
+
+def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
+    """Run a case.
+
+    Parameters
+    ----------
+    case : Case
+        The run.
+    initial : array, callable or path, optional
+        Initial strengths on `case.x`, a function of x, or a NetCDF file that holds u on just these x. Without it
+        the run starts from what `case.initial` says, by default the fundamental solution at `case.t_initial`.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `dataset.to_dataset`.
+
+    Raises
+    ------
+    InvalidInput
+        If the initial data do not fit the case.
+    NonFiniteSolution
+        If the run blows up.
+    """
+    from fracparticles.dataset import to_dataset
+
+    return to_dataset(compute(case, initial))
+
+
+def compute(case: Case, initial: Initial | None = None) -> Solution:
+    """Run a case and return its arrays: `solve` without the data set."""
+    x = case.x
+    u0, origin = initial_strengths(case, initial)
+    warn_if_unstable(case)
+    operator = SCHEMES[case.scheme].operator(case.setting)
+    u, applications = integrate(case, operator, u0)
+    return Solution(case, x, u0, u, applications, origin)
+
+
+def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.ndarray, str]:
+    """Return the initial strengths on `case.x` and one line on where they come from."""
+    source: Initial = case.initial if initial is None else initial
+    if isinstance(source, str) and source == FUNDAMENTAL:
+        u0 = green(case.x, case.diffusivity * case.t_initial, case.alpha)
+        return u0, f"fundamental solution at t = {case.t_initial:g}"
+    if isinstance(source, (str, Path)):
+        from fracparticles.dataset import read_strengths
+
+        return read_strengths(Path(source), case), f"file {Path(source).name}"
+    given = source(case.x) if callable(source) else source
+    try:
+        u0 = np.array(given, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput(
+            "initial", type(given).__name__, "real numbers", "Give an array of floats."
+        ) from None
+    if u0.shape != case.x.shape:
+        raise InvalidInput(
+            "initial",
+            f"array of shape {u0.shape}",
+            f"an array of shape {case.x.shape}, one strength for each particle of case.x",
+            "Evaluate the data on case.x.",
+        )
+    if not np.isfinite(u0).all():
+        where = case.x[~np.isfinite(u0)][0]
+        raise InvalidInput(
+            "initial",
+            f"not finite at x = {where:g}",
+            "finite numbers",
+            "Mend the data, or shift a singularity off the lattice.",
+        )
+    digest = hashlib.sha256(u0.tobytes()).hexdigest()[:16]
+    return u0, f"{'callable' if callable(source) else 'array'}, sha256 {digest}"
+
+
+def warn_if_unstable(case: Case) -> None:
+    """Warn, with the numbers, if the time step lies outside the stability interval."""
+    if case.time_step > case.largest_stable_step:
+        warnings.warn(
+            f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
+            f"{case.method}: at most {case.largest_stable_step:.6g} is stable. The run is computed as it is.",
+            StabilityWarning,
+            stacklevel=3,
+        )
+
+
+def integrate(case: Case, operator: Operator, u0: np.ndarray) -> tuple[np.ndarray, int]:
+    """Advance the strengths u0 from `t_initial` to `t_final` and return them with the operator count.
+
+    Raises
+    ------
+    NonFiniteSolution
+        With the scheme, the step and the time.
+    """
+    try:
+        if case.evaluation == "stepping":
+            polynomial = integrators.STEP_POLYNOMIALS[case.method]
+            return integrators.step(operator, polynomial, case.time_step, case.steps, u0)
+        low, high = spectral_interval(case, operator)
+        if case.method == "exponential":
+            series = integrators.exponential(case.t_final - case.t_initial, low, high)
+        else:
+            polynomial = integrators.STEP_POLYNOMIALS[case.method]
+            series = integrators.power(polynomial, case.time_step, case.steps, low, high)
+        return series(operator, u0), series.degree
+    except NonFiniteSolution as error:
+        raise NonFiniteSolution(f"{case.scheme} (order {case.order}): {error}") from None
+
+
+def relative_l1_error(case: Case, x: np.ndarray, u: np.ndarray) -> float:
+    """Return the error against the fundamental solution, Eq. (48), over |x| <= 5 R_alpha.
+
+    sum_i V_i |u_i - G(x_i, t_f)| / int |G(x, t_f)| dx, the integral in closed form. On a lattice narrower than
+    5 R_alpha both run over the lattice.
+    """
+    half = min(5.0 * mean_radius(case.alpha), case.domain)
+    inside = np.abs(x) <= half * (1.0 + 1e-12)
+    time = case.diffusivity * case.t_final
+    exact = green(x[inside], time, case.alpha)
+    deviation = case.particle_spacing * np.abs(u[inside] - exact).sum()
+    return float(deviation / central_mass(half, time, case.alpha))

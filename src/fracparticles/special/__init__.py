@@ -1,0 +1,26 @@
+"""Special functions of the study: stable densities and confluent hypergeometric functions."""
+
+from __future__ import annotations
+
+from fracparticles.special.hypergeometric import kummer, kummer_transformed
+from fracparticles.special.stable import (
+    central_mass,
+    green,
+    green_asymptotic,
+    green_series,
+    mean_radius,
+    reduced_green,
+    tail_mass,
+)
+
+__all__ = [
+    "central_mass",
+    "green",
+    "green_asymptotic",
+    "green_series",
+    "kummer",
+    "kummer_transformed",
+    "mean_radius",
+    "reduced_green",
+    "tail_mass",
+]

@@ -1,0 +1,143 @@
+"""The stable density by quadrature along a contour on which nothing oscillates or cancels.
+
+    L_alpha^0(x) = (1/pi) Re int_Gamma exp(i k x - k^alpha) dk,        Gamma from 0 to infinity.
+
+On the real axis the integrand oscillates, and in the tail its parts cancel to all digits. Close to
+the path of steepest descent they do not. That path leaves 0 along the imaginary axis and turns
+towards the right at a saddle point; two straight pieces follow it closely enough:
+
+1. k = i s, 0 < s < s0. There the real part of the integrand is
+   exp(-s x - s^alpha cos(pi alpha/2)) sin(s^alpha sin(pi alpha/2)), positive up to a phase of pi:
+   this is the power-law tail.
+2. k = i s0 + e^(i phi) t, 0 < t < infinity, in the direction of steepest descent at the corner, but
+   with phi <= pi / (4 alpha), so that the real part of k^alpha grows all along: as alpha tends to
+   2 this is the Gaussian core.
+
+The corner s0 is the saddle point of the modulus on the imaginary axis,
+x = alpha s^(alpha-1) sin(pi (alpha-1)/2), unless the phase of piece 1 reaches 3/2 before. Each
+piece is a sum of almost only positive parts (the sum of their moduli exceeds the result by at most
+5 %), so that the result is accurate for every alpha in (1, 2), in the core, in the tail and in the
+sharp transition between them near alpha = 2.
+
+The mass beyond x follows from the same nodes, as the integral of exp(i k y) over y > x is
+i exp(i k x) / k.
+
+Piece 1 uses the tanh-sinh rule, piece 2 the double exponential rule t = exp(y - exp(-y)).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["density_and_tail"]
+
+FloatArray = NDArray[np.float64]
+
+_PHASE = 1.5  # of piece 1 at its end, at most
+_LARGEST_TURN = 0.25 * math.pi  # phi alpha, at most
+
+
+def _finite_rule(step: float, reach: float) -> tuple[FloatArray, FloatArray]:
+    """Tanh-sinh rule on (0, 1)."""
+    y = np.arange(-reach, reach + 0.5 * step, step)
+    node = 1.0 / (1.0 + np.exp(-math.pi * np.sinh(y)))
+    other = 1.0 / (1.0 + np.exp(math.pi * np.sinh(y)))
+    return node, step * math.pi * np.cosh(y) * node * other
+
+
+def _infinite_rule(step: float, lowest: float, highest: float) -> tuple[FloatArray, FloatArray]:
+    """Double exponential rule on (0, infinity) for integrands that decay like exp(-t)."""
+    y = np.arange(lowest, highest + 0.5 * step, step)
+    node = np.exp(y - np.exp(-y))
+    return node, step * (1.0 + np.exp(-y)) * node
+
+
+_UNIT_NODES, _UNIT_WEIGHTS = _finite_rule(0.07, 3.2)
+_HALF_NODES, _HALF_WEIGHTS = _infinite_rule(0.08, -3.6, 3.8)
+
+
+@numba.njit(cache=True, nogil=True)
+def _integrate(
+    x: FloatArray,
+    alpha: float,
+    unit_nodes: FloatArray,
+    unit_weights: FloatArray,
+    half_nodes: FloatArray,
+    half_weights: FloatArray,
+    density: FloatArray,
+    tail: FloatArray,
+) -> None:
+    """Rows of x share one contour, chosen for the middle of the row."""
+    delta = 2.0 - alpha
+    sine = math.sin(0.5 * math.pi * delta)  # sin(pi alpha/2), all digits kept as alpha -> 2
+    rise = math.cos(0.5 * math.pi * delta)  # -cos(pi alpha/2)
+    s = np.empty(unit_nodes.size)
+    real_1 = np.empty(unit_nodes.size)
+    k = np.empty(half_nodes.size, dtype=np.complex128)
+    factor_2 = np.empty(half_nodes.size, dtype=np.complex128)
+    for row in range(x.shape[0]):
+        middle = 0.5 * (x[row].min() + x[row].max())
+        log_saddle = math.log(middle / (alpha * rise)) / (alpha - 1.0)
+        log_phase = math.log(_PHASE / sine) / alpha
+        corner = math.exp(min(log_saddle, log_phase))
+        slope = alpha * corner ** (alpha - 1.0)
+        fall = slope * sine  # -Re of the derivative of the exponent at the corner
+        turn = max(middle - slope * rise, 0.0)  # its imaginary part
+        rate = math.hypot(fall, turn)
+        angle = min(math.atan2(turn, fall), _LARGEST_TURN / alpha)
+        direction = complex(math.cos(angle), math.sin(angle))
+        scale = 1.0 / max(rate, 1.0)
+        for j in range(s.size):
+            s[j] = corner * unit_nodes[j]
+            power = s[j] ** alpha
+            real_1[j] = corner * unit_weights[j] * math.exp(power * rise) * math.sin(power * sine)
+        for j in range(k.size):
+            k[j] = 1j * corner + direction * (scale * half_nodes[j])
+            factor_2[j] = direction * (scale * half_weights[j]) * np.exp(-(k[j] ** alpha))
+        for i in range(x.shape[1]):
+            total = 0.0
+            beyond = 0.0
+            for j in range(s.size):
+                term = math.exp(-s[j] * x[row, i]) * real_1[j]
+                total += term
+                beyond += term / s[j]
+            for j in range(k.size):
+                value = np.exp(1j * x[row, i] * k[j]) * factor_2[j]
+                total += value.real
+                beyond += (1j * value / k[j]).real
+            density[row, i] = total / math.pi
+            tail[row, i] = 2.0 * beyond / math.pi
+
+
+def density_and_tail(x: FloatArray, alpha: float) -> tuple[FloatArray, FloatArray]:
+    """Return L_alpha^0(x) and the mass outside [-x, x].
+
+    Parameters
+    ----------
+    x : ndarray, shape (rows, points)
+        Positive; points of a row lie within half a unit of one another, from 0.4 up to about 20.
+    alpha : float
+        1 < alpha < 2.
+
+    Returns
+    -------
+    density, tail : ndarray
+        Shape of x; relative accuracy about 1e-14.
+    """
+    density = np.empty_like(x)
+    tail = np.empty_like(x)
+    _integrate(
+        x,
+        alpha,
+        _UNIT_NODES,
+        _UNIT_WEIGHTS,
+        _HALF_NODES,
+        _HALF_WEIGHTS,
+        density,
+        tail,
+    )
+    return density, tail

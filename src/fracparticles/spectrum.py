@@ -1,0 +1,72 @@
+"""The spectrum of an operator on a bounded lattice: its interval, power iteration, dense eigenvalues."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, eigs
+
+from fracparticles.case import Case
+from fracparticles.errors import FracparticlesError
+from fracparticles.operators import Operator
+from fracparticles.schemes import SCHEMES
+from fracparticles.stability import symbol_range
+
+__all__ = ["dense_matrix", "power_iteration", "spectral_interval"]
+
+# The eigenvalues lie inside the symbol's range up to round-off; a little room costs nothing.
+_MARGIN = 1e-6
+
+
+def spectral_interval(case: Case, operator: Operator) -> tuple[float, float]:
+    """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
+
+    A truncated convolution (DD, FD) is a compression of the operator on the infinite lattice: its eigenvalues lie
+    in the range of the symbol. The same holds for an exchange with positive weights, whose quadratic form only
+    loses terms, and was found for FPSE, DPSE and the open exterior, which are not symmetric but have real
+    eigenvalues (tests/test_spectrum.py). Scheme (29) has positive eigenvalues: there the greatest is computed.
+    """
+    low, high = symbol_range(case.scheme, case.beta, case.order, case.epsilon_over_h)
+    rate, width = case.setting.rate, high - low
+    if not SCHEMES[case.scheme].DISSIPATIVE:
+        high = max(high, _greatest_eigenvalue(operator) / rate)
+    return rate * (low - _MARGIN * width), rate * (high + _MARGIN * width)
+
+
+def power_iteration(
+    operator: Operator, tolerance: float = 1e-10, most: int = 20000, seed: int = 1
+) -> tuple[float, int]:
+    """Return the eigenvalue of A of the greatest modulus and the number of iterations (paper, Sec. 4.4).
+
+    v <- A v / |A v| with the Rayleigh quotient as the estimate, until it changes by less than `tolerance`,
+    relative, over ten iterations.
+
+    Raises
+    ------
+    FracparticlesError
+        If it does not converge within `most` iterations.
+    """
+    v = np.random.default_rng(seed).standard_normal(operator.size)
+    v /= np.linalg.norm(v)
+    w = np.zeros_like(v)
+    before = 0.0
+    for iteration in range(1, most + 1):
+        operator.update(v, 1.0, 0.0, 0.0, w)
+        estimate = float(v @ w)
+        v, w = w / np.linalg.norm(w), v
+        if iteration % 10 == 0:
+            if abs(estimate - before) <= tolerance * abs(estimate):
+                return estimate, iteration
+            before = estimate
+    raise FracparticlesError(f"power iteration: no convergence within {most} iterations")
+
+
+def dense_matrix(operator: Operator) -> np.ndarray:
+    """Return A as an N x N array, column by column; for small N."""
+    return np.array([operator.apply(column) for column in np.eye(operator.size)]).T
+
+
+def _greatest_eigenvalue(operator: Operator) -> float:
+    matrix = LinearOperator((operator.size,) * 2, matvec=operator.apply, dtype=float)
+    start = np.ones(operator.size)
+    value = eigs(matrix, k=1, which="LR", v0=start, return_eigenvectors=False, tol=1e-6)
+    return float(value[0].real)

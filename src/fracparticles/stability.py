@@ -1,0 +1,100 @@
+"""The stability limit a of Eqs. (54)-(56), D dt / h^alpha <= a, from the Fourier symbol of a scheme."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.special import gamma, gammainc
+
+from fracparticles.errors import InvalidInput
+from fracparticles.schemes import scheme
+
+__all__ = ["closed_form_limit", "stability_limit", "symbol_range"]
+
+_SAMPLES = 513
+
+
+def stability_limit(
+    scheme: str, beta: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+) -> float:
+    """Return a = 2 D / (|lambda_min| h^alpha), Eq. (55), on the infinite lattice.
+
+    Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a (Eq. 56).
+
+    Parameters
+    ----------
+    scheme : str
+        Name of a scheme.
+    beta : float
+        0 < beta < 1.
+    order : {2, 4}
+        Order of the kernels.
+    overlap : float
+        epsilon / h.
+    dim : {1}
+        Space dimension.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is not allowed.
+    """
+    if dim != 1:
+        raise InvalidInput("dim", dim, "1", "Symbols are those of the one-dimensional lattice.")
+    return -2.0 / symbol_range(scheme, beta, order, overlap)[0]
+
+
+@lru_cache(maxsize=256)
+def symbol_range(
+    name: str, beta: float, order: int = 2, overlap: float = 2.0
+) -> tuple[float, float]:
+    """Return the least and the greatest value of A(theta) h^alpha / D."""
+    module = scheme(name)
+    if not (isinstance(beta, (int, float)) and 0.0 < beta < 1.0):
+        raise InvalidInput("beta", beta, "a number between 0 and 1", "Give such a value.")
+    if order not in module.ORDERS:
+        raise InvalidInput("order", order, f"one of {module.ORDERS}", "Choose one of these.")
+    if not (isinstance(overlap, (int, float)) and 0.25 <= overlap <= 1000.0):
+        raise InvalidInput("overlap", overlap, "a number from 0.25 to 1000", "Give such a value.")
+    alpha = 1.0 + beta
+
+    # The extremes lie near theta ~ 2 / s: sample evenly in theta as well as in theta s.
+    near = np.linspace(0.0, min(np.pi, 16.0 / overlap), _SAMPLES)
+    theta = np.union1d(near, np.linspace(0.0, np.pi, _SAMPLES))
+    values = module.symbol(theta, alpha, order, overlap)
+    extremes = []
+    for sign in (1.0, -1.0):
+        k = int(np.argmin(sign * values))
+        bracket = (theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)])
+        refined = minimize_scalar(
+            lambda t: sign * float(module.symbol(np.array([t]), alpha, order, overlap)[0]),  # noqa: B023
+            bounds=bracket,
+            method="bounded",
+            options={"xatol": 1e-9},
+        )
+        extremes.append(sign * min(refined.fun, sign * values[k]))
+    return float(extremes[0]), float(extremes[1])
+
+
+def closed_form_limit(scheme: str, beta: float, overlap: float = 2.0) -> float:
+    """Return a of DD, FPSE or KPSE, order II, in closed form, the aliases of the lattice neglected.
+
+    DD:   a = 2 (s/2)^alpha (2 e / alpha)^(alpha/2)
+    FPSE: a = 2 (s/2)^alpha (4 e / alpha)^(alpha/2)
+    KPSE: a = 2 s^alpha / (alpha 2^beta gamma(alpha/2, (pi s / 2)^2))
+
+    Raises
+    ------
+    InvalidInput
+        For any other scheme.
+    """
+    alpha = 1.0 + beta
+    if scheme in ("DD", "FPSE"):
+        factor = 2.0 if scheme == "DD" else 4.0
+        return 2.0 * (overlap / 2.0) ** alpha * (factor * np.e / alpha) ** (alpha / 2.0)
+    if scheme == "KPSE":
+        incomplete = gamma(alpha / 2.0) * gammainc(alpha / 2.0, (np.pi * overlap / 2.0) ** 2)
+        return 2.0 * overlap**alpha / (alpha * 2.0**beta * incomplete)
+    raise InvalidInput("scheme", scheme, "DD, FPSE or KPSE", "Use stability_limit for the others.")
