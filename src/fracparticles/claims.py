@@ -48,6 +48,7 @@ __all__ = [
     "judge_value",
     "ledger",
     "ledger_markdown",
+    "ours_text",
     "read_claims",
     "read_findings",
     "read_ledger",
@@ -351,8 +352,9 @@ def summary_line(df: pd.DataFrame) -> str:
         0 not testable".
     """
     count = Counter(Status(word) for word in df["status"])
+    noun = "claim" if len(df) == 1 else "claims"
     return (
-        f"{len(df)} {'claim' if len(df) == 1 else 'claims'}: {count[Status.REPRODUCED]} reproduced, "
+        f"{len(df)} {noun}: {count[Status.REPRODUCED]} reproduced, "
         f"{count[Status.WITHIN_ROUNDING]} within the print's rounding, "
         f"{count[Status.DEVIATES]} deviate, {count[Status.REFUTED]} refuted, "
         f"{count[Status.NOT_TESTABLE]} not testable"
@@ -360,27 +362,59 @@ def summary_line(df: pd.DataFrame) -> str:
 
 
 def ledger_markdown(df: pd.DataFrame) -> str:
-    """Render rows of the ledger as a Markdown table: printed, ours, deviation, status, reason."""
-    lines = [
-        "| claim | what | printed | ours | deviation | status | reason |",
-        "|:--|:--|:--|:--|--:|:--|:--|",
-    ]
-    for row in df.to_dict("records"):
-        status = Status(row["status"])
-        cells = (
-            f"`{row['id']}`",
-            _cell(row["what"]),
-            _cell(row["printed"]),
-            _cell(_digits(row["printed"], row["ours"])),
+    """Render rows of the ledger as Markdown: a table of the values, then one of the statements.
+
+    Either is left out when it has no rows. The columns are printed, ours, deviation (values only),
+    status and reason, after the claim.
+    """
+    is_value = df["printed"].str.match(PRINTED_NUMBER)
+    values = [
+        (
+            _claim_cell(row),
+            row["printed"],
+            ours_text(row["printed"], row["ours"]),
             _percent(row["relative_deviation"]),
-            f"{status.sign} {status}",
+            _status_cell(row),
             _cell(row["reason"]),
         )
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        for row in df[is_value].to_dict("records")
+    ]
+    statements = [
+        (
+            _claim_cell(row),
+            _cell(row["printed"]),
+            _cell(row["ours"]),
+            _status_cell(row),
+            _cell(row["reason"]),
+        )
+        for row in df[~is_value].to_dict("records")
+    ]
+    tables = (
+        _table(("claim", "printed", "ours", "deviation", "status", "reason"), values),
+        _table(("claim", "printed", "ours", "status", "reason"), statements),
+    )
+    return "\n".join(table for table in tables if table)
 
 
-def _digits(printed: str, ours: float | str) -> str:
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
+    if not rows:
+        return ""
+    numbers = ("printed", "ours", "deviation") if "deviation" in head else ()
+    rule = tuple("--:" if name in numbers else ":--" for name in head)
+    lines = (head, rule, *rows)
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+
+
+def _claim_cell(row: dict[str, str]) -> str:
+    return f"`{row['id']}`<br>{_cell(row['what'])}"
+
+
+def _status_cell(row: dict[str, str]) -> str:
+    status = Status(row["status"])
+    return f"{status.sign} {status}"
+
+
+def ours_text(printed: str, ours: float | str) -> str:
     """Our number with two digits more than the print, or our evidence as it is."""
     if isinstance(ours, str):
         return ours
@@ -392,7 +426,7 @@ def _digits(printed: str, ours: float | str) -> str:
 
 
 def _percent(deviation: float) -> str:
-    return "" if math.isnan(deviation) else f"{100 * deviation:+.2g} %".replace("+0 %", "0 %")
+    return "" if math.isnan(deviation) else f"{100 * deviation:+.3g} %".replace("+0 %", "0 %")
 
 
 def _cell(text: str) -> str:

@@ -27,13 +27,13 @@ from scipy.special import gamma, gammaincc
 
 from fracparticles.errors import InvalidInput
 from fracparticles.special.arguments import fractional_order, real_array
-from fracparticles.special.hypergeometric import kummer_transformed
+from fracparticles.special.hypergeometric import kummer_order_four, kummer_transformed
 from fracparticles.special.stable import reduced_green
 
 __all__ = ["KERNELS", "Kernel", "kernel", "kernel_transform"]
 
 FloatArray = NDArray[np.float64]
-LARGEST_RADIUS = 1e150  # the square must not overflow
+LARGEST = 1e150  # the square must not overflow
 
 
 # --- in space -------------------------------------------------------------------------------------
@@ -50,10 +50,9 @@ def _gamma_nb(n: int, b: int, alpha: float) -> float:
 
 def _m(c: float, b: float, r: FloatArray, order: int) -> FloatArray:
     """M(b - c, b, r^2) in order II or IV (B.18); c = b - a keeps its digits as alpha nears 2."""
-    near = kummer_transformed(c, b, r * r)
-    if order == 2:
-        return np.asarray(near)
-    return np.asarray(2.0 * near - 2.0 ** (c - b) * kummer_transformed(c, b, 0.5 * r * r))
+    return np.asarray(
+        kummer_transformed(c, b, r * r) if order == 2 else kummer_order_four(c, b, r * r)
+    )
 
 
 def _gaussian(r: FloatArray, n: int) -> FloatArray:
@@ -78,7 +77,7 @@ def _eta1(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
     """
     if order == 2:
         return -2.0 * r * _gaussian(r, n)
-    return -(n + 4.0 - 2.0 * r * r) * r * _gaussian(r, n)
+    return -(n + 4.0 - 2.0 * r * r) * (r * _gaussian(r, n))
 
 
 def _phi(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
@@ -153,11 +152,11 @@ def _g_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
 
 
 def _k_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """2^beta Gamma(alpha/2, k^2/4);  2^alpha Gamma(alpha/2, k^2/4) - 2^(alpha/2-1) Gamma(alpha/2, k^2/2).
+    """2^beta Gamma(s, k^2/4);  2^alpha Gamma(s, k^2/4) - 2^(s-1) Gamma(s, k^2/2),  s = alpha/2.
 
-    From r K = -F the transform obeys dK^/dk = -k^(alpha-1) eta^(k), and K^ vanishes at infinity;
-    Gamma(s, x) is the upper incomplete gamma function.
-    """  # noqa: E501
+    From r K = -F the transform obeys dK^/dk = -k^(alpha-1) eta^(k), for every n, and vanishes at
+    infinity; Gamma(s, x) is the upper incomplete gamma function.
+    """
     s = 0.5 * alpha
     narrow = 2.0 ** (alpha - 1.0) * gamma(s) * gammaincc(s, 0.25 * k * k)
     if order == 2:
@@ -179,107 +178,45 @@ class Kernel:
 
     Attributes
     ----------
-    name, symbol, equation : str
-        Name in the interface, symbol in mathematical notation (TeX), equation of its orders.
+    name : str
+        Name in the interface.
+    symbol : str
+        Symbol in TeX.
+    equation : str
+        Equations of order II and order IV.
     parity : str
         "even" (a radial function) or "odd" (a vector along r).
     orders, dims : tuple of int
         Orders of accuracy and numbers of dimensions that exist.
-    decay : callable
-        ``decay(alpha, n)``: the exponent p of the far field r^-p; inf where it is Gaussian.
     """
 
     name: str
     symbol: str
     equation: str
     parity: str
-    orders: tuple[int, ...]
-    dims: tuple[int, ...]
-    decay: Callable[[float, int], float]
     _space: Callable[[FloatArray, float, int, int], FloatArray]
     _transform: Callable[[FloatArray, float, int, int], FloatArray]
+    _excess: float = math.inf  # the far field is r^-(n + alpha + excess); inf: Gaussian
+    orders: tuple[int, ...] = (2, 4)
+    dims: tuple[int, ...] = (1, 2, 3)
 
+    def decay(self, alpha: float, dim: int = 1) -> float:
+        """Return the exponent p of the far field r^-p; inf where the decay is Gaussian."""
+        return dim + alpha + self._excess
 
-def _gaussian_decay(alpha: float, n: int) -> float:
-    return math.inf
-
-
-_ANY = (1, 2, 3)
 
 KERNELS: Mapping[str, Kernel] = MappingProxyType(
     {
         entry.name: entry
         for entry in (
-            Kernel(
-                "eta", r"\eta", "(8), (9)", "even", (2, 4), _ANY, _gaussian_decay, _eta, _eta_hat
-            ),
-            Kernel(
-                "eta1",
-                r"\eta^1",
-                "(23), (24)",
-                "odd",
-                (2, 4),
-                _ANY,
-                _gaussian_decay,
-                _eta1,
-                _eta1_hat,
-            ),
-            Kernel("Phi", r"\Phi", "(17)", "even", (2, 4), _ANY, _gaussian_decay, _phi, _phi_hat),
-            Kernel(
-                "kappa",
-                r"\kappa^\beta",
-                "(14), (15)",
-                "even",
-                (2, 4),
-                _ANY,
-                lambda alpha, n: n + alpha - 2.0,
-                _kappa,
-                _kappa_hat,
-            ),
-            Kernel(
-                "F",
-                r"\mathbf{F}",
-                "(20), (21)",
-                "odd",
-                (2, 4),
-                _ANY,
-                lambda alpha, n: n + alpha - 1.0,
-                _f,
-                _f_hat,
-            ),
-            Kernel(
-                "G",
-                "G",
-                "(11), (12)",
-                "even",
-                (2, 4),
-                _ANY,
-                lambda alpha, n: n + alpha,
-                _g,
-                _g_hat,
-            ),
-            Kernel(
-                "K",
-                "K",
-                "(31), (32)",
-                "even",
-                (2, 4),
-                _ANY,
-                lambda alpha, n: n + alpha,
-                _k,
-                _k_hat,
-            ),
-            Kernel(
-                "E",
-                "E",
-                "(39)",
-                "even",
-                (2,),
-                (1,),
-                lambda alpha, n: n + alpha,
-                _e,
-                _e_hat,
-            ),
+            Kernel("eta", r"\eta", "(8), (9)", "even", _eta, _eta_hat),
+            Kernel("eta1", r"\eta^1", "(23), (24)", "odd", _eta1, _eta1_hat),
+            Kernel("Phi", r"\Phi", "(17)", "even", _phi, _phi_hat),
+            Kernel("kappa", r"\kappa^\beta", "(14), (15)", "even", _kappa, _kappa_hat, -2.0),
+            Kernel("F", r"\mathbf{F}", "(20), (21)", "odd", _f, _f_hat, -1.0),
+            Kernel("G", "G", "(11), (12)", "even", _g, _g_hat, 0.0),
+            Kernel("K", "K", "(31), (32)", "even", _k, _k_hat, 0.0),
+            Kernel("E", "E", "(39)", "even", _e, _e_hat, 0.0, orders=(2,), dims=(1,)),
         )
     }
 )
@@ -296,9 +233,7 @@ def _select(name: str, alpha: Any, dim: int, order: int) -> tuple[Kernel, float]
     return entry, fractional_order(alpha)
 
 
-def kernel(
-    name: str, r: Any, alpha: float, dim: int = 1, order: int = 2
-) -> FloatArray | float:
+def kernel(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> FloatArray | float:
     """Return the kernel `name` at distance r, for unit smoothing length.
 
     Parameters
@@ -318,8 +253,8 @@ def kernel(
     Returns
     -------
     ndarray or float
-        Same shape as r. Vector kernels (eta1, F) give the component along r/|r|; for dim = 1 that is
-        the odd function of signed r. Relative accuracy 1e-11; next to a zero, relative to the
+        Same shape as r. Vector kernels (eta1, F) give the component along r/|r|; for dim = 1 that
+        is the odd function of signed r. Relative accuracy 1e-11; next to a zero, relative to the
         parts that cancel there.
 
     Raises
@@ -329,7 +264,7 @@ def kernel(
     """
     entry, alpha = _select(name, alpha, dim, order)
     r = real_array("r", r)
-    if (np.abs(r) > LARGEST_RADIUS).any():
+    if (np.abs(r) > LARGEST).any():
         raise InvalidInput("r", float(np.abs(r).max()), "|r| <= 1e150", "Scale the distances.")
     if dim > 1 and (r < 0.0).any():
         raise InvalidInput("r", float(r.min()), "a radius r >= 0 for dim > 1", "Give |r|.")
@@ -347,7 +282,7 @@ def kernel_transform(
     name, alpha, dim, order
         As for `kernel`.
     k : array_like
-        Angular wavenumbers k >= 0, any shape.
+        Angular wavenumbers 0 <= k <= 1e150, any shape.
 
     Returns
     -------
@@ -362,7 +297,7 @@ def kernel_transform(
     """
     entry, alpha = _select(name, alpha, dim, order)
     k = real_array("k", k)
-    if (k < 0.0).any():
-        raise InvalidInput("k", float(k.min()), "k >= 0", "Give the modulus of the wave vector.")
+    if not ((k >= 0.0) & (k <= LARGEST)).all():
+        raise InvalidInput("k", k, "0 <= k <= 1e150", "Give the modulus of the wave vector.")
     value = entry._transform(k, alpha, dim, order)
     return float(value) if k.ndim == 0 else value

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from fracparticles.special.hypergeometric import kummer, kummer_transformed
+from fracparticles.special.hypergeometric import (
+    kummer,
+    kummer_order_four,
+    kummer_transformed,
+)
 from fracparticles.special.stable import (
     central_mass,
     green,
@@ -19,6 +23,7 @@ __all__ = [
     "green_asymptotic",
     "green_series",
     "kummer",
+    "kummer_order_four",
     "kummer_transformed",
     "mean_radius",
     "reduced_green",

@@ -26,9 +26,9 @@ from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
 from fracparticles.special.arguments import elementwise, real_array
 
-__all__ = ["kummer", "kummer_transformed"]
+__all__ = ["kummer", "kummer_order_four", "kummer_transformed"]
 
-_FAR = 64.0  # beyond, the asymptotic series reaches 1e-17 before it diverges (a <= 4), in 40 terms
+_FAR = 64.0  # beyond, the asymptotic series falls to 1e-17 before it diverges, in at most 40 terms
 _WIDTH = 2.0
 _PIECES = int(_FAR / _WIDTH)
 _TERMS = 40
@@ -41,6 +41,7 @@ class _Table(NamedTuple):
     prefactor: float
     a: float
     far: NDArray[np.float64]
+    far_order_four: NDArray[np.float64]
 
 
 @numba.njit(cache=True, nogil=True)
@@ -58,28 +59,41 @@ def _series(c: float, b: float, z: NDArray[np.float64], out: NDArray[np.float64]
         out[i] = np.exp(-z[i]) * total
 
 
+@numba.njit(cache=True, nogil=True, inline="always")
+def _far(z: float, table: _Table, series: NDArray[np.float64]) -> float:
+    power = 1.0
+    total = series[0]
+    for k in range(1, _TERMS):
+        power /= z
+        term = series[k] * power
+        total += term
+        if abs(term) < 1e-17:
+            break
+    return table.prefactor * z**-table.a * total
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def _value(z: float, table: _Table) -> float:
+    if z < _FAR:
+        return chebyshev.horner(z / _WIDTH, table.near)
+    return _far(z, table, table.far)
+
+
 @numba.njit(cache=True, nogil=True)
-def _evaluate(
-    z: NDArray[np.float64],
-    near: NDArray[np.float64],
-    prefactor: float,
-    a: float,
-    far: NDArray[np.float64],
-    out: NDArray[np.float64],
-) -> None:
+def _evaluate(z: NDArray[np.float64], table: _Table, out: NDArray[np.float64]) -> None:
     for i in range(z.size):
-        if z[i] < _FAR:
-            out[i] = chebyshev.horner(z[i] / _WIDTH, near)
+        out[i] = _value(z[i], table)
+
+
+@numba.njit(cache=True, nogil=True)
+def _evaluate_order_four(z: NDArray[np.float64], table: _Table, out: NDArray[np.float64]) -> None:
+    weight = 2.0**-table.a
+    for i in range(z.size):
+        if z[i] < 2.0 * _FAR:
+            out[i] = 2.0 * _value(z[i], table) - weight * _value(0.5 * z[i], table)
         else:
-            power = 1.0
-            total = 1.0
-            for k in range(1, _TERMS):
-                power /= z[i]
-                term = far[k] * power
-                total += term
-                if abs(term) < 1e-17:
-                    break
-            out[i] = prefactor * z[i] ** -a * total
+            # The powers are the same, 2^-a (z/2)^-a = z^-a: one series does for both.
+            out[i] = _far(z[i], table, table.far_order_four)
 
 
 @lru_cache(maxsize=512)
@@ -91,49 +105,28 @@ def _table(c: float, b: float) -> _Table:
     k = np.arange(_TERMS)
     # 1 / Gamma(c) by two steps of the recurrence: keeps its digits where c is close to 0 or -1.
     reciprocal_gamma = c * (c + 1.0) * rgamma(c + 2.0)
+    far = poch(a, k) * poch(1.0 - c, k) / gamma(k + 1.0)
     return _Table(
         near=chebyshev.fit(samples.reshape(z.shape)),
         prefactor=float(gamma(b) * reciprocal_gamma),
         a=a,
-        far=poch(a, k) * poch(1.0 - c, k) / gamma(k + 1.0),
+        far=far,
+        far_order_four=(2.0 - 2.0**k) * far,
     )
 
 
-def kummer_transformed(c: float, b: float, z: Any) -> NDArray[np.float64] | float:
-    """Return exp(-z) 1F1(c; b; z) = 1F1(b - c; b; -z) for z >= 0.
-
-    The same function as `kummer` with c = b - a given instead of a: near c = 0 or c = -1 the
-    difference b - a would lose digits that the far field, proportional to c (c + 1), needs.
-
-    Parameters
-    ----------
-    c, b : float
-        0 < b <= 4, 0 < b - c <= 4, c > -1 and c not 0.
-    z : array_like
-        Non-negative arguments, any shape.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as z; relative accuracy 1e-13, for c < 0 relative to the larger of the two
-        parts exp(-z) and value - exp(-z) that cancel at the one zero.
-
-    Raises
-    ------
-    InvalidInput
-        If a parameter is outside its range, or z is negative, nan or not numeric.
-    """
-    if not (-1.0 < c < b <= 4.0 and 0.0 < b - c <= 4.0 and c != 0.0):
+def _checked(c: float, b: float, z: Any) -> tuple[_Table, NDArray[np.float64]]:
+    if not (-1.0 < c < b <= 4.0 and b - c <= 4.0 and c != 0.0):
         raise InvalidInput(
             "(b - a, b)",
             (c, b),
-            "-1 < b - a < b <= 4 and b - a not 0, 0 < a <= 4",
-            "The kernels of fractional operators lie inside this range.",
+            "-1 < b - a < b <= 4, b - a not 0, and a <= 4",
+            "The kernels of the fractional operators lie inside this range.",
         )
     z = real_array("z", z)
     if (z < 0.0).any():
         raise InvalidInput("z", float(z.min()), "z >= 0", "Give the squared distance.")
-    return elementwise(_evaluate, z, *_table(float(c), float(b)))
+    return _table(float(c), float(b)), z
 
 
 def kummer(a: float, b: float, z: Any) -> NDArray[np.float64] | float:
@@ -157,3 +150,55 @@ def kummer(a: float, b: float, z: Any) -> NDArray[np.float64] | float:
         If a parameter is outside its range, or z is negative, nan or not numeric.
     """
     return kummer_transformed(b - a, b, z)
+
+
+def kummer_transformed(c: float, b: float, z: Any) -> NDArray[np.float64] | float:
+    """Return exp(-z) 1F1(c; b; z) = 1F1(b - c; b; -z) for z >= 0.
+
+    The same function as `kummer` with c = b - a given instead of a: near c = 0 or c = -1 the
+    difference b - a would lose digits that the far field, proportional to c (c + 1), needs.
+
+    Parameters
+    ----------
+    c, b : float
+        -1 < c < b <= 4, c not 0, and a = b - c <= 4.
+    z : array_like
+        Non-negative arguments, any shape.
+
+    Returns
+    -------
+    ndarray or float
+        Same shape as z; relative accuracy 1e-13, for c < 0 relative to the larger of the two
+        parts exp(-z) and value - exp(-z), which cancel at the one zero.
+
+    Raises
+    ------
+    InvalidInput
+        If a parameter is outside its range, or z is negative, nan or not numeric.
+    """
+    table, z = _checked(c, b, z)
+    return elementwise(_evaluate, z, table)
+
+
+def kummer_order_four(c: float, b: float, z: Any) -> NDArray[np.float64] | float:
+    """Return 2 M(z) - 2^-a M(z/2), M(z) = 1F1(a; b; -z), a = b - c: the order-IV rule (B.18).
+
+    (B.18) of Lucchesi et al. (2020) prints z/sqrt(2); (12), (15) and (21) have z/2.
+
+    Parameters
+    ----------
+    c, b, z
+        As for `kummer_transformed`.
+
+    Returns
+    -------
+    ndarray or float
+        Same shape as z; relative accuracy 1e-13, next to a zero relative to the two terms.
+
+    Raises
+    ------
+    InvalidInput
+        If a parameter is outside its range, or z is negative, nan or not numeric.
+    """
+    table, z = _checked(c, b, z)
+    return elementwise(_evaluate_order_four, z, table)

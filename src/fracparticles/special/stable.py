@@ -174,9 +174,7 @@ def _near_terms(alpha: float, x: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _table(alpha: float) -> _Table:
     far_density, far_bound = _far_terms(alpha)
     m = np.arange(1.0, _FAR_TERMS + 1.0)
-    x = chebyshev.sample_points(
-        _WIDTH, _pieces_before_far(alpha, float(far_density[0]), far_bound)
-    )
+    x = chebyshev.sample_points(_WIDTH, _pieces_before_far(alpha, float(far_density[0]), far_bound))
     density, mass = np.empty_like(x), np.empty_like(x)
     density[0], mass[0] = _near_terms(alpha, x[0])
     density[1:], mass[1:] = density_and_tail(x[1:], alpha)

@@ -1,0 +1,93 @@
+# The front door. `make` alone lists what there is; every target sets up the environment it needs.
+
+JOBS          ?= 2
+ARGS          ?=
+SMOKE_RESULTS ?= results-smoke
+
+# requirements.lock is resolved for this version of Python.
+PYTHON_VERSION := 3.11
+VERSION_OF      = $(shell $(1) -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null)
+PYTHON         ?= $(or $(firstword $(foreach p,python$(PYTHON_VERSION) python3 python,\
+                    $(if $(filter $(PYTHON_VERSION),$(call VERSION_OF,$(p))),$(p)))),python3)
+
+VENV      := .venv
+BIN       := $(VENV)/bin
+LOCKED    := $(VENV)/.locked
+INSTALLED := $(VENV)/.installed
+PIP       := $(BIN)/python -m pip --disable-pip-version-check
+
+# Shell commands of the workflow find the environment's programs first.
+SNAKEMAKE = PATH="$(abspath $(BIN)):$$PATH" $(BIN)/snakemake -j$(JOBS) \
+            --workflow-profile workflow/profiles/default
+# One thread each: the tests already run in $(JOBS) processes.
+PYTEST    = OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
+            $(BIN)/python -m pytest -n $(JOBS) --dist loadgroup
+
+SHELL         := bash
+.SHELLFLAGS   := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+.PHONY: help setup study test smoke bench lint report lock clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@echo '  JOBS=$(JOBS) parallel jobs, ARGS="..." more arguments for test, study, smoke and bench'
+
+setup: $(INSTALLED) ## make .venv from requirements.lock, again only when the lock or pyproject.toml changed
+
+study: $(INSTALLED) ## run the whole study: runs, tables, figures, report
+	$(SNAKEMAKE) $(ARGS)
+
+test: $(INSTALLED) ## run the tests
+	$(PYTEST) $(ARGS)
+
+smoke: $(INSTALLED) ## run the same study on tiny grids, into results-smoke
+	$(SNAKEMAKE) --configfile config/smoke.yaml --config results_dir=$(SMOKE_RESULTS) $(ARGS)
+
+bench: $(INSTALLED) ## time the schemes; wants the machine to itself
+	$(SNAKEMAKE) bench $(ARGS)
+
+report: $(INSTALLED) ## build the report
+	$(SNAKEMAKE) report
+
+lint: $(INSTALLED) ## check style, types, the lock and the workflow
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/mypy
+	$(BIN)/python tools/check_lock.py
+	$(BIN)/snakemake --lint
+
+# Not part of the environment: the compiler of the lock lives in an environment of its own.
+lock: ## resolve requirements.lock anew from pyproject.toml
+	$(PYTHON) -m venv --clear .venv-lock
+	.venv-lock/bin/python -m pip install --quiet --upgrade pip pip-tools
+	CUSTOM_COMPILE_COMMAND='make lock' .venv-lock/bin/pip-compile --quiet --upgrade \
+	    --extra study --extra dev --build-deps-for editable --allow-unsafe \
+	    --generate-hashes --strip-extras \
+	    --no-emit-index-url --no-emit-trusted-host --no-emit-find-links \
+	    --output-file requirements.lock pyproject.toml
+	.venv-lock/bin/python tools/check_lock.py
+	rm -rf .venv-lock
+
+clean: ## remove the environment, the caches and the smoke results; results/ stays
+	rm -rf $(VENV) .venv-lock $(SMOKE_RESULTS) .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf build dist src/*.egg-info
+	find . -type d -name __pycache__ -prune -exec rm -rf {} +
+
+# The environment is made anew, so that it holds what the lock names and nothing else. setuptools goes
+# in first: it builds, without fetching anything unpinned, what comes as source only, and the package.
+$(LOCKED): requirements.lock
+	@found="$(call VERSION_OF,$(PYTHON))"; [ "$$found" = "$(PYTHON_VERSION)" ] || { \
+	    echo "setup needs Python $(PYTHON_VERSION); $(PYTHON) is $${found:-not there}:" \
+	         "make setup PYTHON=/path/to/python$(PYTHON_VERSION)" >&2; exit 1; }
+	$(PYTHON) -m venv --clear $(VENV)
+	sed -n '/^setuptools==/,/[^\\]$$/p' requirements.lock > $(VENV)/setuptools.lock
+	$(PIP) install --quiet --require-hashes -r $(VENV)/setuptools.lock
+	$(PIP) install --quiet --require-hashes --no-build-isolation --use-pep517 -r requirements.lock
+	@touch $@
+
+$(INSTALLED): $(LOCKED) pyproject.toml
+	@rm -f $@
+	$(PIP) install --quiet --no-deps --no-build-isolation -e .
+	$(PIP) check
+	@touch $@
