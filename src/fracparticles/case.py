@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterable
 from functools import cached_property
 from math import ceil
-from typing import Any, Literal
+from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic.fields import FieldInfo
 
 from fracparticles.errors import InvalidInput
 from fracparticles.integrators import STEP_POLYNOMIALS
@@ -17,14 +19,17 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.special.stable import mean_radius
 from fracparticles.stability import stability_limit
 
-__all__ = ["FUNDAMENTAL", "Case"]
+__all__ = ["FUNDAMENTAL", "Case", "choices_of", "takes_numbers"]
 
 FUNDAMENTAL = "fundamental"
 _BYTES_PER_PARTICLE = 200  # measured: about 20 arrays of float64 at the peak
+_TINY, _HUGE = 1e-100, 1e100  # lengths and times; nothing made of them overflows
+_OVERLAPS = 0.25, 1000.0
+_MOST_STEPS = 2**53  # more are not told apart in float64
+_STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
 _STEP_SLACK = 1e-9  # a time span of n (1 + 1e-9) steps still takes n steps
 
 SchemeName = Literal["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD", "PSE29", "RIESZ"]
-Positive = Field(gt=0.0)
 
 
 class Case(BaseModel):
@@ -33,42 +38,7 @@ class Case(BaseModel):
     `spacing` and `dt` are what is asked for; the lattice ends at the half-width exactly and the last step at
     `t_final` exactly, so that the realised `particle_spacing` and `time_step` may differ slightly.
 
-    Attributes
-    ----------
-    scheme : str
-        DD, DPSE, FPSE, KPSE, GPSE, FD, or one of the rejected PSE29 and RIESZ.
-    order : {2, 4}
-        Order of the kernels.
-    beta : float
-        0 < beta < 1.
-    dim : {1}
-        Space dimension.
-    truncation : float, optional
-        C of D = C (D t_f)^(1/alpha) R_alpha, Eq. (46). Either this or `half_width`.
-    half_width : float, optional
-        The half-width of the lattice itself.
-    spacing : float
-        Particle spacing h.
-    overlap : float, optional
-        epsilon / h; 2 if left out. For GPSE it follows from `dt` if that is given.
-    dt : float, optional
-        Time step; needed by the explicit integrators. GPSE takes (epsilon)^alpha / D if left out.
-    diffusivity : float
-        D of Eq. (2).
-    t_initial, t_final : float
-        The time span.
-    initial : str
-        "fundamental" for the fundamental solution at `t_initial`, or the path of a NetCDF file with u(x).
-    integrator : {"euler", "rk2", "rk4", "exponential"}, optional
-        rk2 if left out; GPSE is an Euler step by construction.
-    evaluation : {"series", "stepping"}
-        How the integrator's polynomial is evaluated: one Chebyshev series, or step by step.
-    summation : {"fft", "naive"}
-        How sums over particles are done.
-    exterior : {"truncated", "open"}
-        The papers' truncation of the lattice, or the far-field closure.
-    store : {"field", "profile", "metrics"}
-        What a data set keeps: u everywhere, u for |x| <= 5 R_alpha, or scalars only.
+    The fields are the parameters, keyword only. NumPy scalars are taken for what they hold.
 
     Raises
     ------
@@ -76,26 +46,51 @@ class Case(BaseModel):
         With the field, the value, what is allowed and what to do.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    # The docstring below a field is its description: in the flags of the command line, too.
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        strict=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+    )
 
     scheme: SchemeName
+    """Particle scheme, or one of the rejected PSE29 and RIESZ."""
     order: Literal[2, 4] = 2
+    """Order of the kernels."""
     beta: float = Field(gt=0.0, lt=1.0)
+    """Fractional order beta = alpha - 1, 0 < beta < 1."""
     dim: Literal[1] = 1
-    truncation: float | None = Field(default=None, gt=0.0)
-    half_width: float | None = Field(default=None, gt=0.0)
-    spacing: float = Positive
-    overlap: float | None = Field(default=None, ge=0.25, le=1000.0)
-    dt: float | None = Field(default=None, gt=0.0)
-    diffusivity: float = Field(default=1.0, gt=0.0)
-    t_initial: float = Field(default=0.5, ge=0.0)
-    t_final: float = Field(default=1.5, gt=0.0)
+    """Space dimension."""
+    truncation: float | None = Field(default=None, ge=_TINY, le=_HUGE)
+    """C of D = C (D t_f)^(1/alpha) R_alpha, Eq. (46). Either this or half_width."""
+    half_width: float | None = Field(default=None, ge=_TINY, le=_HUGE)
+    """The half-width of the lattice itself."""
+    spacing: float = Field(ge=_TINY, le=_HUGE)
+    """Particle spacing h."""
+    overlap: float | None = Field(default=None, ge=_OVERLAPS[0], le=_OVERLAPS[1])
+    """epsilon / h; 2 if left out. For GPSE it follows from dt if that is given."""
+    dt: float | None = Field(default=None, ge=_TINY, le=_HUGE)
+    """Time step; needed by the explicit integrators. GPSE takes epsilon^alpha / D if left out."""
+    diffusivity: float = Field(default=1.0, ge=_TINY, le=_HUGE)
+    """D of Eq. (2)."""
+    t_initial: float = Field(default=0.5, ge=0.0, le=_HUGE)
+    """Start of the run."""
+    t_final: float = Field(default=1.5, ge=_TINY, le=_HUGE)
+    """End of the run."""
     initial: str = FUNDAMENTAL
+    """"fundamental" for the fundamental solution at t_initial, or the path of a NetCDF file with u(x)."""
     integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = None
+    """Time integrator; rk2 if left out. GPSE is an Euler step by construction."""
     evaluation: Literal["series", "stepping"] = "series"
+    """How the integrator's polynomial is evaluated: one Chebyshev series, or step by step."""
     summation: Literal["fft", "naive"] = "fft"
+    """How sums over particles are done."""
     exterior: Literal["truncated", "open"] = "truncated"
+    """The papers' truncation of the lattice, or the far-field closure."""
     store: Literal["field", "profile", "metrics"] = "field"
+    """What a data set keeps: u everywhere, u for |x| <= 5 R_alpha, or scalars only."""
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -103,12 +98,21 @@ class Case(BaseModel):
         except ValidationError as error:
             raise _one_line(error, type(self)) from None
 
+    @model_validator(mode="before")
+    @classmethod
+    def _plain(cls, data: dict[str, Any]) -> dict[str, Any]:
+        for name, field in cls.model_fields.items():
+            if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
+                raise InvalidInput(name, data[name], _allowed(field), "Give such a value.")
+        return {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+
     @model_validator(mode="after")
     def _consistent(self) -> Case:
         _check_time(self)
         _check_domain(self)
         _check_scheme(self)
         _check_integrator(self)
+        _check_work(self)
         return self
 
     # --- what follows from the parameters -------------------------------------------------------------------
@@ -159,7 +163,7 @@ class Case(BaseModel):
         """The number of time steps; 0 for the exponential."""
         if self.method == "exponential":
             return 0
-        return max(1, ceil((self.t_final - self.t_initial) / self._asked_step * (1 - _STEP_SLACK)))
+        return max(1, ceil((self.t_final - self.t_initial) / self.asked_step * (1 - _STEP_SLACK)))
 
     @property
     def time_step(self) -> float:
@@ -167,7 +171,8 @@ class Case(BaseModel):
         return (self.t_final - self.t_initial) / self.steps if self.steps else 0.0
 
     @property
-    def _asked_step(self) -> float:
+    def asked_step(self) -> float:
+        """The step asked for: dt, or for GPSE the one that its overlap implies, Eq. (40)."""
         if self.dt is not None:
             return self.dt
         return ((self.overlap or 2.0) * self.particle_spacing) ** self.alpha / self.diffusivity
@@ -211,8 +216,20 @@ class Case(BaseModel):
 
     @classmethod
     def from_json(cls, text: str) -> Case:
-        """Return the case that `to_json` wrote."""
-        return cls(**json.loads(text))
+        """Return the case that `to_json` wrote.
+
+        Raises
+        ------
+        InvalidInput
+            If the text is not such an object, or its case is not valid.
+        """
+        try:
+            fields = json.loads(text)
+        except (TypeError, ValueError, RecursionError):
+            fields = None
+        if not isinstance(fields, dict):
+            raise InvalidInput("case", text, "a JSON object", "Give what Case.to_json returns.")
+        return cls(**fields)
 
     @property
     def path(self) -> str:
@@ -239,6 +256,10 @@ def _slug(text: str) -> str:
 
 
 def _check_time(case: Case) -> None:
+    if not 1.0 < case.alpha < 2.0:
+        raise InvalidInput(
+            "beta", case.beta, "a number that makes 1 + beta differ from 1 and 2", "Move it inward."
+        )
     if case.t_final <= case.t_initial:
         raise InvalidInput(
             "t_final",
@@ -281,6 +302,21 @@ def _check_domain(case: Case) -> None:
             f"{2.0 * case.domain / case.spacing:.3g} particles would take {needed / 2**30:.3g} GiB, "
             f"half of the memory is {memory / 2**31:.3g} GiB",
             "Take a larger spacing or a narrower domain.",
+        )
+
+
+def _check_work(case: Case) -> None:
+    span = case.t_final - case.t_initial
+    if case.evaluation == "series" and span * case.setting.rate > _STIFFEST:
+        raise InvalidInput(
+            "t_final",
+            case.t_final,
+            f"at most {case.t_initial + _STIFFEST / case.setting.rate:.6g} with this spacing and diffusivity",
+            "Take a shorter run or a larger spacing.",
+        )
+    if case.method != "exponential" and span / case.asked_step > _MOST_STEPS:
+        raise InvalidInput(
+            "dt", case.dt, f"at least {span / _MOST_STEPS:.3g}: 2^53 steps", "Take a larger step."
         )
 
 
@@ -334,6 +370,15 @@ def _check_integrator(case: Case) -> None:
                 "one of dt and overlap for GPSE, since epsilon = (D dt)^(1/alpha), Eq. (40)",
                 "Leave one of them out.",
             )
+        if case.dt is not None and not _OVERLAPS[0] <= case.epsilon_over_h <= _OVERLAPS[1]:
+            least, most = ((s * case.particle_spacing) ** case.alpha for s in _OVERLAPS)
+            raise InvalidInput(
+                "dt",
+                case.dt,
+                f"a step from {least / case.diffusivity:.4g} to {most / case.diffusivity:.4g} for GPSE, so that "
+                f"epsilon / h is from {_OVERLAPS[0]:g} to {_OVERLAPS[1]:g}",
+                "Change dt or the spacing.",
+            )
     elif case.dt is None and case.method != "exponential":
         limit = stability_limit(case.scheme, case.beta, case.order, case.epsilon_over_h)
         largest = limit * case.particle_spacing**case.alpha / case.diffusivity
@@ -348,14 +393,57 @@ def _check_integrator(case: Case) -> None:
 def _one_line(error: ValidationError, model: type[BaseModel]) -> InvalidInput:
     """Turn the first complaint of pydantic into one line of ours."""
     first = error.errors()[0]
-    field = ".".join(str(part) for part in first["loc"]) or "case"
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InvalidInput):  # one of our own checks
+        return cause
+    name, value = str(first["loc"][0]), first["input"]
+    fields = model.model_fields
     if first["type"] == "extra_forbidden":
-        import difflib
-
-        close = difflib.get_close_matches(field, model.model_fields, n=1)
-        remedy = f"Did you mean {close[0]!r}?" if close else "Leave it out."
-        return InvalidInput(field, first["input"], f"one of {', '.join(model.model_fields)}", remedy)
+        return InvalidInput(
+            name, value, f"one of {', '.join(fields)}", _closest(name, fields) or "Leave it out."
+        )
     if first["type"] == "missing":
-        return InvalidInput(field, None, "needed", f"Give {field}.")
-    allowed = first["msg"].removeprefix("Input should be ")
-    return InvalidInput(field, first["input"], allowed, "Give such a value.")
+        return InvalidInput(name, None, _allowed(fields[name]), f"Give {name}.")
+    remedy = _closest(value, choices_of(fields[name].annotation)) or "Give such a value."
+    return InvalidInput(name, value, _allowed(fields[name]), remedy)
+
+
+def _allowed(field: FieldInfo) -> str:
+    """Return in words what a field takes: its choices, or a number and its bounds."""
+    choices = choices_of(field.annotation)
+    if choices:
+        return f"one of {', '.join(map(str, choices))}"
+    if field.annotation is str:
+        return "text"
+    bounds = {
+        name: getattr(bound, name)
+        for bound in field.metadata
+        for name in ("gt", "ge", "lt", "le")
+        if hasattr(bound, name)
+    }
+    low, high = bounds.get("gt", bounds.get("ge")), bounds.get("lt", bounds.get("le"))
+    return f"a number between {low:g} and {high:g}{' (exclusive)' if 'lt' in bounds else ''}"
+
+
+def choices_of(annotation: Any) -> tuple[Any, ...]:
+    """Return the values of the Literal in the annotation of a field, () if there is none."""
+    if get_origin(annotation) is Literal:
+        return get_args(annotation)
+    return next(filter(None, map(choices_of, get_args(annotation))), ())
+
+
+def takes_numbers(annotation: Any) -> bool:
+    """Say whether a field with this annotation takes numbers."""
+    kinds = {annotation, *get_args(annotation), *map(type, choices_of(annotation))}
+    return not kinds.isdisjoint((int, float))
+
+
+def _closest(value: object, choices: Iterable[object]) -> str | None:
+    """Return the question whether the choice nearest to `value` was meant."""
+    import difflib
+
+    if not isinstance(value, str):
+        return None
+    names = {str(choice).casefold(): choice for choice in choices}
+    close = difflib.get_close_matches(value[:100].casefold(), names, n=1)
+    return f"Did you mean {names[close[0]]!r}?" if close else None

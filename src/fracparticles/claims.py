@@ -45,6 +45,7 @@ __all__ = [
     "Finding",
     "LedgerError",
     "Status",
+    "judge",
     "judge_value",
     "ledger",
     "ledger_markdown",
@@ -302,8 +303,14 @@ def ledger(printed: Sequence[Claim], findings: Sequence[Finding]) -> pd.DataFram
     return pd.DataFrame(rows, columns=list(COLUMNS)).astype({"relative_deviation": float})
 
 
+def judge(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
+    """Return the status of a claim, our number or evidence, and the relative deviation."""
+    if claim.kind == "value":
+        return _judge_number(claim, finding)
+    return _judge_statement(claim, finding)
+
+
 def _row(claim: Claim, finding: Finding) -> dict[str, object]:
-    judge = _judge_number if claim.kind == "value" else _judge_statement
     status, ours, deviation = judge(claim, finding)
     reason = finding.reason.strip()
     if status.needs_reason and not reason:
@@ -460,7 +467,7 @@ def read_ledger(csv_path: str | os.PathLike[str]) -> pd.DataFrame:
     is_value = df["printed"].str.match(PRINTED_NUMBER) & (df["ours"] != "")
     ours = [float(o) if number else o for o, number in zip(df["ours"], is_value, strict=True)]
     df["ours"] = pd.Series(ours, dtype=object)
-    df["relative_deviation"] = pd.to_numeric(df["relative_deviation"].replace("", "nan"))
+    df["relative_deviation"] = [float(deviation or "nan") for deviation in df["relative_deviation"]]
     return df
 
 

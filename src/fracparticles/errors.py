@@ -4,6 +4,8 @@ from __future__ import annotations
 
 __all__ = ["FracparticlesError", "InvalidInput", "NonFiniteSolution", "StabilityWarning"]
 
+_LONGEST = 200  # characters of a value that a message shows
+
 
 class FracparticlesError(Exception):
     """Base class of every error that the package raises on purpose."""
@@ -29,7 +31,9 @@ class InvalidInput(FracparticlesError, ValueError):
         self.field, self.value, self.allowed, self.remedy = field, value, allowed, remedy
 
     def __str__(self) -> str:
-        return f"{self.field} = {self.value!r} is not allowed: {self.allowed}. {self.remedy}"
+        value = " ".join(repr(self.value).split())
+        shown = value if len(value) <= _LONGEST else f"{value[:_LONGEST]}..."
+        return f"{self.field} = {shown} is not allowed: {self.allowed}. {self.remedy}"
 
 
 class NonFiniteSolution(FracparticlesError, ArithmeticError):

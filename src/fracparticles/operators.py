@@ -6,6 +6,7 @@ a (A u) + b u + c v into v in one pass over memory: stepping and Chebyshev recur
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -24,6 +25,7 @@ class Operator(Protocol):
     """What an integrator needs to know of a scheme."""
 
     size: int
+    least_excess: float
 
     def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         """Write a (A u) + b u + c v into v; u and v are different arrays."""
@@ -47,8 +49,14 @@ class FarField:
         _add_far_field(self.right, self.left, u, y)
 
 
-class _Appliable:
+class _Appliable(ABC):
     size: int
+    # The least of what the bounded lattice adds to the diagonal of the infinite one, if below nil.
+    least_excess: float = 0.0
+
+    @abstractmethod
+    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+        """Write a (A u) + b u + c v into v."""
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return A u as a new array."""
@@ -68,10 +76,20 @@ class ConvolutionOperator(_Appliable):
         d_i; for a particle strength exchange minus the sum of the weights.
     far_field : FarField or None
         The contribution of the exterior.
+    infinite_diagonal : float, optional
+        d_i of a particle in the middle of an infinite lattice, if the bounded one differs from it.
     """
 
-    def __init__(self, convolve: Convolution, diagonal: np.ndarray, far_field: FarField | None) -> None:
+    def __init__(
+        self,
+        convolve: Convolution,
+        diagonal: np.ndarray,
+        far_field: FarField | None,
+        infinite_diagonal: float | None = None,
+    ) -> None:
         self.size = diagonal.size
+        if infinite_diagonal is not None:
+            self.least_excess = min(0.0, float(diagonal.min()) - infinite_diagonal)
         self._convolve, self._diagonal, self._far = convolve, diagonal, far_field
 
     def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:

@@ -46,18 +46,28 @@ def stability_limit(
     return -2.0 / symbol_range(scheme, beta, order, overlap)[0]
 
 
-@lru_cache(maxsize=256)
 def symbol_range(
     name: str, beta: float, order: int = 2, overlap: float = 2.0
 ) -> tuple[float, float]:
     """Return the least and the greatest value of A(theta) h^alpha / D."""
     module = scheme(name)
-    if not (isinstance(beta, (int, float)) and 0.0 < beta < 1.0):
-        raise InvalidInput("beta", beta, "a number between 0 and 1", "Give such a value.")
-    if order not in module.ORDERS:
-        raise InvalidInput("order", order, f"one of {module.ORDERS}", "Choose one of these.")
-    if not (isinstance(overlap, (int, float)) and 0.25 <= overlap <= 1000.0):
+    if not (_is_number(beta) and 1.0 < 1.0 + beta < 2.0):
+        raise InvalidInput("beta", beta, "a number between 0 and 1 (exclusive)", "Give such a value.")
+    if not (_is_number(order) and order in module.ORDERS):
+        allowed = f"{' or '.join(map(str, module.ORDERS))} for {name}"
+        raise InvalidInput("order", order, allowed, "Choose one of these.")
+    if not (_is_number(overlap) and 0.25 <= overlap <= 1000.0):
         raise InvalidInput("overlap", overlap, "a number from 0.25 to 1000", "Give such a value.")
+    return _symbol_range(name, float(beta), int(order), float(overlap))
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+@lru_cache(maxsize=256)
+def _symbol_range(name: str, beta: float, order: int, overlap: float) -> tuple[float, float]:
+    module = scheme(name)
     alpha = 1.0 + beta
 
     # The extremes lie near theta ~ 2 / s: sample evenly in theta as well as in theta s.

@@ -108,12 +108,13 @@ def one_pass_operator(
     far = None
     if setting.exterior == "open":
         far = far_field(scaled, decay, setting.alpha, setting.n)
-    diagonal = np.zeros(size)
-    if exchange_sum is not None:
-        diagonal -= (
-            setting.rate * exchange_sum if setting.exterior == "open" else present_sum(w, parity=1)
-        )
-    return ConvolutionOperator(SUMMATIONS[setting.summation](w, size), diagonal, far)
+    convolve = SUMMATIONS[setting.summation](w, size)
+    if exchange_sum is None:
+        return ConvolutionOperator(convolve, np.zeros(size), far)
+    infinite = -setting.rate * exchange_sum
+    if setting.exterior == "open":
+        return ConvolutionOperator(convolve, np.full(size, infinite), far)
+    return ConvolutionOperator(convolve, -present_sum(w, parity=1), far, infinite)
 
 
 def present_sum(w: np.ndarray, parity: int, size: int | None = None) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from numbers import Integral, Real
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -88,6 +88,6 @@ def positive_integer(field: str, value: Any) -> int:
     InvalidInput
         If it is anything else.
     """
-    if not (isinstance(value, Integral) and not isinstance(value, bool) and value > 0):
+    if not (isinstance(value, int | np.integer) and not isinstance(value, bool) and value > 0):
         raise InvalidInput(field, value, "a whole number above zero", "Give 1, 2, 3, ...")
     return int(value)

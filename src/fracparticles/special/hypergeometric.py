@@ -67,7 +67,7 @@ def _far(z: float, table: _Table, series: NDArray[np.float64]) -> float:
         power /= z
         term = series[k] * power
         total += term
-        if abs(term) < 1e-17:
+        if k > 1 and abs(term) < 1e-17:  # of order four, the term k = 1 is zero
             break
     return table.prefactor * z**-table.a * total
 

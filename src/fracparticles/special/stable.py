@@ -283,7 +283,7 @@ def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     if dim != 1:
         raise InvalidInput("dim", dim, "1", "Use the one-dimensional fundamental solution.")
     scale = _scale(t, alpha)
-    return scale * reduced_green(scale * real_array("x", x), alpha)
+    return scale * reduced_green(_scaled(x, scale), alpha)
 
 
 def mean_radius(alpha: float) -> float:
@@ -302,12 +302,17 @@ def _scale(t: Any, alpha: Any) -> float:
     return positive_real("t", t) ** (-1.0 / fractional_order(alpha))
 
 
+def _scaled(x: Any, scale: float) -> FloatArray:
+    """Return x t^(-1/alpha); what overflows is in the far field, where the functions vanish."""
+    with np.errstate(over="ignore"):
+        return real_array("x", x) * scale
+
+
 def _mass_of(x: Any, t: Any, alpha: Any, inside: bool) -> FloatArray | float:
-    scale = _scale(t, alpha)
-    x = real_array("x", x)
+    x = _scaled(x, _scale(t, alpha))
     if (x < 0.0).any():
         raise InvalidInput("x", float(x.min()), "x >= 0", "Give the half-width of the interval.")
-    return elementwise(_mass, scale * x, _table(float(alpha)), inside)
+    return elementwise(_mass, x, _table(float(alpha)), inside)
 
 
 def central_mass(x: Any, t: float, alpha: float) -> FloatArray | float:

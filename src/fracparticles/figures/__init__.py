@@ -1,0 +1,53 @@
+"""The figures: from a scene's series to axes. A scene of `config/study.yaml` names the one it uses.
+
+A figure is a function of the scene's series, its table and its parameters that returns a matplotlib Figure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from fracparticles.errors import InvalidInput
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+__all__ = ["FIGURES", "figure"]
+
+Drawing = Callable[["pd.DataFrame", "pd.DataFrame", dict[str, Any]], "Figure"]
+
+# Name in the configuration -> module of this package; the function has the name of the figure.
+FIGURES = {
+    "kernels": "kernels",
+    "reference_case": "reference_case",
+    "truncation": "errors",
+    "spacing": "errors",
+    "truncation_overview": "errors",
+    "stability": "stability",
+    "expansions": "fundamental",
+    "fundamental_solution": "fundamental",
+    "overlap": "errors",
+    "time_order": "errors",
+    "rejected_dpse": "rejected",
+    "rejected_29": "rejected",
+    "rejected_riesz": "rejected",
+    "fickian_limit": "fickian",
+    "conservation": "conservation",
+    "stiff_extreme": "extreme",
+}
+
+
+def figure(name: str) -> Drawing:
+    """Return the drawing function of that name.
+
+    Raises
+    ------
+    InvalidInput
+        If there is none.
+    """
+    if name not in FIGURES:
+        raise InvalidInput("figure", name, f"one of {', '.join(FIGURES)}", "Choose one of these.")
+    return getattr(import_module(f"{__name__}.{FIGURES[name]}"), name)

@@ -1,0 +1,86 @@
+"""One style for all figures: Okabe-Ito colours, one marker a scheme, direct labels."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.style
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+__all__ = ["COLOURS", "MARKERS", "axes_row", "legend_below", "save", "slope_triangle"]
+
+mpl.use("Agg")
+mpl.style.use(Path(__file__).with_name("fracparticles.mplstyle"))
+
+# Okabe & Ito (2008), one colour and one marker for each scheme, everywhere.
+COLOURS = {
+    "DD": "#0072B2",
+    "FPSE": "#D55E00",
+    "KPSE": "#009E73",
+    "GPSE": "#CC79A7",
+    "FD": "#56B4E9",
+    "DPSE": "#E69F00",
+    "PSE29": "#999999",
+    "RIESZ": "#8A6D3B",
+    "exact": "#000000",
+}
+MARKERS = {
+    "DD": "o",
+    "FPSE": "s",
+    "KPSE": "^",
+    "GPSE": "D",
+    "FD": "v",
+    "DPSE": "P",
+    "PSE29": "X",
+    "RIESZ": "*",
+    "exact": "",
+}
+
+
+def axes_row(panels: int = 1, height: float = 3.4, width: float = 4.2, **options) -> tuple[Figure, list[Axes]]:
+    """Return a figure with a row of panels, lettered (a), (b), ... if there is more than one."""
+    figure = Figure(figsize=(width * panels, height), layout="constrained")
+    axes = list(np.atleast_1d(figure.subplots(1, panels, **options)))
+    if panels > 1:
+        for letter, ax in zip("abcdefgh", axes, strict=False):
+            ax.set_title(f"({letter})", loc="left")
+    return figure, axes
+
+
+def legend_below(figure: Figure, ax: Axes, columns: int = 4) -> None:
+    """Put one frameless legend, with the entries of `ax`, below the panels."""
+    handles, labels = ax.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+
+
+def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = False) -> None:
+    """Draw a triangle of that slope on log-log axes beside the point (x, y) of a rising curve.
+
+    Below the curve the right angle is at the lower right, above it at the upper left; `x` is the left corner.
+    """
+    right, top = 2.0 * x, y * 2.0**slope
+    corner = (x, top) if above else (right, y)
+    ax.plot([x, right, corner[0], x], [y, top, corner[1], y], color="0.35", linewidth=0.8)
+    ax.annotate(
+        f"{slope:g}",
+        (corner[0], np.sqrt(y * top)),
+        xytext=(-4 if above else 4, 0),
+        textcoords="offset points",
+        ha="right" if above else "left",
+        va="center",
+        color="0.25",
+        fontsize=8,
+    )
+
+
+def save(figure: Figure, stem: str | Path) -> None:
+    """Write <stem>.svg and <stem>.png, each under a temporary name first."""
+    stem = Path(stem)
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    for suffix, options in ((".svg", {"metadata": {"Date": None}}), (".png", {"dpi": 160})):
+        temporary = stem.with_name(f".{stem.name}{suffix}")
+        figure.savefig(temporary, format=suffix[1:], **options)
+        temporary.replace(stem.with_suffix(suffix))

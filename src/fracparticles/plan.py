@@ -1,0 +1,218 @@
+"""The configuration of the study: validated scenes, their cases, and the batches that compute them.
+
+A scene is one figure, table or study. Its run blocks are fields of `Case`, each with a value or a list of
+values; a block stands for the Cartesian product. Cases that several scenes need are computed once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from itertools import product
+from typing import Any, Union
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
+
+from fracparticles.case import Case
+from fracparticles.errors import InvalidInput
+
+__all__ = ["RunBlock", "Scene", "StudyConfig", "batches", "cases_of", "expand", "read_config"]
+
+_STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
+_BATCH_SECONDS = 8.0
+
+RunBlock = create_model(
+    "RunBlock",
+    __config__=ConfigDict(extra="forbid", strict=True, frozen=True),
+    __doc__="Fields of a case, each with one value or a list of values.",
+    **{
+        name: (Union[field.annotation, list[field.annotation], None], Field(default=None))  # noqa: UP007
+        for name, field in Case.model_fields.items()
+    },
+)
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class Scene(_Strict):
+    """One figure, table or study.
+
+    Attributes
+    ----------
+    title : str
+        Heading in the report.
+    items : list of str
+        Items of the inventory whose claims it judges; empty for a study of our own.
+    study : str
+        The function of `studies` that turns runs into a table and findings.
+    figure : str, optional
+        The function of `figures` that draws it.
+    parameters : dict
+        What the study and the figure need beyond the runs.
+    runs : list of RunBlock
+        The cases.
+    tables : list of str
+        Scenes whose tables it reads.
+    """
+
+    title: str = Field(min_length=1)
+    items: list[str] = []
+    study: str
+    figure: str | None = None
+    parameters: dict[str, Any] = {}
+    runs: list[RunBlock] = []  # type: ignore[valid-type]
+    tables: list[str] = []
+
+
+class StudyConfig(_Strict):
+    """The whole configuration.
+
+    Attributes
+    ----------
+    results_dir : str
+        Where runs, tables and figures go.
+    report_dir : str
+        Where the report goes.
+    smoke : bool
+        Whether these are the tiny grids, too coarse to judge the claims.
+    benchmark : dict
+        Parameters of `benchmark.reference_benchmark`.
+    scenes : dict
+        The scenes by name, in the order of the report.
+    """
+
+    results_dir: str = Field(min_length=1)
+    report_dir: str = Field(min_length=1)
+    smoke: bool = False
+    benchmark: dict[str, Any] = {}
+    scenes: dict[str, Scene] = Field(min_length=1)
+
+
+def read_config(config: Mapping[str, Any]) -> StudyConfig:
+    """Validate a configuration, its cases included.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the key, the value, what is allowed and what to do.
+    """
+    from fracparticles.figures import FIGURES
+    from fracparticles.studies import STUDIES
+
+    try:
+        study = StudyConfig(**config)
+    except ValidationError as error:
+        raise _complaint(error) from None
+    for name, scene in study.scenes.items():
+        _check_name(f"scenes.{name}.study", scene.study, STUDIES)
+        if scene.figure is not None:
+            _check_name(f"scenes.{name}.figure", scene.figure, FIGURES)
+        for other in scene.tables:
+            _check_name(f"scenes.{name}.tables", other, study.scenes)
+        cases_of(name, scene)
+    return study
+
+
+def expand(blocks: Iterable[BaseModel | Mapping[str, Any]]) -> list[Case]:
+    """Return the cases of run blocks, in order, without repeats."""
+    cases: dict[str, Case] = {}
+    for block in blocks:
+        fields = block.model_dump(exclude_none=True) if isinstance(block, BaseModel) else block
+        names = list(fields)
+        choices = [value if isinstance(value, list) else [value] for value in fields.values()]
+        for combination in product(*choices):
+            case = Case(**dict(zip(names, combination, strict=True)))
+            cases.setdefault(case.path, case)
+    return list(cases.values())
+
+
+def cases_of(name: str, scene: Scene) -> list[Case]:
+    """Return the cases of a scene; a case that is not allowed is reported with the scene's name."""
+    try:
+        return expand(scene.runs)
+    except InvalidInput as error:
+        raise InvalidInput(
+            f"scenes.{name}.runs: {error.field}", error.value, error.allowed, error.remedy
+        ) from None
+
+
+def batches(
+    scenes: Mapping[str, Scene],
+) -> tuple[dict[str, list[Case]], dict[str, list[Case]]]:
+    """Return the cases of each scene and the batches of cases that one job computes.
+
+    Two scenes that need the same run share it; it stores the more that either needs. A batch holds only cases
+    that are needed by the same scenes, so that one scene never computes a run that it does not need.
+    """
+    needed_by: dict[str, list[str]] = {}
+    widest: dict[str, Case] = {}
+    wanted: dict[str, list[str]] = {name: [] for name in scenes}
+    for name, scene in scenes.items():
+        for case in cases_of(name, scene):
+            key = case.model_copy(update={"store": _STORES[0]}).path
+            needed_by.setdefault(key, []).append(name)
+            wanted[name].append(key)
+            known = widest.setdefault(key, case)
+            if _STORES.index(case.store) > _STORES.index(known.store):
+                widest[key] = case
+
+    groups: dict[tuple[str, ...], list[Case]] = {}
+    for key, names in needed_by.items():
+        groups.setdefault(tuple(names), []).append(widest[key])
+    named: dict[str, list[Case]] = {}
+    for names, cases in groups.items():
+        for chunk in _chunks(cases):
+            number = sum(batch.rsplit("_", 1)[0] == names[0] for batch in named) + 1
+            named[f"{names[0]}_{number}"] = chunk
+    return {name: [widest[key] for key in keys] for name, keys in wanted.items()}, named
+
+
+def _chunks(cases: list[Case]) -> Iterable[list[Case]]:
+    chunk: list[Case] = []
+    seconds = 0.0
+    for case in cases:
+        if chunk and seconds + _seconds(case) > _BATCH_SECONDS:
+            yield chunk
+            chunk, seconds = [], 0.0
+        chunk.append(case)
+        seconds += _seconds(case)
+    if chunk:
+        yield chunk
+
+
+def _seconds(case: Case) -> float:
+    """A rough estimate of the cost of a run: N times the number of operator applications."""
+    if case.evaluation == "stepping":
+        return 2e-8 * case.particles * case.steps
+    applications = (case.setting.rate * (case.t_final - case.t_initial)) ** 0.5
+    return 0.01 + 1.2e-7 * case.particles * applications
+
+
+def _check_name(field: str, value: str, allowed: Iterable[str]) -> None:
+    if value not in allowed:
+        raise InvalidInput(field, value, f"one of {', '.join(allowed)}", "Choose one of these.")
+
+
+def _complaint(error: ValidationError) -> InvalidInput:
+    # A run block's field may be a value or a list: pydantic complains about both; the first will do.
+    first = error.errors()[0]
+    place = [
+        str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)
+    ]
+    field = ".".join(place) or "configuration"
+    if first["type"] == "extra_forbidden":
+        import difflib
+
+        model = {1: StudyConfig, 3: Scene}.get(len(place), RunBlock)
+        close = difflib.get_close_matches(place[-1], model.model_fields, n=1)
+        remedy = f"Did you mean {close[0]!r}?" if close else "Remove it."
+        return InvalidInput(field, first["input"], f"one of {', '.join(model.model_fields)}", remedy)
+    if first["type"] == "missing":
+        return InvalidInput(field, None, "needed", "Add it to the configuration.")
+    hint = ""
+    if isinstance(first["input"], str) and "number" in first["msg"]:
+        hint = " YAML reads 1e-4 as text: write 1.0e-4."
+    return InvalidInput(
+        field, first["input"], first["msg"].removeprefix("Input should be "), f"Mend the value.{hint}"
+    )

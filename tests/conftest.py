@@ -1,0 +1,24 @@
+"""What the tests share: a fixed hypothesis profile, and every scheme in every variant that exists."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import settings
+
+from fracparticles.schemes import SCHEMES
+
+settings.register_profile("fracparticles", deadline=None, derandomize=True)
+settings.load_profile("fracparticles")
+
+COMBINATIONS = [
+    pytest.param((name, order, exterior), id=f"{name}-{order}-{exterior}")
+    for name, scheme in SCHEMES.items()
+    for order in scheme.ORDERS
+    for exterior in scheme.EXTERIORS
+]
+
+
+@pytest.fixture(params=COMBINATIONS)
+def combination(request) -> tuple[str, int, str]:
+    """Return scheme, order and exterior."""
+    return request.param

@@ -1,0 +1,235 @@
+"""Stepping, its Chebyshev series and the exponential, against each other and against known answers."""
+
+from __future__ import annotations
+
+from math import factorial
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+from scipy.special import ive
+
+from fracparticles.errors import NonFiniteSolution
+from fracparticles.integrators import STEP_POLYNOMIALS, ChebyshevSeries, exponential, power, step
+from fracparticles.operators import ConvolutionOperator
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.solver import integrate
+from fracparticles.special import green
+from fracparticles.spectrum import dense_matrix
+from test_spectrum import case_of
+
+INTEGRATORS = ["euler", "rk2", "rk4"]
+
+
+def diagonal_operator(eigenvalues: np.ndarray) -> ConvolutionOperator:
+    return ConvolutionOperator(np.zeros_like, np.asarray(eigenvalues, dtype=float), None)
+
+
+# --- step polynomials -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+@given(z=st.floats(-5.0, 1.0))
+def test_the_step_polynomial_is_the_truncated_exponential(name, z):
+    p = STEP_POLYNOMIALS[name]
+    direct = sum(z**k / factorial(k) for k in range(p.stages + 1))
+    assert p(z) == pytest.approx(direct, rel=1e-13, abs=1e-13)  # terms up to 5^4 / 24 = 26
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_the_stability_interval_is_where_the_polynomial_is_at_most_one(name):
+    p = STEP_POLYNOMIALS[name]
+    inside = np.linspace(-p.stability_interval, 0.0, 10001)
+    assert np.abs(p(inside)).max() <= 1.0 + 1e-14
+    assert abs(p(-p.stability_interval * (1.0 + 1e-9))) > 1.0
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+@given(z=st.floats(-4.0, 0.0), steps=st.integers(1, 40))
+def test_log_power_is_the_power(name, z, steps):
+    p = STEP_POLYNOMIALS[name]
+    sign, logarithm = p.log_power(np.array([z]), steps)
+    direct = float(p(z)) ** steps
+    # A step's p carries a few ulp of its largest term 4^4 / 24; the power multiplies them by `steps`.
+    slack = 1e-13 * steps * max(abs(float(p(z))), 1.0) ** steps
+    assert sign * np.exp(logarithm) == pytest.approx(direct, rel=1e-12, abs=slack)
+
+
+def test_log_power_keeps_its_digits_for_many_tiny_steps():
+    p = STEP_POLYNOMIALS["euler"]
+    _, logarithm = p.log_power(np.array([-1e-12]), 10**9)
+    assert logarithm[0] == pytest.approx(-1e-3, rel=1e-11)
+
+
+# --- the series -----------------------------------------------------------------------------------
+
+
+def test_coefficients_of_the_exponential_are_bessel_functions():
+    """exp(z t) on [-2, 0] is exp(-t) exp(t x): c_k = (2 - [k = 0]) exp(-t) I_k(t)."""
+    series = exponential(30.0, -2.0, 0.0)
+    k = np.arange(series.degree + 1)
+    expected = np.where(k == 0, 1.0, 2.0) * ive(k, 30.0)
+    assert series.coefficients == pytest.approx(expected, abs=1e-15)
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_the_series_has_the_values_of_the_power(name):
+    p = STEP_POLYNOMIALS[name]
+    eigenvalues = np.linspace(-1.0, 0.0, 500)
+    dt, steps = 1.9, 200
+    series = power(p, dt, steps, -1.0, 0.0)
+    out = series(diagonal_operator(eigenvalues), np.ones(500))
+    sign, logarithm = p.log_power(eigenvalues * dt, steps)
+    # A sum of `degree` terms of at most 1, in a recurrence whose round-off grows with the degree.
+    assert out == pytest.approx(sign * np.exp(logarithm), abs=series.degree * 4e-16 * 4)
+
+
+def test_the_degree_grows_like_a_square_root():
+    degrees = np.array([exponential(t, -1.0, 0.0).degree for t in (1e2, 1e4, 1e6)])
+    assert degrees[1:] / degrees[:-1] == pytest.approx(10.0, rel=0.15)
+    assert degrees[-1] < np.sqrt(40.0 * 1e6)  # sqrt(2 T |low| / 2 * log(2^54))
+
+
+def test_a_series_of_a_constant_applies_nothing():
+    series = ChebyshevSeries.of(lambda z: np.full_like(z, 3.0), -1.0, 0.0)
+    assert series.degree == 0
+    assert np.array_equal(series(diagonal_operator(np.zeros(4)), np.arange(4.0)), 3.0 * np.arange(4))
+
+
+# --- against each other, for every scheme ---------------------------------------------------------
+
+
+def initial_data(kind: str, case) -> np.ndarray:
+    if kind == "smooth":
+        return green(case.x, (0.2 * case.n) ** case.alpha, case.alpha)
+    if kind == "point":
+        return (case.x == 0.0).astype(float)
+    return np.random.default_rng(3).standard_normal(case.particles)
+
+
+def both(combination, beta, integrator, courant, steps, kind, overlap=2.0, n=60):
+    """Stepping and series, with dt = courant times the largest stable step."""
+    scheme = combination[0]
+    if scheme == "GPSE":
+        dt = overlap ** (1.0 + beta)
+    else:
+        probe = case_of(combination, beta, overlap, n, integrator=integrator, dt=1.0)
+        dt = courant * probe.largest_stable_step
+    results = []
+    for evaluation in ("stepping", "series"):
+        case = case_of(
+            combination,
+            beta,
+            overlap,
+            n,
+            integrator=integrator,
+            evaluation=evaluation,
+            dt=dt,
+            t_initial=0.0,
+            t_final=steps * dt,
+            initial="own",
+        )
+        operator = SCHEMES[scheme].operator(case.setting)
+        results.append(integrate(case, operator, initial_data(kind, case))[0])
+    return (*results, np.abs(initial_data(kind, case)).max())
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("kind", ["smooth", "random"])
+def test_series_and_stepping_give_the_same(combination, integrator, kind):
+    if combination[0] == "GPSE" and integrator != "euler":
+        pytest.skip("a GPSE step is an Euler step")
+    if combination[0] == "PSE29":
+        pytest.skip("its solutions grow, see below")
+    for beta in (0.1, 0.5, 0.9):
+        stepping, series, start = both(combination, beta, integrator, 0.9, 400, kind)
+        start = 1.0 if kind == "random" else np.abs(stepping).max()
+        assert np.abs(series - stepping).max() <= 1e-12 * start, beta
+
+
+@pytest.mark.parametrize("integrator", ["euler", "rk2", "rk4"])
+@pytest.mark.parametrize("kind", ["point", "random"])
+def test_they_blow_up_alike(combination, integrator, kind):
+    """Beyond the limit the shortest waves grow; relative to them the two agree."""
+    if combination[0] == "GPSE":
+        pytest.skip("its step is tied to the smoothing length and cannot be unstable")
+    stepping, series, _ = both(combination, 0.5, integrator, 1.3, 40, kind)
+    assert np.abs(stepping).max() > 1e3
+    assert np.abs(series - stepping).max() <= 1e-12 * np.abs(stepping).max()
+
+
+@pytest.mark.parametrize("overlap", [2.9, 4.0])
+def test_they_agree_where_an_eigenvalue_lies_below_the_symbol(overlap):
+    stepping, series, start = both(
+        ("KPSE", 4, "truncated"), 0.95, "rk2", 0.9, 2000, "random", overlap=overlap
+    )
+    assert np.abs(series - stepping).max() <= 1e-12 * start
+
+
+def test_they_agree_on_the_growing_solutions_of_scheme_29():
+    for order in (2, 4):
+        stepping, series, _ = both(("PSE29", order, "truncated"), 0.5, "rk2", 0.5, 200, "random")
+        assert np.abs(series - stepping).max() <= 1e-12 * np.abs(stepping).max()
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_overflow_is_reported_by_both(integrator):
+    operator = diagonal_operator(np.array([-1.0, -0.5]))
+    p = STEP_POLYNOMIALS[integrator]
+    with pytest.raises(NonFiniteSolution, match=r"after step \d+ of 5000, .*unstable here\. Take"):
+        step(operator, p, 4.0, 5000, np.ones(2))
+    with pytest.raises(NonFiniteSolution, match=r"overflows near step \d+ of 5000, .*outside the"):
+        power(p, 4.0, 5000, -1.0, 0.0)
+
+
+def test_a_series_of_huge_data_reports_overflow():
+    series = exponential(1.0, -1.0, 0.0)
+    operator = diagonal_operator(np.array([-3.0, -0.5]))
+    with pytest.raises(NonFiniteSolution, match="overflow"), np.errstate(all="ignore"):
+        series(operator, np.full(2, 1e308))
+
+
+def test_stepping_says_how_often_it_applied_the_operator():
+    for name in INTEGRATORS:
+        p = STEP_POLYNOMIALS[name]
+        _, applications = step(diagonal_operator(np.array([-1.0])), p, 0.1, 7, np.ones(1))
+        assert applications == 7 * p.stages
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_stepping_leaves_its_input_alone(name):
+    u = np.ones(3)
+    out, _ = step(diagonal_operator(-np.ones(3)), STEP_POLYNOMIALS[name], 0.1, 3, u)
+    assert np.array_equal(u, np.ones(3))
+    assert out == pytest.approx(np.full(3, float(STEP_POLYNOMIALS[name](-0.1)) ** 3), rel=1e-15)
+
+
+# --- against the exponential of the matrix --------------------------------------------------------
+
+
+def test_the_exponential_is_that_of_the_matrix(combination):
+    scheme, order, exterior = combination
+    if scheme in ("GPSE", "PSE29"):
+        pytest.skip("GPSE has its own step; (29) grows")
+    case = case_of(combination, 0.5, 2.0, 30, t_initial=0.0, t_final=20.0, initial="own")
+    operator = SCHEMES[scheme].operator(case.setting)
+    u0 = initial_data("random", case)
+    u, _ = integrate(case, operator, u0)
+    exact = expm(20.0 * dense_matrix(operator)) @ u0
+    assert np.abs(u - exact).max() <= 1e-12 * np.abs(u0).max()
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize("scheme", ["DD", "FPSE", "KPSE"])
+def test_order_of_convergence_in_time(name, scheme):
+    operator = SCHEMES[scheme].operator(Setting(n=40, spacing=1.0, alpha=1.5))
+    x = np.arange(-40.0, 41.0)
+    u0 = green(x, 8.0, 1.5)
+    exact = exponential(8.0, -1.0, 0.0)(operator, u0)
+    p = STEP_POLYNOMIALS[name]
+    steps = np.array([16, 32, 64])
+    errors = [np.abs(step(operator, p, 8.0 / k, k, u0)[0] - exact).max() for k in steps]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders == pytest.approx(p.stages, abs=0.1)

@@ -1,0 +1,108 @@
+"""Where the eigenvalues lie: the Chebyshev series stands on `spectral_interval`."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fracparticles.case import Case
+from fracparticles.errors import FracparticlesError
+from fracparticles.operators import ConvolutionOperator
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.spectrum import dense_matrix, power_iteration, spectral_interval
+from fracparticles.stability import symbol_range
+
+OVERLAPS = {"GPSE": (1.65, 2.0, 2.9), "FD": (2.0,)}
+# FPSE of order IV with overlap 2.9 has a defective eigenvalue near nil: round-off eps splits it by sqrt(eps).
+ROUND_OFF = np.sqrt(np.finfo(float).eps)
+
+
+def case_of(combination, beta, overlap, n, **other) -> Case:
+    scheme, order, exterior = combination
+    given = {"integrator": "exponential", **({} if scheme == "FD" else {"overlap": overlap})}
+    if scheme == "GPSE":
+        step = overlap ** (1.0 + beta)
+        given = {"dt": step, "t_final": 0.5 + 2.0 * step}
+    given.update(other)
+    return Case(
+        scheme=scheme,
+        order=order,
+        exterior=exterior,
+        beta=beta,
+        half_width=float(n),
+        spacing=1.0,
+        **given,
+    )
+
+
+@pytest.mark.parametrize("beta", [0.02, 0.1, 0.5, 0.9, 0.98])
+def test_the_interval_holds_every_eigenvalue_and_all_are_real(combination, beta):
+    for overlap in OVERLAPS.get(combination[0], (0.5, 1.0, 1.5, 2.0, 2.9, 4.0, 8.0)):
+        for n in (8, 60):
+            case = case_of(combination, beta, overlap, n)
+            operator = SCHEMES[case.scheme].operator(case.setting)
+            low, high = spectral_interval(case, operator)
+            values = np.linalg.eigvals(dense_matrix(operator))
+            room = ROUND_OFF * 10.0 * (high - low)
+            assert np.abs(values.imag).max() <= room, (overlap, n)
+            assert low - room <= values.real.min(), (overlap, n)
+            assert values.real.max() <= high + room, (overlap, n)
+
+
+@pytest.mark.parametrize("beta", [0.1, 0.9])
+def test_the_lowest_eigenvalue_tends_to_the_least_of_the_symbol(combination, beta):
+    scheme, order, _ = combination
+    if scheme == "PSE29":
+        beta = 0.5
+    low, high = symbol_range(scheme, beta, order, 2.0)
+    gaps = []
+    for n in (20, 40, 80):
+        operator = SCHEMES[scheme].operator(case_of(combination, beta, 2.0, n).setting)
+        lowest = np.linalg.eigvals(dense_matrix(operator)).real.min()
+        gaps.append((lowest - low) / (high - low))
+    # Sines of half-wavelengths on the lattice miss the extreme by up to pi / (2 n): gap ~ n^-2 at least once n is
+    # beyond the layers at the ends.
+    assert gaps[2] < 0.02
+    assert abs(gaps[2]) <= abs(gaps[0])
+
+
+def test_a_kernel_that_changes_sign_pushes_an_eigenvalue_below_the_symbol():
+    """KPSE of order IV at beta = 0.9 has negative weights: why `least_excess` is needed."""
+    case = case_of(("KPSE", 4, "truncated"), 0.9, 4.0, 60)
+    operator = SCHEMES["KPSE"].operator(case.setting)
+    values = np.linalg.eigvalsh(dense_matrix(operator))
+    least = symbol_range("KPSE", 0.9, 4, 4.0)[0]
+    assert operator.least_excess < values[0] - least < 0.0
+    assert values[0] < least * (1.0 + 1e-3)
+
+
+def test_positive_weights_need_no_excess():
+    for scheme in ("KPSE", "GPSE", "RIESZ"):
+        operator = SCHEMES[scheme].operator(Setting(n=40, spacing=1.0, alpha=1.5))
+        assert operator.least_excess == 0.0
+
+
+def test_dense_matrix_of_known_weights():
+    w = np.array([[-2.0, 1.0, 0.5], [1.0, -3.0, 1.0], [0.5, 1.0, -2.0]])
+    operator = ConvolutionOperator(
+        lambda u: np.array([u[1] + 0.5 * u[2], u[0] + u[2], 0.5 * u[0] + u[1]]),
+        np.array([-2.0, -3.0, -2.0]),
+        None,
+    )
+    assert np.array_equal(dense_matrix(operator), w)
+
+
+@pytest.mark.parametrize("scheme", ["DD", "KPSE", "FPSE"])
+def test_power_iteration_finds_the_eigenvalue_of_greatest_modulus(scheme):
+    operator = SCHEMES[scheme].operator(Setting(n=40, spacing=0.1, alpha=1.5))
+    value, iterations = power_iteration(operator, tolerance=1e-12)
+    values = np.linalg.eigvals(dense_matrix(operator)).real
+    # The change over ten iterations is below the tolerance; with a gap of 1e-3 and more the rest is 1000 times that.
+    assert value == pytest.approx(values.min(), rel=1e-6)
+    assert iterations % 10 == 0
+
+
+def test_power_iteration_says_when_it_fails():
+    operator = SCHEMES["KPSE"].operator(Setting(n=40, spacing=0.1, alpha=1.5))
+    with pytest.raises(FracparticlesError, match="no convergence within 10 iterations"):
+        power_iteration(operator, most=10)

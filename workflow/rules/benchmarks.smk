@@ -1,0 +1,24 @@
+# Run times. They differ from machine to machine and are no part of the target `all`.
+
+
+rule reference_benchmark:
+    input:
+        code=[*CORE, PACKAGE / "benchmark.py"],
+        compiled=COMPILED,
+    output:
+        data=RESULTS / "benchmarks/reference.nc",
+        csv=RESULTS / "benchmarks/reference.csv",
+        md=RESULTS / "benchmarks/reference.md",
+    params:
+        **STUDY.benchmark,
+    # All cores: nothing else runs while the clock does.
+    threads: workflow.cores
+    log:
+        RESULTS / "logs/reference_benchmark.log",
+    script:
+        "../scripts/benchmark_reference.py"
+
+
+rule bench:
+    input:
+        rules.reference_benchmark.output,

@@ -1,0 +1,31 @@
+# The solver runs: one file each, many to a job.
+
+
+rule compile:
+    # numba fills its cache once, before two jobs could do it at the same time.
+    input:
+        code=CORE,
+    output:
+        touch(COMPILED),
+    log:
+        RESULTS / "logs/compile.log",
+    script:
+        "../scripts/compile.py"
+
+
+for batch, cases in BATCHES.items():
+
+    rule:
+        name:
+            f"solve_{batch}"
+        input:
+            code=CORE,
+            compiled=COMPILED,
+        output:
+            [RESULTS / "runs" / case.path for case in cases],
+        params:
+            cases=[case.to_json() for case in cases],
+        log:
+            RESULTS / f"logs/solve_{batch}.log",
+        script:
+            "../scripts/solve.py"

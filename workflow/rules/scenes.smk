@@ -1,0 +1,120 @@
+# From runs to tables, findings, figures, the ledger and the report.
+
+
+rule study:
+    input:
+        runs=lambda wildcards: run_files(wildcards.scene),
+        tables=lambda wildcards: [
+            RESULTS / f"tables/{other}.csv" for other in SCENES[wildcards.scene].tables
+        ],
+        printed="report/printed/lucchesi2020.yaml",
+        code=lambda wildcards: [
+            PACKAGE / "claims.py",
+            PACKAGE / "studies/common.py",
+            PACKAGE / f"studies/{STUDIES[SCENES[wildcards.scene].study]}.py",
+        ],
+        core=lambda wildcards: [] if SCENES[wildcards.scene].runs else CORE,
+        compiled=COMPILED,
+    output:
+        csv=RESULTS / "tables/{scene}.csv",
+        md=RESULTS / "tables/{scene}.md",
+        findings=RESULTS / "findings/{scene}.json",
+        series=RESULTS / "series/{scene}.csv",
+    params:
+        study=lambda wildcards: SCENES[wildcards.scene].study,
+        parameters=lambda wildcards: SCENES[wildcards.scene].parameters,
+        claimed=lambda wildcards: SCENES[wildcards.scene].items,
+        tables=lambda wildcards: SCENES[wildcards.scene].tables,
+        smoke=STUDY.smoke,
+    log:
+        RESULTS / "logs/study_{scene}.log",
+    script:
+        "../scripts/study.py"
+
+
+rule figure:
+    input:
+        series=RESULTS / "series/{scene}.csv",
+        table=RESULTS / "tables/{scene}.csv",
+        code=lambda wildcards: [
+            PACKAGE / "figures/style.py",
+            PACKAGE / "figures/fracparticles.mplstyle",
+            PACKAGE / f"figures/{FIGURES[SCENES[wildcards.scene].figure]}.py",
+        ],
+    output:
+        svg=report(RESULTS / "figures/{scene}.svg", category="Figures"),
+        png=RESULTS / "figures/{scene}.png",
+    params:
+        figure=lambda wildcards: SCENES[wildcards.scene].figure,
+        parameters=lambda wildcards: SCENES[wildcards.scene].parameters,
+    log:
+        RESULTS / "logs/figure_{scene}.log",
+    script:
+        "../scripts/figure.py"
+
+
+rule ledger:
+    input:
+        findings=expand(RESULTS / "findings/{scene}.json", scene=SCENES),
+        printed="report/printed/lucchesi2020.yaml",
+        code=PACKAGE / "claims.py",
+    output:
+        csv=report(LEDGER[0], category="Claims ledger"),
+        md=LEDGER[1],
+    log:
+        RESULTS / "logs/ledger.log",
+    script:
+        "../scripts/ledger.py"
+
+
+for scene in SCENES:
+
+    rule:
+        name:
+            scene
+        input:
+            RESULTS / f"tables/{scene}.csv",
+            [RESULTS / f"figures/{scene}.svg"] if has_figure(scene) else [],
+
+
+rule tables:
+    input:
+        expand(RESULTS / "tables/{scene}.csv", scene=SCENES),
+        LEDGER,
+
+
+rule figures:
+    input:
+        [RESULTS / f"figures/{scene}.svg" for scene in SCENES if has_figure(scene)],
+
+
+rule report:
+    input:
+        rules.tables.input,
+        rules.figures.input,
+        captions=expand("report/captions/{scene}.md", scene=SCENES),
+        template=[
+            "report/template/report.md.j2",
+            "report/template/report.html.j2",
+            "report/template/style.css",
+        ],
+        code=[PACKAGE / "report.py", PACKAGE / "claims.py"],
+    output:
+        REPORT / "report.md",
+        REPORT / "report.html",
+    params:
+        results_dir=str(RESULTS),
+        scenes=[
+            {
+                "name": name,
+                "items": scene.items,
+                "title": scene.title,
+                "figures": [name] if scene.figure else [],
+                "tables": [name],
+            }
+            for name, scene in SCENES.items()
+        ],
+    log:
+        RESULTS / "logs/report.log",
+    script:
+        "../scripts/report.py"

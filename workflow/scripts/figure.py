@@ -1,0 +1,20 @@
+"""Draw a scene's figure from its series."""
+
+from pathlib import Path
+import sys
+from typing import Any
+
+import pandas as pd
+
+from fracparticles.figures import figure
+from fracparticles.figures.style import save
+
+snakemake: Any
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
+
+drawing = figure(snakemake.params.figure)(
+    pd.read_csv(snakemake.input.series),
+    pd.read_csv(snakemake.input.table),
+    snakemake.params.parameters,
+)
+save(drawing, Path(snakemake.output.svg).with_suffix(""))

@@ -1,0 +1,34 @@
+"""Turn a scene's runs into its table, findings and series."""
+
+import sys
+from typing import Any
+
+import pandas as pd
+
+from fracparticles.claims import read_claims, write_findings
+from fracparticles.studies import Inputs, study
+from fracparticles.studies.common import excuse, write_table
+
+snakemake: Any
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
+
+parameters, output = snakemake.params, snakemake.output
+claims = [c for c in read_claims(snakemake.input.printed) if c.item in parameters.claimed]
+inputs = Inputs(
+    scene=snakemake.wildcards.scene,
+    items=list(parameters.claimed),
+    parameters={
+        **parameters.parameters,
+        "printed": {claim.id: claim.printed for claim in claims if claim.printed is not None},
+    },
+    runs=list(snakemake.input.runs),
+    tables={
+        name: pd.read_csv(path)
+        for name, path in zip(parameters.tables, snakemake.input.tables, strict=True)
+    },
+)
+result = study(parameters.study)(inputs)
+findings = excuse(result.findings, claims) if parameters.smoke else result.findings
+write_findings(findings, output.findings)
+write_table(result.series if result.series is not None else pd.DataFrame(), output.series)
+write_table(result.table, output.csv, output.md)
