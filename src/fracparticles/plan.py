@@ -15,7 +15,16 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 from fracparticles.case import Case
 from fracparticles.errors import InvalidInput
 
-__all__ = ["RunBlock", "Scene", "StudyConfig", "batches", "cases_of", "expand", "read_config"]
+__all__ = [
+    "RunBlock",
+    "Scene",
+    "StudyConfig",
+    "batches",
+    "cases_of",
+    "config_schema",
+    "expand",
+    "read_config",
+]
 
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 _BATCH_SECONDS = 8.0
@@ -112,6 +121,12 @@ def read_config(config: Mapping[str, Any]) -> StudyConfig:
             _check_name(f"scenes.{name}.tables", other, study.scenes)
         cases_of(name, scene)
     return study
+
+
+def config_schema() -> dict[str, Any]:
+    """Return the JSON schema of the configuration (draft 2020-12), as `workflow/schemas` holds it."""
+    schema = StudyConfig.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
 def expand(blocks: Iterable[BaseModel | Mapping[str, Any]]) -> list[Case]:

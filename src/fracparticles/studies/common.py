@@ -153,7 +153,8 @@ def write_table(table: pd.DataFrame, csv: str, md: str | None = None) -> None:
     """Write a table as CSV with full precision and, if asked, as Markdown with four digits."""
     write_text(csv, table.to_csv(index=False, lineterminator="\n") if len(table.columns) else "\n")
     if md is not None:
-        text = table.to_markdown(index=False, floatfmt=".4g", missingval="")
+        shown = table.astype(object).where(table.notna(), None)
+        text = shown.to_markdown(index=False, floatfmt=".4g", missingval="")
         write_text(md, f"{text}\n")
 
 

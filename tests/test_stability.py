@@ -1,0 +1,112 @@
+"""Stability limits: the printed Table 3, closed forms, and the step where power really starts to grow."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import fracparticles as fp
+from fracparticles.errors import InvalidInput
+from fracparticles.integrators import STEP_POLYNOMIALS
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.spectrum import dense_matrix
+from fracparticles.stability import closed_form_limit, stability_limit, symbol_range
+
+# epsilon / h = 2, order II: the infinite lattice, to the digits given.
+KNOWN = {
+    "DD": (4.8161, 5.2536, 5.4297),
+    "FPSE": (7.0511, 8.8354, 10.4894),
+    "KPSE": (2.2501, 2.1762, 2.0412),
+}
+BETAS = (0.1, 0.5, 0.9)
+
+
+@pytest.mark.parametrize("scheme", KNOWN)
+@pytest.mark.parametrize("k", range(3))
+def test_known_limits(scheme, k):
+    assert round(stability_limit(scheme, BETAS[k]), 4) == pytest.approx(KNOWN[scheme][k], abs=1e-9)
+
+
+@pytest.mark.parametrize("scheme", KNOWN)
+@given(beta=st.floats(0.01, 0.99), overlap=st.floats(2.0, 20.0))
+def test_closed_forms_neglect_the_aliases_only(scheme, beta, overlap):
+    # The nearest alias, at k = pi s and beyond at the extreme theta s ~ sqrt(2 alpha) <= 2, weighs less than
+    # (2 pi s - 2)^2 exp(-(2 pi s - 2)^2 / 4) < 1e-9 for DD and FPSE; for KPSE, whose extreme is theta = pi, the closed
+    # form drops 2^beta Gamma(alpha / 2, (pi s / 2)^2) there: exp(-(pi s / 2)^2) = 5e-5 and less.
+    rel = 1e-4 if scheme == "KPSE" else 1e-8
+    assert stability_limit(scheme, beta, 2, overlap) == pytest.approx(
+        closed_form_limit(scheme, beta, overlap), rel=rel
+    )
+
+
+def test_there_is_no_closed_form_for_the_others():
+    with pytest.raises(InvalidInput, match="scheme = 'GPSE'"):
+        closed_form_limit("GPSE", 0.5)
+
+
+def test_the_range_holds_the_symbol(combination):
+    name, order, _ = combination
+    for overlap in (0.3, 1.0, 2.0, 7.0, 300.0):
+        low, high = symbol_range(name, 0.5, order, overlap)
+        values = SCHEMES[name].symbol(np.linspace(0.0, np.pi, 4001), 1.5, order, overlap)
+        room = 1e-7 * (high - low)
+        assert values.min() >= low - room
+        assert values.max() <= high + room
+        # and it is not too wide: 4001 points come within (spacing of theta s)^2 of the extreme
+        assert values.min() <= low + 0.02 * (high - low)
+
+
+@pytest.mark.parametrize("name", ["DD", "FPSE", "KPSE", "FD"])
+@pytest.mark.parametrize("integrator", STEP_POLYNOMIALS)
+def test_beyond_the_limit_the_powers_grow(name, integrator):
+    p = STEP_POLYNOMIALS[integrator]
+    operator = SCHEMES[name].operator(Setting(n=60, spacing=0.1, alpha=1.5))
+    eigenvalues = np.linalg.eigvals(dense_matrix(operator)).real
+    dt = stability_limit(name, 0.5) * 0.1**1.5 * p.stability_interval / 2.0
+    assert np.abs(p(eigenvalues * dt * 0.999)).max() <= 1.0
+    assert np.abs(p(eigenvalues * dt * 1.02)).max() > 1.0
+
+
+def test_a_green_step_is_stable_whatever_the_overlap():
+    """a >= s^alpha, the step of GPSE: |1 + dt A| <= 1."""
+    for beta in BETAS:
+        for overlap in (1.0, 1.65, 2.0, 2.9, 10.0):
+            assert stability_limit("GPSE", beta, 2, overlap) >= overlap ** (1.0 + beta)
+
+
+def test_numpy_scalars_are_taken():
+    expected = stability_limit("KPSE", 0.5, 4, 3.0)
+    assert stability_limit("KPSE", np.float64(0.5), np.int64(4), np.int32(3)) == expected
+    assert stability_limit("KPSE", np.float32(0.5), 4, np.float32(3.0)) == expected
+    assert fp.stability_limit is stability_limit
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        (("kpse", 0.5), "scheme"),
+        ((None, 0.5), "scheme"),
+        (("KPSE", 1.0), "beta"),
+        (("KPSE", 0.0), "beta"),
+        (("KPSE", 1e-17), "beta"),
+        (("KPSE", float("nan")), "beta"),
+        (("KPSE", "0.5"), "beta"),
+        (("KPSE", [0.5]), "beta"),
+        (("KPSE", None), "beta"),
+        (("KPSE", 0.5, 3), "order"),
+        (("KPSE", 0.5, True), "order"),
+        (("KPSE", 0.5, "4"), "order"),
+        (("GPSE", 0.5, 4), "order"),
+        (("KPSE", 0.5, 2, 0.0), "overlap"),
+        (("KPSE", 0.5, 2, float("inf")), "overlap"),
+        (("KPSE", 0.5, 2, True), "overlap"),
+        (("KPSE", 0.5, 2, None), "overlap"),
+        (("KPSE", 0.5, 2, 2.0, 2), "dim"),
+    ],
+)
+def test_refused(arguments, field):
+    with pytest.raises(InvalidInput) as refused:
+        stability_limit(*arguments)
+    assert refused.value.field == field
