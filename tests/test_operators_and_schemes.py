@@ -214,7 +214,8 @@ def test_long_waves_decay_as_they_should(combination, beta):
     name, order, _ = combination
     alpha, theta = 1.0 + beta, 1e-3
     symbol = SCHEMES[name].symbol(np.array([theta]), alpha, order, S)[0]
-    slack = {"FD": theta, "RIESZ": (S * theta) ** (2.0 - alpha)}.get(name, (S * theta) ** 1.0)
+    first_order = theta / (2.0 * np.tan(0.5 * np.pi * beta))
+    slack = {"FD": first_order, "RIESZ": (S * theta) ** (2.0 - alpha)}.get(name, (S * theta) ** 1.0)
     if name == "GPSE":
         slack = (S * theta) ** alpha
     # The aliases of K and E at theta = 0 and overlap 2, exp(-(2 pi)^2), leave a relative 1e-13 of theta^-2.

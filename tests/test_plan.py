@@ -47,7 +47,10 @@ def test_a_block_stands_for_the_cartesian_product_without_repeats():
         (changed(order=3), ("order", "3", "2 or 4")),
         (changed(beta=1.5), ("beta", "1.5", "1")),
         (changed(truncation=-1.0), ("truncation", "-1.0", "0")),
-        (changed(exterior="open", scheme="FD", order=2), ("one", "exterior", "'open'", "truncated")),
+        (
+            changed(exterior="open", scheme="FD", order=2),
+            ("one", "exterior", "'open'", "truncated"),
+        ),
         (config(study="truncatoin"), ("scenes.one.study", "truncatoin", "truncation")),
         (config(figure="none"), ("scenes.one.figure", "none")),
         (config(tables=["two"]), ("scenes.one.tables", "two", "one")),

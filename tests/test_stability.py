@@ -65,7 +65,7 @@ def test_beyond_the_limit_the_powers_grow(name, integrator):
     operator = SCHEMES[name].operator(Setting(n=60, spacing=0.1, alpha=1.5))
     eigenvalues = np.linalg.eigvals(dense_matrix(operator)).real
     dt = stability_limit(name, 0.5) * 0.1**1.5 * p.stability_interval / 2.0
-    assert np.abs(p(eigenvalues * dt * 0.999)).max() <= 1.0
+    assert np.abs(p(eigenvalues * dt * 0.999)).max() <= 1.0 + 1e-13  # an eigenvalue is nil
     assert np.abs(p(eigenvalues * dt * 1.02)).max() > 1.0
 
 

@@ -127,7 +127,7 @@ class Case(BaseModel):
         """The half-width of the lattice, Eq. (46)."""
         if self.half_width is not None:
             return self.half_width
-        assert self.truncation is not None  # noqa: S101  (one of the two is always given)
+        assert self.truncation is not None
         spread = (self.diffusivity * self.t_final) ** (1.0 / self.alpha)
         return self.truncation * spread * mean_radius(self.alpha)
 

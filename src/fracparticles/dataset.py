@@ -106,7 +106,9 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
     """Write a data set under a temporary name and rename it when it is whole."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.stem[:40]}-", suffix=".nc", dir=path.parent)
+    handle, temporary = tempfile.mkstemp(
+        prefix=f".{path.stem[:40]}-", suffix=".nc", dir=path.parent
+    )
     os.close(handle)
     encoding = {name: {"_FillValue": None} for name in dataset.variables}
     try:
@@ -129,7 +131,10 @@ def read_run(path: str | Path) -> xr.Dataset:
     dataset = _load(Path(path))
     if "case" not in dataset.attrs or "mass_final" not in dataset:
         raise InvalidInput(
-            "file", str(path), "a run written by fracparticles", "Make one with `fracparticles solve`."
+            "file",
+            str(path),
+            "a run written by fracparticles",
+            "Make one with `fracparticles solve`.",
         )
     return dataset
 
@@ -214,8 +219,8 @@ def _commit() -> str:
     root = Path(__file__).resolve().parents[2]
     if not (root / ".git").exists():
         return ""
-    done = subprocess.run(  # noqa: S603
-        ["git", "-C", str(root), "rev-parse", "--short=12", "HEAD"],  # noqa: S607
+    done = subprocess.run(
+        ["git", "-C", str(root), "rev-parse", "--short=12", "HEAD"],
         capture_output=True,
         text=True,
         check=False,

@@ -212,9 +212,7 @@ def _check_name(field: str, value: str, allowed: Iterable[str]) -> None:
 def _complaint(error: ValidationError) -> InvalidInput:
     # A run block's field may be a value or a list: pydantic complains about both; the first will do.
     first = error.errors()[0]
-    place = [
-        str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)
-    ]
+    place = [str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)]
     field = ".".join(place) or "configuration"
     if first["type"] == "extra_forbidden":
         import difflib
@@ -222,12 +220,17 @@ def _complaint(error: ValidationError) -> InvalidInput:
         model = {1: StudyConfig, 3: Scene}.get(len(place), RunBlock)
         close = difflib.get_close_matches(place[-1], model.model_fields, n=1)
         remedy = f"Did you mean {close[0]!r}?" if close else "Remove it."
-        return InvalidInput(field, first["input"], f"one of {', '.join(model.model_fields)}", remedy)
+        return InvalidInput(
+            field, first["input"], f"one of {', '.join(model.model_fields)}", remedy
+        )
     if first["type"] == "missing":
         return InvalidInput(field, None, "needed", "Add it to the configuration.")
     hint = ""
     if isinstance(first["input"], str) and "number" in first["msg"]:
         hint = " YAML reads 1e-4 as text: write 1.0e-4."
     return InvalidInput(
-        field, first["input"], first["msg"].removeprefix("Input should be "), f"Mend the value.{hint}"
+        field,
+        first["input"],
+        first["msg"].removeprefix("Input should be "),
+        f"Mend the value.{hint}",
     )

@@ -52,7 +52,9 @@ def symbol_range(
     """Return the least and the greatest value of A(theta) h^alpha / D."""
     module = scheme(name)
     if not (_is_number(beta) and 1.0 < 1.0 + beta < 2.0):
-        raise InvalidInput("beta", beta, "a number between 0 and 1 (exclusive)", "Give such a value.")
+        raise InvalidInput(
+            "beta", beta, "a number between 0 and 1 (exclusive)", "Give such a value."
+        )
     if not (_is_number(order) and order in module.ORDERS):
         allowed = f"{' or '.join(map(str, module.ORDERS))} for {name}"
         raise InvalidInput("order", order, allowed, "Choose one of these.")

@@ -9,12 +9,12 @@ rule reference_benchmark:
         data=RESULTS / "benchmarks/reference.nc",
         csv=RESULTS / "benchmarks/reference.csv",
         md=RESULTS / "benchmarks/reference.md",
-    params:
-        **STUDY.benchmark,
-    # All cores: nothing else runs while the clock does.
-    threads: workflow.cores
     log:
         RESULTS / "logs/reference_benchmark.log",
+    # All cores: nothing else runs while the clock does.
+    threads: workflow.cores
+    params:
+        **STUDY.benchmark,
     script:
         "../scripts/benchmark_reference.py"
 

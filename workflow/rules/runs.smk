@@ -23,9 +23,9 @@ for batch, cases in BATCHES.items():
             compiled=COMPILED,
         output:
             [RESULTS / "runs" / case.path for case in cases],
-        params:
-            cases=[case.to_json() for case in cases],
         log:
             RESULTS / f"logs/solve_{batch}.log",
+        params:
+            cases=[case.to_json() for case in cases],
         script:
             "../scripts/solve.py"

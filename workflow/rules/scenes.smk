@@ -20,14 +20,14 @@ rule study:
         md=RESULTS / "tables/{scene}.md",
         findings=RESULTS / "findings/{scene}.json",
         series=RESULTS / "series/{scene}.csv",
+    log:
+        RESULTS / "logs/study_{scene}.log",
     params:
         study=lambda wildcards: SCENES[wildcards.scene].study,
         parameters=lambda wildcards: SCENES[wildcards.scene].parameters,
         claimed=lambda wildcards: SCENES[wildcards.scene].items,
         tables=lambda wildcards: SCENES[wildcards.scene].tables,
         smoke=STUDY.smoke,
-    log:
-        RESULTS / "logs/study_{scene}.log",
     script:
         "../scripts/study.py"
 
@@ -44,11 +44,11 @@ rule figure:
     output:
         svg=report(RESULTS / "figures/{scene}.svg", category="Figures"),
         png=RESULTS / "figures/{scene}.png",
+    log:
+        RESULTS / "logs/figure_{scene}.log",
     params:
         figure=lambda wildcards: SCENES[wildcards.scene].figure,
         parameters=lambda wildcards: SCENES[wildcards.scene].parameters,
-    log:
-        RESULTS / "logs/figure_{scene}.log",
     script:
         "../scripts/figure.py"
 
@@ -92,6 +92,7 @@ rule report:
     input:
         rules.tables.input,
         rules.figures.input,
+        ledger=LEDGER[0],
         captions=expand("report/captions/{scene}.md", scene=SCENES),
         template=[
             "report/template/report.md.j2",
@@ -102,8 +103,9 @@ rule report:
     output:
         REPORT / "report.md",
         REPORT / "report.html",
+    log:
+        RESULTS / "logs/report.log",
     params:
-        results_dir=str(RESULTS),
         scenes=[
             {
                 "name": name,
@@ -114,7 +116,5 @@ rule report:
             }
             for name, scene in SCENES.items()
         ],
-    log:
-        RESULTS / "logs/report.log",
     script:
         "../scripts/report.py"

@@ -1,7 +1,7 @@
 """Draw a scene's figure from its series."""
 
-from pathlib import Path
 import sys
+from pathlib import Path
 from typing import Any
 
 import pandas as pd

@@ -1,7 +1,7 @@
 """Build the report from the tables, the figures and the ledger."""
 
-from pathlib import Path
 import sys
+from pathlib import Path
 from typing import Any
 
 from fracparticles.report import SceneEntry, build
@@ -11,7 +11,7 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM1
 
 build(
     [SceneEntry(**scene) for scene in snakemake.params.scenes],
-    results_dir=Path(snakemake.params.results_dir),
+    results_dir=Path(snakemake.input.ledger).parent,
     captions_dir=Path("report/captions"),
     template_dir=Path("report/template"),
     out_dir=Path(snakemake.output[0]).parent,

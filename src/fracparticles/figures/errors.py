@@ -33,7 +33,7 @@ def truncation(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, 
     alpha = 1.0 + parameters["beta"]
     truncated = series[(series["exterior"] == "truncated") & (series["scheme"] == "GPSE")]
     low = truncated.sort_values("x").iloc[len(truncated) // 2]
-    _guide(axes[0], truncated["x"], low["x"], low["y"], -alpha, rf"$C^{{-\alpha}}$")
+    _guide(axes[0], truncated["x"], low["x"], low["y"], -alpha, r"$C^{-\alpha}$")
     _legend(figure, series)
     return figure
 
@@ -88,7 +88,9 @@ def truncation_overview(
         here = series[series["beta"] == beta]
         predicted = here[(here["variable"] == "predicted") & (here["scheme"] == "GPSE")]
         predicted = predicted.sort_values("C")
-        ax.plot(predicted["C"], predicted["value"], color="0.6", linewidth=4, solid_capstyle="round")
+        ax.plot(
+            predicted["C"], predicted["value"], color="0.6", linewidth=4, solid_capstyle="round"
+        )
         for scheme, order in (("KPSE", "II"), ("KPSE", "IV"), ("GPSE", "II")):
             for variable, filled in (("truncated", True), ("open", False)):
                 points = here[

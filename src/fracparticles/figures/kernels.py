@@ -20,7 +20,7 @@ _LINES = {("kappa", 2): "-", ("E", 2): "-", ("K", 2): "--", ("K", 4): ":"}
 
 def kernels(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
     """Draw (a) kappa, (b) the Green's function and K, (c) K near the change of sign of order IV."""
-    figure, (potential, tails, near) = axes_row(3, height=3.5, width=3.4)
+    figure, (potential, tails, near) = axes_row(3, height=3.3, width=3.0)
     colours = dict(zip(sorted(parameters["beta"]), _COLOURS, strict=True))
     far = series[series["panel"] == "kernel"]
     _draw(potential, far, [("kappa", 2)], colours)
@@ -29,7 +29,7 @@ def kernels(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any
 
     _draw(tails, far, [("E", 2), ("K", 2)], colours)
     tails.set(
-        xscale="log", yscale="log", xlabel="distance $r$", ylabel=r"Green's function $L_\alpha^0(r)$ and kernel $K(r)$"
+        xscale="log", yscale="log", xlabel="distance $r$", ylabel=r"Green's function $L_\alpha^0$, kernel $K$"
     )
     _slopes(tails, far, "E", r"$r^{-1-\alpha}$", colours)
 
@@ -54,18 +54,19 @@ def kernels(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any
     return figure
 
 
-def _draw(ax: Axes, series: pd.DataFrame, shown, colours) -> None:
+def _draw(
+    ax: Axes, series: pd.DataFrame, shown: list[tuple[str, int]], colours: dict[float, str]
+) -> None:
     for name, order in shown:
         curves = series[(series["kernel"] == name) & (series["order"] == order)]
         for beta, curve in curves.groupby("beta"):
             ax.plot(curve["x"], curve["y"], _LINES[name, order], color=colours[beta])
 
 
-def _slopes(ax: Axes, series: pd.DataFrame, name: str, label: str, colours) -> None:
-    """Name the power law at the end of the curves."""
-    last = series[(series["kernel"] == name) & (series["order"] == 2)].groupby("beta").last()
-    middle = last.sort_values("y").iloc[len(last) // 2]
+def _slopes(ax: Axes, series: pd.DataFrame, name: str, label: str, colours: dict[float, str]) -> None:
+    """Name the power law above the uppermost tail."""
+    curves = series[(series["kernel"] == name) & (series["order"] == 2) & (series["x"] >= 10.0)]
+    point = curves.groupby("beta").first().sort_values("y").iloc[-1]
     ax.annotate(
-        label, (middle["x"], middle["y"]), xytext=(-14, 16), textcoords="offset points", ha="right", va="bottom",
-        color="0.25",
-    )  # fmt: skip
+        label, (point["x"], point["y"]), xytext=(4, 6), textcoords="offset points", va="bottom", color="0.25"
+    )

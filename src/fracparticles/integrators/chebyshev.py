@@ -55,7 +55,8 @@ class ChebyshevSeries:
         noise: float = _ROUND_OFF,
     ) -> ChebyshevSeries:
         """Interpolate f at Chebyshev points, of which there are enough when the last third of the
-        coefficients is nil: below `noise`, the relative round-off in the largest values of f."""
+        coefficients is nil: below `noise`, the relative round-off in the largest values of f.
+        """
         points = 32
         while True:
             angle = (np.arange(points) + 0.5) * (np.pi / points)

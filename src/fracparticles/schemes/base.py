@@ -10,7 +10,7 @@ import numpy as np
 
 from fracparticles.exterior import far_field
 from fracparticles.kernels import kernel_transform
-from fracparticles.operators import ConvolutionOperator, FarField, Operator
+from fracparticles.operators import ConvolutionOperator, Operator
 from fracparticles.sums import SUMMATIONS
 
 __all__ = ["Scheme", "Setting", "lattice_transform", "one_pass_operator"]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.kernels import kernel, kernel_transform
+from fracparticles.kernels import kernel
 from fracparticles.operators import Operator, TwoPassOperator
 from fracparticles.schemes.base import Setting, lattice_transform, present_sum
 from fracparticles.sums import SUMMATIONS, BandedConvolution

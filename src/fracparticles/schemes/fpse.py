@@ -65,8 +65,10 @@ def operator(setting: Setting) -> Operator:
 
 
 def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
-    """A(theta) h^alpha / D = -s^(-alpha) f(theta) e(theta): f and e the sums over the aliases of
-    F^ = i sgn(k) |k|^beta eta^(k) and of eta1^."""
+    """A(theta) h^alpha / D = -s^(-alpha) f(theta) e(theta).
+
+    f and e are the sums over the aliases of F^ = i sgn(k) |k|^beta eta^(k) and of eta1^.
+    """
     f = lattice_transform("F", theta, alpha, order, overlap, parity=-1)
     e = lattice_transform("eta1", theta, alpha, order, overlap, parity=-1)
     return -(overlap**-alpha) * f * e

@@ -43,8 +43,10 @@ def operator(setting: Setting) -> Operator:
 
 
 def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
-    """A(theta) h^alpha / D = s^(-alpha) sum_l [E^(s (theta + 2 pi l)) - E^(2 pi l s)],
-    E^(k) = exp(-|k|^alpha). There is one order only."""
+    """A(theta) h^alpha / D = s^(-alpha) sum_l [E^(s (theta + 2 pi l)) - E^(2 pi l s)].
+
+    E^(k) = exp(-|k|^alpha). There is one order only.
+    """
     theta = np.asarray(theta, dtype=float)
     at_theta = lattice_transform("E", theta, alpha, 2, overlap)
     at_zero = lattice_transform("E", np.zeros_like(theta), alpha, 2, overlap)

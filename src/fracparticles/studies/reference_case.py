@@ -33,8 +33,12 @@ def reference_case(inputs: Inputs) -> Result:
                 "relative error at x = 0": error[x.size // 2] / exact[x.size // 2],
                 "largest relative error, |x| < 5": (error / exact)[np.abs(x) < 5.0].max(),
                 "largest relative error, |x| < D/2": (error / exact)[np.abs(x) < 0.5 * half].max(),
-                "largest relative error, |x| < 0.9 D": (error / exact)[np.abs(x) < 0.9 * half].max(),
-                f"median relative error, |x| > {windows[-1][0]:g}": np.median((error / exact)[near]),
+                "largest relative error, |x| < 0.9 D": (error / exact)[
+                    np.abs(x) < 0.9 * half
+                ].max(),
+                f"median relative error, |x| > {windows[-1][0]:g}": np.median(
+                    (error / exact)[near]
+                ),
                 "largest absolute error / peak": error.max() / exact.max(),
                 "largest absolute error at the boundary / peak": error[near].max() / exact.max(),
                 "relative error at |x| = D": error[-1] / exact[-1],

@@ -63,7 +63,7 @@ def self_convergence(inputs: Inputs) -> Result:
             value(
                 claim,
                 readings["middle"],
-                "The print does not say which level its h is and over which particles (49) sums; h as middle level, raw "
+                "The print names neither the level of its h nor the particles of (49); ours: h as middle level, raw "
                 f"strengths, |x| <= 5 R. The nearest reading, h as {nearest[1]} level, is {nearest[0]:.3f} off.",
                 list(runs["run"]),
             )
@@ -103,6 +103,4 @@ def _order(levels: list[tuple[np.ndarray, np.ndarray]], half_width: float) -> fl
     """(49) over the points of the coarsest lattice with |x| <= half_width; every other point from level to level."""
     x, _ = levels[0]
     inside = np.abs(x) <= half_width
-    return self_convergence_order(
-        [u[:: 2**level][inside] for level, (_, u) in enumerate(levels)]
-    )
+    return self_convergence_order([u[:: 2**level][inside] for level, (_, u) in enumerate(levels)])

@@ -9,7 +9,9 @@ from fracparticles.studies.common import ORDERS, Inputs, Result, observed_order,
 
 __all__ = ["spacing", "spacing_claims"]
 
-_CLEAN = 0.05  # a level shows the order of a scheme if truncation is less than this part of its error
+_CLEAN = (
+    0.05  # a level shows the order of a scheme if truncation is less than this part of its error
+)
 _ORDER = {"II": 2.0, "IV": 4.0}
 
 
@@ -25,7 +27,9 @@ def spacing(inputs: Inputs) -> Result:
     )
     errors = stepped.pivot_table(index=key, columns="exterior", values="relative_l1_error")
     errors["exponential"] = exact.set_index(key)["relative_l1_error"]
-    errors = errors.reset_index().sort_values(["scheme", "order", "h"], ascending=[True, True, False])
+    errors = errors.reset_index().sort_values(
+        ["scheme", "order", "h"], ascending=[True, True, False]
+    )
     for column in ("truncated", "open"):
         errors[f"order {column}"] = errors.groupby(["scheme", "order"], group_keys=False).apply(
             lambda part, c=column: pd.Series(
@@ -130,8 +134,8 @@ def spacing_claims(inputs: Inputs) -> Result:
         statement(
             "L-C7.fpse_largest",
             bool((ratio > 1.0).all()),
-            f"Error of FPSE over the larger of DD and KPSE, open exterior, all beta, orders and h: {ratio.min():.3g} to "
-            f"{ratio.max():.3g}.",
+            f"Error of FPSE over the larger of DD and KPSE, open exterior, all beta, orders and h: "
+            f"{ratio.min():.3g} to {ratio.max():.3g}.",
             "At the smallest h the far-field closure, the same for all, is what is left of the order-IV errors.",
         )
     )
@@ -154,8 +158,8 @@ def spacing_claims(inputs: Inputs) -> Result:
         statement(
             "L-C8.cause",
             bool((share > 0.5).any()),
-            f"Exact integration in time changes the plateau of KPSE IV by {share.max():.2g} of it at most; the open "
-            f"exterior lowers it {gain.min():.3g} to {gain.max():.3g} times.",
+            f"Exact integration in time changes the plateau of KPSE IV by {share.max():.2g} of it at most; "
+            f"the open exterior lowers it {gain.min():.3g} to {gain.max():.3g} times.",
             "The plateau is the truncation of the domain: it stays when the time integration is exact and goes when the "
             "exterior is open.",
         )

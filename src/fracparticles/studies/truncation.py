@@ -126,7 +126,9 @@ def _summary(part: pd.DataFrame, scheme: str, order: str, beta: float) -> dict[s
     }
     if not part["predicted"].isna().all():
         # C at which the predicted truncation error has fallen to the discretisation error.
-        row["C of the plateau"] = c[-1] * (part["predicted"].iloc[-1] / floor) ** (1.0 / (1.0 + beta))
+        row["C of the plateau"] = c[-1] * (part["predicted"].iloc[-1] / floor) ** (
+            1.0 / (1.0 + beta)
+        )
     return row
 
 
@@ -230,9 +232,7 @@ def _kpse(errors: pd.DataFrame, summary: pd.DataFrame) -> list:
         ),
     ]
     for scheme in ("KPSE", "GPSE"):
-        rows = errors[
-            (errors["scheme"] == scheme) & (errors["predicted"] > 10.0 * errors["open"])
-        ]
+        rows = errors[(errors["scheme"] == scheme) & (errors["predicted"] > 10.0 * errors["open"])]
         ratio = rows["truncated"] / rows["predicted"]
         slope = _pick(summary, "first slope in C", scheme) / _pick(summary, "- alpha", scheme)
         findings.append(
