@@ -79,7 +79,7 @@ def test_variables_and_masses():
     }
     assert run.u.dims == ("x",)
     assert run.mass_final.item() == pytest.approx(0.25 * run.u.values.sum(), rel=1e-15)
-    assert run.mass_initial.item() == pytest.approx(run.mass_final.item(), rel=1e-13)  # KPSE conserves
+    assert run.mass_initial.item() == pytest.approx(run.mass_final.item(), rel=1e-13)
     assert "time" not in run.dims
 
 
@@ -104,9 +104,7 @@ def test_own_initial_data_have_no_error_but_a_digest():
 
 
 def test_what_is_stored():
-    field, profile, metrics = (
-        fp.solve(case(store=s)) for s in ("field", "profile", "metrics")
-    )
+    field, profile, metrics = (fp.solve(case(store=s)) for s in ("field", "profile", "metrics"))
     assert field.sizes["x"] == 81
     five = 5.0 * mean_radius(1.5)
     assert np.abs(profile.x.values).max() <= five < np.abs(profile.x.values).max() + 0.25
@@ -185,10 +183,17 @@ def test_runs_combine_into_a_cube(tmp_path):
     one = cube.sel(beta=0.5, order=4)
     assert np.array_equal(one.u.values, fp.solve(case()).u.values)
     assert cube.relative_l1_error.dims == ("beta", "order")
-    line = xr.concat([fp.read_run(p) for p in paths[:2]], dim="order", coords="minimal", compat="override", combine_attrs="drop")
+    line = xr.concat(
+        [fp.read_run(p) for p in paths[:2]],
+        dim="order",
+        coords="minimal",
+        compat="override",
+        combine_attrs="drop",
+    )
     assert list(line.order.values) == [2, 4]
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # its own
 @pytest.mark.parametrize("store", ["field", "metrics"])
 def test_the_checker_of_the_convention_finds_nothing(tmp_path, store):
     from compliance_checker.runner import CheckSuite, ComplianceChecker
@@ -200,7 +205,9 @@ def test_the_checker_of_the_convention_finds_nothing(tmp_path, store):
         str(path), ["cf:1.11"], 0, "normal", output_filename=str(report), output_format="json"
     )
     verdict = json.loads(report.read_text())["cf:1.11"]
-    messages = [m for level in ("high", "medium") for c in verdict[f"{level}_priorities"] for m in c["msgs"]]
+    messages = [
+        m for level in ("high", "medium") for c in verdict[f"{level}_priorities"] for m in c["msgs"]
+    ]
     assert messages == []
     assert passed
     assert not failed
@@ -250,7 +257,7 @@ def test_a_file_of_something_else(tmp_path):
 
 def test_strengths_on_another_lattice(run_file):
     for changes in ({"spacing": 0.125}, {"half_width": 11.0}):
-        with pytest.raises(InvalidInput, match="u on the .* points of case.x"):
+        with pytest.raises(InvalidInput, match=r"u on the .* points of case\.x"):
             read_strengths(run_file, case(**changes))
 
 

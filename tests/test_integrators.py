@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm, toeplitz
 from scipy.special import ive
+from test_spectrum import case_of
 
 from fracparticles.errors import NonFiniteSolution
 from fracparticles.integrators import STEP_POLYNOMIALS, ChebyshevSeries, exponential, power, step
@@ -18,7 +19,6 @@ from fracparticles.schemes import SCHEMES, Setting, dpse
 from fracparticles.solver import integrate
 from fracparticles.special import green
 from fracparticles.spectrum import dense_matrix
-from test_spectrum import case_of
 
 INTEGRATORS = ["euler", "rk2", "rk4"]
 
@@ -95,7 +95,9 @@ def test_the_degree_grows_like_a_square_root():
 def test_a_series_of_a_constant_applies_nothing():
     series = ChebyshevSeries.of(lambda z: np.full_like(z, 3.0), -1.0, 0.0)
     assert series.degree == 0
-    assert np.array_equal(series(diagonal_operator(np.zeros(4)), np.arange(4.0)), 3.0 * np.arange(4))
+    assert np.array_equal(
+        series(diagonal_operator(np.zeros(4)), np.arange(4.0)), 3.0 * np.arange(4)
+    )
 
 
 # --- against each other, for every scheme ---------------------------------------------------------
@@ -220,7 +222,7 @@ def test_stepping_leaves_its_input_alone(name):
 
 
 def test_the_exponential_is_that_of_the_matrix(combination):
-    scheme, order, exterior = combination
+    scheme = combination[0]
     if scheme in ("GPSE", "PSE29"):
         pytest.skip("GPSE has its own step; (29) grows")
     case = case_of(combination, 0.5, 2.0, 30, t_initial=0.0, t_final=20.0, initial="own")

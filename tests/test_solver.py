@@ -94,11 +94,11 @@ def test_a_restart_from_a_file_continues_the_run(tmp_path, exterior):
         {},
         object(),
     ],
-    ids=repr,
+    ids=range(15),
 )
 def test_data_that_cannot_be_used_are_refused(data):
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # a complex number must not lose its imaginary part with a warning
+        warnings.simplefilter("error")  # as numpy warns when an imaginary part is dropped
         with pytest.raises(InvalidInput) as refused:
             run(case(), data)
     assert refused.value.field == "initial"
@@ -126,7 +126,7 @@ def test_a_blow_up_names_scheme_step_and_time(evaluation):
     c = case(integrator="euler", dt=1.0, t_final=2000.5, evaluation=evaluation)
     with pytest.raises(
         NonFiniteSolution,
-        match=r"KPSE \(order 2\): .*step \d+ of 2000, [\d.]+ after the start: ?.*dt = 1",
+        match=r"KPSE \(order 2\): .*step \d+ of 2000, [\d.]+ after the start: .*Take a smaller dt",
     ):
         run(c, np.random.default_rng(1).standard_normal(c.particles))
 
@@ -179,7 +179,9 @@ def test_lengths_scale_too():
 
 def test_conservative_runs_keep_their_mass():
     for scheme in ("KPSE", "FPSE", "DPSE", "GPSE", "RIESZ"):
-        solution = compute(case(scheme=scheme, integrator=None if scheme == "GPSE" else "exponential"))
+        solution = compute(
+            case(scheme=scheme, integrator=None if scheme == "GPSE" else "exponential")
+        )
         assert solution.u.sum() == pytest.approx(solution.u0.sum(), rel=1e-12)
 
 
@@ -190,7 +192,9 @@ def test_kpse_keeps_order_and_sign():
     assert u.max() <= u0.max()
 
 
-@pytest.mark.parametrize(("scheme", "order"), [("DD", 2), ("FPSE", 2), ("KPSE", 2), ("KPSE", 4), ("DD", 4)])
+@pytest.mark.parametrize(
+    ("scheme", "order"), [("DD", 2), ("FPSE", 2), ("KPSE", 2), ("KPSE", 4), ("DD", 4)]
+)
 def test_order_of_convergence_in_space(scheme, order):
     """With the open exterior and the exponential nothing but the smoothing is left."""
     spacings = np.array([0.2, 0.1, 0.05]) if order == 2 else np.array([0.24, 0.12, 0.06])

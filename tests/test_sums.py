@@ -25,7 +25,14 @@ def direct(weights, parity, u, pad=0):
 def bound(weights, u):
     """Round-off of a transform: eps log2(L) |w| |u|, here with a factor of 4 to spare."""
     length = 4 * weights.size
-    return 4 * np.finfo(float).eps * np.log2(length) * 2.0 * np.linalg.norm(weights) * np.linalg.norm(u)
+    return (
+        4
+        * np.finfo(float).eps
+        * np.log2(length)
+        * 2.0
+        * np.linalg.norm(weights)
+        * np.linalg.norm(u)
+    )
 
 
 @pytest.mark.parametrize("summation", SUMMATIONS)
@@ -38,7 +45,9 @@ def test_sums_are_what_they_say(summation, parity, size, pad, seed):
         weights[0] = 0.0
     convolve = SUMMATIONS[summation](weights, size, parity, pad)
     for data in (u, 2.0 * u):  # the buffers are used again
-        assert np.abs(convolve(data) - direct(weights, parity, data, pad)).max() <= bound(weights, data)
+        assert np.abs(convolve(data) - direct(weights, parity, data, pad)).max() <= bound(
+            weights, data
+        )
 
 
 def test_fft_and_naive_agree_on_a_long_lattice():
@@ -78,10 +87,14 @@ def test_the_banded_sum_crosses_its_blocks():
     v = np.random.default_rng(2).standard_normal(2000)
     weights = np.array([0.5, 0.3, -0.2, 0.1])
     out = BandedConvolution(weights, 1)(v, np.empty(2000))
-    assert out == pytest.approx(np.convolve(v, [0.1, -0.2, 0.3, 0.5, 0.3, -0.2, 0.1], "same"), abs=1e-14)
+    assert out == pytest.approx(
+        np.convolve(v, [0.1, -0.2, 0.3, 0.5, 0.3, -0.2, 0.1], "same"), abs=1e-14
+    )
 
 
-@pytest.mark.parametrize(("order", "kernel"), [(2, lambda r: np.exp(-r * r)), (4, lambda r: np.exp(-0.5 * r * r))])
+@pytest.mark.parametrize(
+    ("order", "kernel"), [(2, lambda r: np.exp(-r * r)), (4, lambda r: np.exp(-0.5 * r * r))]
+)
 @given(overlap=st.floats(0.25, 50.0))
 def test_beyond_the_reach_a_gaussian_is_round_off(order, kernel, overlap):
     assert kernel(BandedConvolution.reach(overlap, order) / overlap) < 1e-18

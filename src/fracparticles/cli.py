@@ -16,7 +16,12 @@ from typing import Annotated, Any
 from cyclopts import App, CycloptsError, Parameter
 
 from fracparticles import __version__
-from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
+from fracparticles.errors import (
+    FracparticlesError,
+    InvalidInput,
+    NonFiniteSolution,
+    StabilityWarning,
+)
 
 __all__ = ["app", "main", "number_or_text"]
 
@@ -107,20 +112,24 @@ def limit(
     from fracparticles.stability import stability_limit
 
     if scheme == "FD" and overlap is not None:
-        raise InvalidInput("overlap", overlap, "nothing for FD, which has no kernel", "Leave it out.")
+        raise InvalidInput(
+            "overlap", overlap, "nothing for FD, which has no kernel", "Leave it out."
+        )
     numbers = [number_or_text(text) for text in (beta, order, overlap or "2.0")]
     a = stability_limit(scheme, *numbers)
+    lines = [f"a = {a:.6g}"]
     rate = positive_real("diffusivity", number_or_text(diffusivity))
-    print(f"a = {a:.6g}")
     if spacing is not None:
         h = positive_real("spacing", number_or_text(spacing))
-        print(f"dt = {a * h ** (1.0 + float(beta)) / rate:.6g}")
+        lines.append(f"dt = {a * h ** (1.0 + float(beta)) / rate:.6g}")
+    print("\n".join(lines))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status."""
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
+        warnings.simplefilter("always", StabilityWarning)
         try:
             app(
                 arguments,

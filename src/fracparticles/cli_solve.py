@@ -55,7 +55,9 @@ def solve(
     target = _writable(output)
     case = Case(
         **{
-            name: number_or_text(text) if takes_numbers(Case.model_fields[name].annotation) else text
+            name: number_or_text(text)
+            if takes_numbers(Case.model_fields[name].annotation)
+            else text
             for name, text in (flags or {}).items()
         }
     )

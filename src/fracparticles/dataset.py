@@ -84,7 +84,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         if case.store == "field":
             kept[:] = True
         data["u"] = (("x",), u[kept], _describe("particle strength at t_final"))
-        coordinates["x"] = (("x",), x[kept], {**_describe("particle position"), "axis": "X"})
+        coordinates["x"] = (("x",), x[kept], _describe("particle position"))
     return xr.Dataset(
         data,
         coordinates,
@@ -152,16 +152,18 @@ def read_strengths(path: Path, case: Case) -> np.ndarray:
         raise InvalidInput(
             "initial", str(path), "a NetCDF file with u(x) and the coordinate x", "Store these two."
         )
-    x = np.asarray(dataset["x"].values, dtype=float)
-    u = np.asarray(dataset["u"].values, dtype=float)
+    x, u = dataset["x"].values, dataset["u"].values
+    if x.dtype.kind not in "iuf" or u.dtype.kind not in "iuf":
+        raise InvalidInput("initial", str(path), "real numbers as x and u", "Store numbers.")
+    x, u = x.astype(float), u.astype(float)
     h = case.particle_spacing
     if x.shape != case.x.shape or np.abs(x - case.x).max() > 1e-9 * h:
         raise InvalidInput(
             "initial",
             str(path),
             f"u on the {case.particles} points of case.x, h = {h:.9g} and |x| <= {case.domain:.9g}",
-            f"The file has {x.size} points with |x| <= {np.abs(x).max():.9g}: set half_width and spacing to match, "
-            "or interpolate the data onto case.x.",
+            f"The file has {x.size} points with |x| <= {np.abs(x).max(initial=0.0):.9g}: set half_width and "
+            "spacing to match, or interpolate the data onto case.x.",
         )
     if not np.isfinite(u).all():
         raise InvalidInput("initial", str(path), "finite strengths", "Mend the data.")

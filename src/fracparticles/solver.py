@@ -16,6 +16,7 @@ from fracparticles.case import FUNDAMENTAL, Case
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
 from fracparticles.operators import Operator
 from fracparticles.schemes import SCHEMES
+from fracparticles.special.arguments import real_array
 from fracparticles.special.stable import central_mass, green, mean_radius
 from fracparticles.spectrum import spectral_interval
 
@@ -92,19 +93,14 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     """Return the initial strengths on `case.x` and one line on where they come from."""
     source: Initial = case.initial if initial is None else initial
     if isinstance(source, str) and source == FUNDAMENTAL:
-        u0 = green(case.x, case.diffusivity * case.t_initial, case.alpha)
+        u0 = np.asarray(green(case.x, case.diffusivity * case.t_initial, case.alpha))
         return u0, f"fundamental solution at t = {case.t_initial:g}"
     if isinstance(source, (str, Path)):
         from fracparticles.dataset import read_strengths
 
         return read_strengths(Path(source), case), f"file {Path(source).name}"
     given = source(case.x) if callable(source) else source
-    try:
-        u0 = np.array(given, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidInput(
-            "initial", type(given).__name__, "real numbers", "Give an array of floats."
-        ) from None
+    u0 = np.array(real_array("initial", given))
     if u0.shape != case.x.shape:
         raise InvalidInput(
             "initial",

@@ -23,8 +23,9 @@ def spectral_interval(case: Case, operator: Operator) -> tuple[float, float]:
     A truncated convolution (DD, FD) is a compression of the operator on the infinite lattice: its eigenvalues lie
     in the range of the symbol. A truncated exchange is the compression plus a diagonal, the weights that lead out of
     the lattice: positive weights only raise the eigenvalues, to nil at most, and where weights change sign (KPSE of
-    order IV from beta = 0.85) the lowest falls by no more than the least element of that diagonal (Weyl). FPSE,
-    DPSE and the open exterior are not symmetric, but were found to have real eigenvalues in the range of the symbol
+    order IV from beta = 0.85) the lowest falls by no more than the least element of that diagonal (Weyl). DPSE is
+    the product of a negative and a positive symmetric matrix, so that its eigenvalues are real. That they lie in the
+    range of the symbol, and that those of FPSE and of the open exterior do and are real, was found by computation
     (tests/test_spectrum.py). Where there are positive eigenvalues, for scheme (29) or an overlap too small for the
     order, the greatest is computed.
     """

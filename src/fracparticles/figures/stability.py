@@ -43,13 +43,21 @@ def stability(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, A
     exact = symbols[symbols["scheme"] == "exact"]
     top = 1.25 * symbols.loc[symbols["scheme"] != "exact", "y"].max()
     right.plot(exact["x"], exact["y"], color=COLOURS["exact"], linewidth=1.0)
-    for (scheme, order), curve in symbols[symbols["scheme"] != "exact"].groupby(["scheme", "order"]):
+    for (scheme, order), curve in symbols[symbols["scheme"] != "exact"].groupby(
+        ["scheme", "order"]
+    ):
         right.plot(curve["x"], curve["y"], _LINES[order], color=COLOURS[scheme])
         highest = curve.loc[curve["y"].idxmax()]
-        right.plot(highest["x"], highest["y"], MARKERS[scheme], color=COLOURS[scheme], clip_on=False)
+        right.plot(
+            highest["x"], highest["y"], MARKERS[scheme], color=COLOURS[scheme], clip_on=False
+        )
     edge = exact[exact["y"] <= top].iloc[-1]
     right.annotate(
-        r"exact, $\theta^\alpha$", (edge["x"], edge["y"]), xytext=(5, -4), textcoords="offset points", va="top"
+        r"exact, $\theta^\alpha$",
+        (edge["x"], edge["y"]),
+        xytext=(5, -4),
+        textcoords="offset points",
+        va="top",
     )
     right.set(xlim=(0.0, np.pi), ylim=(0.0, top))
     right.set_xticks(np.pi * np.linspace(0.0, 1.0, 5), ["0", "π/4", "π/2", "3π/4", "π"])
@@ -58,9 +66,19 @@ def stability(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, A
     right.set_title(rf"(b)  $\beta = {middle:g}$; markers: the maximum, $2 / a$", loc="left")
 
     entries = [Line2D([], [], color=COLOURS[s], label=s) for s in _SCHEMES]
-    entries += [Line2D([], [], color="0.3", linestyle=_LINES[o], label=f"order {o}") for o in _LINES]
+    entries += [
+        Line2D([], [], color="0.3", linestyle=_LINES[o], label=f"order {o}") for o in _LINES
+    ]
     entries.append(
-        Line2D([], [], color="0.3", linestyle="", marker="o", markerfacecolor="white", label="printed, Table 3")
+        Line2D(
+            [],
+            [],
+            color="0.3",
+            linestyle="",
+            marker="o",
+            markerfacecolor="white",
+            label="printed, Table 3",
+        )
     )
     figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
     return figure

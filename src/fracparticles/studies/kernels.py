@@ -50,7 +50,9 @@ def kernels(inputs: Inputs) -> Result:
     return Result(table, findings, _series(betas))
 
 
-def _row(name: str, order: int, beta: float, r: np.ndarray, values: np.ndarray) -> dict[str, object]:
+def _row(
+    name: str, order: int, beta: float, r: np.ndarray, values: np.ndarray
+) -> dict[str, object]:
     lowest = int(values.argmin())
     negative = r[values < 0.0]
     exponent = tail_exponent(name, 1.0 + beta, order)
@@ -77,7 +79,9 @@ def _potential(table: pd.DataFrame, betas: list[float]) -> list[Finding]:
     two, four = _of(table, "kappa", 2), _of(table, "kappa", 4)
     not_four = list(four.loc[four["decreasing"] == "no", "beta"])
     remark = (
-        f" Order IV (15) is not at beta = {', '.join(f'{b:g}' for b in not_four)}." if not_four else ""
+        f" Order IV (15) is not at beta = {', '.join(f'{b:g}' for b in not_four)}."
+        if not_four
+        else ""
     )
     at_zero = [kernel("kappa", 0.0, 1.0 + beta) for beta in betas]
     slopes = np.array(
@@ -144,7 +148,11 @@ def _positive(table: pd.DataFrame, order: int) -> Finding:
 
 
 def _exponents_hold(rows: pd.DataFrame, expected) -> bool:
-    return bool(np.allclose(rows["tail exponent"], expected(rows["beta"]), rtol=0.0, atol=_EXPONENT_TOLERANCE))
+    return bool(
+        np.allclose(
+            rows["tail exponent"], expected(rows["beta"]), rtol=0.0, atol=_EXPONENT_TOLERANCE
+        )
+    )
 
 
 def _tail(claim: str, table: pd.DataFrame, name: str, expected, words: str) -> Finding:

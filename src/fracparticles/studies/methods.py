@@ -54,7 +54,9 @@ def _dpse(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
     """(16): (2 / epsilon^2) sum_j V_j (v_j - v_i) Phi_epsilon(x_j - x_i) with the potential (13)."""
     epsilon, volume, beta = s.overlap * s.spacing, s.spacing, s.alpha - 1.0
     v = (volume * u * _scaled("kappa", r, s)).sum(axis=1) / epsilon ** (beta - 1.0)
-    return 2.0 / epsilon**2 * (volume * (v[None, :] - v[:, None]) * _scaled("Phi", -r, s)).sum(axis=1)
+    return (
+        2.0 / epsilon**2 * (volume * (v[None, :] - v[:, None]) * _scaled("Phi", -r, s)).sum(axis=1)
+    )
 
 
 def _pse29(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:

@@ -267,8 +267,12 @@ def _words(limits: dict[tuple[str, float], float], betas: list[float]) -> list[F
 
 
 def _same_step(growths: dict[tuple[str, float, str], _Growth], size: int) -> Finding:
-    bounded = {i: max(g.below for (_, _, k), g in growths.items() if k == i) for i in ("euler", "rk2")}
-    grown = {i: min(g.above for (_, _, k), g in growths.items() if k == i) for i in ("euler", "rk2")}
+    bounded = {
+        i: max(g.below for (_, _, k), g in growths.items() if k == i) for i in ("euler", "rk2")
+    }
+    grown = {
+        i: min(g.above for (_, _, k), g in growths.items() if k == i) for i in ("euler", "rk2")
+    }
     stable = all(g.saturated for g in growths.values())
     return statement(
         "L-T3.rk1_rk2",
@@ -280,7 +284,9 @@ def _same_step(growths: dict[tuple[str, float, str], _Growth], size: int) -> Fin
     )
 
 
-def _matrices(spectra: dict[tuple[str, float, int], list[Spectrum]], betas: list[float]) -> list[Finding]:
+def _matrices(
+    spectra: dict[tuple[str, float, int], list[Spectrum]], betas: list[float]
+) -> list[Finding]:
     def worst(scheme: str, quantity) -> float:
         return max(quantity(spectra[scheme, beta, 2][-1]) for beta in betas)
 
@@ -288,9 +294,13 @@ def _matrices(spectra: dict[tuple[str, float, int], list[Spectrum]], betas: list
     findings = []
     for scheme in _SCHEMES:
         asymmetry = worst(scheme, lambda s: s.asymmetry)
-        sizes = _size(asymmetry) if asymmetry <= _ROUND_OFF else ", ".join(
-            f"{max(spectra[scheme, b, 2][k].asymmetry for b in betas):.2f} (N = {s.particles})"
-            for k, s in enumerate(spectra[scheme, betas[0], 2])
+        sizes = (
+            _size(asymmetry)
+            if asymmetry <= _ROUND_OFF
+            else ", ".join(
+                f"{max(spectra[scheme, b, 2][k].asymmetry for b in betas):.2f} (N = {s.particles})"
+                for k, s in enumerate(spectra[scheme, betas[0], 2])
+            )
         )
         departure = worst(scheme, lambda s: s.departure)
         findings.append(
@@ -335,7 +345,11 @@ def _matrices(spectra: dict[tuple[str, float, int], list[Spectrum]], betas: list
 
 def _criterion(scheme: str, growths: dict[tuple[str, float, str], _Growth], size: int) -> Finding:
     mine = [g for (s, _, _), g in growths.items() if s == scheme]
-    below, flow, above = max(g.below for g in mine), max(g.flow for g in mine), min(g.above for g in mine)
+    below, flow, above = (
+        max(g.below for g in mine),
+        max(g.flow for g in mine),
+        min(g.above for g in mine),
+    )
     remark = ""
     if below > 1.0 + _SATURATED:
         remark = (
@@ -354,7 +368,11 @@ def _criterion(scheme: str, growths: dict[tuple[str, float, str], _Growth], size
 def _trends(betas: list[float]) -> list[Finding]:
     fine = [beta for beta in _BETAS if betas[0] <= beta <= betas[-1]]
     findings = []
-    for scheme, claim, sign in (("DD", "DD_rises", 1), ("FPSE", "FPSE_rises", 1), ("KPSE", "KPSE_falls", -1)):
+    for scheme, claim, sign in (
+        ("DD", "DD_rises", 1),
+        ("FPSE", "FPSE_rises", 1),
+        ("KPSE", "KPSE_falls", -1),
+    ):
         a = np.array([stability_limit(scheme, beta) for beta in fine])
         findings.append(
             statement(
@@ -382,10 +400,17 @@ def _series(betas: list[float], printed) -> pd.DataFrame:
             ]
             symbol = -SCHEMES[scheme].symbol(theta, 1.0 + middle, order, _OVERLAP)
             rows += [
-                {"panel": "symbol", **key, "x": x, "y": y} for x, y in zip(theta, symbol, strict=True)
+                {"panel": "symbol", **key, "x": x, "y": y}
+                for x, y in zip(theta, symbol, strict=True)
             ]
         rows += [
-            {"panel": "printed", "scheme": scheme, "order": "II", "x": beta, "y": float(printed[name])}
+            {
+                "panel": "printed",
+                "scheme": scheme,
+                "order": "II",
+                "x": beta,
+                "y": float(printed[name]),
+            }
             for beta in betas
             if (name := f"L-T3.{scheme}.beta{beta:g}") in printed
         ]

@@ -17,4 +17,7 @@ from fracparticles.sums.naive import NaiveConvolution
 
 __all__ = ["SUMMATIONS", "BandedConvolution", "FourierConvolution", "NaiveConvolution"]
 
-SUMMATIONS = {"fft": FourierConvolution, "naive": NaiveConvolution}
+SUMMATIONS: dict[str, type[FourierConvolution] | type[NaiveConvolution]] = {
+    "fft": FourierConvolution,
+    "naive": NaiveConvolution,
+}

@@ -1,0 +1,64 @@
+"""Table 3: what the study says of the matrix, on small lattices."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from fracparticles.figures import figure
+from fracparticles.studies import Inputs
+from fracparticles.studies.stability import spectrum, stability, truncated_print
+
+PARAMETERS = {
+    "beta": [0.1, 0.5, 0.9],
+    "truncation": 10.0,
+    "spacing": [0.4, 0.4, 0.4],
+    "tolerance": 1.0e-3,
+    "dense": [41, 61],
+    "printed": {"L-T3.DD.beta0.1": "4.81", "L-T3.KPSE.beta0.9": "2.04"},
+}
+
+
+@pytest.fixture(scope="module")
+def result():
+    return stability(Inputs("table", ["L-T3", "L-C12", "L-C13"], PARAMETERS))
+
+
+def test_findings(result):
+    found = {finding.claim: finding for finding in result.findings}
+    assert found["L-T3.DD.beta0.1"].ours == pytest.approx(4.8161, abs=5e-5)
+    assert "truncated, not rounded" in found["L-T3.DD.beta0.1"].reason
+    assert not found["L-T3.KPSE.beta0.9"].reason
+    assert found["L-C12.symmetric.DD"].verdict
+    assert not found["L-C12.symmetric.FPSE"].verdict
+    assert found["L-C12.criterion.FPSE"].verdict
+    assert not found["L-T3.several_times"].verdict
+
+
+def test_power_iteration_comes_from_above(result):
+    """A Rayleigh quotient lies inside the range of eigenvalues: |lambda| too small, a too large."""
+    table = result.table.dropna(subset=["power iteration"])
+    symmetric = table[table["scheme"] != "FPSE"]
+    assert (symmetric["power iteration"] >= symmetric["symbol"]).all()
+    assert np.allclose(table["closed form"], table["symbol"], rtol=1e-4)
+
+
+def test_figure_renders(result):
+    drawn = figure("stability")(result.series, result.table, PARAMETERS)
+    assert isinstance(drawn, Figure)
+    assert len(drawn.axes) == 2
+    drawn.draw_without_rendering()
+
+
+def test_truncated_print():
+    assert truncated_print("4.81", 4.8161)
+    assert truncated_print("2.17", 2.1762)
+    assert not truncated_print("5.25", 5.2536)  # truncated and rounded alike
+    assert not truncated_print("5.43", 5.4297)  # rounded
+
+
+def test_asymmetry_of_fpse_falls_like_a_boundary_effect():
+    """A fixed number of rows out of N: |A - A^T| / |A| ~ N^(-1/2), a factor of 2 from N to 4 N."""
+    small, large = (spectrum("FPSE", 1.5, 2, size).asymmetry for size in (61, 241))
+    assert small / large == pytest.approx(2.0, rel=0.02)

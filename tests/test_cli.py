@@ -1,0 +1,309 @@
+"""The command line: results on standard output, one line for everything else, exit statuses."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import fracparticles as fp
+from fracparticles.case import Case
+from fracparticles.cli import main, number_or_text
+
+
+def words_of(text: str) -> list[str]:
+    return text.split()
+
+
+SMALL = words_of("--scheme KPSE --order 4 --beta 0.5 --half-width 10 --spacing 0.25")
+CASE = Case(scheme="KPSE", order=4, beta=0.5, half_width=10.0, spacing=0.25, dt=0.05)
+PROGRAM = [sys.executable, "-c", "import sys; from fracparticles.cli import main; sys.exit(main())"]
+
+
+@pytest.fixture
+def cli(capsys, tmp_path, monkeypatch):
+    """Return a function that runs the command line and gives status, output, messages."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        status = main([str(a) for a in arguments])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return run
+
+
+def refused(result, *words, status=2):
+    """Assert one line of error and nothing else."""
+    code, out, err = result
+    assert code == status
+    assert out == ""
+    assert err.startswith("error: ")
+    assert err.count("\n") == 1
+    for word in words:
+        assert word in err
+    return True
+
+
+# --- solve ----------------------------------------------------------------------------------------
+
+
+def test_solve_prints_the_path_and_writes_the_run(cli, tmp_path):
+    assert cli("solve", *SMALL, "--dt", 0.05, "-o", "run.nc") == (0, "run.nc\n", "")
+    assert fp.read_run("run.nc").identical(fp.solve(CASE))
+    assert [p.name for p in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_time_step_is_another_name_for_dt(cli):
+    cli("solve", *SMALL, "--dt", 0.05, "-o", "a.nc")
+    cli("solve", *SMALL, "--time-step=0.05", "--output", "b.nc")
+    with open("a.nc", "rb") as a, open("b.nc", "rb") as b:
+        assert a.read() == b.read()
+
+
+def test_there_is_a_flag_for_every_field(cli):
+    status, out, err = cli("solve", "--help")
+    assert (status, err) == (0, "")
+    for name in Case.model_fields:
+        assert f"--{name.replace('_', '-')} " in out
+    assert "--time-step" in out
+
+
+def test_every_flag_reaches_the_case(cli):
+    everything = {
+        "scheme": "FPSE",
+        "order": 4,
+        "beta": 0.25,
+        "dim": 1,
+        "truncation": 6.0,
+        "spacing": 0.5,
+        "overlap": 2.5,
+        "dt": 0.01,
+        "diffusivity": 1.5,
+        "t_initial": 0.25,
+        "t_final": 1.25,
+        "initial": "fundamental",
+        "integrator": "rk4",
+        "evaluation": "stepping",
+        "summation": "naive",
+        "exterior": "open",
+        "store": "profile",
+    }
+    assert {*everything, "half_width"} == set(Case.model_fields)
+    flags = [f"--{name.replace('_', '-')}={value}" for name, value in everything.items()]
+    assert cli("solve", *flags, "-o", "run.nc")[0] == 0
+    assert Case.from_json(fp.read_run("run.nc").attrs["case"]) == Case(**everything)
+
+
+def test_a_restart(cli):
+    half = [*SMALL, "--integrator", "exponential"]
+    cli("solve", *half, "--t-final", 1.0, "-o", "a.nc")
+    restart = ("--t-initial", 1.0, "--initial", "a.nc")
+    assert cli("solve", *half, *restart, "-o", "b.nc") == (0, "b.nc\n", "")
+    cli("solve", *half, "-o", "c.nc")
+    whole = fp.read_run("c.nc").u.values
+    assert np.abs(fp.read_run("b.nc").u.values - whole).max() <= 1e-13 * np.abs(whole).max()
+
+
+def test_an_unstable_step_is_one_line_of_warning(cli):
+    status, out, err = cli("solve", *SMALL, "--dt", 0.5, "-o", "run.nc")
+    assert (status, out) == (0, "run.nc\n")
+    assert err.startswith("warning: dt = 0.5 lies outside the stability interval")
+    assert err.count("\n") == 1
+
+
+def test_a_blow_up_is_one_line_and_leaves_no_file(cli, tmp_path):
+    flags = (*SMALL, "--integrator", "euler", "--dt", 1.0, "--t-final", 2000.5, "-o", "run.nc")
+    code, out, err = cli("solve", *flags)
+    warning, error = err.splitlines()
+    assert (code, out) == (3, "")
+    assert warning.startswith("warning: dt = 1 lies")
+    assert error.startswith("error: KPSE (order 4): euler with dt = 1")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("flags", "words"),
+    [
+        ("--scheme kpse", ("scheme = 'kpse'", "Did you mean 'KPSE'?")),
+        ("--order 3", ("order = 3", "one of 2, 4")),
+        ("--beta 1.5", ("beta = 1.5", "a number between 0 and 1 (exclusive)")),
+        ("--beta abc", ("beta = 'abc'", "a number between 0 and 1 (exclusive)")),
+        ("--beta nan", ("beta = nan", "a number between 0 and 1 (exclusive)")),
+        ("--beta True", ("beta = 'True'",)),
+        ("--half-width -3", ("half_width = -3", "a number between")),
+        ("--spacing 0", ("spacing = 0",)),
+        ("--spacing 1e-10", ("spacing = 1e-10", "GiB", "Take a larger spacing")),
+        ("--t-final 0.2", ("t_final = 0.2", "t_initial = 0.5")),
+        ("--dt -0.1", ("dt = -0.1",)),
+        ("--store all", ("store = 'all'",)),
+        ("--initial none.nc", ("none.nc", "an existing file")),
+        ("--bta 0.5", ("--bta", "Did you mean --beta?")),
+        ("--dtt 3", ("--dtt",)),
+        ("--dt", ("--dt", "requires an argument")),
+        ("stray", ("stray",)),
+    ],
+)
+def test_bad_flags(cli, tmp_path, flags, words):
+    given = [*SMALL, "--dt", "0.05", "-o", "run.nc"]
+    name, *_ = flags.split()
+    if name in given:
+        at = given.index(name)
+        del given[at : at + 2]
+    assert refused(cli("solve", *given, *flags.split()), *words)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("flags", ["--beta 0.5 --beta 0.6", "--dt 0.1 --time-step 0.1"])
+def test_a_flag_given_twice(cli, flags):
+    given = words_of("--scheme KPSE --half-width 10 --spacing 0.25 -o run.nc")
+    assert refused(cli("solve", *given, *flags.split()), "multiple times")
+
+
+def test_missing_flags(cli):
+    assert refused(cli("solve", "-o", "run.nc"), "scheme = None", "Give scheme.")
+    assert refused(cli("solve", *SMALL, "--dt", 0.1), "output = None", "Give -o run.nc.")
+    assert refused(cli("solve", *SMALL, "-o", "run.nc"), "dt = None", "stable up to 0.1936")
+
+
+def test_outputs_that_cannot_be_written_are_refused_before_any_work(cli, tmp_path, monkeypatch):
+    monkeypatch.setattr("fracparticles.solver.compute", lambda *_: pytest.fail("work was done"))
+    given = (*SMALL, "--dt", 0.05, "-o")
+    assert refused(cli("solve", *given, "none/run.nc"), "none/run.nc", "a directory that exists")
+    assert refused(cli("solve", *given, tmp_path), "this is a directory")
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    assert refused(cli("solve", *given, "run.nc"), "a directory that can be written")
+
+
+def test_damaged_initial_data(cli, tmp_path):
+    (tmp_path / "bad.nc").write_bytes(b"CDF\x01 and no more")
+    given = (*SMALL, "--dt", 0.05, "--initial", "bad.nc", "-o", "run.nc")
+    assert refused(cli("solve", *given), "bad.nc", "a readable NetCDF file")
+
+
+# --- show -----------------------------------------------------------------------------------------
+
+
+def test_show(cli):
+    cli("solve", *SMALL, "--dt", 0.05, "-o", "run.nc")
+    status, out, err = cli("show", "run.nc")
+    assert (status, err) == (0, "")
+    lines = dict(line.split(maxsplit=1) for line in out.splitlines()[1:])
+    assert lines["scheme"].startswith("KPSE ")
+    assert lines["beta"].startswith("0.5 ")
+    run = fp.read_run("run.nc")
+    for name in ("relative_l1_error", "mass_initial", "mass_final", "operator_applications"):
+        assert float(lines[name].split()[0]) == pytest.approx(run[name].item(), rel=1e-8)
+    assert lines["u"].startswith("81 values, x = -10 .. 10")
+
+
+def test_show_a_run_without_a_field(cli):
+    cli("solve", *SMALL, "--dt", 0.05, "--store", "metrics", "-o", "run.nc")
+    status, out, _ = cli("show", "run.nc")
+    assert status == 0
+    assert "relative_l1_error" in out
+    assert "\n  u " not in out
+
+
+def test_show_what_is_not_a_run(cli, tmp_path):
+    (tmp_path / "text.nc").write_text("no")
+    assert refused(cli("show", "none.nc"), "none.nc", "an existing file")
+    assert refused(cli("show", "text.nc"), "a readable NetCDF file")
+    assert refused(cli("show"), "requires an argument")
+
+
+# --- limit ----------------------------------------------------------------------------------------
+
+
+def test_limit(cli):
+    assert cli("limit", "--scheme", "KPSE", "--beta", 0.5) == (0, "a = 2.17623\n", "")
+    flags = "--scheme KPSE --beta 0.5 --order 4 --overlap 3 --spacing 0.1 --diffusivity 2"
+    status, out, err = cli("limit", *words_of(flags))
+    a = fp.stability_limit("KPSE", 0.5, 4, 3.0)
+    assert (status, err) == (0, "")
+    assert out == f"a = {a:.6g}\ndt = {a * 0.1**1.5 / 2.0:.6g}\n"
+
+
+@pytest.mark.parametrize(
+    ("flags", "words"),
+    [
+        ("--scheme KPS --beta 0.5", ("scheme = 'KPS'", "one of DD")),
+        ("--scheme KPSE --beta 1", ("beta = 1", "between 0 and 1")),
+        ("--scheme KPSE --beta x", ("beta = 'x'",)),
+        ("--scheme KPSE --beta 0.5 --order 3", ("order = 3",)),
+        ("--scheme KPSE --beta 0.5 --overlap 0", ("overlap = 0",)),
+        ("--scheme KPSE --beta 0.5 --spacing 0", ("spacing = 0", "positive")),
+        ("--scheme KPSE --beta 0.5 --spacing x", ("spacing = 'x'", "positive")),
+        ("--scheme KPSE --beta 0.5 --diffusivity -1", ("diffusivity = -1", "positive")),
+        ("--scheme FD --beta 0.5 --overlap 2", ("overlap", "nothing for FD")),
+        ("--scheme KPSE", ("--beta", "requires an argument")),
+        ("--scheme KPSE --beta 0.5 --overlp 2", ("--overlp", "Did you mean --overlap?")),
+    ],
+)
+def test_bad_limits(cli, flags, words):
+    assert refused(cli("limit", *flags.split()), *words)
+
+
+# --- the program ----------------------------------------------------------------------------------
+
+
+def test_unknown_commands(cli):
+    assert refused(cli("solv"), "solv", 'Did you mean "solve"?')
+
+
+def test_version_and_help(cli):
+    assert cli("--version") == (0, f"{fp.__version__}\n", "")
+    status, out, err = cli("--help")
+    assert (status, err) == (0, "")
+    for command in ("solve", "show", "limit"):
+        assert command in out
+
+
+def test_numbers_and_text():
+    assert number_or_text("2") == 2
+    assert isinstance(number_or_text("2"), int)
+    assert number_or_text("1e-4") == 1e-4
+    assert number_or_text("inf") == float("inf")
+    assert number_or_text("2x") == "2x"
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "line"),
+    [
+        (KeyboardInterrupt(), 130, "error: interrupted\n"),
+        (OSError(28, "No space left on device"), 1, "error: [Errno 28] No space left on device\n"),
+        (MemoryError(), 1, "error: MemoryError\n"),
+        (fp.FracparticlesError("two\nlines"), 1, "error: two lines\n"),
+    ],
+)
+def test_failures_in_one_line(cli, monkeypatch, error, status, line):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr("fracparticles.solver.compute", fail)
+    assert cli("solve", *SMALL, "--dt", 0.05, "-o", "run.nc") == (status, "", line)
+
+
+def test_the_program_exits_with_the_status():
+    done = subprocess.run(
+        [*PROGRAM, "limit", "--scheme", "X", "--beta", "0.5"], capture_output=True
+    )
+    assert done.returncode == 2
+    assert done.stdout == b""
+    assert done.stderr.startswith(b"error: scheme = 'X'")
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [*PROGRAM, "limit", "--scheme", "KPSE", "--beta", "0.5"],
+        stdout=write,
+        stderr=subprocess.PIPE,
+    )
+    os.close(write)
+    assert done.returncode == 141
+    assert done.stderr == b""
