@@ -29,14 +29,19 @@ __all__ = [
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 _BATCH_SECONDS = 8.0
 
-RunBlock = create_model(
+def _value_or_list(annotation: Any) -> Any:
+    return Union[annotation, list[annotation], None]  # noqa: UP007  (an annotation known at run time only)
+
+
+_FIELDS: dict[str, Any] = {
+    name: (_value_or_list(field.annotation), Field(default=None))
+    for name, field in Case.model_fields.items()
+}
+RunBlock: type[BaseModel] = create_model(
     "RunBlock",
     __config__=ConfigDict(extra="forbid", strict=True, frozen=True),
     __doc__="Fields of a case, each with one value or a list of values.",
-    **{
-        name: (Union[field.annotation, list[field.annotation], None], Field(default=None))  # noqa: UP007
-        for name, field in Case.model_fields.items()
-    },
+    **_FIELDS,
 )
 
 
@@ -176,10 +181,10 @@ def batches(
     for key, names in needed_by.items():
         groups.setdefault(tuple(names), []).append(widest[key])
     named: dict[str, list[Case]] = {}
-    for names, cases in groups.items():
+    for group, cases in groups.items():
         for chunk in _chunks(cases):
-            number = sum(batch.rsplit("_", 1)[0] == names[0] for batch in named) + 1
-            named[f"{names[0]}_{number}"] = chunk
+            number = sum(batch.rsplit("_", 1)[0] == group[0] for batch in named) + 1
+            named[f"{group[0]}_{number}"] = chunk
     return {name: [widest[key] for key in keys] for name, keys in wanted.items()}, named
 
 
@@ -217,7 +222,8 @@ def _complaint(error: ValidationError) -> InvalidInput:
     if first["type"] == "extra_forbidden":
         import difflib
 
-        model = {1: StudyConfig, 3: Scene}.get(len(place), RunBlock)
+        models: dict[int, type[BaseModel]] = {1: StudyConfig, 3: Scene}
+        model = models.get(len(place), RunBlock)
         close = difflib.get_close_matches(place[-1], model.model_fields, n=1)
         remedy = f"Did you mean {close[0]!r}?" if close else "Remove it."
         return InvalidInput(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, eigs
 
 from fracparticles.case import Case
 from fracparticles.errors import FracparticlesError
@@ -70,6 +69,8 @@ def dense_matrix(operator: Operator) -> np.ndarray:
 
 
 def _greatest_eigenvalue(operator: Operator) -> float:
+    from scipy.sparse.linalg import LinearOperator, eigs  # 0.3 s, and hardly ever needed
+
     matrix = LinearOperator((operator.size,) * 2, matvec=operator.apply, dtype=float)
     start = np.ones(operator.size)
     value = eigs(matrix, k=1, which="LR", v0=start, return_eigenvectors=False, tol=1e-6)

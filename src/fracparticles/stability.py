@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 from scipy.special import gamma, gammainc
 
 from fracparticles.errors import InvalidInput
@@ -14,6 +13,8 @@ from fracparticles.schemes import scheme
 __all__ = ["closed_form_limit", "stability_limit", "symbol_range"]
 
 _SAMPLES = 513
+# Each look at the neighbourhood of an extreme is 16 times as close, which makes it 256 times as exact.
+_REFINEMENTS = 5
 
 
 def stability_limit(
@@ -74,20 +75,16 @@ def _symbol_range(name: str, beta: float, order: int, overlap: float) -> tuple[f
 
     # The extremes lie near theta ~ 2 / s: sample evenly in theta as well as in theta s.
     near = np.linspace(0.0, min(np.pi, 16.0 / overlap), _SAMPLES)
-    theta = np.union1d(near, np.linspace(0.0, np.pi, _SAMPLES))
-    values = module.symbol(theta, alpha, order, overlap)
+    coarse = np.union1d(near, np.linspace(0.0, np.pi, _SAMPLES))
     extremes = []
-    for sign in (1.0, -1.0):
-        k = int(np.argmin(sign * values))
-        bracket = (theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)])
-        refined = minimize_scalar(
-            lambda t: sign * float(module.symbol(np.array([t]), alpha, order, overlap)[0]),  # noqa: B023
-            bounds=bracket,
-            method="bounded",
-            options={"xatol": 1e-9},
-        )
-        extremes.append(sign * min(refined.fun, sign * values[k]))
-    return float(extremes[0]), float(extremes[1])
+    for pick in (np.argmin, np.argmax):
+        theta = coarse
+        for _ in range(_REFINEMENTS):
+            values = module.symbol(theta, alpha, order, overlap)
+            k = int(pick(values))
+            theta = np.linspace(theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)], 33)
+        extremes.append(float(values[k]))
+    return extremes[0], extremes[1]
 
 
 def closed_form_limit(scheme: str, beta: float, overlap: float = 2.0) -> float:

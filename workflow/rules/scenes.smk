@@ -13,6 +13,7 @@ rule study:
             PACKAGE / "studies/common.py",
             PACKAGE / f"studies/{STUDIES[SCENES[wildcards.scene].study]}.py",
         ],
+        reference=lambda wildcards: SCENES[wildcards.scene].parameters.get("reference", []),
         core=lambda wildcards: [] if SCENES[wildcards.scene].runs else CORE,
         compiled=COMPILED,
     output:

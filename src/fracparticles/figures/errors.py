@@ -15,7 +15,7 @@ from fracparticles.figures.style import COLOURS, MARKERS, axes_row, slope_triang
 __all__ = ["spacing", "truncation", "truncation_overview"]
 
 _ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
-_LINES = {2: "-", 4: "--"}
+_LINES: dict[int, Any] = {2: "-", 4: "--"}
 
 
 def truncation(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:

@@ -13,7 +13,7 @@ from fracparticles.figures.style import COLOURS, MARKERS, axes_row
 
 __all__ = ["stability"]
 
-_LINES = {"II": "-", "IV": "--"}
+_LINES: dict[str, Any] = {"II": "-", "IV": "--"}
 _SCHEMES = ("DD", "FPSE", "KPSE")
 
 

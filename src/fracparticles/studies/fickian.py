@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import pi, sqrt
 
 import numpy as np
@@ -172,15 +173,18 @@ def _moments(alphas: list[float], table: pd.DataFrame) -> list[Finding]:
         statement(
             "L-C17.phi_moments",
             max(map(max, phi.values())) == 0.0,
-            "Beyond r = 100 nothing is left, in double precision, of the moments 0 to 8 of Phi, order II or IV: it falls "
+            "Beyond r = 100 nothing is left, in double precision, of the moments 0 to 8 of Phi, order II or IV: "
+            "it falls "
             "like a Gaussian.",
             "Some moment of Phi does not converge.",
         ),
         statement(
             "L-C17.K_moments",
             as_tail and finite and infinite,
-            f"At alpha = {_list(orders)} the share of moment p in a decade of r is 10^(p - alpha) times that of the decade "
-            f"before: at most {ratio[1].max():.3f} for p = 0 and 1, a finite moment; at least {ratio[2].min():.3f} for p = 2 "
+            f"At alpha = {_list(orders)} the share of moment p in a decade of r is 10^(p - alpha) times that of "
+            f"the decade "
+            f"before: at most {ratio[1].max():.3f} for p = 0 and 1, a finite moment; at least "
+            f"{ratio[2].min():.3f} for p = 2 "
             "and 3, an infinite one.",
             "The moments do not divide there.",
         ),
@@ -193,7 +197,8 @@ def _moments(alphas: list[float], table: pd.DataFrame) -> list[Finding]:
             ),
             f"max |K - Phi| falls to {last['max |K - Φ|']:.1e} at alpha = {last['alpha']:g}, about "
             f"{last['max |K - Φ| / (2 - alpha)']:.2f} (2 - alpha); yet the second moment up to r = 1e3 and 1e6 is "
-            f"{first[near]:.3f} and {first[far]:.3f} at alpha = {first['alpha']:g}, {last[near]:.4f} and {last[far]:.4f} at "
+            f"{first[near]:.3f} and {first[far]:.3f} at alpha = {first['alpha']:g}, {last[near]:.4f} and "
+            f"{last[far]:.4f} at "
             f"{last['alpha']:g}, always growing, and {table[far].iloc[-1]:.4f} in all at 2.",
             "The second moment does not tell the limit from the limiting case.",
         ),
@@ -212,7 +217,7 @@ def _series(
     r = np.geomspace(0.05, 100.0, 241)
     for alpha in [*alphas, 2.0]:
         name, of = ("K", alpha) if alpha < 2.0 else ("Phi", _ANY)
-        values = kernel(name, r, of)
+        values = np.asarray(kernel(name, r, of))
         moments = np.cumsum(decade_moments(name, of, 2))
         for x, y in zip(r, values, strict=True):
             rows.append({"panel": "kernel", "alpha": alpha, "order": 2, "x": x, "y": y})
@@ -224,5 +229,5 @@ def _series(
     return pd.DataFrame(rows)
 
 
-def _list(values, form: str = "g") -> str:
+def _list(values: Iterable[float], form: str = "g") -> str:
     return ", ".join(f"{v:{form}}" for v in values)

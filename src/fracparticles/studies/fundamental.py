@@ -216,7 +216,8 @@ def _findings(inputs: Inputs, alpha: float, table: pd.DataFrame) -> list[Finding
         statement(
             f"{item}.overlap",
             bool(far >= near),
-            f"Right to {loose} are {widest['terms']:g} terms of (A.1) up to x = {far:.3g} and {earliest['terms']:g} terms "
+            f"Right to {loose} are {widest['terms']:g} terms of (A.1) up to x = {far:.3g} and "
+            f"{earliest['terms']:g} terms "
             f"of (A.2) from x = {near:.3g}: M may lie between.",
             "The series ends, in double precision, before the expansion begins.",
         ),
@@ -240,12 +241,12 @@ def _chain(terms: pd.Series, places: pd.Series) -> str:
 def _representations(inputs: Inputs, alpha: float) -> pd.DataFrame:
     rows = [
         {"series": "exact", "terms": 0, "x": x, "y": y}
-        for x, y in zip(_SHOWN_X, reduced_green(_SHOWN_X, alpha), strict=True)
+        for x, y in zip(_SHOWN_X, np.asarray(reduced_green(_SHOWN_X, alpha)), strict=True)
     ]
     for name, function in (("series", green_series), ("asymptotic", green_asymptotic)):
         for terms in map(int, inputs.parameters[f"{name}_terms"]):
             with np.errstate(over="ignore"):
-                y = function(_SHOWN_X, alpha, terms)
+                y = np.asarray(function(_SHOWN_X, alpha, terms))
             rows += [
                 {"series": name, "terms": terms, "x": a, "y": b}
                 for a, b in zip(_SHOWN_X, y, strict=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+
 import numpy as np
 import pandas as pd
 
@@ -16,6 +18,7 @@ _TAIL = (1e5, 1e6)  # the exponent is taken between these; what it lacks there i
 _EXPONENT_TOLERANCE = 1e-6
 _SMALL = np.array([1e-2, 1e-3])  # where the slope at 0 is taken
 _SHOWN = [("kappa", 2), ("kappa", 4), ("E", 2), ("K", 2), ("K", 4)]
+Exponent = Callable[[pd.Series], pd.Series]
 _NAMES = {"kappa": "κ", "E": "L", "K": "K"}
 
 
@@ -34,7 +37,7 @@ def kernels(inputs: Inputs) -> Result:
     betas = [float(beta) for beta in inputs.parameters["beta"]]
     r = np.concatenate([[0.0], np.geomspace(_NEAREST, _FARTHEST, int(inputs.parameters["points"]))])
     sampled = {
-        (name, order, beta): kernel(name, r, 1.0 + beta, order=order)
+        (name, order, beta): np.asarray(kernel(name, r, 1.0 + beta, order=order))
         for name, order in _SHOWN
         for beta in betas
     }
@@ -96,7 +99,8 @@ def _potential(table: pd.DataFrame, betas: list[float]) -> list[Finding]:
         statement(
             "L-F1.kappa_monotone",
             bool((two["decreasing"] == "yes").all()),
-            f"Order II (14) decreases from r to r over all radii from 0 to {_FARTHEST:g} at beta = {_list(betas)}.{remark}",
+            f"Order II (14) decreases from r to r over all radii from 0 to {_FARTHEST:g} at beta = "
+            f"{_list(betas)}.{remark}",
             "The kernel rises somewhere.",
         ),
         statement(
@@ -122,7 +126,8 @@ def _green(table: pd.DataFrame) -> list[Finding]:
         statement(
             "L-F1.green_monotone",
             bool((rows["decreasing"] == "yes").all() and _exponents_hold(rows, lambda b: -2.0 - b)),
-            f"It decreases over all radii from 0 to {_FARTHEST:g}, with the exponents {_list(rows['tail exponent'], '.4f')} "
+            f"It decreases over all radii from 0 to {_FARTHEST:g}, with the exponents "
+            f"{_list(rows['tail exponent'], '.4f')} "
             f"at beta = {_list(rows['beta'])}.",
             "The function rises somewhere, or does not fall to 0.",
         ),
@@ -136,7 +141,8 @@ def _positive(table: pd.DataFrame, order: int) -> Finding:
     return statement(
         f"L-F1.K_positive.{ORDERS[order]}",
         negative.empty,
-        f"The least value over r up to {_FARTHEST:g} is {lowest['least value']:.2e}, at beta = {lowest['beta']:g} and r = "
+        f"The least value over r up to {_FARTHEST:g} is {lowest['least value']:.2e}, at beta = "
+        f"{lowest['beta']:g} and r = "
         f"{lowest['at r']:.3g}.",
         "The order-IV kernel is 2 M(r^2) - 2^-a M(r^2/2), a difference: it is negative "
         + "; ".join(
@@ -147,7 +153,7 @@ def _positive(table: pd.DataFrame, order: int) -> Finding:
     )
 
 
-def _exponents_hold(rows: pd.DataFrame, expected) -> bool:
+def _exponents_hold(rows: pd.DataFrame, expected: Exponent) -> bool:
     return bool(
         np.allclose(
             rows["tail exponent"], expected(rows["beta"]), rtol=0.0, atol=_EXPONENT_TOLERANCE
@@ -155,7 +161,7 @@ def _exponents_hold(rows: pd.DataFrame, expected) -> bool:
     )
 
 
-def _tail(claim: str, table: pd.DataFrame, name: str, expected, words: str) -> Finding:
+def _tail(claim: str, table: pd.DataFrame, name: str, expected: Exponent, words: str) -> Finding:
     rows = pd.concat([_of(table, name, 2), _of(table, name, 4)])
     return statement(
         claim,
@@ -173,7 +179,7 @@ def _series(betas: list[float]) -> pd.DataFrame:
     for panel, r in (("kernel", far), ("near", near)):
         for name, order in _SHOWN:
             for beta in betas:
-                values = kernel(name, r, 1.0 + beta, order=order)
+                values = np.asarray(kernel(name, r, 1.0 + beta, order=order))
                 rows += [
                     {"panel": panel, "kernel": name, "order": order, "beta": beta, "x": x, "y": y}
                     for x, y in zip(r, values, strict=True)
@@ -181,5 +187,5 @@ def _series(betas: list[float]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _list(values, form: str = "g") -> str:
+def _list(values: Iterable[float], form: str = "g") -> str:
     return ", ".join(f"{v:{form}}" for v in values)

@@ -8,6 +8,7 @@ from math import cos, gamma, pi
 import numpy as np
 import pandas as pd
 
+from fracparticles.claims import Finding
 from fracparticles.kernels import kernel
 from fracparticles.schemes import SCHEMES, Setting, fd, riesz
 from fracparticles.studies.common import ORDERS, Inputs, Result, statement
@@ -24,7 +25,7 @@ _WAVES = 0.025 * 0.5 ** np.arange(4)  # k h at which its order is measured
 def _scaled(name: str, r: np.ndarray, s: Setting) -> np.ndarray:
     """K_epsilon(r) = K(r / epsilon) / epsilon, n = 1."""
     epsilon = s.overlap * s.spacing
-    return kernel(name, r / epsilon, s.alpha, order=s.order) / epsilon
+    return np.asarray(kernel(name, r / epsilon, s.alpha, order=s.order)) / epsilon
 
 
 def _dd(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
@@ -175,7 +176,7 @@ def consistency_order(alpha: float) -> float:
     return float(np.log2(defect[:-1] / defect[1:]).min())
 
 
-def _reference_41(betas: list[float], difference: float):
+def _reference_41(betas: list[float], difference: float) -> Finding:
     orders = {beta: consistency_order(1.0 + beta) for beta in betas}
     first = all(abs(order - 1.0) <= _FIRST_ORDER for order in orders.values())
     measured = ", ".join(f"{order:.3f} at beta = {beta:g}" for beta, order in orders.items())

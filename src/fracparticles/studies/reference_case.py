@@ -19,7 +19,7 @@ def reference_case(inputs: Inputs) -> Result:
     alpha, time = 1.0 + float(first["beta"]), float(first["t_final"])
     half = float(first["half_width"])
     x = first["x"].values
-    exact = green(x, time, alpha)
+    exact = np.asarray(green(x, time, alpha))
     windows = [tuple(window) for window in inputs.parameters["windows"]]
     rows, series = [], []
     for scheme, exterior in zip(inputs.scalars["scheme"], inputs.scalars["exterior"], strict=True):
@@ -182,7 +182,7 @@ def _setting(inputs: Inputs) -> list:
     ]
     for beta in inputs.parameters["mass_beta"]:
         alpha = 1.0 + beta
-        mass = 100.0 * central_mass(5.0 * mean_radius(alpha), time, alpha)
+        mass = 100.0 * float(central_mass(5.0 * mean_radius(alpha), time, alpha))
         findings.append(
             value(
                 f"L-C1.mass.beta{beta:g}",

@@ -1,0 +1,321 @@
+"""The three variants that the paper rejects without showing why: DPSE, scheme (29), the cut-off Riesz potential."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from scipy.signal import fftconvolve
+
+from fracparticles import integrators
+from fracparticles.case import Case
+from fracparticles.dataset import read_run
+from fracparticles.errors import NonFiniteSolution
+from fracparticles.kernels import kernel
+from fracparticles.schemes import SCHEMES, Setting, dpse, riesz
+from fracparticles.solver import compute, initial_strengths
+from fracparticles.special.stable import central_mass, green
+from fracparticles.spectrum import dense_matrix
+from fracparticles.studies.common import Inputs, Result, statement
+from fracparticles.sums import BandedConvolution
+
+__all__ = ["exact_flux", "rejected_29", "rejected_dpse", "rejected_riesz"]
+
+
+def exact_flux(x: np.ndarray, time: float, alpha: float) -> np.ndarray:
+    """Q = x u / (alpha t), the flux of the fundamental solution.
+
+    u = t^(-1/alpha) L(x / t^(1/alpha)) gives u_t = -(x u)_x / (alpha t), and u_t + Q_x = 0 with Q(0) = 0.
+    """
+    return x * green(x, time, alpha) / (alpha * time)
+
+
+# --- DPSE -----------------------------------------------------------------------------------------------------------
+
+_LARGE = 10.0  # an error this many times the exact value is large
+_PREDICTED = 0.2  # relative; what (A.2) and the tail of the kernel leave out is of the order D^(-alpha)
+_LAYER = 0.1  # relative error that ends the layer at the edge
+
+
+def rejected_dpse(inputs: Inputs) -> Result:
+    """DPSE at the ends of the lattice: the solution, the rate of change, and where its error comes from.
+
+    The second sum of DPSE runs over the particles present: at x = D it is one-sided and sees the slope of the
+    potential v. The kernel's tail, kappa^beta ~ c |r|^(-beta), sets that slope: v'(D) = -M beta c D^(-alpha), M the
+    total strength. With c_m the weights of (16), the error of the rate of change is then
+
+        e = M beta c D^(-alpha) (1 / h) sum_{m >= 1} m c_m.
+
+    The errors are called large if u is more than ten times the exact solution at |x| = D for every run of DPSE. The
+    slow decay is called their cause if the error of the rate agrees with e to 20 % and falls at least tenfold when v
+    is also computed at the particles next to the ends ("a different particle grid to represent v").
+    """
+    runs = inputs.scalars
+    rows, series = [], []
+    for run in runs.itertuples():
+        data = read_run(run.run)
+        x, u = data["x"].values, data["u"].values
+        exact = green(x, run.t_final, 1.0 + run.beta)
+        relative = np.abs(u - exact) / exact
+        distance = (run.half_width - x) / (run.overlap * run.particle_spacing)
+        row = {
+            "scheme": run.scheme,
+            "beta": run.beta,
+            "C": run.truncation,
+            "u / exact at |x| = D": u[-1] / exact[-1],
+            "|error| at |x| = D / peak": abs(u[-1] - exact[-1]) / exact.max(),
+            "error above 10 % within, in ε": distance[(x > 0.0) & (relative > _LAYER)].max(initial=0.0),
+            "relative error at 0.9 D": float(np.interp(0.9 * run.half_width, x, relative)),
+            "error (48)": run.relative_l1_error,
+        }
+        if run.scheme == "DPSE":
+            row |= _rate_at_the_edge(run)
+        rows.append(row)
+        if np.isclose(run.beta, inputs.parameters["beta"]) and np.isclose(
+            run.truncation, inputs.parameters["truncation"]
+        ):
+            series.append(_edge(run.scheme, x, u, exact, distance))
+    table = pd.DataFrame(rows).sort_values(["beta", "C", "scheme"])
+    findings = _dpse_findings(table, list(runs["run"]))
+    return Result(table, findings, pd.concat(series, ignore_index=True))
+
+
+def _rate_at_the_edge(run) -> dict[str, float]:
+    """du/dt of the exact initial data at x = D less its exact value, four ways."""
+    alpha, n = 1.0 + run.beta, round(run.half_width / run.particle_spacing)
+    h, s, order = run.particle_spacing, run.overlap, int(run.order)
+    setting = Setting(n=n, spacing=h, alpha=alpha, order=order, overlap=s)
+    x = np.arange(-n, n + 1) * h
+    u = green(x, run.t_initial, alpha)
+    # u_t = -Q_x at the end, from the exact flux one spacing to either side
+    sides = exact_flux(run.half_width + np.array([-h, h]), run.t_initial, alpha)
+    exact = -(sides[1] - sides[0]) / (2.0 * h)
+
+    reach = BandedConvolution.reach(s, order)
+    c = dpse.laplacian_weights(np.arange(reach + 1.0), alpha, order, s)
+    mass = central_mass(run.half_width, run.t_initial, alpha)
+    slope = mass * run.beta * riesz.potential_constant(alpha) * run.half_width**-alpha
+    return {
+        "error of du/dt at D": SCHEMES["DPSE"].operator(setting).apply(u)[-1] - exact,
+        "the same, from the tail of κ": slope / h * (np.arange(reach + 1.0) @ c),
+        "the same, v continued": _rate_with_continued_potential(setting, u, c) - exact,
+        "the same, FPSE": SCHEMES["FPSE"].operator(setting).apply(u)[-1] - exact,
+    }
+
+
+def _rate_with_continued_potential(setting: Setting, u: np.ndarray, c: np.ndarray) -> float:
+    """(16) at x = D with v of (13) on `reach` particles beyond the end as well."""
+    reach, h = c.size - 1, setting.spacing
+    offsets = np.arange(-2 * setting.n - reach, 2 * setting.n + reach + 1.0)
+    b = dpse.potential_weights(offsets, setting.alpha, setting.order, setting.overlap)
+    v = h ** (2.0 - setting.alpha) * fftconvolve(b, u, mode="valid")[-2 * reach - 1 :]
+    stencil = np.concatenate([c[:0:-1], c])
+    return float(stencil @ (v - v[reach])) / h**2
+
+
+def _edge(scheme: str, x: np.ndarray, u: np.ndarray, exact: np.ndarray, distance: np.ndarray):
+    """The profile of the last thirty smoothing lengths, and the relative error at 150 points of log distance."""
+    last = np.flatnonzero((distance <= 30.0) & (x > 0.0))
+    wanted = np.geomspace(distance[-2], distance[x > 0.0].max(), 150)
+    spread = np.unique(x.size - 1 - np.searchsorted(distance[::-1], wanted))
+    relative = np.abs(u - exact) / exact
+    parts = [
+        {"panel": "profile", "x": distance[last], "y": u[last], "exact": exact[last]},
+        {"panel": "relative", "x": distance[spread], "y": relative[spread], "exact": exact[spread]},
+    ]
+    return pd.concat([pd.DataFrame(part).assign(scheme=scheme) for part in parts])
+
+
+def _dpse_findings(table: pd.DataFrame, files: list[str]) -> list:
+    ours = table[table["scheme"] == "DPSE"]
+    kpse = table[table["scheme"] == "KPSE"]
+    ratio, other = ours["u / exact at |x| = D"], kpse["u / exact at |x| = D"]
+    error, tail = ours["error of du/dt at D"], ours["the same, from the tail of κ"]
+    gain = (error / ours["the same, v continued"]).abs()
+    agreement = (tail / error - 1.0).abs()
+    fpse_deviation = (ours["the same, FPSE"] / error - 1.0).abs()
+    return [
+        statement(
+            "L-C14.edges",
+            bool((ratio > _LARGE).all()),
+            f"At |x| = D, u of DPSE is {ratio.min():.3g} to {ratio.max():.3g} times the exact solution, that of KPSE "
+            f"{other.min():.4g} to {other.max():.4g} times.",
+            "The errors at the edge stay below ten times the solution there.",
+            files,
+        ),
+        statement(
+            "L-C14.cause",
+            bool((agreement < _PREDICTED).all() and (gain > 10.0).all()),
+            f"The tail of kappa predicts the error of du/dt at the edge to {100.0 * agreement.max():.2g} % at worst; with v "
+            f"computed at the particles next to the ends as well it falls {gain.min():.3g} to {gain.max():.3g} times. FPSE, "
+            f"whose F is the gradient of kappa, has the same error to {100.0 * fpse_deviation.max():.2g} %.",
+            "The tail of the kernel does not account for the error at the edge.",
+            files,
+        ),
+    ]
+
+
+# --- Scheme (29) ----------------------------------------------------------------------------------------------------
+
+_NODES = np.linspace(0.0, 20.0, 4001)  # r; G is smooth on the scale 1
+_OVERLAP = 2.0
+
+
+def rejected_29(inputs: Inputs) -> Result:
+    """Scheme (29): the kernel, the spectrum, the growth and the errors.
+
+    On a bounded lattice -sum_j G_(i-j) > 0 stays on the diagonal near the ends, where half of the negative middle of G
+    is left alone with the positive tail. The greatest eigenvalue is a number of the kernel alone, lambda h^alpha / D,
+    and its mode a layer a few epsilon thick: in time T the solution grows by exp(lambda T), without bound as h -> 0.
+
+    The kernel statement holds if G(0) < 0, G changes sign, and G - or |G| - is not monotonic, at every beta. The errors
+    are called large if, at the smallest h of every beta, the error (48) is more than ten times that of DD. The
+    instability is shown if the greatest eigenvalue is positive at every beta and the growth of a run has its rate to 1 %.
+    """
+    runs = inputs.scalars
+    betas = sorted(runs["beta"].unique())
+    size = int(inputs.parameters["dense"])
+    spectra = {beta: _spectrum("PSE29", beta, size) for beta in betas}
+    beta = float(inputs.parameters["beta"])
+    history = _history(beta, float(spectra[beta][-1]), **inputs.parameters["history"])
+    table = _table_29(runs, {b: float(eigenvalues[-1]) for b, eigenvalues in spectra.items()})
+    kernels = {b: kernel("G", _NODES, 1.0 + b) for b in betas}
+    blow_up = _blow_up(beta, float(spectra[beta][-1]))
+    findings = _findings_29(table, kernels, spectra, history, blow_up, list(runs["run"]))
+    near = _NODES <= 4.0
+    parts = [
+        pd.DataFrame({"panel": "kernel", "series": f"{b:g}", "x": _NODES[near], "y": G[near]})
+        for b, G in kernels.items()
+    ]
+    for name in ("PSE29", "DD"):
+        eigenvalues = spectra[beta] if name == "PSE29" else _spectrum(name, beta, size)
+        rank = np.arange(1, size + 1) / size
+        parts.append(
+            pd.DataFrame({"panel": "spectrum", "series": name, "x": rank, "y": eigenvalues})
+        )
+    every = max(1, len(history) // 400)
+    parts.append(history.iloc[::every].assign(panel="history"))
+    return Result(table, findings, pd.concat(parts, ignore_index=True))
+
+
+def _spectrum(name: str, beta: float, size: int) -> np.ndarray:
+    """The eigenvalues of A h^alpha / D, ascending; A is symmetric."""
+    setting = Setting(n=size // 2, spacing=1.0, alpha=1.0 + beta, overlap=_OVERLAP)
+    return np.linalg.eigvalsh(dense_matrix(SCHEMES[name].operator(setting)))
+
+
+def _history(
+    beta: float, growth: float, half_width: float, spacing: list[float], foldings: float
+) -> pd.DataFrame:
+    """|u(D, t)| of RK2 in time until it must have grown by exp(foldings), and the predicted growth.
+
+    The step is a fiftieth of the growth time: p(lambda dt) is then exp(lambda dt) to 1e-6.
+    """
+    parts = []
+    for h in spacing:
+        n = round(half_width / h)
+        setting = Setting(n=n, spacing=half_width / n, alpha=1.0 + beta, overlap=_OVERLAP)
+        rate, steps = growth * setting.rate, round(50.0 * foldings)
+        operator = SCHEMES["PSE29"].operator(setting)
+        u = green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta)
+        edge = [u[-1]]
+        for _ in range(steps):
+            u, _ = integrators.step(operator, integrators.STEP_POLYNOMIALS["rk2"], 0.02 / rate, 1, u)
+            edge.append(u[-1])
+        time = 0.5 + 0.02 / rate * np.arange(steps + 1)
+        y = np.abs(edge)
+        predicted = y[-1] * np.exp(rate * (time - time[-1]))
+        late = time > 0.5 * (0.5 + time[-1])
+        measured = np.polyfit(time[late], np.log(y[late]), 1)[0]
+        parts.append(
+            pd.DataFrame({"series": f"{h:.3g}", "x": time, "y": y, "predicted": predicted}).assign(
+                deviation=measured / rate - 1.0
+            )
+        )
+    return pd.concat(parts, ignore_index=True)
+
+
+def _blow_up(beta: float, growth: float) -> dict[str, float | str]:
+    """Run (29) on a small lattice until it overflows: the step predicted from the growing modes, and the message."""
+    case = Case(
+        scheme="PSE29", beta=beta, half_width=10.0, spacing=0.2, overlap=_OVERLAP, dt=0.02, t_final=1000.0,
+        evaluation="stepping", store="metrics",
+    )  # fmt: skip
+    matrix = dense_matrix(SCHEMES["PSE29"].operator(case.setting))
+    values, modes = np.linalg.eigh(matrix)
+    amplitudes = modes.T @ initial_strengths(case)[0]
+    factor = np.log(integrators.STEP_POLYNOMIALS["rk2"](values * case.time_step))
+    largest = np.log(np.abs(amplitudes) * np.abs(modes).max(axis=0) + np.finfo(float).tiny)
+    growing = factor > 0.0
+    steps = (np.log(np.finfo(float).max) - largest[growing]) / factor[growing]
+    try:
+        compute(case)
+    except NonFiniteSolution as error:
+        return {"predicted": float(steps.min()), "message": str(error)}
+    return {"predicted": float(steps.min()), "message": ""}
+
+
+def _table_29(runs: pd.DataFrame, greatest: dict[float, float]) -> pd.DataFrame:
+    rows = []
+    for (beta, h), pair in runs.groupby(["beta", "particle_spacing"]):
+        pair = pair.set_index("scheme")
+        run = pair.loc["PSE29"]
+        u = read_run(run["run"])["u"].values
+        exact = float(green(run["half_width"], run["t_final"], 1.0 + beta))
+        rate = greatest[beta] * run["diffusivity"] / h ** (1.0 + beta)
+        ours, dd = pair["relative_l1_error"][["PSE29", "DD"]]
+        rows.append(
+            {
+                "beta": beta,
+                "h": h,
+                "greatest eigenvalue, λ h^α / D": greatest[beta],
+                "λ": rate,
+                "log10 of the growth exp(λ T)": rate * (run["t_final"] - run["t_initial"]) / np.log(10.0),
+                "|u| / exact at |x| = D": abs(u[-1]) / exact,
+                "error (48) of (29)": ours,
+                "error (48) of DD": dd,
+                "ratio": ours / dd,
+            }
+        )
+    return pd.DataFrame(rows).sort_values(["beta", "h"], ascending=[True, False])
+
+
+def _findings_29(table, kernels, spectra, history, blow_up, files) -> list:
+    origin = {beta: G[0] for beta, G in kernels.items()}
+    crossing = {beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))] for beta, G in kernels.items()}
+    turns = {beta: int((np.diff(np.sign(np.diff(G))) != 0).sum()) for beta, G in kernels.items()}
+    top = {beta: _NODES[G.argmax()] for beta, G in kernels.items()}
+    finest, coarsest = (table.groupby("beta").agg(which) for which in ("last", "first"))
+    greatest = {beta: eigenvalues[-1] for beta, eigenvalues in spectra.items()}
+    deviation = history.groupby("series")["deviation"].first().abs().max()
+    return [
+        statement(
+            "L-C15.kernel",
+            all(
+                origin[beta] < 0.0 and crossing[beta].size and turns[beta] for beta in kernels
+            ),
+            f"The kernel of (29) is G of (11): G(0) = {_by_beta(origin)}; it changes sign at r = "
+            f"{_by_beta({b: c[0] for b, c in crossing.items() if c.size})} and has its maximum at r = {_by_beta(top)}.",
+            "G does not have all three properties.",
+        ),
+        statement(
+            "L-C15.errors",
+            bool((finest["ratio"] > 10.0).all()),
+            f"Error (48) of (29) over that of DD at the smallest h: {_by_beta(finest['ratio'])}; at the largest h: "
+            f"{_by_beta(coarsest['ratio'])}. The errors come with the growth: (29) diverges as h falls.",
+            f"At the largest h, where exp(lambda T) is of the order 1, the error is that of DD; at the smallest the ratio is "
+            f"{_by_beta(finest['ratio'])}: the growth from the ends has not reached |x| < 5 R_alpha at every beta.",
+            files,
+        ),
+        statement(
+            "L-C15.instability",
+            all(value > 0.0 for value in greatest.values()) and bool(deviation < 0.01),
+            f"The greatest eigenvalue is {_by_beta(greatest, 4)} in units of D / h^alpha; runs grow at this rate to "
+            f"{100.0 * deviation:.2g} %. A run predicted to overflow at step {blow_up['predicted']:.0f} ends with: "
+            f"{blow_up['message'].split(':')[1].strip() if blow_up['message'] else 'no overflow'}.",
+            "The runs do not grow at the rate of a positive eigenvalue.",
+        ),
+    ]
+
+
+def _by_beta(values, digits: int = 3) -> str:
+    return ", ".join(f"{value:.{digits}g} (beta = {beta:g})" for beta, value in dict(values).items())
