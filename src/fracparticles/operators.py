@@ -97,7 +97,7 @@ class ConvolutionOperator(_Appliable):
         y = self._convolve(u)
         if self._far is not None:
             self._far.add(u, y)
-        _update(y, self._diagonal, u, u, a, b, c, v)
+        _update(y, self._diagonal, u, a, b, c, v)
 
 
 class TwoPassOperator(_Appliable):
@@ -125,22 +125,19 @@ class TwoPassOperator(_Appliable):
         self.size = diagonal.size
         self._convolve, self._stencil = convolve, stencil
         self._diagonal, self._far = diagonal, far_field
-        self._work = np.empty(self.size)
 
     def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         """Write a (A u) + b u + c v into v."""
         q = self._convolve(u)
         if self._far is not None:
             self._far.add(u, q)
-        y = self._stencil(q, self._work)
-        inside = (q.size - self.size) // 2
-        _update(y, self._diagonal, q[inside : inside + self.size], u, a, b, c, v)
+        self._stencil.update(q, self._diagonal, u, a, b, c, v)
 
 
 @nb.njit(cache=True, nogil=True)
-def _update(y, diagonal, q, u, a, b, c, v):
+def _update(y, diagonal, u, a, b, c, v):
     for i in range(v.size):
-        v[i] = a * (y[i] + diagonal[i] * q[i]) + b * u[i] + c * v[i]
+        v[i] = a * (y[i] + diagonal[i] * u[i]) + b * u[i] + c * v[i]
 
 
 @nb.njit(cache=True, nogil=True)

@@ -104,13 +104,61 @@ def rejected_29(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str,
         )
     axes[2].set(xscale="log", yscale="log", xlabel=r"time $t - t_0$", ylabel="$|u|$ at the end of the lattice")
     axes[2].set_xlim(left=3e-3 * history["x"].max())
-    axes[2].set_ylim(history["y"].max() * 1e-22, history["y"].max() * 1e3)
+    axes[2].set_ylim(history["y"].max() * 1e-21, history["y"].max() * 1e3)
     axes[2].legend(
         handles=[
             Line2D([], [], color=_SHADES[1], label="run, spacing $h$"),
             Line2D([], [], color="0.3", linewidth=0.8, linestyle=":", label=r"$\propto e^{\lambda t}$"),
         ],
-        loc="upper left",
+        loc="lower right",
     )
     axes[2].set_title("(c) growth", loc="left")
+    return figure
+
+
+def rejected_riesz(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+    """The flux at the largest alpha, and the errors of flux and solution against the spacing."""
+    figure, axes = axes_row(3, width=3.4, height=3.6)
+    profile = series[series["panel"] == "profile"]
+    for name, look in (
+        ("exact", {"color": "black", "linewidth": 3.5, "alpha": 0.25}),
+        ("KPSE", {"color": COLOURS["KPSE"], "linestyle": "--"}),
+        ("RIESZ", {"color": COLOURS["RIESZ"]}),
+    ):
+        points = profile[profile["series"] == name]
+        axes[0].plot(points["x"], points["y"], **look)
+    axes[0].set(xlabel=r"position $x$", ylabel=r"flux $Q(x)$")
+    axes[0].set_title(rf"(a) flux, $\alpha = {profile['alpha'].iloc[0]:g}$", loc="left")
+    for ax, panel, title in (
+        (axes[1], "flux", "(b) flux"),
+        (axes[2], "solution", "(c) solution"),
+    ):
+        here = series[series["panel"] == panel]
+        for (name, alpha), points in here.groupby(["series", "alpha"]):
+            points = points.sort_values("x")
+            ax.plot(points["x"], points["y"], color=COLOURS[name], marker=MARKERS[name])
+            ax.annotate(
+                f"{alpha:g}",
+                (points["x"].iloc[0], points["y"].iloc[0]),
+                xytext=(-5, 0),
+                textcoords="offset points",
+                ha="right",
+                va="center",
+                color=COLOURS[name],
+                fontsize=8,
+            )
+        ax.set(xscale="log", yscale="log", xlabel=r"particle spacing $h = \epsilon / 2$")
+        ax.set_xlim(left=here["x"].min() / 1.8)
+        ax.set_title(title, loc="left")
+    axes[1].set_ylabel(r"relative $L_1$ error, $|x| \leq 5 R_\alpha$")
+    figure.legend(
+        handles=[
+            Line2D([], [], color="black", linewidth=3.5, alpha=0.25, label="exact"),
+            Line2D([], [], color=COLOURS["RIESZ"], marker=MARKERS["RIESZ"], label="potential cut off at $\\epsilon$"),
+            Line2D([], [], color=COLOURS["KPSE"], marker=MARKERS["KPSE"], label="mollified: flux (19), KPSE"),
+            Line2D([], [], linestyle="none", label=r"numbers: $\alpha$"),
+        ],
+        loc="outside lower center",
+        ncols=4,
+    )
     return figure

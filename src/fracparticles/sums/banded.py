@@ -10,6 +10,7 @@ __all__ = ["BandedConvolution"]
 # exp(-r^2) falls below the round-off of a unit sum, 1e-18, at r = 6.44; the order-IV kernels may hold
 # exp(-r^2 / 2), which does so at r = 9.1.
 _REACH = {2: 6.5, 4: 9.2}
+_NIL = 2.0**-58  # of the largest weight: 64 of them do not make up one rounding error
 _BLOCK = 512  # rows at a time, so that the sums stay in the first-level cache
 
 
@@ -19,16 +20,16 @@ class BandedConvolution:
     Parameters
     ----------
     weights : array, shape (M + 1,)
-        w_m for m = 0 .. M.
+        w_m for m = 0 .. M; those at the end that are nil against the largest are left out.
     parity : {1, -1}
         Whether w is even or odd.
     """
 
     def __init__(self, weights: np.ndarray, parity: int) -> None:
-        self.half_band = weights.size - 1
-        # Stored for the correlation sum_k taps_k v_{i - M + k}.
-        self._taps = np.concatenate([weights[:0:-1], parity * weights])
-        self._taps[self.half_band] = weights[0]
+        significant = np.flatnonzero(np.abs(weights) > _NIL * np.abs(weights).max())
+        self.half_band = int(significant[-1]) if significant.size else 0
+        self._weights = np.array(weights[: self.half_band + 1], dtype=float)
+        self._parity = float(parity)
 
     @staticmethod
     def reach(overlap: float, order: int) -> int:
@@ -37,18 +38,67 @@ class BandedConvolution:
 
     def __call__(self, v: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write y for the points in the middle of v, as many as `out` has, into `out`; return it."""
-        _correlate(v, self._taps, (v.size - out.size) // 2, out)
+        _sums(v, self._weights, self._parity, out)
         return out
+
+    def update(
+        self,
+        q: np.ndarray,
+        diagonal: np.ndarray,
+        u: np.ndarray,
+        a: float,
+        b: float,
+        c: float,
+        v: np.ndarray,
+    ) -> None:
+        """Write a (y + d q) + b u + c v into v, where y is the sum over q: one pass over memory."""
+        _update(q, self._weights, self._parity, diagonal, u, a, b, c, v)
 
 
 @nb.njit(cache=True, nogil=True)
-def _correlate(v, taps, skip, out):
-    half = taps.size // 2
+def _sums(v, weights, parity, out):
+    skip = (v.size - out.size) // 2
+    window = np.empty(_BLOCK + 2 * (weights.size - 1))
     for start in range(0, out.size, _BLOCK):
-        stop = min(start + _BLOCK, out.size)
-        out[start:stop] = 0.0
-        for k in range(taps.size):
-            shift = skip + k - half
-            tap = taps[k]
-            for row in range(max(start, -shift), min(stop, v.size - shift)):
-                out[row] += tap * v[row + shift]
+        total = out[start : start + _BLOCK]
+        _sum_block(v, weights, parity, start + skip, window, total)
+
+
+@nb.njit(cache=True, nogil=True)
+def _update(q, weights, parity, diagonal, u, a, b, c, v):
+    skip = (q.size - v.size) // 2
+    window = np.empty(_BLOCK + 2 * (weights.size - 1))
+    block = np.empty(_BLOCK)
+    for start in range(0, v.size, _BLOCK):
+        rows = min(_BLOCK, v.size - start)
+        y = block[:rows]
+        _sum_block(q, weights, parity, start + skip, window, y)
+        middle = q[start + skip : start + skip + rows]
+        d, given, new = (
+            diagonal[start : start + rows],
+            u[start : start + rows],
+            v[start : start + rows],
+        )
+        for i in range(rows):
+            new[i] = a * (y[i] + d[i] * middle[i]) + b * given[i] + c * new[i]
+
+
+@nb.njit(cache=True, nogil=True)
+def _sum_block(v, weights, parity, start, window, out):
+    """out_i = w_0 v_j + sum_m w_m (v_{j-m} + parity v_{j+m}), j = start + i."""
+    rows, half = out.size, weights.size - 1
+    first = start - half
+    low, high = max(first, 0), min(start + rows + half, v.size)
+    # v around the block, nil where there is no v.
+    window[: low - first] = 0.0
+    window[low - first : high - first] = v[low:high]
+    window[high - first :] = 0.0
+    # Slices and not offsets: their indices are known not to be negative, so that the loops vectorise.
+    middle = window[half : half + rows]
+    for i in range(rows):
+        out[i] = weights[0] * middle[i]
+    for m in range(1, half + 1):
+        weight = weights[m]
+        left, right = window[half - m : half - m + rows], window[half + m : half + m + rows]
+        for i in range(rows):
+            out[i] += weight * (left[i] + parity * right[i])
