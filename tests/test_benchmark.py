@@ -13,7 +13,7 @@ from fracparticles.benchmark import (
 )
 from fracparticles.case import Case
 from fracparticles.dataset import write
-from fracparticles.sums import transform_length
+from fracparticles.sums.fourier import transform_length
 
 TINY = {"truncation": 4.0, "spacing": 0.1, "dt": 5e-3, "green_dt": 0.05}
 
@@ -39,6 +39,7 @@ def test_times_are_positive_and_floor_and_ratios_follow_from_them(data):
     floor = data["operator_applications"] * data["pair_time"].min("library")
     assert data["floor_time"].values == pytest.approx(floor.values, rel=1e-14)
     assert data["floor_ratio"].values == pytest.approx((data["solve_time"] / floor).values)
+    assert (data["own_ratio"] <= data["floor_ratio"]).all()
     assert (data["transform_length"] == transform_length(2 * int(data["particles"][0]) - 1)).all()
 
 

@@ -26,15 +26,6 @@ def conservation(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str
         points = points.sort_values("x")
         y = points["y"].clip(lower=_FLOOR)
         ax.plot(points["x"], y, color=COLOURS[scheme], marker=MARKERS[scheme], label=scheme)
-        if y.iloc[-1] < 1e-8:
-            ax.annotate(
-                scheme,
-                (points["x"].iloc[-1], y.iloc[-1]),
-                xytext=(7, 0),
-                textcoords="offset points",
-                va="center",
-                color=COLOURS[scheme],
-            )
     opened = series[series["exterior"] == "open"]
     for scheme, size in (("DD", 9.0), ("FPSE", 7.0), ("KPSE", 5.0)):
         points = opened[opened["scheme"] == scheme].sort_values("x")

@@ -12,16 +12,10 @@ decay like a Gaussian.
 from __future__ import annotations
 
 from fracparticles.sums.banded import BandedConvolution
-from fracparticles.sums.fourier import FourierConvolution, transform_length
+from fracparticles.sums.fourier import FourierConvolution
 from fracparticles.sums.naive import NaiveConvolution
 
-__all__ = [
-    "SUMMATIONS",
-    "BandedConvolution",
-    "FourierConvolution",
-    "NaiveConvolution",
-    "transform_length",
-]
+__all__ = ["SUMMATIONS", "BandedConvolution", "FourierConvolution", "NaiveConvolution"]
 
 SUMMATIONS: dict[str, type[FourierConvolution] | type[NaiveConvolution]] = {
     "fft": FourierConvolution,

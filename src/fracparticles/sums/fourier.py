@@ -6,13 +6,14 @@ import numba as nb
 import numpy as np
 import pyfftw
 
-__all__ = ["FourierConvolution", "transform_length"]
+__all__ = ["FourierConvolution", "shares_memory", "transform_length"]
 
-# FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths of the study it is as fast, it plans in milliseconds
-# instead of seconds, and it makes the same plan every time, so that the same case gives the same bytes.
+# FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths chosen below its plans take about a tenth longer to run
+# (`benchmark`), but they are made in milliseconds instead of seconds, and they are the same every time, so that
+# the same case gives the same bytes.
 _PLAN = ("FFTW_ESTIMATE",)
 _CLOSE = 1.03  # a power of two is taken up to this ratio
-_SHORT = 1000
+_SHORT = 1000  # up to here the next length counts more than its factors
 
 
 class FourierConvolution:
@@ -91,11 +92,14 @@ def _is_smooth(length: int) -> bool:
     return length == 1
 
 
+def shares_memory(length: int) -> bool:
+    """Return whether the real array and its spectrum share their memory: powers of two are faster so."""
+    return length & (length - 1) == 0
+
+
 def _buffers(length: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the real array and its spectrum: one piece of memory for powers of two, which are faster so."""
-    half = length // 2 + 1
-    spectrum = pyfftw.empty_aligned(half, dtype=complex)
-    if length & (length - 1) == 0:
+    spectrum = pyfftw.empty_aligned(length // 2 + 1, dtype=complex)
+    if shares_memory(length):
         return spectrum.view(float)[:length], spectrum
     return pyfftw.empty_aligned(length), spectrum
 
