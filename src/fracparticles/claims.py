@@ -172,7 +172,7 @@ class Finding(_Record):
     evidence : str
         One sentence with our figures; statements only.
     reason : str
-        Why it deviates, is refuted or cannot be tested; empty otherwise or a remark.
+        Why it deviates, is refuted or cannot be tested; kept only if it does or is.
     runs : tuple of str
         Relative paths of the runs behind it.
     """
@@ -312,7 +312,8 @@ def judge(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
 
 def _row(claim: Claim, finding: Finding) -> dict[str, object]:
     status, ours, deviation = judge(claim, finding)
-    reason = finding.reason.strip()
+    # A study gives the reason for the case that its number deviates; one that does not needs none.
+    reason = "" if status is Status.REPRODUCED else finding.reason.strip()
     if status.needs_reason and not reason:
         raise LedgerError(f"{claim.id}: the status is {status!s}, and no reason is given")
     values = (

@@ -29,6 +29,7 @@ __all__ = [
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 _BATCH_SECONDS = 8.0
 
+
 def _value_or_list(annotation: Any) -> Any:
     return Union[annotation, list[annotation], None]  # noqa: UP007  (an annotation known at run time only)
 
@@ -75,7 +76,7 @@ class Scene(_Strict):
     study: str
     figure: str | None = None
     parameters: dict[str, Any] = {}
-    runs: list[RunBlock] = []  # type: ignore[valid-type]
+    runs: list[RunBlock] = []
     tables: list[str] = []
 
 

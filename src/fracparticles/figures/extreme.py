@@ -12,9 +12,14 @@ from fracparticles.figures.style import COLOURS, MARKERS, axes_row, slope_triang
 __all__ = ["stiff_extreme"]
 
 _SIZES = {"DD": 8.0, "FPSE": 5.5, "KPSE": 3.5}
-_WORK = {
+_WORK: dict[str, dict[str, Any]] = {
     "RK2, stepping": {"color": "#D55E00", "marker": "s"},
-    "RK2, one series": {"color": "#009E73", "marker": "^", "markersize": 8.0, "markerfacecolor": "none"},
+    "RK2, one series": {
+        "color": "#009E73",
+        "marker": "^",
+        "markersize": 8.0,
+        "markerfacecolor": "none",
+    },
     "exponential": {"color": "#0072B2", "marker": "o", "markersize": 3.5},
 }
 

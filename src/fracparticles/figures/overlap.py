@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import pandas as pd
@@ -49,7 +50,7 @@ def overlap(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any
     return figure
 
 
-def _lines(part: pd.DataFrame):
+def _lines(part: pd.DataFrame) -> Iterable[tuple[Any, pd.DataFrame]]:
     return part.sort_values("x").groupby(["scheme", "order"])
 
 

@@ -37,7 +37,9 @@ def rejected_dpse(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[st
                 label=scheme,
             )
     profile = series[(series["panel"] == "profile") & (series["scheme"] == "KPSE")].sort_values("x")
-    axes[0].plot(profile["x"], _SCALE * profile["exact"], color="black", linestyle=":", label="exact")
+    axes[0].plot(
+        profile["x"], _SCALE * profile["exact"], color="black", linestyle=":", label="exact"
+    )
     axes[0].set(xlim=(15.0, -0.5), xlabel=r"distance from the end, $(D - x) / \epsilon$")
     axes[0].set_ylabel(rf"solution $10^{{{np.log10(_SCALE):.0f}}} \, u(x, t_f)$")
     axes[0].set_title("(a) at the end of the lattice", loc="left")
@@ -60,7 +62,11 @@ def rejected_29(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str,
         kernel.groupby("series", sort=False), ("-", "--", ":"), strict=False
     ):
         axes[0].plot(
-            points["x"], points["y"], color="black", linestyle=style, label=rf"$\beta = {float(beta):g}$"
+            points["x"],
+            points["y"],
+            color="black",
+            linestyle=style,
+            label=rf"$\beta = {float(beta):g}$",
         )
     axes[0].axhline(0.0, color="0.5", linewidth=0.8)
     axes[0].set(xlabel=r"$r = |x| / \epsilon$", ylabel="kernel $G(r)$, Eq. (11)")
@@ -82,7 +88,9 @@ def rejected_29(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str,
     axes[1].axhspan(0.0, 1.15 * spectrum["y"].max(), color="#D55E00", alpha=0.12, linewidth=0)
     axes[1].set_ylim(1.05 * spectrum["y"].min(), 1.15 * spectrum["y"].max())
     axes[1].annotate("growing", (0.03, 0.5 * spectrum["y"].max()), color="0.25", va="center")
-    axes[1].set(xlabel="rank / number of particles", ylabel=r"eigenvalue $\lambda h^\alpha / \mathcal{D}$")
+    axes[1].set(
+        xlabel="rank / number of particles", ylabel=r"eigenvalue $\lambda h^\alpha / \mathcal{D}$"
+    )
     axes[1].legend(loc="lower right")
     axes[1].set_title(rf"(b) spectrum, $\beta = {parameters['beta']:g}$", loc="left")
 
@@ -102,13 +110,20 @@ def rejected_29(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str,
             color=colour,
             fontsize=8,
         )
-    axes[2].set(xscale="log", yscale="log", xlabel=r"time $t - t_0$", ylabel="$|u|$ at the end of the lattice")
+    axes[2].set(
+        xscale="log",
+        yscale="log",
+        xlabel=r"time $t - t_0$",
+        ylabel="$|u|$ at the end of the lattice",
+    )
     axes[2].set_xlim(left=3e-3 * history["x"].max())
     axes[2].set_ylim(history["y"].max() * 1e-21, history["y"].max() * 1e3)
     axes[2].legend(
         handles=[
             Line2D([], [], color=_SHADES[1], label="run, spacing $h$"),
-            Line2D([], [], color="0.3", linewidth=0.8, linestyle=":", label=r"$\propto e^{\lambda t}$"),
+            Line2D(
+                [], [], color="0.3", linewidth=0.8, linestyle=":", label=r"$\propto e^{\lambda t}$"
+            ),
         ],
         loc="lower right",
     )
@@ -156,8 +171,20 @@ def rejected_riesz(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[s
     figure.legend(
         handles=[
             Line2D([], [], color="black", linewidth=3.5, alpha=0.25, label="exact"),
-            Line2D([], [], color=COLOURS["RIESZ"], marker=MARKERS["RIESZ"], label="potential cut off at $\\epsilon$"),
-            Line2D([], [], color=COLOURS["KPSE"], marker=MARKERS["KPSE"], label="mollified: flux (19), KPSE"),
+            Line2D(
+                [],
+                [],
+                color=COLOURS["RIESZ"],
+                marker=MARKERS["RIESZ"],
+                label="potential cut off at $\\epsilon$",
+            ),
+            Line2D(
+                [],
+                [],
+                color=COLOURS["KPSE"],
+                marker=MARKERS["KPSE"],
+                label="mollified: flux (19), KPSE",
+            ),
             Line2D([], [], linestyle="none", label=r"numbers: $\alpha$"),
         ],
         loc="outside lower center",

@@ -42,7 +42,7 @@ MARKERS = {
 
 
 def axes_row(
-    panels: int = 1, height: float = 3.4, width: float = 4.2, **options
+    panels: int = 1, height: float = 3.4, width: float = 4.2, **options: Any
 ) -> tuple[Figure, list[Axes]]:
     """Return a figure with a row of panels, lettered (a), (b), ... if there is more than one."""
     figure = Figure(figsize=(width * panels, height), layout="constrained")

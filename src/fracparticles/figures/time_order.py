@@ -14,7 +14,11 @@ from fracparticles.figures.style import COLOURS, MARKERS, axes_row, slope_triang
 __all__ = ["time_order"]
 
 _SIZES = {"DD": 8.0, "FPSE": 5.5, "KPSE": 3.5}
-_INTEGRATORS = {"euler": ("RK1", ":", 1), "rk2": ("RK2", "-", 2), "rk4": ("RK4 (ours)", "--", 4)}
+_INTEGRATORS: dict[str, tuple[str, Any, int]] = {
+    "euler": ("RK1", ":", 1),
+    "rk2": ("RK2", "-", 2),
+    "rk4": ("RK4 (ours)", "--", 4),
+}
 
 
 def time_order(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
+from fracparticles.claims import Finding
 from fracparticles.schemes import dd, dpse, fd, fpse, gpse, kpse
 from fracparticles.special.stable import central_mass
 from fracparticles.studies.common import ORDERS, Inputs, Result, statement
@@ -86,7 +89,7 @@ def _both_sides(weights: np.ndarray) -> float:
     return float(abs(weights[0]) + 2.0 * np.abs(weights[1:]).sum())
 
 
-def _round_off(run) -> float:
+def _round_off(run: Any) -> float:
     n = round(run.half_width / run.particle_spacing)
     total = weight_sum(
         run.scheme, n, run.particle_spacing, 1.0 + run.beta, int(run.order), run.overlap
@@ -95,7 +98,7 @@ def _round_off(run) -> float:
     return 4.0 * _EPS * np.log2(4.0 * n) * total * time
 
 
-def _findings(runs: pd.DataFrame) -> list:
+def _findings(runs: pd.DataFrame) -> list[Finding]:
     findings = []
     truncated = runs[runs["exterior"] == "truncated"]
     for scheme in ("DPSE", "FPSE", "KPSE", "GPSE"):
@@ -106,8 +109,8 @@ def _findings(runs: pd.DataFrame) -> list:
             statement(
                 f"L-C18.{scheme}",
                 bool((part < 1.0).all()),
-                f"Largest |M / M0 - 1| of {len(here)} runs: {abs(worst['change']):.2g} (beta = {worst['beta']:g}), at most "
-                f"{part.max():.2g} of the bound of round-off; the exact solution carries up to "
+                f"Largest |M / M0 - 1| of {len(here)} runs: {abs(worst['change']):.2g} (beta = {worst['beta']:g}), "
+                f"at most {part.max():.2g} of the bound of round-off; the exact solution carries up to "
                 f"{here['outflow'].max():.2g} out of [-D, D] meanwhile.",
                 "The change exceeds round-off.",
                 here["run"],
@@ -121,9 +124,9 @@ def _findings(runs: pd.DataFrame) -> list:
         statement(
             "L-C18.DD",
             bool((leak["change"].abs() > 1000.0 * leak["bound"]).all()),
-            f"M / M0 - 1 of DD: {leak['change'].max():.2e} to {leak['change'].min():.2e}; that is what the exact solution "
-            f"carries out of [-D, D] and {100.0 * surplus.min():.1f} to {100.0 * surplus.max():.1f} % more. With the open "
-            f"exterior the change of DD, FPSE and KPSE is the exact outflow to {missed:.1g}.",
+            f"M / M0 - 1 of DD: {leak['change'].max():.2e} to {leak['change'].min():.2e}; that is what the exact "
+            f"solution carries out of [-D, D] and {100.0 * surplus.min():.1f} to {100.0 * surplus.max():.1f} % more. "
+            f"With the open exterior the change of DD, FPSE and KPSE is the exact outflow to {missed:.1g}.",
             "The change does not exceed round-off.",
             leak["run"],
         )

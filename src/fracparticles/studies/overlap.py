@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from fracparticles.claims import Finding
 from fracparticles.studies.common import ORDERS, Inputs, Result, statement
 
 __all__ = ["overlap"]
@@ -51,7 +52,7 @@ def overlap(inputs: Inputs) -> Result:
     return Result(table, findings, series[[*_KEY, "x", "y"]])
 
 
-def _finding(scheme: str, inputs: Inputs, table: pd.DataFrame, runs: pd.DataFrame):
+def _finding(scheme: str, inputs: Inputs, table: pd.DataFrame, runs: pd.DataFrame) -> Finding:
     here = table[(table["scheme"] == scheme) & (table["beta"] == inputs.parameters["beta"])]
     ratio_name, power_name = table.columns[-2:]
     printed = here[here["exterior"] == "truncated"].set_index("order")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from scipy.signal import fftconvolve
 
 from fracparticles import integrators
 from fracparticles.case import Case
+from fracparticles.claims import Finding
 from fracparticles.dataset import read_run
 from fracparticles.errors import NonFiniteSolution
 from fracparticles.kernels import kernel
@@ -32,7 +36,9 @@ def exact_flux(x: np.ndarray, time: float, alpha: float) -> np.ndarray:
 # --- DPSE -----------------------------------------------------------------------------------------------------------
 
 _LARGE = 10.0  # an error this many times the exact value is large
-_PREDICTED = 0.2  # relative; what (A.2) and the tail of the kernel leave out is of the order D^(-alpha)
+_PREDICTED = (
+    0.2  # relative; what (A.2) and the tail of the kernel leave out is of the order D^(-alpha)
+)
 _LAYER = 0.1  # relative error that ends the layer at the edge
 
 
@@ -54,7 +60,7 @@ def rejected_dpse(inputs: Inputs) -> Result:
     for run in runs.itertuples():
         data = read_run(run.run)
         x, u = data["x"].values, data["u"].values
-        exact = green(x, run.t_final, 1.0 + run.beta)
+        exact = np.asarray(green(x, run.t_final, 1.0 + run.beta))
         relative = np.abs(u - exact) / exact
         distance = (run.half_width - x) / (run.overlap * run.particle_spacing)
         row = {
@@ -63,7 +69,9 @@ def rejected_dpse(inputs: Inputs) -> Result:
             "C": run.truncation,
             "u / exact at |x| = D": u[-1] / exact[-1],
             "|error| at |x| = D / peak": abs(u[-1] - exact[-1]) / exact.max(),
-            "error above 10 % within, in ε": distance[(x > 0.0) & (relative > _LAYER)].max(initial=0.0),
+            "error above 10 % within, in ε": distance[(x > 0.0) & (relative > _LAYER)].max(
+                initial=0.0
+            ),
             "relative error at 0.9 D": float(np.interp(0.9 * run.half_width, x, relative)),
             "error (48)": run.relative_l1_error,
         }
@@ -79,13 +87,13 @@ def rejected_dpse(inputs: Inputs) -> Result:
     return Result(table, findings, pd.concat(series, ignore_index=True))
 
 
-def _rate_at_the_edge(run) -> dict[str, float]:
+def _rate_at_the_edge(run: Any) -> dict[str, float]:
     """du/dt of the exact initial data at x = D less its exact value, four ways."""
     alpha, n = 1.0 + run.beta, round(run.half_width / run.particle_spacing)
     h, s, order = run.particle_spacing, run.overlap, int(run.order)
     setting = Setting(n=n, spacing=h, alpha=alpha, order=order, overlap=s)
     x = np.arange(-n, n + 1) * h
-    u = green(x, run.t_initial, alpha)
+    u = np.asarray(green(x, run.t_initial, alpha))
     # u_t = -Q_x at the end, from the exact flux one spacing to either side
     sides = exact_flux(run.half_width + np.array([-h, h]), run.t_initial, alpha)
     exact = -(sides[1] - sides[0]) / (2.0 * h)
@@ -112,7 +120,9 @@ def _rate_with_continued_potential(setting: Setting, u: np.ndarray, c: np.ndarra
     return float(stencil @ (v - v[reach])) / h**2
 
 
-def _edge(scheme: str, x: np.ndarray, u: np.ndarray, exact: np.ndarray, distance: np.ndarray):
+def _edge(
+    scheme: str, x: np.ndarray, u: np.ndarray, exact: np.ndarray, distance: np.ndarray
+) -> pd.DataFrame:
     """The profile of the last thirty smoothing lengths, and the relative error at 150 points of log distance."""
     last = np.flatnonzero((distance <= 30.0) & (x > 0.0))
     wanted = np.geomspace(distance[-2], distance[x > 0.0].max(), 150)
@@ -125,7 +135,7 @@ def _edge(scheme: str, x: np.ndarray, u: np.ndarray, exact: np.ndarray, distance
     return pd.concat([pd.DataFrame(part).assign(scheme=scheme) for part in parts])
 
 
-def _dpse_findings(table: pd.DataFrame, files: list[str]) -> list:
+def _dpse_findings(table: pd.DataFrame, files: list[str]) -> list[Finding]:
     ours = table[table["scheme"] == "DPSE"]
     kpse = table[table["scheme"] == "KPSE"]
     ratio, other = ours["u / exact at |x| = D"], kpse["u / exact at |x| = D"]
@@ -145,9 +155,9 @@ def _dpse_findings(table: pd.DataFrame, files: list[str]) -> list:
         statement(
             "L-C14.cause",
             bool((agreement < _PREDICTED).all() and (gain > 10.0).all()),
-            f"The tail of kappa predicts the error of du/dt at the edge to {100.0 * agreement.max():.2g} % at worst; with v "
-            f"computed at the particles next to the ends as well it falls {gain.min():.3g} to {gain.max():.3g} times. FPSE, "
-            f"whose F is the gradient of kappa, has the same error to {100.0 * fpse_deviation.max():.2g} %.",
+            f"The tail of kappa predicts the error of du/dt at the edge to {100.0 * agreement.max():.2g} % at worst; "
+            f"with v computed at the particles next to the ends as well it falls {gain.min():.3g} to {gain.max():.3g} "
+            f"times. FPSE, whose F is the gradient of kappa, has the same to {100.0 * fpse_deviation.max():.2g} %.",
             "The tail of the kernel does not account for the error at the edge.",
             files,
         ),
@@ -168,8 +178,8 @@ def rejected_29(inputs: Inputs) -> Result:
     and its mode a layer a few epsilon thick: in time T the solution grows by exp(lambda T), without bound as h -> 0.
 
     The kernel statement holds if G(0) < 0, G changes sign and is not monotonic, at every beta. The errors are called
-    large if |u| is more than ten times the exact solution at |x| = D at the smallest h of every beta. The instability is
-    shown if the greatest eigenvalue is positive at every beta and the growth of the runs has its rate to 1 %.
+    large if |u| is more than ten times the exact solution at |x| = D at the smallest h of every beta. The instability
+    is shown if the greatest eigenvalue is positive at every beta and the growth of the runs has its rate to 1 %.
     """
     runs = inputs.scalars
     betas = sorted(runs["beta"].unique())
@@ -178,7 +188,7 @@ def rejected_29(inputs: Inputs) -> Result:
     beta = float(inputs.parameters["beta"])
     history = _history(beta, float(spectra[beta][-1]), **inputs.parameters["history"])
     table = _table_29(runs, {b: float(eigenvalues[-1]) for b, eigenvalues in spectra.items()})
-    kernels = {b: kernel("G", _NODES, 1.0 + b) for b in betas}
+    kernels = {b: np.asarray(kernel("G", _NODES, 1.0 + b)) for b in betas}
     blow_up = _blow_up(beta, float(spectra[beta][-1]))
     findings = _findings_29(table, kernels, spectra, history, blow_up, list(runs["run"]))
     near = _NODES <= 4.0
@@ -216,10 +226,12 @@ def _history(
         setting = Setting(n=n, spacing=half_width / n, alpha=1.0 + beta, overlap=_OVERLAP)
         rate, steps = growth * setting.rate, round(50.0 * foldings)
         operator = SCHEMES["PSE29"].operator(setting)
-        u = green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta)
+        u = np.asarray(green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta))
         edge = [u[-1]]
         for _ in range(steps):
-            u, _ = integrators.step(operator, integrators.STEP_POLYNOMIALS["rk2"], 0.02 / rate, 1, u)
+            u, _ = integrators.step(
+                operator, integrators.STEP_POLYNOMIALS["rk2"], 0.02 / rate, 1, u
+            )
             edge.append(u[-1])
         time = 0.5 + 0.02 / rate * np.arange(steps + 1)
         y = np.abs(edge)
@@ -234,7 +246,7 @@ def _history(
     return pd.concat(parts, ignore_index=True)
 
 
-def _blow_up(beta: float, growth: float) -> dict[str, float | str]:
+def _blow_up(beta: float, growth: float) -> dict[str, Any]:
     """Run (29) on a small lattice until it overflows: the step predicted from the growing modes, and the message."""
     case = Case(
         scheme="PSE29", beta=beta, half_width=10.0, spacing=0.2, overlap=_OVERLAP, dt=0.02, t_final=1000.0,
@@ -269,7 +281,9 @@ def _table_29(runs: pd.DataFrame, greatest: dict[float, float]) -> pd.DataFrame:
                 "h": h,
                 "greatest eigenvalue, λ h^α / D": greatest[beta],
                 "λ": rate,
-                "log10 of the growth exp(λ T)": rate * (run["t_final"] - run["t_initial"]) / np.log(10.0),
+                "log10 of the growth exp(λ T)": rate
+                * (run["t_final"] - run["t_initial"])
+                / np.log(10.0),
                 "|u| / exact at |x| = D": abs(u[-1]) / exact,
                 "error (48) of (29)": ours,
                 "error (48) of DD": dd,
@@ -279,7 +293,14 @@ def _table_29(runs: pd.DataFrame, greatest: dict[float, float]) -> pd.DataFrame:
     return pd.DataFrame(rows).sort_values(["beta", "h"], ascending=[True, False])
 
 
-def _findings_29(table, kernels, spectra, history, blow_up, files) -> list:
+def _findings_29(
+    table: pd.DataFrame,
+    kernels: Mapping[float, np.ndarray],
+    spectra: Mapping[float, np.ndarray],
+    history: pd.DataFrame,
+    blow_up: Mapping[str, Any],
+    files: list[str],
+) -> list[Finding]:
     origin = {beta: G[0] for beta, G in kernels.items()}
     crossing = {beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))] for beta, G in kernels.items()}
     turns = {beta: int((np.diff(np.sign(np.diff(G))) != 0).sum()) for beta, G in kernels.items()}
@@ -291,9 +312,7 @@ def _findings_29(table, kernels, spectra, history, blow_up, files) -> list:
     return [
         statement(
             "L-C15.kernel",
-            all(
-                origin[beta] < 0.0 and crossing[beta].size and turns[beta] for beta in kernels
-            ),
+            all(origin[beta] < 0.0 and crossing[beta].size and turns[beta] for beta in kernels),
             f"The kernel of (29) is G of (11): G(0) = {_by_beta(origin)}; it changes sign at r = "
             f"{_by_beta({b: c[0] for b, c in crossing.items() if c.size})} and has its maximum at r = {_by_beta(top)}.",
             "G does not have all three properties.",
@@ -301,10 +320,10 @@ def _findings_29(table, kernels, spectra, history, blow_up, files) -> list:
         statement(
             "L-C15.errors",
             bool((finest[edge] > _LARGE).all()),
-            f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[edge])}; the error (48), over "
-            f"that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[edge])} and "
-            f"{_by_beta(coarsest['ratio'])}: the scheme diverges as h falls.",
-            "Within the run the layer at the ends, exp(lambda T) at these h, does not outgrow the solution at every beta.",
+            f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[edge])}; the error (48), "
+            f"over that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[edge])} "
+            f"and {_by_beta(coarsest['ratio'])}: the scheme diverges as h falls.",
+            "Within the run the layer at the ends does not outgrow the solution at every beta.",
             files,
         ),
         statement(
@@ -318,11 +337,13 @@ def _findings_29(table, kernels, spectra, history, blow_up, files) -> list:
     ]
 
 
-def _by_beta(values, digits: int = 3) -> str:
-    return ", ".join(f"{value:.{digits}g} (beta = {beta:g})" for beta, value in dict(values).items())
+def _by_beta(values: Mapping[float, float] | pd.Series, digits: int = 3) -> str:
+    return ", ".join(
+        f"{value:.{digits}g} (beta = {beta:g})" for beta, value in dict(values).items()
+    )
 
 
-# --- The regularised Riesz potential ------------------------------------------------------------------------------------
+# --- The regularised Riesz potential --------------------------------------------------------------------------------
 
 _POOR = 10.0  # times the error of the flux (19)
 
@@ -345,8 +366,12 @@ def rejected_riesz(inputs: Inputs) -> Result:
     flux = pd.DataFrame(rows)
     flux["observed order, cut-off"] = _orders(flux, "error, cut-off")
     flux["observed order, (19)"] = _orders(flux, "error, (19)")
-    runs = inputs.scalars.assign(alpha=1.0 + inputs.scalars["beta"], h=inputs.scalars["particle_spacing"])
-    solution = runs.pivot_table(index=["alpha", "h"], columns="scheme", values="relative_l1_error").reset_index()
+    runs = inputs.scalars.assign(
+        alpha=1.0 + inputs.scalars["beta"], h=inputs.scalars["particle_spacing"]
+    )
+    solution = runs.pivot_table(
+        index=["alpha", "h"], columns="scheme", values="relative_l1_error"
+    ).reset_index()
     solution["observed order, cut-off"] = _orders(solution, "RIESZ")
     finest = flux[flux["h"] == flux["h"].min()].set_index("alpha")
     table = pd.concat(
@@ -358,7 +383,15 @@ def rejected_riesz(inputs: Inputs) -> Result:
         ]
     )
     table["2 - α"] = 2.0 - table["alpha"]
-    columns = ["of", "alpha", "h", "error, cut-off", "observed order, cut-off", "2 - α", "error, mollified (KPSE)"]
+    columns = [
+        "of",
+        "alpha",
+        "h",
+        "error, cut-off",
+        "observed order, cut-off",
+        "2 - α",
+        "error, mollified (KPSE)",
+    ]
     table = table[columns].sort_values(["of", "alpha", "h"], ascending=[True, True, False])
     ratio = flux["error, cut-off"] / flux["error, (19)"]
     by_lattice = flux.pivot_table(index="h", columns="alpha", values="error, cut-off")
@@ -370,8 +403,8 @@ def rejected_riesz(inputs: Inputs) -> Result:
         statement(
             "L-C16.poor",
             bool((ratio > _POOR).all()),
-            f"Relative error of the flux at h = {flux['h'].min():g}: {errors}; of the flux (19): {others}. It falls with "
-            f"the orders {orders}.",
+            f"Relative error of the flux at h = {flux['h'].min():g}: {errors}; of the flux (19): {others}. It falls "
+            f"with the orders {orders}.",
             "On the coarsest lattice the flux (19) is not ten times better.",
         ),
         statement(
@@ -387,14 +420,18 @@ def rejected_riesz(inputs: Inputs) -> Result:
         [
             flux.assign(panel="flux", series="RIESZ", x=flux["h"], y=flux["error, cut-off"]),
             flux.assign(panel="flux", series="KPSE", x=flux["h"], y=flux["error, (19)"]),
-            runs.assign(panel="solution", series=runs["scheme"], x=runs["h"], y=runs["relative_l1_error"]),
+            runs.assign(
+                panel="solution", series=runs["scheme"], x=runs["h"], y=runs["relative_l1_error"]
+            ),
             *_flux_profile(max(alphas), float(parameters["spacing"][-1]), parameters),
         ]
     )
     return Result(table, findings, drawn[["panel", "series", "alpha", "x", "y"]])
 
 
-def _fluxes(alpha: float, h: float, parameters) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _fluxes(
+    alpha: float, h: float, parameters: Mapping[str, Any]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Positions within 5 R_alpha, the exact flux, that of the cut-off potential, that of (19)."""
     n, s = round(float(parameters["half_width"]) / h), float(parameters["overlap"])
     x, time = np.arange(-n, n + 1) * h, float(parameters["time"])
@@ -407,7 +444,7 @@ def _fluxes(alpha: float, h: float, parameters) -> tuple[np.ndarray, np.ndarray,
     return x[inside], exact_flux(x, time, alpha)[inside], cut_off[inside], mollified[inside]
 
 
-def _flux_errors(alpha: float, h: float, parameters) -> dict[str, float]:
+def _flux_errors(alpha: float, h: float, parameters: Mapping[str, Any]) -> dict[str, float]:
     _, exact, cut_off, mollified = _fluxes(alpha, h, parameters)
     size = np.abs(exact).sum()
     return {
@@ -418,12 +455,14 @@ def _flux_errors(alpha: float, h: float, parameters) -> dict[str, float]:
     }
 
 
-def _flux_profile(alpha: float, h: float, parameters) -> list[pd.DataFrame]:
+def _flux_profile(alpha: float, h: float, parameters: Mapping[str, Any]) -> list[pd.DataFrame]:
     x, exact, cut_off, mollified = _fluxes(alpha, h, parameters)
     shown = np.flatnonzero((x >= 0.0) & (x <= 6.0))
     shown = shown[:: max(1, shown.size // 200)]
     return [
-        pd.DataFrame({"panel": "profile", "series": name, "alpha": alpha, "x": x[shown], "y": y[shown]})
+        pd.DataFrame(
+            {"panel": "profile", "series": name, "alpha": alpha, "x": x[shown], "y": y[shown]}
+        )
         for name, y in (("exact", exact), ("RIESZ", cut_off), ("KPSE", mollified))
     ]
 

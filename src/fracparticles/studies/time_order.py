@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from fracparticles.claims import Finding
 from fracparticles.dataset import read_run
 from fracparticles.studies.common import Inputs, Result, observed_order, statement
+from fracparticles.studies.self_convergence import self_convergence_order
 
-__all__ = ["self_convergence", "time_order"]
+__all__ = ["time_order"]
 
 _EXPECTED = {"euler": 1.0, "rk2": 2.0, "rk4": 4.0}
 _NAMES = {"euler": "RK1", "rk2": "RK2", "rk4": "RK4"}
@@ -36,7 +38,8 @@ def time_order(inputs: Inputs) -> Result:
             levels = levels.sort_values("dt", ascending=False)
             dt, u = levels["dt"].to_numpy(), np.stack(list(levels["u"]))
             error = np.abs(u - exact).sum(axis=1) / size
-            order, change = self_convergence(u)
+            order = [self_convergence_order(list(u[k : k + 3])) for k in range(len(u) - 2)]
+            change = np.abs(np.diff(u, axis=0)).sum(axis=1)
             settled = np.flatnonzero(change[1:] / size > _NOISE)
             last = int(settled[-1]) if settled.size else 0
             clear = error > _NOISE
@@ -68,22 +71,11 @@ def time_order(inputs: Inputs) -> Result:
     return Result(table, findings, pd.concat(series, ignore_index=True))
 
 
-def self_convergence(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return p^(l) = log2(|u^(l) - u^(l+1)|_1 / |u^(l+1) - u^(l+2)|_1), Eq. (49), and the differences.
-
-    `u` has shape (levels, particles), the step halved from row to row.
-    """
-    change = np.abs(np.diff(u, axis=0)).sum(axis=1)
-    return np.log2(change[:-1] / change[1:]), change
-
-
-def _finding(table: pd.DataFrame, runs: pd.DataFrame, scheme: str, name: str):
+def _finding(table: pd.DataFrame, runs: pd.DataFrame, scheme: str, name: str) -> Finding:
     here = table[(table["scheme"] == scheme) & (table["integrator"] == name)]
     order = here["order (49), smallest dt above round-off"]
     files = runs[(runs["scheme"] == scheme) & (runs["integrator"].map(_NAMES.get) == name)]["run"]
-    spelled = ", ".join(
-        f"{p:.3f} (beta = {b:g})" for p, b in zip(order, here["beta"], strict=True)
-    )
+    spelled = ", ".join(f"{p:.3f} (beta = {b:g})" for p, b in zip(order, here["beta"], strict=True))
     return statement(
         f"L-C10.{scheme}.{name}",
         bool(((order - here["expected order"]).abs() < _NEAR).all()),

@@ -1,0 +1,69 @@
+"""The study of the total strength: the bound of its round-off, and tiny runs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fracparticles.dataset import write
+from fracparticles.figures import figure
+from fracparticles.plan import expand
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.solver import solve
+from fracparticles.spectrum import dense_matrix
+from fracparticles.studies import Inputs, study
+from fracparticles.studies.conservation import weight_sum
+
+
+@pytest.mark.parametrize("scheme", ["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD"])
+def test_the_sum_of_absolute_weights_bounds_the_rows(scheme):
+    n, h, alpha = 20, 0.2, 1.5
+    matrix = dense_matrix(SCHEMES[scheme].operator(Setting(n=n, spacing=h, alpha=alpha)))
+    rows = np.abs(matrix).sum(axis=1).max()
+    assert rows <= weight_sum(scheme, n, h, alpha, 2, 2.0) * (1.0 + 1e-12)
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("conservation")
+    common = {
+        "beta": 0.5,
+        "half_width": 20.0,
+        "spacing": 0.1,
+        "t_final": [0.75, 1.5],
+        "store": "metrics",
+    }
+    blocks = [
+        {"scheme": ["DD", "DPSE", "FPSE", "KPSE", "FD"], "dt": 1e-3, **common},
+        {"scheme": ["DD", "FPSE", "KPSE"], "dt": 1e-3, "exterior": "open", **common},
+        {"scheme": "GPSE", **common},
+    ]
+    paths = []
+    for case in expand(blocks):
+        paths.append(str(folder / case.path))
+        write(solve(case), paths[-1])
+    return Inputs("conservation", ["L-C18"], {"beta": 0.5}, paths)
+
+
+def test_exchange_keeps_the_strength_and_dd_loses_what_flows_out(inputs):
+    result = study("conservation")(inputs)
+    assert {finding.claim for finding in result.findings} == {
+        f"L-C18.{scheme}" for scheme in ("DPSE", "FPSE", "KPSE", "GPSE", "DD")
+    }
+    assert all(finding.verdict for finding in result.findings)
+    table = result.table.set_index(["scheme", "exterior"])
+    leak = -table.loc[("DD", "truncated"), "M(t_f) / M(t_0) - 1"]
+    assert leak == pytest.approx(table.loc[("DD", "truncated"), "exact outflow / M(t_0)"], rel=0.1)
+
+
+def test_with_the_open_exterior_the_strength_leaves_as_in_the_exact_solution(inputs):
+    table = study("conservation")(inputs).table
+    opened = table[table["exterior"] == "open"]
+    # The continuation of the far field leaves a relative error of about (t / D^alpha)^2 = 3e-4 of the outflow.
+    missed = opened["change + exact outflow"].abs() / opened["exact outflow / M(t_0)"]
+    assert (missed < 1e-2).all()
+
+
+def test_the_figure_is_drawn(inputs):
+    result = study("conservation")(inputs)
+    assert figure("conservation")(result.series, result.table, inputs.parameters).axes
