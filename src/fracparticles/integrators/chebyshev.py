@@ -14,19 +14,21 @@ Tal-Ezer & Kosloff, J. Chem. Phys. 81 (1984) 3967, for the exponential.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numba as nb
 import numpy as np
 from scipy.fft import dct
 
-from fracparticles.errors import NonFiniteSolution
+from fracparticles.errors import FracparticlesError, NonFiniteSolution
 from fracparticles.integrators.polynomial import StepPolynomial
 from fracparticles.operators import Operator
 
 __all__ = ["ChebyshevSeries", "exponential", "power"]
 
 _ROUND_OFF = 2.0**-54
+_MET = 1e-6  # of the largest value: how close the series is to f at the ends
+_MOST_POINTS = 2**25
 _LARGEST_EXPONENT = np.log(np.finfo(float).max)
 
 
@@ -52,26 +54,46 @@ class ChebyshevSeries:
         f: Callable[[np.ndarray], np.ndarray],
         low: float,
         high: float,
-        noise: float = _ROUND_OFF,
+        condition: Callable[[np.ndarray], np.ndarray] = np.ones_like,
     ) -> ChebyshevSeries:
         """Interpolate f at Chebyshev points.
 
-        There are enough of them when the last third of the coefficients is nil: below `noise`, the relative
-        round-off in the largest values of f.
+        There are enough of them when the last third of the coefficients is below the round-off in the values of
+        f, which is `condition(z)` ulp of f(z), and the sum meets f at the two ends: a layer there that is thinner
+        than the points are apart would be missed.
+
+        Raises
+        ------
+        FracparticlesError
+            If it takes more than 2^25 points.
         """
+        ends = np.array([low, high])
+        at_ends = f(ends)
         points = 32
-        while True:
+        while points <= _MOST_POINTS:
             angle = (np.arange(points) + 0.5) * (np.pi / points)
-            # (1 + cos) / 2 = cos^2(angle / 2): the distance to `low` keeps its relative accuracy.
-            values = f(high - (high - low) * np.sin(0.5 * angle) ** 2)
+            # (1 + cos) / 2 = cos^2(angle / 2): the distance to `high` keeps its relative accuracy.
+            z = high - (high - low) * np.sin(0.5 * angle) ** 2
+            values = f(z)
             coefficients = dct(values, type=2) / points
             coefficients[0] /= 2.0
-            size = np.abs(coefficients)
-            significant = np.flatnonzero(size > noise * np.abs(values).max())
+            largest = max(np.abs(values).max(), np.abs(at_ends).max())
+            noise = _ROUND_OFF * max(
+                (np.abs(values) * condition(z)).max(), (np.abs(at_ends) * condition(ends)).max()
+            )
+            significant = np.flatnonzero(np.abs(coefficients) > noise)
             degree = significant[-1] if significant.size else 0
-            if degree < 2 * points // 3:
+            sums = np.array(
+                [coefficients[::2].sum() - coefficients[1::2].sum(), coefficients.sum()]
+            )
+            met = bool((np.abs(sums - at_ends) <= _MET * largest).all())
+            if met and degree < 2 * points // 3:
                 return cls(coefficients[: degree + 1], low, high)
             points *= 2
+        raise FracparticlesError(
+            f"the time integration from the spectrum in [{low:.3g}, {high:.3g}] takes a Chebyshev series of more than "
+            f"{_MOST_POINTS} terms. Take a larger spacing or a shorter time span."
+        )
 
     @property
     def degree(self) -> int:
@@ -134,15 +156,20 @@ def power(
             )
         return sign * np.exp(exponent)
 
-    _, exponent = polynomial.log_power(np.array([low, high]) * dt, steps)
-    # exp(y) carries a relative error of y times that of y.
-    noise = _ROUND_OFF * (1.0 + 4.0 * max(0.0, exponent.max()))
-    return ChebyshevSeries.of(amplification, low, high, noise)
+    def condition(z: np.ndarray) -> np.ndarray:
+        _, exponent = polynomial.log_power(z * dt, steps)
+        return 1.0 + np.abs(exponent) + polynomial.sensitivity(z * dt, steps)
+
+    series = ChebyshevSeries.of(amplification, low, high, condition)
+    # A polynomial of degree `steps * stages`: what comes after is round-off.
+    return replace(series, coefficients=series.coefficients[: steps * polynomial.stages + 1])
 
 
 def exponential(time: float, low: float, high: float) -> ChebyshevSeries:
     """Return the series of exp(z time) on [low, high]: exact in time."""
-    return ChebyshevSeries.of(lambda z: np.exp(z * time), low, high)
+    return ChebyshevSeries.of(
+        lambda z: np.exp(z * time), low, high, lambda z: 1.0 + np.abs(z * time)
+    )
 
 
 @nb.njit(cache=True, nogil=True)

@@ -50,6 +50,14 @@ class StepPolynomial:
         sign = np.where((increment < -1.0) & (steps % 2 == 1), -1.0, 1.0)
         return sign, steps * logarithm
 
+    def sensitivity(self, z: np.ndarray, steps: int) -> np.ndarray:
+        """Return |steps z p'(z) / p(z)|: by how much p^steps magnifies a relative error of z; 0 where p is."""
+        z = np.asarray(z, dtype=float)
+        value = self(z)
+        # p' is p without its last term.
+        slope = value - z**self.stages / factorial(self.stages)
+        return np.abs(steps * z * slope / np.where(value == 0.0, np.inf, value))
+
 
 # 2.785293563405282 is the real root of z^3 - 4 z^2 + 12 z - 24 = 0, where p(-z) = 1 for RK4.
 STEP_POLYNOMIALS = {

@@ -160,8 +160,8 @@ def spacing_claims(inputs: Inputs) -> Result:
             bool((share > 0.5).any()),
             f"Exact integration in time changes the plateau of KPSE IV by {share.max():.2g} of it at most; "
             f"the open exterior lowers it {gain.min():.3g} to {gain.max():.3g} times.",
-            "The plateau is the truncation of the domain: it stays when the time integration is exact and goes with the "
-            "open exterior.",
+            "The plateau is the truncation of the domain: it stays when the time integration is exact and goes "
+            "with the open exterior.",
         )
     )
     return Result(summary, findings)
