@@ -105,8 +105,9 @@ def test_editing_a_plot_reruns_the_plot_and_no_solver(finished):
 def test_editing_a_solver_reruns_its_runs(finished):
     touch(finished / "src/fracparticles/integrators/chebyshev.py")
     jobs = planned(finished, "lucchesi_figure_4a", *SMOKE)
-    assert "rule solve_lucchesi_figure_4a_1:" in jobs
-    assert "rule solve_lucchesi_table_2_1:" not in jobs
+    assert "rule solve_smoke_1:" in jobs
+    assert "rule study:" in jobs
+    assert "scene=lucchesi_table_2" not in jobs
 
 
 def test_a_killed_workflow_carries_on(finished):

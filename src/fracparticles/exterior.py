@@ -17,10 +17,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
 from scipy.special import roots_jacobi
 
 from fracparticles.operators import FarField
+from fracparticles.sums import valid_convolution
 
 __all__ = ["far_field"]
 
@@ -61,7 +61,7 @@ def far_field(
 
     j = np.arange(n + 1, _NEAR * n + 1)
     offsets = np.arange(i[0] - j[-1], i[-1] - j[0] + 1)
-    near = _correlate((n / j) ** tail_power, weight(offsets.astype(float)))
+    near = valid_convolution((n / j) ** tail_power, weight(offsets.astype(float)))
 
     # The tail at Chebyshev points of i, and from there to every i by barycentric interpolation.
     angle = (np.arange(_NODES) + 0.5) * (np.pi / _NODES)
@@ -71,15 +71,6 @@ def far_field(
         nodes, tail, _NODES - 1, domain=[-(n + pad), n + pad]
     )(i)
     return FarField(right=right, left=parity * right[::-1])
-
-
-def _correlate(u: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Return sum_k u_k w_{i-k} where every term exists: the `valid` part of a convolution.
-
-    A circular convolution no longer than w will do: it wraps around in the other part only.
-    """
-    length = next_fast_len(w.size, real=True)
-    return irfft(rfft(u, length) * rfft(w, length), length)[u.size - 1 : w.size]
 
 
 def _tail(

@@ -159,12 +159,13 @@ def cases_of(name: str, scene: Scene) -> list[Case]:
 
 
 def batches(
-    scenes: Mapping[str, Scene],
+    scenes: Mapping[str, Scene], smoke: bool = False
 ) -> tuple[dict[str, list[Case]], dict[str, list[Case]]]:
     """Return the cases of each scene and the batches of cases that one job computes.
 
     Two scenes that need the same run share it; it stores the more that either needs. A batch holds only cases
-    that are needed by the same scenes, so that one scene never computes a run that it does not need.
+    that are needed by the same scenes, so that one scene never computes a run that it does not need. But on the
+    tiny grids of the smoke configuration, where the start-up of a job outweighs its runs, there are two batches.
     """
     needed_by: dict[str, list[str]] = {}
     widest: dict[str, Case] = {}
@@ -182,6 +183,10 @@ def batches(
     for key, names in needed_by.items():
         groups.setdefault(tuple(names), []).append(widest[key])
     named: dict[str, list[Case]] = {}
+    if smoke:
+        every = list(widest.values())
+        named = {"smoke_1": every[::2], "smoke_2": every[1::2]}
+        groups.clear()
     for group, cases in groups.items():
         for chunk in _chunks(cases):
             number = sum(batch.rsplit("_", 1)[0] == group[0] for batch in named) + 1

@@ -21,7 +21,7 @@ except InvalidInput as error:
 RESULTS = Path(STUDY.results_dir)
 REPORT = Path(STUDY.report_dir)
 SCENES = STUDY.scenes
-CASES, BATCHES = plan.batches(SCENES)
+CASES, BATCHES = plan.batches(SCENES, STUDY.smoke)
 
 PACKAGE = Path("src/fracparticles")
 # What a run depends on, and nothing else: editing a plot reruns no solver.

@@ -9,7 +9,9 @@ import matplotlib as mpl
 import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
 
 __all__ = ["COLOURS", "MARKERS", "axes_row", "legend_below", "save", "slope_triangle"]
 
@@ -39,6 +41,8 @@ MARKERS = {
     "RIESZ": "*",
     "exact": "",
 }
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def axes_row(
@@ -83,7 +87,31 @@ def save(figure: Figure, stem: str | Path) -> None:
     """Write <stem>.svg and <stem>.png, each under a temporary name first."""
     stem = Path(stem)
     stem.parent.mkdir(parents=True, exist_ok=True)
+    for ax in figure.axes:
+        _plain_powers(ax.xaxis)
+        _plain_powers(ax.yaxis)
+    # The layout is found once, not once for each format.
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)
+        figure.set_layout_engine("none")
     for suffix, options in ((".svg", {"metadata": {"Date": None}}), (".png", {"dpi": 160})):
         temporary = stem.with_name(f".{stem.name}{suffix}")
         figure.savefig(temporary, format=suffix[1:], **options)
         temporary.replace(stem.with_suffix(suffix))
+
+
+def _plain_powers(axis: Axis) -> None:
+    """Label a logarithmic axis of more than a decade with plain text, 10⁻⁴.
+
+    The usual labels are formulas, and to typeset them takes longer than all else in a figure.
+    """
+    low, high = sorted(axis.get_view_interval())
+    if isinstance(axis.get_major_formatter(), LogFormatterSciNotation) and high > 10.0 * low > 0.0:
+        axis.set_major_formatter(FuncFormatter(_power_of_ten))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def _power_of_ten(value: float, _: int | None = None) -> str:
+    exponent = round(np.log10(value))
+    return f"10{str(exponent).translate(_SUPERSCRIPTS)}"

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.signal import fftconvolve
 
 from fracparticles import integrators
 from fracparticles.case import Case
@@ -20,7 +19,7 @@ from fracparticles.solver import compute, initial_strengths
 from fracparticles.special.stable import central_mass, green, mean_radius
 from fracparticles.spectrum import dense_matrix
 from fracparticles.studies.common import Inputs, Result, observed_order, statement
-from fracparticles.sums import BandedConvolution
+from fracparticles.sums import BandedConvolution, valid_convolution
 
 __all__ = ["exact_flux", "rejected_29", "rejected_dpse", "rejected_riesz"]
 
@@ -115,7 +114,7 @@ def _rate_with_continued_potential(setting: Setting, u: np.ndarray, c: np.ndarra
     reach, h = c.size - 1, setting.spacing
     offsets = np.arange(-2 * setting.n - reach, 2 * setting.n + reach + 1.0)
     b = dpse.potential_weights(offsets, setting.alpha, setting.order, setting.overlap)
-    v = h ** (2.0 - setting.alpha) * fftconvolve(b, u, mode="valid")[-2 * reach - 1 :]
+    v = h ** (2.0 - setting.alpha) * valid_convolution(u, b)[-2 * reach - 1 :]
     stencil = np.concatenate([c[:0:-1], c])
     return float(stencil @ (v - v[reach])) / h**2
 
@@ -438,8 +437,8 @@ def _fluxes(
     u = green(x, time, alpha)
     r = np.arange(-2 * n, 2 * n + 1) / s
     scale = h / (s * h) ** alpha  # V_j / epsilon^alpha
-    cut_off = scale * fftconvolve(r * riesz.kernel_star(r, alpha), u, mode="valid")
-    mollified = -scale * fftconvolve(kernel("F", r, alpha), u, mode="valid")
+    cut_off = scale * valid_convolution(u, r * riesz.kernel_star(r, alpha))
+    mollified = -scale * valid_convolution(u, kernel("F", r, alpha))
     inside = np.abs(x) <= 5.0 * mean_radius(alpha)
     return x[inside], exact_flux(x, time, alpha)[inside], cut_off[inside], mollified[inside]
 

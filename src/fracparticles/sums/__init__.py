@@ -12,10 +12,16 @@ decay like a Gaussian.
 from __future__ import annotations
 
 from fracparticles.sums.banded import BandedConvolution
-from fracparticles.sums.fourier import FourierConvolution
+from fracparticles.sums.fourier import FourierConvolution, valid_convolution
 from fracparticles.sums.naive import NaiveConvolution
 
-__all__ = ["SUMMATIONS", "BandedConvolution", "FourierConvolution", "NaiveConvolution"]
+__all__ = [
+    "SUMMATIONS",
+    "BandedConvolution",
+    "FourierConvolution",
+    "NaiveConvolution",
+    "valid_convolution",
+]
 
 SUMMATIONS: dict[str, type[FourierConvolution] | type[NaiveConvolution]] = {
     "fft": FourierConvolution,

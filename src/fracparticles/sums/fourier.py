@@ -5,6 +5,7 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 import pyfftw
+from scipy.fft import irfft, next_fast_len, rfft
 
 __all__ = ["FourierConvolution", "shares_memory", "transform_length"]
 
@@ -102,6 +103,16 @@ def _buffers(length: int) -> tuple[np.ndarray, np.ndarray]:
     if shares_memory(length):
         return spectrum.view(float)[:length], spectrum
     return pyfftw.empty_aligned(length), spectrum
+
+
+def valid_convolution(u: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Return sum_k u_k w_{i-k} where every term exists, shape (w.size - u.size + 1,).
+
+    For sums that are done once. A circular convolution no longer than w will do: it wraps around in the other
+    part only.
+    """
+    length = next_fast_len(w.size, real=True)
+    return irfft(rfft(u, length) * rfft(w, length), length)[u.size - 1 : w.size]
 
 
 @nb.njit(cache=True, nogil=True)
