@@ -145,14 +145,16 @@ def _lines(ax: Axes, part: pd.DataFrame) -> None:
 
 
 def _guide(ax: Axes, x: pd.Series, x0: float, y0: float, slope: float, label: str) -> None:
-    """A thin line of that slope through (x0, 2.5 y0)."""
+    """A thin line of that slope above the point (x0, y0), its label at the right end."""
     xs = np.array([x.min(), x.max()])
-    ax.plot(xs, 2.5 * y0 * (xs / x0) ** slope, color="0.45", linewidth=0.9, linestyle=":")
+    ys = 4.0 * y0 * (xs / x0) ** slope
+    ax.plot(xs, ys, color="0.45", linewidth=0.9, linestyle=":")
     ax.annotate(
         label,
-        (x0, 2.5 * y0),
-        xytext=(4, 4),
+        (xs[1], ys[1]),
+        xytext=(0, 4),
         textcoords="offset points",
+        ha="right",
         color="0.3",
         fontsize=8,
     )
