@@ -434,11 +434,11 @@ def _fluxes(
     """Positions within 5 R_alpha, the exact flux, that of the cut-off potential, that of (19)."""
     n, s = round(float(parameters["half_width"]) / h), float(parameters["overlap"])
     x, time = np.arange(-n, n + 1) * h, float(parameters["time"])
-    u = green(x, time, alpha)
+    u = np.asarray(green(x, time, alpha))
     r = np.arange(-2 * n, 2 * n + 1) / s
     scale = h / (s * h) ** alpha  # V_j / epsilon^alpha
     cut_off = scale * valid_convolution(u, r * riesz.kernel_star(r, alpha))
-    mollified = -scale * valid_convolution(u, kernel("F", r, alpha))
+    mollified = -scale * valid_convolution(u, np.asarray(kernel("F", r, alpha)))
     inside = np.abs(x) <= 5.0 * mean_radius(alpha)
     return x[inside], exact_flux(x, time, alpha)[inside], cut_off[inside], mollified[inside]
 
