@@ -13,10 +13,6 @@ rule reference_benchmark:
         RESULTS / "logs/reference_benchmark.log",
     # More than there are, which Snakemake scales down to all: nothing else runs while the clock does.
     threads: 1024
-    log:
-        RESULTS / "logs/reference_benchmark.log",
-    # All cores: nothing else runs while the clock does.
-    threads: workflow.cores
     params:
         **STUDY.benchmark,
     script:
