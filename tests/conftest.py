@@ -18,6 +18,16 @@ COMBINATIONS = [
 ]
 
 
+def combinations_without(*schemes: str, exterior: str | None = None) -> list:
+    """The combinations of the other schemes, with one exterior or all."""
+    return [
+        parameter
+        for parameter in COMBINATIONS
+        if parameter.values[0][0] not in schemes
+        and parameter.values[0][2] == (exterior or parameter.values[0][2])
+    ]
+
+
 @pytest.fixture(params=COMBINATIONS)
 def combination(request) -> tuple[str, int, str]:
     """Return scheme, order and exterior."""

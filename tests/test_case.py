@@ -219,7 +219,6 @@ REFUSED = [
     ({"t_final": 0.2}, "t_final", "a number > t_initial = 0.5"),
     ({"t_final": INF}, "t_final", "a number between"),
     ({"t_initial": -1.0}, "t_initial", "a number between"),
-    ({"t_initial": 0.0}, "t_initial", "a number > 0 when the run starts from the fundamental"),
     ({"half_width": 4.0, "truncation": None, "t_final": 1e20}, "t_final", "at most 3"),
     ({"diffusivity": 0.0}, "diffusivity", "a number between"),
     ({"initial": 5}, "initial", "text"),

@@ -6,6 +6,7 @@ from math import factorial
 
 import numpy as np
 import pytest
+from conftest import combinations_without
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm, toeplitz
@@ -148,25 +149,30 @@ def non_normality(beta, order, n=60) -> float:
     return float(np.sqrt(np.linalg.cond(toeplitz(b))))
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
+# A step of GPSE is an Euler step, and the solutions of (29) grow: they are in the next test.
+@pytest.mark.parametrize(
+    ("combination", "integrator"),
+    [
+        pytest.param(parameter.values[0], integrator, id=f"{parameter.id}-{integrator}")
+        for parameter in combinations_without("PSE29")
+        for integrator in INTEGRATORS
+        if parameter.values[0][0] != "GPSE" or integrator == "euler"
+    ],
+)
 @pytest.mark.parametrize("kind", ["smooth", "random"])
 def test_series_and_stepping_give_the_same(combination, integrator, kind):
-    if combination[0] == "GPSE" and integrator != "euler":
-        pytest.skip("a GPSE step is an Euler step")
-    if combination[0] == "PSE29":
-        pytest.skip("its solutions grow, see below")
     for beta in (0.1, 0.5, 0.9):
         stepping, series, start = both(combination, beta, integrator, 0.9, 400, kind)
         room = 1e-12 * (non_normality(beta, combination[1]) if combination[0] == "DPSE" else 1.0)
         assert np.abs(series - stepping).max() <= room * start, beta
 
 
+# The step of GPSE is tied to the smoothing length and cannot be unstable here.
+@pytest.mark.parametrize("combination", combinations_without("GPSE"))
 @pytest.mark.parametrize("integrator", ["euler", "rk2", "rk4"])
 @pytest.mark.parametrize("kind", ["point", "random"])
 def test_they_blow_up_alike(combination, integrator, kind):
     """Beyond the limit the shortest waves grow; relative to them the two agree."""
-    if combination[0] == "GPSE":
-        pytest.skip("its step is tied to the smoothing length and cannot be unstable")
     stepping, series, _ = both(combination, 0.5, integrator, 1.3, 40, kind)
     assert np.abs(stepping).max() > 1e3
     assert np.abs(series - stepping).max() <= 1e-12 * np.abs(stepping).max()
@@ -221,10 +227,9 @@ def test_stepping_leaves_its_input_alone(name):
 # --- against the exponential of the matrix --------------------------------------------------------
 
 
+@pytest.mark.parametrize("combination", combinations_without("GPSE", "PSE29"))
 def test_the_exponential_is_that_of_the_matrix(combination):
     scheme = combination[0]
-    if scheme in ("GPSE", "PSE29"):
-        pytest.skip("GPSE has its own step; (29) grows")
     case = case_of(combination, 0.5, 2.0, 30, t_initial=0.0, t_final=20.0, initial="own")
     operator = SCHEMES[scheme].operator(case.setting)
     u0 = initial_data("random", case)

@@ -235,3 +235,10 @@ def test_on_a_narrow_lattice_the_error_runs_over_the_lattice():
     expected = c.particle_spacing * c.particles * 1e-3 / central_mass(2.0, 1.5, 1.5)
     exact = green(c.x, 1.5, 1.5)
     assert relative_l1_error(c, c.x, exact + 1e-3) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_point_mass_is_no_start_but_data_of_ones_own_are():
+    c = case(half_width=10.0, t_initial=0.0)
+    with pytest.raises(InvalidInput, match="a point mass at t = 0"):
+        compute(c)
+    assert compute(c, lambda x: np.exp(-(x**2))).u.max() < 1.0

@@ -208,6 +208,24 @@ class Case(BaseModel):
         reach = STEP_POLYNOMIALS[self.method].stability_interval / 2.0
         return float(reach * limit * self.particle_spacing**self.alpha / self.diffusivity)
 
+    def refuse_point_mass(self) -> None:
+        """Refuse to start from the fundamental solution at t = 0, where it is a point mass.
+
+        Not part of the validation: initial data of one's own may come with the call of `solve`.
+
+        Raises
+        ------
+        InvalidInput
+            If the case starts from the fundamental solution at t_initial = 0.
+        """
+        if self.initial == FUNDAMENTAL and self.t_initial <= 0.0:
+            raise InvalidInput(
+                "t_initial",
+                self.t_initial,
+                "a number > 0 when the run starts from the fundamental solution, a point mass at t = 0",
+                "Give a positive time, or initial data of your own.",
+            )
+
     # --- identity -------------------------------------------------------------------------------------------
 
     def to_json(self) -> str:
@@ -266,13 +284,6 @@ def _check_time(case: Case) -> None:
             case.t_final,
             f"a number > t_initial = {case.t_initial:g}",
             "Give a later final time.",
-        )
-    if case.initial == FUNDAMENTAL and case.t_initial <= 0.0:
-        raise InvalidInput(
-            "t_initial",
-            case.t_initial,
-            "a number > 0 when the run starts from the fundamental solution, a point mass at t = 0",
-            "Give a positive time, or initial data of your own.",
         )
 
 

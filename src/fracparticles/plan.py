@@ -144,6 +144,7 @@ def expand(blocks: Iterable[BaseModel | Mapping[str, Any]]) -> list[Case]:
         choices = [value if isinstance(value, list) else [value] for value in fields.values()]
         for combination in product(*choices):
             case = Case(**dict(zip(names, combination, strict=True)))
+            case.refuse_point_mass()
             cases.setdefault(case.path, case)
     return list(cases.values())
 

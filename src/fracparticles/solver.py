@@ -93,6 +93,7 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     """Return the initial strengths on `case.x` and one line on where they come from."""
     source: Initial = case.initial if initial is None else initial
     if isinstance(source, str) and source == FUNDAMENTAL:
+        case.refuse_point_mass()
         u0 = np.asarray(green(case.x, case.diffusivity * case.t_initial, case.alpha))
         return u0, f"fundamental solution at t = {case.t_initial:g}"
     if isinstance(source, (str, Path)):
