@@ -72,6 +72,7 @@ class _Figure:
 @dataclass(frozen=True)
 class _Table:
     text: str
+    rows: int
     csv: str
 
 
@@ -141,7 +142,9 @@ def build(
     )
     page = _render(
         templates["report.html.j2"],
-        body=markdown.markdown(text, extensions=["tables", "sane_lists"], output_format="html"),
+        body=markdown.markdown(
+            text, extensions=["tables", "sane_lists", "md_in_html"], output_format="html"
+        ),
         style=templates["style.css"].render(),
     )
     paths = [out / "report.md", out / "report.html"]
@@ -203,7 +206,8 @@ def _table(stem: Path, scene: SceneEntry, out: Path) -> _Table:
     text, csv = _candidates(stem, (".md", ".csv"))
     _require(text, _target(text, scene))
     _require(csv, _target(csv, scene))
-    return _Table(text=text.read_text(encoding="utf-8").strip(), csv=_link(csv, out))
+    lines = text.read_text(encoding="utf-8").strip()
+    return _Table(text=lines, rows=lines.count("\n") - 1, csv=_link(csv, out))
 
 
 def _candidates(stem: Path, suffixes: Sequence[str]) -> list[Path]:
