@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fracparticles.case import Case, choices_of, takes_numbers
+from fracparticles.case import Case
+from fracparticles.complaints import choices_of, takes_numbers
 from fracparticles.errors import InvalidInput
 from fracparticles.special import mean_radius
 

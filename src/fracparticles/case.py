@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
 from functools import cached_property
 from math import ceil
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
-from pydantic.fields import FieldInfo
 
+from fracparticles.complaints import allowed, first_complaint
 from fracparticles.errors import InvalidInput
 from fracparticles.integrators import STEP_POLYNOMIALS
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.special.stable import mean_radius
 from fracparticles.stability import stability_limit
 
-__all__ = ["FUNDAMENTAL", "Case", "choices_of", "takes_numbers"]
+__all__ = ["FUNDAMENTAL", "Case"]
 
 FUNDAMENTAL = "fundamental"
 _BYTES_PER_PARTICLE = 200  # measured: about 20 arrays of float64 at the peak
@@ -96,14 +95,14 @@ class Case(BaseModel):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise _one_line(error, type(self)) from None
+            raise first_complaint(error, type(self)) from None
 
     @model_validator(mode="before")
     @classmethod
     def _plain(cls, data: dict[str, Any]) -> dict[str, Any]:
         for name, field in cls.model_fields.items():
             if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
-                raise InvalidInput(name, data[name], _allowed(field), "Give such a value.")
+                raise InvalidInput(name, data[name], allowed(field), "Give such a value.")
         return {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
 
     @model_validator(mode="after")
@@ -399,62 +398,3 @@ def _check_integrator(case: Case) -> None:
             f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}",
             "Give dt, or integrator='exponential', which needs none.",
         )
-
-
-def _one_line(error: ValidationError, model: type[BaseModel]) -> InvalidInput:
-    """Turn the first complaint of pydantic into one line of ours."""
-    first = error.errors()[0]
-    cause = first.get("ctx", {}).get("error")
-    if isinstance(cause, InvalidInput):  # one of our own checks
-        return cause
-    name, value = str(first["loc"][0]), first["input"]
-    fields = model.model_fields
-    if first["type"] == "extra_forbidden":
-        return InvalidInput(
-            name, value, f"one of {', '.join(fields)}", _closest(name, fields) or "Leave it out."
-        )
-    if first["type"] == "missing":
-        return InvalidInput(name, None, _allowed(fields[name]), f"Give {name}.")
-    remedy = _closest(value, choices_of(fields[name].annotation)) or "Give such a value."
-    return InvalidInput(name, value, _allowed(fields[name]), remedy)
-
-
-def _allowed(field: FieldInfo) -> str:
-    """Return in words what a field takes: its choices, or a number and its bounds."""
-    choices = choices_of(field.annotation)
-    if choices:
-        return f"one of {', '.join(map(str, choices))}"
-    if field.annotation is str:
-        return "text"
-    bounds = {
-        name: getattr(bound, name)
-        for bound in field.metadata
-        for name in ("gt", "ge", "lt", "le")
-        if hasattr(bound, name)
-    }
-    low, high = bounds.get("gt", bounds.get("ge")), bounds.get("lt", bounds.get("le"))
-    return f"a number between {low:g} and {high:g}{' (exclusive)' if 'lt' in bounds else ''}"
-
-
-def choices_of(annotation: Any) -> tuple[Any, ...]:
-    """Return the values of the Literal in the annotation of a field, () if there is none."""
-    if get_origin(annotation) is Literal:
-        return get_args(annotation)
-    return next(filter(None, map(choices_of, get_args(annotation))), ())
-
-
-def takes_numbers(annotation: Any) -> bool:
-    """Say whether a field with this annotation takes numbers."""
-    kinds = {annotation, *get_args(annotation), *map(type, choices_of(annotation))}
-    return not kinds.isdisjoint((int, float))
-
-
-def _closest(value: object, choices: Iterable[object]) -> str | None:
-    """Return the question whether the choice nearest to `value` was meant."""
-    import difflib
-
-    if not isinstance(value, str):
-        return None
-    names = {str(choice).casefold(): choice for choice in choices}
-    close = difflib.get_close_matches(value[:100].casefold(), names, n=1)
-    return f"Did you mean {names[close[0]]!r}?" if close else None

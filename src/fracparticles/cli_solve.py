@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 
 from cyclopts import Parameter
 
-from fracparticles.case import Case, choices_of, takes_numbers
+from fracparticles.case import Case
 from fracparticles.cli import number_or_text
+from fracparticles.complaints import choices_of, takes_numbers
 from fracparticles.errors import InvalidInput
 
 __all__ = ["solve"]

@@ -13,6 +13,7 @@ from typing import Any, Union
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from fracparticles.case import Case
+from fracparticles.complaints import closest
 from fracparticles.errors import InvalidInput
 
 __all__ = [
@@ -227,15 +228,11 @@ def _complaint(error: ValidationError) -> InvalidInput:
     place = [str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)]
     field = ".".join(place) or "configuration"
     if first["type"] == "extra_forbidden":
-        import difflib
-
         models: dict[int, type[BaseModel]] = {1: StudyConfig, 3: Scene}
         model = models.get(len(place), RunBlock)
-        close = difflib.get_close_matches(place[-1], model.model_fields, n=1)
-        remedy = f"Did you mean {close[0]!r}?" if close else "Remove it."
-        return InvalidInput(
-            field, first["input"], f"one of {', '.join(model.model_fields)}", remedy
-        )
+        names = model.model_fields
+        remedy = closest(place[-1], names) or "Remove it."
+        return InvalidInput(field, first["input"], f"one of {', '.join(names)}", remedy)
     if first["type"] == "missing":
         return InvalidInput(field, None, "needed", "Add it to the configuration.")
     hint = ""

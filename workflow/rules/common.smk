@@ -33,6 +33,7 @@ CORE = sorted(
     or path.stem
     in {
         "case",
+        "complaints",
         "dataset",
         "errors",
         "exterior",
