@@ -1,0 +1,162 @@
+r"""Fractional operators of order 0 < alpha < 1 on [a, b], in the forms without a singular kernel.
+
+Left-handed, by parts from Eqs. (1), (3), (5) and, with alpha = alpha(x) (Type I), from (7)-(9):
+
+    I^alpha f   = [f(a) (x-a)^alpha + int_a^x f'(x') (x-x')^alpha dx'] / Gamma(1 + alpha),                     (33)
+    RL D^alpha f = d/dx I^(1-alpha) f,                                                                         (34)
+                 = [f(a) (x-a)^-alpha + d/dx int_a^x f'(x') (x-x')^(1-alpha)/(1-alpha) dx'] / Gamma(1-alpha),  (35)
+    C D^alpha f = [f'(a) (x-a)^(1-alpha) + int_a^x f''(x') (x-x')^(1-alpha) dx'] / Gamma(2 - alpha),           (36)
+
+(35) for a constant order, (34) for a variable one. Derivatives are those of `derivatives`, integrals those of
+`integrals`. A field is given on all particles: the virtual ones carry the values of f beyond the ends, and the outer
+derivative of (34), (35) takes the sum of the integral there as well, at each its own. (Eqs. (25) and (31) print the
+integral at x_i inside the sum, where it is the one at x_j.)
+
+The right-handed operators (2), (4), (6) are the left-handed ones of the mirrored field: the sign (-1)^n of (4) and (6)
+is that of the mirrored derivative.
+
+The results are complex, see `integrals`; the value is the real part. At x = a the derivative of Riemann and Liouville
+is infinite unless f(a) = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.special import gamma
+
+from fracparticles.errors import InvalidInput
+from fracparticles.sph.derivatives import gradient, second_derivative
+from fracparticles.sph.integrals import power_integral
+from fracparticles.sph.particles import ParticleLine
+
+__all__ = ["caputo_derivative", "rl_derivative", "rl_integral", "singular_integral"]
+
+Left = Callable[[ParticleLine, np.ndarray, np.ndarray, str], np.ndarray]
+
+
+def rl_integral(
+    line: ParticleLine,
+    f: object,
+    order: object,
+    *,
+    side: str = "left",
+    method: str = "standard",
+) -> np.ndarray:
+    """The Riemann-Liouville integral (33) on the real particles, shape (N,), complex.
+
+    Parameters
+    ----------
+    line : ParticleLine
+        The particles.
+    f : array_like, shape (N + 2 margin,)
+        The field on all particles, `line.x_all`.
+    order : float or array_like of the same shape
+        alpha, constant or on all particles (Type I), between 0 and 1.
+    side : {"left", "right"}
+        From a, or up to b.
+    method : {"standard", "halved", "modified"}
+        How the sum that stands for the integral is done, see `integrals`.
+
+    Raises
+    ------
+    InvalidInput
+        If a value is not allowed. So do the other operators, with the same parameters.
+    """
+    return _apply(_left_integral, line, f, order, side, method)[line.inside]
+
+
+def rl_derivative(
+    line: ParticleLine,
+    f: object,
+    order: object,
+    *,
+    side: str = "left",
+    method: str = "standard",
+) -> np.ndarray:
+    """The Riemann-Liouville derivative (35), or (34) for a variable order. Parameters as in `rl_integral`."""
+    return _apply(_left_rl_derivative, line, f, order, side, method)
+
+
+def caputo_derivative(
+    line: ParticleLine,
+    f: object,
+    order: object,
+    *,
+    side: str = "left",
+    method: str = "standard",
+) -> np.ndarray:
+    """The Caputo derivative (36). Parameters as in `rl_integral`."""
+    return _apply(_left_caputo, line, f, order, side, method)
+
+
+def singular_integral(
+    line: ParticleLine, f: object, order: object, *, method: str = "standard"
+) -> np.ndarray:
+    """The left-handed integral by the singular sum (23), (24), whose infinite term j = i is left out."""
+    f = line.field("f", f)[line.inside]
+    alpha = _orders(line, order)[line.inside]
+    return power_integral(line, f, line.x, alpha - 1.0, method) / gamma(alpha)
+
+
+def _apply(
+    left: Left, line: ParticleLine, f: object, order: object, side: str, method: str
+) -> np.ndarray:
+    f, alpha = line.field("f", f), _orders(line, order)
+    if side == "left":
+        return left(line, f, alpha, method)
+    if side == "right":
+        return left(line, f[::-1], alpha[::-1], method)[::-1]
+    raise InvalidInput("side", side, "left or right", "Choose one.")
+
+
+def _orders(line: ParticleLine, order: object) -> np.ndarray:
+    scalar = np.ndim(order) == 0  # type: ignore[arg-type]
+    alpha = line.field("order", np.full(line.x_all.size, order) if scalar else order)
+    if not (alpha.min() > 0.0 and alpha.max() < 1.0):
+        raise InvalidInput("order", order, "numbers between 0 and 1", "Give 0 < alpha < 1.")
+    return alpha
+
+
+def _left_integral(line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str) -> np.ndarray:
+    """(33) on all particles: beyond a, the powers of the negative distances are complex."""
+    boundary = f[line.inside.start] * (line.x_all - line.a + 0j) ** alpha
+    integral = power_integral(line, _slope(line, f), line.x_all, alpha, method)
+    return (boundary + integral) / gamma(1.0 + alpha)
+
+
+def _left_rl_derivative(
+    line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str
+) -> np.ndarray:
+    if alpha.min() < alpha.max():  # (34)
+        return _slope(line, _left_integral(line, f, 1.0 - alpha, method))
+    integral = power_integral(line, _slope(line, f), line.x_all, 1.0 - alpha, method)
+    derivative = _slope(line, integral / gamma(2.0 - alpha))
+    at_a = f[line.inside.start]
+    if at_a != 0.0:
+        with np.errstate(divide="ignore"):
+            power = (line.x - line.a) ** -alpha[line.inside]
+        derivative.real += at_a * power / gamma(1.0 - alpha[line.inside])
+    return derivative
+
+
+def _left_caputo(line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str) -> np.ndarray:
+    power = 1.0 - alpha[line.inside]
+    boundary = _slope(line, f)[0] * (line.x - line.a) ** power
+    integral = power_integral(line, _curvature(line, f), line.x, power, method)
+    return (boundary + integral) / gamma(1.0 + power)
+
+
+def _slope(line: ParticleLine, f: np.ndarray) -> np.ndarray:
+    """(16), (18) on the real particles, from all."""
+    return gradient(line.x, line.x_all, _volumes(line), f, line.smoothing)
+
+
+def _curvature(line: ParticleLine, f: np.ndarray) -> np.ndarray:
+    """(37) on the real particles, from all."""
+    return second_derivative(line.x, f[line.inside], line.x_all, _volumes(line), f, line.smoothing)
+
+
+def _volumes(line: ParticleLine) -> np.ndarray:
+    return np.full(line.x_all.size, line.spacing)
