@@ -1,0 +1,193 @@
+"""Kernels from the moment conditions of Sec. 2.2: for the derivative of order beta with accuracy r,
+
+    M_k = 0 for k in S = {1, ..., beta + r - 1} without beta,    M_beta = (-1)^beta beta!.
+
+With the symmetry (19) every other condition holds by itself; those left are a linear system for the
+coefficients of a polynomial times a Gaussian, or for the values of a kernel at the points of a lattice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import factorial
+from typing import Any
+
+import numpy as np
+
+from fracparticles.errors import InvalidInput
+from fracparticles.pse.moments import gaussian_moment, lattice_moment
+from fracparticles.pse.shapes import GaussianKernel, Stencil
+
+__all__ = [
+    "construct",
+    "construct_laplacian",
+    "construct_stencil",
+    "required_moments",
+    "solve_exactly",
+    "taylor_constant",
+]
+
+_MOST = 24  # beta + r: the values of the kernel lose about a digit for every three
+_WORST = 1e10  # condition number: beyond it the conditions are met to less than six digits
+
+
+def required_moments(derivative: int, accuracy: int) -> dict[int, int]:
+    """Return k -> M_k for all conditions of Sec. 2.2; derivative 0 is the function itself, M_0 = 1 by (5).
+
+    Raises
+    ------
+    InvalidInput
+        Unless beta >= 0 and r >= 1 are whole numbers with beta + r <= 24.
+    """
+    _check("derivative", derivative, 0)
+    _check("accuracy", accuracy, 1)
+    if derivative + accuracy > _MOST:
+        raise InvalidInput(
+            "accuracy",
+            accuracy,
+            f"derivative + accuracy <= {_MOST}",
+            "The kernel would drown in round-off.",
+        )
+    first = 0 if derivative == 0 else 1  # f(y) - f(x) in (18) frees M_0
+    return {
+        k: (-1) ** derivative * factorial(derivative) if k == derivative else 0
+        for k in range(first, derivative + accuracy)
+    }
+
+
+def construct(derivative: int, accuracy: int, overlap: float | None = None) -> GaussianKernel:
+    """Return the kernel c_j z^(p + 2 j) exp(-z^2) / sqrt(pi), p = beta mod 2, that meets the conditions.
+
+    Parameters
+    ----------
+    derivative, accuracy : int
+        beta and r; an odd r gives r + 1 by symmetry.
+    overlap : float, optional
+        Meet the conditions on the lattice with this eps / h, (28), instead of over the line: then the sum over
+        that lattice has no quadrature error in them, however few particles a kernel holds.
+
+    Returns
+    -------
+    GaussianKernel
+        With exact coefficients if `overlap` is None.
+
+    Raises
+    ------
+    InvalidInput
+        As `required_moments`; or if the lattice has too few points within the kernel for the conditions.
+    """
+    parity = derivative % 2
+    conditions = _of_parity(required_moments(derivative, accuracy), parity)
+    powers = range(parity, parity + 2 * len(conditions), 2)
+    if overlap is None:
+        coefficients, condition = _solve(conditions, lambda k, j: gaussian_moment(k + powers[j]))
+        return GaussianKernel(coefficients, parity, 1, condition)
+    matrix = np.array(
+        [[_lattice_moment_of_power(k + power, overlap) for power in powers] for k in conditions]
+    )
+    condition = float(np.linalg.cond(matrix))
+    if not condition < _WORST:
+        raise InvalidInput(
+            "overlap",
+            overlap,
+            f"enough particles in a kernel for {len(conditions)} conditions",
+            "Take a larger overlap, or construct_stencil.",
+        )
+    solution = np.linalg.solve(matrix, np.array(list(conditions.values()), dtype=float))
+    return GaussianKernel(tuple(solution.tolist()), parity, 1, condition)
+
+
+def construct_laplacian(accuracy: int, dim: int) -> GaussianKernel:
+    """Return the radial kernel of the Laplacian in d dimensions, accuracy r.
+
+    The Taylor series of f around x, averaged over directions, gives
+
+        eps^-2 int [f(y) - f(x)] eta_eps(x - y) dy
+            = sum_k eps^(2k-2) I_2k Lap^k f(x) / (4^k k! (d/2)_k),   I_2k = int |z|^2k eta dz,
+
+    so that I_2 = 2 d and I_4 = ... = I_r = 0. For d = 1 it is `construct(2, r)`.
+
+    Raises
+    ------
+    InvalidInput
+        As `required_moments`; or unless d is 1, 2 or 3.
+    """
+    if dim not in (1, 2, 3):
+        raise InvalidInput("dim", dim, "1, 2 or 3", "Choose one of these.")
+    conditions = _of_parity(required_moments(2, accuracy), 0)
+    conditions[2] *= dim
+    coefficients, condition = _solve(conditions, lambda k, j: gaussian_moment(k + 2 * j, dim))
+    return GaussianKernel(coefficients, 0, dim, condition)
+
+
+def construct_stencil(derivative: int, accuracy: int) -> Stencil:
+    """Return the narrowest kernel on the lattice with eps = h: the discrete conditions (28) for its values.
+
+    With (18) it is the centred finite difference of that accuracy; beta = 2, r = 2 gives (31).
+
+    Raises
+    ------
+    InvalidInput
+        As `required_moments`; or for beta = 0, where (9) at a particle is f itself.
+    """
+    if derivative == 0:
+        raise InvalidInput("derivative", 0, "1 or more", "The function itself needs no stencil.")
+    parity = derivative % 2
+    conditions = _of_parity(required_moments(derivative, accuracy), parity)
+    # The unknowns are eta(1), ..., eta(n); eta(-i) = (-1)^beta eta(i) doubles each.
+    right, condition = _solve(conditions, lambda k, j: Fraction(2 * (j + 1) ** k))
+    left = [(-1) ** derivative * v for v in reversed(right)]
+    return Stencil((*left, Fraction(0), *right), condition)
+
+
+def taylor_constant(kernel: GaussianKernel, derivative: int, accuracy: int) -> Fraction | float:
+    """Return the constant of the first term that (17) leaves over, C eps^r f^(beta+r): (-1)^k M_k / k!, k = beta + r.
+
+    For an even r, in one dimension. |C| is C_1 of Sec. 2.2, with the norm of f^(beta+r), not f^(r).
+    """
+    k = derivative + accuracy
+    terms = (
+        c * gaussian_moment(k + kernel.parity + 2 * j) for j, c in enumerate(kernel.coefficients)
+    )
+    return sum(terms, Fraction(0)) * (-1) ** k / factorial(k)
+
+
+def solve_exactly(
+    matrix: Sequence[Sequence[Fraction]], right: Sequence[Fraction]
+) -> list[Fraction]:
+    """Solve a square linear system by Gauss elimination in fractions."""
+    rows = [[*row, value] for row, value in zip(matrix, right, strict=True)]
+    for i in range(len(rows)):
+        pivot = next(r for r in range(i, len(rows)) if rows[r][i])
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        rows[i] = [value / rows[i][i] for value in rows[i]]
+        for r in range(len(rows)):
+            if r != i:
+                factor = rows[r][i]
+                rows[r] = [a - factor * b for a, b in zip(rows[r], rows[i], strict=True)]
+    return [row[-1] for row in rows]
+
+
+def _solve(
+    conditions: dict[int, int], entry: Callable[[int, int], Fraction]
+) -> tuple[tuple[Fraction, ...], float]:
+    matrix = [[entry(k, j) for j in range(len(conditions))] for k in conditions]
+    solution = solve_exactly(matrix, [Fraction(value) for value in conditions.values()])
+    return tuple(solution), float(np.linalg.cond(np.array(matrix, dtype=float)))
+
+
+def _of_parity(conditions: dict[int, int], parity: int) -> dict[int, int]:
+    """The conditions that (19) does not meet by itself."""
+    return {k: value for k, value in conditions.items() if k % 2 == parity}
+
+
+def _lattice_moment_of_power(power: int, overlap: float) -> float:
+    """M^_0 of z^power exp(-z^2) / sqrt(pi), an even power."""
+    monomial = GaussianKernel((0.0,) * (power // 2) + (1.0,))
+    return float(lattice_moment(monomial, 0, overlap))
+
+
+def _check(name: str, value: Any, least: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise InvalidInput(name, value, f"a whole number from {least} on", "Give such a number.")
