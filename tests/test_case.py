@@ -166,7 +166,7 @@ def test_annotations():
     numbers = {name for name, field in fields.items() if takes_numbers(field.annotation)}
     assert numbers == {
         *("order", "beta", "dim", "truncation", "half_width", "spacing", "overlap", "dt"),
-        *("diffusivity", "t_initial", "t_final"),
+        *("diffusivity", "t_initial", "t_final", "kernel_table", "remesh_above", "threshold"),
     }
 
 
@@ -175,14 +175,15 @@ def test_annotations():
 NAN, INF = float("nan"), float("inf")
 REFUSED = [
     ({"scheme": "kpse"}, "scheme", "Did you mean 'KPSE'?"),
-    ({"scheme": "XYZ"}, "scheme", "one of DD, DPSE, FPSE, KPSE, GPSE, FD, PSE29, RIESZ"),
+    ({"scheme": "XYZ"}, "scheme", "one of DD, DPSE, FPSE, KPSE, GPSE, DVM, FD, PSE29, RIESZ"),
     ({"scheme": 3}, "scheme", "one of DD"),
     ({"scheme": b"KPSE"}, "scheme", "one of DD"),
     ({"order": 3}, "order", "one of 2, 4"),
     ({"order": "4"}, "order", "Did you mean 4?"),
     ({"order": True}, "order", "one of 2, 4"),
     ({"scheme": "GPSE", "order": 4}, "order", "2 for GPSE"),
-    ({"dim": 2}, "dim", "one of 1"),
+    ({"dim": 4}, "dim", "one of 1, 2, 3"),
+    ({"dim": 2, "scheme": "DPSE"}, "dim", "1 for DPSE"),
     ({"dim": True}, "dim", "one of 1"),
     ({"beta": 0.0}, "beta", "a number between 0 and 1 (exclusive)"),
     ({"beta": 1.0}, "beta", "a number between 0 and 1 (exclusive)"),

@@ -90,9 +90,11 @@ def test_every_flag_reaches_the_case(cli):
         "evaluation": "stepping",
         "summation": "naive",
         "exterior": "open",
+        "kernel_table": 0.01,
         "store": "profile",
     }
-    assert {*everything, "half_width"} == set(Case.model_fields)
+    of_others = {"half_width", "remeshing", "remesh_above", "threshold"}
+    assert {*everything, *of_others} == set(Case.model_fields)
     flags = [f"--{name.replace('_', '-')}={value}" for name, value in everything.items()]
     assert cli("solve", *flags, "-o", "run.nc")[0] == 0
     assert Case.from_json(fp.read_run("run.nc").attrs["case"]) == Case(**everything)
@@ -225,6 +227,8 @@ def test_limit(cli):
     a = fp.stability_limit("KPSE", 0.5, 4, 3.0)
     assert (status, err) == (0, "")
     assert out == f"a = {a:.6g}\ndt = {a * 0.1**1.5 / 2.0:.6g}\n"
+    square = fp.stability_limit("KPSE", 0.5, dim=2)
+    assert cli("limit", *words_of("--scheme KPSE --beta 0.5 --dim 2"))[1] == f"a = {square:.6g}\n"
 
 
 @pytest.mark.parametrize(
@@ -235,6 +239,7 @@ def test_limit(cli):
         ("--scheme KPSE --beta x", ("beta = 'x'",)),
         ("--scheme KPSE --beta 0.5 --order 3", ("order = 3",)),
         ("--scheme KPSE --beta 0.5 --overlap 0", ("overlap = 0",)),
+        ("--scheme FD --beta 0.5 --dim 2", ("dim = 2", "1 for FD")),
         ("--scheme KPSE --beta 0.5 --spacing 0", ("spacing = 0", "positive")),
         ("--scheme KPSE --beta 0.5 --spacing x", ("spacing = 'x'", "positive")),
         ("--scheme KPSE --beta 0.5 --diffusivity -1", ("diffusivity = -1", "positive")),

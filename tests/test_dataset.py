@@ -41,6 +41,7 @@ PARAMETERS = {
     "evaluation": "series",
     "summation": "fft",
     "exterior": "truncated",
+    "dim": 1,
 }
 
 
@@ -101,6 +102,27 @@ def test_own_initial_data_have_no_error_but_a_digest():
     assert run.attrs["initial_data"].startswith("callable, sha256 ")
     other = fp.solve(case(), lambda x: np.exp(-2.0 * x * x))
     assert other.attrs["initial_data"] != run.attrs["initial_data"]
+
+
+def test_a_square():
+    given = {**GIVEN, "half_width": 4.0, "spacing": 0.5, "dim": 2}
+    field, profile = (fp.solve(Case(**given, store=store)) for store in ("field", "profile"))
+    assert field.u.dims == ("x", "y")
+    assert np.array_equal(field.y.values, field.x.values)
+    assert np.array_equal(profile.u_axis.values, field.u.sel(y=0.0).values)
+    assert np.array_equal(profile.u_diagonal.values, np.diagonal(field.u.values))
+    assert field.mass_final.item() == pytest.approx(0.25 * field.u.values.sum(), rel=1e-14)
+    assert "u" not in profile
+
+
+def test_a_square_is_read_again(tmp_path):
+    whole = Case(**{**GIVEN, "half_width": 4.0, "spacing": 0.5, "dim": 2, "dt": 0.05})
+    first, path = whole.model_copy(update={"t_final": 1.0}), tmp_path / "half.nc"
+    fp.write(fp.solve(first), path)
+    second = fp.solve(whole.model_copy(update={"t_initial": 1.0}), path)
+    assert np.abs(second.u.values - fp.solve(whole).u.values).max() <= 1e-14
+    with pytest.raises(InvalidInput, match=r"u\(x\) and the coordinates x"):
+        read_strengths(path, case())
 
 
 def test_what_is_stored():
@@ -251,13 +273,13 @@ def test_a_file_of_something_else(tmp_path):
     xr.Dataset({"a": ("t", [1.0, 2.0])}).to_netcdf(path)
     with pytest.raises(InvalidInput, match="a run written by fracparticles"):
         fp.read_run(path)
-    with pytest.raises(InvalidInput, match=r"u\(x\) and the coordinate x"):
+    with pytest.raises(InvalidInput, match=r"u\(x\) and the coordinates x"):
         read_strengths(path, case())
 
 
 def test_strengths_on_another_lattice(run_file):
     for changes in ({"spacing": 0.125}, {"half_width": 11.0}):
-        with pytest.raises(InvalidInput, match=r"u on the .* points of case\.x"):
+        with pytest.raises(InvalidInput, match=r"u on the .* points of case\.positions"):
             read_strengths(run_file, case(**changes))
 
 

@@ -80,7 +80,7 @@ def error(**changes) -> float:
         **changes,
     }
     solution = compute(Case(**given))
-    return relative_l1_error(solution.case, solution.x, solution.u)
+    return relative_l1_error(solution.case, solution.u)
 
 
 def test_the_reference_problem_with_the_open_exterior():

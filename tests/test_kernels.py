@@ -13,6 +13,7 @@ from scipy.special import j0, j1
 
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels import KERNELS, kernel, kernel_transform
+from fracparticles.special import reduced_green
 
 ALPHAS = (1.01, 1.1, 1.5, 1.9, 1.99)
 ALL = [(name, n, order) for name, k in KERNELS.items() for n in k.dims for order in k.orders]
@@ -133,8 +134,13 @@ def test_agrees_with_mpmath(name, n, order):
 
 
 def test_green_kernel_is_the_reduced_green_function():
-    """(39), at x = 0: Gamma(1 + 1/alpha) / pi."""
+    """(39), at x = 0: Gamma(1 + 1/alpha) / pi; (58) at r = 0: Gamma(2/alpha) / (2 pi alpha)."""
     assert kernel("E", 0.0, 1.5) == pytest.approx(math.gamma(1 + 1 / 1.5) / math.pi, rel=1e-14)
+    centre = math.gamma(2 / 1.5) / (2 * math.pi * 1.5)
+    assert kernel("E", 0.0, 1.5, dim=2) == pytest.approx(centre, rel=1e-14)
+    r = np.linspace(0.0, 40.0, 9)
+    for n in (1, 2, 3):
+        np.testing.assert_array_equal(kernel("E", r, 1.5, dim=n), reduced_green(r, 1.5, n))
 
 
 @pytest.mark.parametrize("n", [1, 2, 3])
@@ -252,7 +258,7 @@ def test_shapes_and_types():
         ("name", {"name": None}),
         ("dim", {"dim": 0}),
         ("dim", {"dim": 4}),
-        ("dim", {"name": "E", "dim": 2}),
+        ("dim", {"name": "E", "dim": 4}),
         ("order", {"order": 3}),
         ("order", {"name": "E", "order": 4}),
         ("alpha", {"alpha": 1.0}),

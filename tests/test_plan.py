@@ -68,6 +68,17 @@ def test_a_mistake_is_named_in_one_line(broken, words):
         assert word in message, message
 
 
+def test_one_switch_for_the_step_of_dvm():
+    block = {"scheme": ["DVM", "DD"], "beta": 0.5, "truncation": 10.0, "spacing": 0.1, "dt": 1.0e-3}
+    steps = {**block, "scheme": "DVM", "dt": [1.0e-3, 2.0e-3]}
+    given = config(runs=[block, steps])
+    study = plan.read_config({**given, "dvm_dt": 5.0e-5})
+    found = [(c.scheme, c.dt) for c in plan.cases_of("one", study.scenes["one"])]
+    assert found == [("DD", 1e-3), ("DVM", 5e-5), ("DVM", 1e-3), ("DVM", 2e-3)]
+    unchanged = plan.cases_of("one", plan.read_config(given).scenes["one"])
+    assert {c.dt for c in unchanged} == {1e-3, 2e-3}
+
+
 def test_scenes_share_a_run_and_the_wider_store_wins():
     scenes = {
         "a": plan.Scene(title="a", study="truncation", runs=[BLOCK]),

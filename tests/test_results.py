@@ -11,6 +11,9 @@ from fracparticles.claims import Status, read_claims, read_ledger, summary_line
 from fracparticles.plan import read_config
 
 ROOT = Path(__file__).resolve().parents[1]
+DOCUMENTS = [
+    ROOT / f"report/printed/{name}.yaml" for name in ("lucchesi2020", "ghorbani", "particle_note")
+]
 STUDY = read_config(yaml.safe_load((ROOT / "config/study.yaml").read_text()))
 
 
@@ -20,7 +23,7 @@ def ledger():
 
 
 def test_every_printed_claim_has_its_row(ledger):
-    printed = [claim.id for claim in read_claims(ROOT / "report/printed/lucchesi2020.yaml")]
+    printed = [claim.id for claim in read_claims(*DOCUMENTS)]
     assert list(ledger["id"]) == printed
 
 
@@ -34,7 +37,7 @@ def test_a_deviation_has_a_reason_of_its_own(ledger):
 def test_a_claim_is_judged_by_one_scene_only():
     items = [item for scene in STUDY.scenes.values() for item in scene.items]
     assert len(items) == len(set(items))
-    printed = {claim.item for claim in read_claims(ROOT / "report/printed/lucchesi2020.yaml")}
+    printed = {claim.item for claim in read_claims(*DOCUMENTS)}
     assert set(items) == printed
 
 

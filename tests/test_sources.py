@@ -17,7 +17,10 @@ def names(module: str) -> set[str]:
 def test_what_is_imported_counts_at_any_depth():
     found = names("studies/reference_case.py")
     assert {"studies/reference_case.py", "studies/common.py", "claims.py"} <= found
-    assert {"special/stable.py", "special/chebyshev.py"} <= found  # the latter imported by the former
+    assert {
+        "special/stable.py",
+        "special/chebyshev.py",
+    } <= found  # the latter imported by the former
     assert "dataset.py" in found  # inside a function of studies/common.py
 
 

@@ -103,7 +103,8 @@ def test_numpy_scalars_are_taken():
         (("KPSE", 0.5, 2, float("inf")), "overlap"),
         (("KPSE", 0.5, 2, True), "overlap"),
         (("KPSE", 0.5, 2, None), "overlap"),
-        (("KPSE", 0.5, 2, 2.0, 2), "dim"),
+        (("KPSE", 0.5, 2, 2.0, 4), "dim"),
+        (("FD", 0.5, 2, 2.0, 2), "dim"),
     ],
 )
 def test_refused(arguments, field):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from functools import cached_property
 from math import ceil
 from typing import Any, Literal
@@ -11,28 +10,23 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from fracparticles.case_checks import FUNDAMENTAL, OVERLAPS, SIZES, check
 from fracparticles.complaints import allowed, first_complaint
 from fracparticles.errors import InvalidInput
 from fracparticles.integrators import STEP_POLYNOMIALS
-from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes import Setting
 from fracparticles.special.stable import mean_radius
 from fracparticles.stability import stability_limit
 
 __all__ = ["FUNDAMENTAL", "Case"]
 
-FUNDAMENTAL = "fundamental"
-_BYTES_PER_PARTICLE = 200  # measured: about 20 arrays of float64 at the peak
-_TINY, _HUGE = 1e-100, 1e100  # lengths and times; nothing made of them overflows
-_OVERLAPS = 0.25, 1000.0
-_MOST_STEPS = 2**53  # more are not told apart in float64
-_STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
 _STEP_SLACK = 1e-9  # a time span of n (1 + 1e-9) steps still takes n steps
 
-SchemeName = Literal["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD", "PSE29", "RIESZ"]
+SchemeName = Literal["DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM", "FD", "PSE29", "RIESZ"]
 
 
 class Case(BaseModel):
-    """One run of one scheme for u_t = -D (-Laplacian)^(alpha/2) u, alpha = 1 + beta, on a lattice.
+    """One run of one scheme for u_t = -D (-Laplacian)^(alpha/2) u, alpha = 1 + beta, from particles on a lattice.
 
     `spacing` and `dt` are what is asked for; the lattice ends at the half-width exactly and the last step at
     `t_final` exactly, so that the realised `particle_spacing` and `time_step` may differ slightly.
@@ -60,36 +54,45 @@ class Case(BaseModel):
     """Order of the kernels."""
     beta: float = Field(gt=0.0, lt=1.0)
     """Fractional order beta = alpha - 1, 0 < beta < 1."""
-    dim: Literal[1] = 1
-    """Space dimension."""
-    truncation: float | None = Field(default=None, ge=_TINY, le=_HUGE)
+    dim: Literal[1, 2, 3] = 1
+    """Space dimension; the lattice is a square or a cube for 2 and 3."""
+    truncation: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
     """C of D = C (D t_f)^(1/alpha) R_alpha, Eq. (46). Either this or half_width."""
-    half_width: float | None = Field(default=None, ge=_TINY, le=_HUGE)
-    """The half-width of the lattice itself."""
-    spacing: float = Field(ge=_TINY, le=_HUGE)
+    half_width: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
+    """The half-width of the lattice itself, in each coordinate."""
+    spacing: float = Field(ge=SIZES[0], le=SIZES[1])
     """Particle spacing h."""
-    overlap: float | None = Field(default=None, ge=_OVERLAPS[0], le=_OVERLAPS[1])
+    overlap: float | None = Field(default=None, ge=OVERLAPS[0], le=OVERLAPS[1])
     """epsilon / h; 2 if left out. For GPSE it follows from dt if that is given."""
-    dt: float | None = Field(default=None, ge=_TINY, le=_HUGE)
+    dt: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
     """Time step; needed by the explicit integrators. GPSE takes epsilon^alpha / D if left out."""
-    diffusivity: float = Field(default=1.0, ge=_TINY, le=_HUGE)
+    diffusivity: float = Field(default=1.0, ge=SIZES[0], le=SIZES[1])
     """D of Eq. (2)."""
-    t_initial: float = Field(default=0.5, ge=0.0, le=_HUGE)
+    t_initial: float = Field(default=0.5, ge=0.0, le=SIZES[1])
     """Start of the run."""
-    t_final: float = Field(default=1.5, ge=_TINY, le=_HUGE)
+    t_final: float = Field(default=1.5, ge=SIZES[0], le=SIZES[1])
     """End of the run."""
     initial: str = FUNDAMENTAL
     """"fundamental" for the fundamental solution at t_initial, or the path of a NetCDF file with u(x)."""
     integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = None
     """Time integrator; rk2 if left out. GPSE is an Euler step by construction."""
-    evaluation: Literal["series", "stepping"] = "series"
-    """How the integrator's polynomial is evaluated: one Chebyshev series, or step by step."""
+    evaluation: Literal["series", "stepping"] | None = None
+    """How the integrator's polynomial is evaluated: one Chebyshev series (if left out) or step by step (always DVM)."""
     summation: Literal["fft", "naive"] = "fft"
-    """How sums over particles are done."""
+    """How sums over particles are done; the fast Fourier transform of DVM is a non-uniform one."""
     exterior: Literal["truncated", "open"] = "truncated"
     """The papers' truncation of the lattice, or the far-field closure."""
+    kernel_table: float | None = Field(default=None, ge=1e-6, le=1.0)
+    """Step of the table, in units of epsilon, that kernels are interpolated in (paper, Sec. 5); exact if left out."""
+    remeshing: Literal["M4'", "Lambda3", "none"] | None = None
+    """Remeshing kernel of DVM; M4' if left out."""
+    remesh_above: float | None = Field(default=None, gt=1.0, le=100.0)
+    """DVM remeshes when two neighbours are further apart than this many h; 1.5 if left out."""
+    threshold: float | None = Field(default=None, ge=0.0, lt=1.0)
+    """DVM leaves out, when it remeshes, particles weaker than this share of the strongest; nil if left out."""
     store: Literal["field", "profile", "metrics"] = "field"
-    """What a data set keeps: u everywhere, u for |x| <= 5 R_alpha, or scalars only."""
+    """What a data set keeps: u everywhere; u for |x| <= 5 R_alpha (dim = 1), or along an axis and a diagonal; or
+    scalars only."""
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -107,11 +110,7 @@ class Case(BaseModel):
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
-        _check_time(self)
-        _check_domain(self)
-        _check_scheme(self)
-        _check_integrator(self)
-        _check_work(self)
+        check(self)
         return self
 
     # --- what follows from the parameters -------------------------------------------------------------------
@@ -132,13 +131,18 @@ class Case(BaseModel):
 
     @property
     def n(self) -> int:
-        """Half the number of lattice intervals: the particles are x_i = i h, i = -n .. n."""
+        """Half the number of lattice intervals: the particles are x_i = i h, i = -n .. n in each coordinate."""
         return max(1, round(self.domain / self.spacing))
 
     @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the lattice, 2 n + 1 particles in each coordinate."""
+        return (2 * self.n + 1,) * self.dim
+
+    @property
     def particles(self) -> int:
-        """The number N = 2 n + 1 of particles."""
-        return 2 * self.n + 1
+        """The number of particles."""
+        return int((2 * self.n + 1) ** self.dim)
 
     @property
     def particle_spacing(self) -> float:
@@ -147,8 +151,24 @@ class Case(BaseModel):
 
     @property
     def x(self) -> np.ndarray:
-        """The particle positions, shape (N,)."""
+        """The particle positions along one axis, shape (2 n + 1,)."""
         return np.arange(-self.n, self.n + 1) * self.particle_spacing
+
+    @property
+    def positions(self) -> list[np.ndarray]:
+        """The coordinates of the particles, `dim` arrays that broadcast to `shape`."""
+        return list(np.meshgrid(*(self.x,) * self.dim, indexing="ij", sparse=True))
+
+    @property
+    def radius(self) -> np.ndarray:
+        """The distances |x| of the particles from the origin, of that shape."""
+        return np.sqrt(sum(np.square(part) for part in self.positions))
+
+    @property
+    def error_radius(self) -> float:
+        """The errors are taken over |x| <= 5 R_alpha (47) for dim = 1, over |x| <= 5 (59) otherwise, or the lattice."""
+        half = 5.0 * mean_radius(self.alpha) if self.dim == 1 else 5.0
+        return min(half, self.domain)
 
     @property
     def method(self) -> str:
@@ -196,14 +216,23 @@ class Case(BaseModel):
             diffusivity=self.diffusivity,
             summation=self.summation,
             exterior=self.exterior,
+            dim=self.dim,
+            kernel_table=self.kernel_table,
         )
+
+    @property
+    def steps_taken(self) -> bool:
+        """Whether the steps are taken one by one."""
+        return self.evaluation == "stepping" or self.scheme == "DVM"
 
     @cached_property
     def largest_stable_step(self) -> float:
         """The largest dt inside the stability interval; infinite for the exponential."""
         if self.method == "exponential":
             return float("inf")
-        limit = stability_limit(self.scheme, self.beta, self.order, self.epsilon_over_h)
+        # A displacement wave of DVM's particles in a uniform field decays by DD's symbol.
+        scheme = "DD" if self.scheme == "DVM" else self.scheme
+        limit = stability_limit(scheme, self.beta, self.order, self.epsilon_over_h, self.dim)
         reach = STEP_POLYNOMIALS[self.method].stability_interval / 2.0
         return float(reach * limit * self.particle_spacing**self.alpha / self.diffusivity)
 
@@ -260,141 +289,18 @@ class Case(BaseModel):
             f"t{self.t_initial:g}-{self.t_final:g}",
             *([] if self.diffusivity == 1.0 else [f"diffusivity{self.diffusivity:g}"]),
             *([] if self.initial == FUNDAMENTAL else [f"from-{_slug(self.initial)}"]),
-            *([] if self.evaluation == "series" else [self.evaluation]),
+            *([] if self.evaluation != "stepping" else [self.evaluation]),
             *([] if self.summation == "fft" else [self.summation]),
+            *([] if self.kernel_table is None else [f"table{self.kernel_table:g}"]),
+            *([] if self.remeshing is None else [_slug(self.remeshing)]),
+            *([] if self.remesh_above is None else [f"above{self.remesh_above:g}"]),
+            *([] if self.threshold is None else [f"threshold{self.threshold:g}"]),
             self.exterior,
             self.store,
         ]
-        return f"{self.scheme}-{self.order}/beta{self.beta:g}/{'_'.join(parts)}.nc"
+        kind = f"{self.scheme}-{self.order}" + ("" if self.dim == 1 else f"-{self.dim}d")
+        return f"{kind}/beta{self.beta:g}/{'_'.join(parts)}.nc"
 
 
 def _slug(text: str) -> str:
     return "".join(c if c.isalnum() else "-" for c in text)
-
-
-def _check_time(case: Case) -> None:
-    if not 1.0 < case.alpha < 2.0:
-        raise InvalidInput(
-            "beta", case.beta, "a number that makes 1 + beta differ from 1 and 2", "Move it inward."
-        )
-    if case.t_final <= case.t_initial:
-        raise InvalidInput(
-            "t_final",
-            case.t_final,
-            f"a number > t_initial = {case.t_initial:g}",
-            "Give a later final time.",
-        )
-
-
-def _check_domain(case: Case) -> None:
-    if (case.truncation is None) == (case.half_width is None):
-        raise InvalidInput(
-            "truncation",
-            case.truncation,
-            "exactly one of truncation and half_width",
-            "Give the factor C of Eq. (46) or the half-width itself.",
-        )
-    if case.spacing > case.domain / 8.0:
-        raise InvalidInput(
-            "spacing",
-            case.spacing,
-            f"at most an eighth of the half-width, {case.domain / 8.0:.6g}",
-            "Take a smaller spacing or a wider domain.",
-        )
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    needed = _BYTES_PER_PARTICLE * 2.0 * case.domain / case.spacing
-    if needed > 0.5 * memory:
-        least = _BYTES_PER_PARTICLE * 4.0 * case.domain / memory
-        raise InvalidInput(
-            "spacing",
-            case.spacing,
-            f"at least {least:.3g} on this domain and this machine: "
-            f"{2.0 * case.domain / case.spacing:.3g} particles would take {needed / 2**30:.3g} GiB, "
-            f"half of the memory is {memory / 2**31:.3g} GiB",
-            "Take a larger spacing or a narrower domain.",
-        )
-
-
-def _check_work(case: Case) -> None:
-    span = case.t_final - case.t_initial
-    if case.evaluation == "series" and span * case.setting.rate > _STIFFEST:
-        raise InvalidInput(
-            "t_final",
-            case.t_final,
-            f"at most {case.t_initial + _STIFFEST / case.setting.rate:.6g} with this spacing and diffusivity",
-            "Take a shorter run or a larger spacing.",
-        )
-    if case.method != "exponential" and span / case.asked_step > _MOST_STEPS:
-        raise InvalidInput(
-            "dt", case.dt, f"at least {span / _MOST_STEPS:.3g}: 2^53 steps", "Take a larger step."
-        )
-
-
-def _check_scheme(case: Case) -> None:
-    scheme = SCHEMES[case.scheme]
-    if case.order not in scheme.ORDERS:
-        raise InvalidInput(
-            "order",
-            case.order,
-            f"{' or '.join(map(str, scheme.ORDERS))} for {case.scheme}",
-            "Choose one of these.",
-        )
-    if case.exterior not in scheme.EXTERIORS:
-        raise InvalidInput(
-            "exterior",
-            case.exterior,
-            f"{' or '.join(scheme.EXTERIORS)} for {case.scheme}",
-            "The far-field closure exists for DD, FPSE, KPSE and GPSE.",
-        )
-    if case.scheme == "FD" and case.overlap is not None:
-        raise InvalidInput(
-            "overlap", case.overlap, "nothing for FD, which has no kernel", "Leave it out."
-        )
-
-
-def _check_integrator(case: Case) -> None:
-    if case.method == "exponential":
-        if case.dt is not None:
-            raise InvalidInput(
-                "dt", case.dt, "nothing for integrator='exponential'", "Leave dt out."
-            )
-        if case.evaluation == "stepping":
-            raise InvalidInput(
-                "evaluation",
-                case.evaluation,
-                "'series' for integrator='exponential', which takes no steps",
-                "Leave it out.",
-            )
-    if case.scheme == "GPSE":
-        if case.method != "euler":
-            raise InvalidInput(
-                "integrator",
-                case.method,
-                "nothing or 'euler' for GPSE, whose step is part of the scheme",
-                "Leave it out.",
-            )
-        if case.dt is not None and case.overlap is not None:
-            raise InvalidInput(
-                "overlap",
-                case.overlap,
-                "one of dt and overlap for GPSE, since epsilon = (D dt)^(1/alpha), Eq. (40)",
-                "Leave one of them out.",
-            )
-        if case.dt is not None and not _OVERLAPS[0] <= case.epsilon_over_h <= _OVERLAPS[1]:
-            least, most = ((s * case.particle_spacing) ** case.alpha for s in _OVERLAPS)
-            raise InvalidInput(
-                "dt",
-                case.dt,
-                f"a step from {least / case.diffusivity:.4g} to {most / case.diffusivity:.4g} for GPSE, so that "
-                f"epsilon / h is from {_OVERLAPS[0]:g} to {_OVERLAPS[1]:g}",
-                "Change dt or the spacing.",
-            )
-    elif case.dt is None and case.method != "exponential":
-        limit = stability_limit(case.scheme, case.beta, case.order, case.epsilon_over_h)
-        largest = limit * case.particle_spacing**case.alpha / case.diffusivity
-        raise InvalidInput(
-            "dt",
-            None,
-            f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}",
-            "Give dt, or integrator='exponential', which needs none.",
-        )

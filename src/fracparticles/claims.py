@@ -190,20 +190,22 @@ class Finding(_Record):
         return "verdict" in self.model_fields_set
 
 
-def read_claims(path: str | os.PathLike[str]) -> list[Claim]:
-    """Read the claims of a document from its YAML file.
+def read_claims(*paths: str | os.PathLike[str]) -> list[Claim]:
+    """Read the claims of documents, each from its YAML file.
 
     Raises
     ------
     LedgerError
-        If the file is not a list of valid claims, or an id occurs twice.
+        If a file is not a list of valid claims, or an id occurs twice.
     """
-    path = Path(path)
-    try:
-        claims = TypeAdapter(list[Claim]).validate_python(yaml.safe_load(path.read_text("utf-8")))
-    except (yaml.YAMLError, ValidationError) as error:
-        raise LedgerError(f"{path}: {error}") from error
-    _refuse_repeats([claim.id for claim in claims], f"{path}: claimed twice")
+    claims: list[Claim] = []
+    for path in map(Path, paths):
+        try:
+            found = yaml.safe_load(path.read_text("utf-8"))
+            claims += TypeAdapter(list[Claim]).validate_python(found)
+        except (yaml.YAMLError, ValidationError) as error:
+            raise LedgerError(f"{path}: {error}") from error
+        _refuse_repeats([claim.id for claim in claims], f"{path}: claimed twice")
     return claims
 
 

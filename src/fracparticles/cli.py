@@ -69,9 +69,11 @@ def show(file: str) -> None:
         if scalar.ndim == 0
     ]
     rows += [(name, run.attrs[name], "") for name in ("initial_data", "source")]
-    if "u" in run:
-        extent = f"{run.sizes['x']} values, x = {run.x.values[0]:.9g} .. {run.x.values[-1]:.9g}"
-        rows.append(("u", extent, run.u.attrs["long_name"]))
+    for name in ("u", "u_axis", "u_diagonal"):
+        if name in run:
+            size = " x ".join(map(str, run[name].shape))
+            extent = f"{size} values, x = {run.x.values[0]:.9g} .. {run.x.values[-1]:.9g}"
+            rows.append((name, extent, run[name].attrs["long_name"]))
     first = max(len(name) for name, _, _ in rows)
     second = max(len(value) for _, value, meaning in rows if meaning)
     print(run.attrs["title"])
@@ -86,6 +88,7 @@ def limit(
     beta: Number,
     order: Number = "2",
     overlap: Number | None = None,
+    dim: Number = "1",
     spacing: Number | None = None,
     diffusivity: Number = "1.0",
 ) -> None:
@@ -103,6 +106,8 @@ def limit(
         Order of the kernels.
     overlap : float
         epsilon / h; 2 if left out.
+    dim : {1, 2, 3}
+        Space dimension.
     spacing : float
         Particle spacing h.
     diffusivity : float
@@ -115,7 +120,7 @@ def limit(
         raise InvalidInput(
             "overlap", overlap, "nothing for FD, which has no kernel", "Leave it out."
         )
-    numbers = [number_or_text(text) for text in (beta, order, overlap or "2.0")]
+    numbers = [number_or_text(text) for text in (beta, order, overlap or "2.0", dim)]
     a = stability_limit(scheme, *numbers)
     lines = [f"a = {a:.6g}"]
     rate = positive_real("diffusivity", number_or_text(diffusivity))

@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from fracparticles.special.stable import mean_radius
 if TYPE_CHECKING:
     import xarray as xr
 
+    from fracparticles.schemes.dvm import ParticleRun
     from fracparticles.solver import Solution
 
 __all__ = ["read_run", "read_strengths", "to_dataset", "write"]
@@ -45,25 +46,34 @@ _LONG_NAMES = {
     "evaluation": "evaluation of the step polynomial",
     "summation": "sum over particles",
     "exterior": "what lies beyond the lattice",
+    "dim": "space dimension",
+    "kernel_table": "step of the kernel table, in units of epsilon",
+    "remeshing": "remeshing kernel",
+    "remesh_above": "spacing above which DVM remeshes, in units of h",
+    "threshold": "share of the greatest strength below which DVM leaves a particle out",
 }
 
 
 def to_dataset(solution: Solution) -> xr.Dataset:
     """Return the data set of a run.
 
-    Dimension `x`; `u` unless the case stores metrics only; scalar coordinates for every parameter; the scalars
-    `mass_initial`, `mass_final`, `operator_applications` and, for a run from the fundamental solution,
-    `relative_l1_error` of Eq. (48).
+    Dimensions `x`, `y`, `z` as there are; `u` unless the case stores metrics only (for dim > 1 the profiles `u_axis`
+    and `u_diagonal` if it stores these); scalar coordinates for every parameter; the scalars `mass_initial`,
+    `mass_final`, `operator_applications` and, for a run from the fundamental solution, `relative_l1_error` of
+    Eqs. (48), (59). For DVM also the particles and their history.
     """
     import xarray as xr
 
     from fracparticles.solver import relative_l1_error
 
-    case, x, u = solution.case, solution.x, solution.u
-    h = case.particle_spacing
+    case, u = solution.case, solution.u
+    volume = case.particle_spacing**case.dim
+    total = (
+        _mass(u, volume) if solution.particles is None else float(solution.particles.strength.sum())
+    )
     data: dict[str, tuple] = {
-        "mass_initial": ((), _mass(solution.u0, h), _describe("total strength at t_initial")),
-        "mass_final": ((), _mass(u, h), _describe("total strength at t_final")),
+        "mass_initial": ((), _mass(solution.u0, volume), _describe("total strength at t_initial")),
+        "mass_final": ((), total, _describe("total strength at t_final")),
         "operator_applications": (
             (),
             np.int64(solution.operator_applications),
@@ -73,18 +83,17 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     if solution.initial.startswith(FUNDAMENTAL):
         data["relative_l1_error"] = (
             (),
-            relative_l1_error(case, x, u),
-            _describe("relative L1 error over 5 R_alpha, Eq. (48)"),
+            relative_l1_error(case, u),
+            _describe("relative L1 error, Eqs. (48), (59)"),
         )
     coordinates: dict[str, tuple] = {
         name: ((), value, _describe(_LONG_NAMES[name])) for name, value in _parameters(case).items()
     }
-    if case.store != "metrics":
-        kept = np.abs(x) <= 5.0 * mean_radius(case.alpha) * (1.0 + 1e-12)
-        if case.store == "field":
-            kept[:] = True
-        data["u"] = (("x",), u[kept], _describe("particle strength at t_final"))
-        coordinates["x"] = (("x",), x[kept], _describe("particle position"))
+    fields, axes = _fields(solution)
+    data |= fields
+    coordinates |= axes
+    if solution.particles is not None:
+        data |= _particle_variables(solution.particles, case.store)
     return xr.Dataset(
         data,
         coordinates,
@@ -100,6 +109,85 @@ def to_dataset(solution: Solution) -> xr.Dataset:
             "case": case.to_json(),
         },
     )
+
+
+def _fields(solution: Solution) -> tuple[dict[str, tuple], dict[str, tuple]]:
+    """The strengths that the case stores, and their coordinates."""
+    case, u = solution.case, solution.u
+    if case.store == "metrics":
+        return {}, {}
+    x = case.x
+    axes = ("x", "y", "z")[: case.dim]
+    if case.store == "profile" and case.dim > 1:
+        middle: tuple[Any, ...] = (slice(None), *(case.n,) * (case.dim - 1))
+        return {
+            "u_axis": (("x",), u[middle], _describe("u at t_final for y = 0")),
+            "u_diagonal": (
+                ("x",),
+                np.einsum("i" * case.dim + "->i", u),
+                _describe("u at t_final for y = x"),
+            ),
+        }, {"x": (("x",), x, _describe("particle position"))}
+    if case.store == "profile":
+        kept = np.abs(x) <= 5.0 * mean_radius(case.alpha) * (1.0 + 1e-12)
+        x, u = x[kept], u[kept]
+    coordinates = {axis: ((axis,), x, _describe("particle position")) for axis in axes}
+    what = "field" if case.scheme == "DVM" else "particle strength"
+    return {"u": (axes, u, _describe(f"{what} at t_final"))}, coordinates
+
+
+def _particle_parameters(case: Case) -> dict[str, object]:
+    return {
+        "remeshing": case.remeshing or "M4'",
+        "remesh_above": 1.5 if case.remesh_above is None else case.remesh_above,
+        "threshold": case.threshold or 0.0,
+    }
+
+
+def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
+    """What happened to the particles of DVM, and unless only metrics are stored the particles themselves."""
+    history = run.history
+    scalars = {
+        "remeshings": (np.int64(history.remeshings), "number of remeshings"),
+        "largest_spacing": (history.largest_spacing, "largest spacing after any step"),
+        "overtaking_steps": (
+            np.int64(history.overtaking_steps),
+            "steps that changed the order of the particles",
+        ),
+        "eliminated_particles": (
+            np.int64(history.eliminated_count),
+            "particles left out below the threshold",
+        ),
+        "eliminated_strength": (
+            history.eliminated_strength,
+            "total strength of the particles left out",
+        ),
+        "final_particles": (np.int64(run.x.size), "number of particles at t_final"),
+    }
+    data: dict[str, tuple] = {
+        name: ((), number, _describe(meaning)) for name, (number, meaning) in scalars.items()
+    }
+    if store == "metrics":
+        return data
+    data["particle_position"] = (("particle",), run.x, _describe("position at t_final"))
+    data["particle_strength"] = (
+        ("particle",),
+        run.strength,
+        _describe("strength U = V u at t_final"),
+    )
+    if history.remeshings:
+        dimension = ("remeshing",)
+        data["remeshing_time"] = (
+            dimension,
+            np.array(history.remeshing_times),
+            _describe("instant of a remeshing"),
+        )
+        data["spacing_before"] = (
+            dimension,
+            np.array(history.spacings_before),
+            _describe("largest spacing before a remeshing"),
+        )
+    return data
 
 
 def write(dataset: xr.Dataset, path: str | Path) -> None:
@@ -148,22 +236,27 @@ def read_strengths(path: Path, case: Case) -> np.ndarray:
         If the file cannot be read, holds no u(x), or lies on another lattice.
     """
     dataset = _load(path)
-    if "u" not in dataset or dataset["u"].dims != ("x",) or "x" not in dataset.coords:
-        raise InvalidInput(
-            "initial", str(path), "a NetCDF file with u(x) and the coordinate x", "Store these two."
-        )
-    x, u = dataset["x"].values, dataset["u"].values
-    if x.dtype.kind not in "iuf" or u.dtype.kind not in "iuf":
-        raise InvalidInput("initial", str(path), "real numbers as x and u", "Store numbers.")
-    x, u = x.astype(float), u.astype(float)
-    h = case.particle_spacing
-    if x.shape != case.x.shape or np.abs(x - case.x).max() > 1e-9 * h:
+    axes = ("x", "y", "z")[: case.dim]
+    if "u" not in dataset or dataset["u"].dims != axes or not set(axes) <= set(dataset.coords):
         raise InvalidInput(
             "initial",
             str(path),
-            f"u on the {case.particles} points of case.x, h = {h:.9g} and |x| <= {case.domain:.9g}",
-            f"The file has {x.size} points with |x| <= {np.abs(x).max(initial=0.0):.9g}: set half_width and "
-            "spacing to match, or interpolate the data onto case.x.",
+            f"a NetCDF file with u({', '.join(axes)}) and the coordinates {', '.join(axes)}",
+            "Store these.",
+        )
+    u, lattice = dataset["u"].values, [dataset[axis].values for axis in axes]
+    if any(array.dtype.kind not in "iuf" for array in (u, *lattice)):
+        raise InvalidInput("initial", str(path), "real numbers as x and u", "Store numbers.")
+    u = u.astype(float)
+    h = case.particle_spacing
+    if u.shape != case.shape or any(np.abs(x - case.x).max() > 1e-9 * h for x in lattice):
+        x = lattice[0]
+        raise InvalidInput(
+            "initial",
+            str(path),
+            f"u on the {case.particles} points of case.positions, h = {h:.9g} and |x| <= {case.domain:.9g}",
+            f"The file has {u.size} points with |x| <= {np.abs(x).max(initial=0.0):.9g}: set half_width and "
+            "spacing to match, or interpolate the data onto case.positions.",
         )
     if not np.isfinite(u).all():
         raise InvalidInput("initial", str(path), "finite strengths", "Mend the data.")
@@ -200,15 +293,18 @@ def _parameters(case: Case) -> dict[str, object]:
         "t_initial": case.t_initial,
         "t_final": case.t_final,
         "integrator": case.method,
-        "evaluation": case.evaluation,
+        "evaluation": "stepping" if case.steps_taken else "series",
         "summation": case.summation,
         "exterior": case.exterior,
+        "dim": np.int64(case.dim),
+        **({} if case.kernel_table is None else {"kernel_table": case.kernel_table}),
+        **(_particle_parameters(case) if case.scheme == "DVM" else {}),
     }
 
 
-def _mass(u: np.ndarray, h: float) -> float:
+def _mass(u: np.ndarray, volume: float) -> float:
     """sum_i V_i u_i; numpy sums pairwise, so the error is a few ulp."""
-    return float(h * u.sum())
+    return float(volume * u.sum())
 
 
 def _describe(long_name: str) -> dict[str, str]:

@@ -108,8 +108,8 @@ def _k(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
 
 
 def _e(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """E = L_alpha^0  (39)."""
-    return np.asarray(reduced_green(r, alpha))
+    """E = L_alpha^0  (39); Phi_{n,alpha} of (57), (58) in n dimensions."""
+    return np.asarray(reduced_green(r, alpha, n))
 
 
 # --- in Fourier space -----------------------------------------------------------------------------
@@ -216,7 +216,7 @@ KERNELS: Mapping[str, Kernel] = MappingProxyType(
             Kernel("F", r"\mathbf{F}", "(20), (21)", "odd", _f, _f_hat, -1.0),
             Kernel("G", "G", "(11), (12)", "even", _g, _g_hat, 0.0),
             Kernel("K", "K", "(31), (32)", "even", _k, _k_hat, 0.0),
-            Kernel("E", "E", "(39)", "even", _e, _e_hat, 0.0, orders=(2,), dims=(1,)),
+            Kernel("E", "E", "(39)", "even", _e, _e_hat, 0.0, orders=(2,)),
         )
     }
 )
@@ -246,7 +246,7 @@ def kernel(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> Flo
     alpha : float
         Fractional order, 1 < alpha < 2 (eta, eta1 and Phi do not depend on it).
     dim : int
-        Number of dimensions, 1 to 3 (E: 1).
+        Number of dimensions, 1 to 3.
     order : int
         2 or 4 (E: 2, it has no order-IV form).
 

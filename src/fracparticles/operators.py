@@ -16,7 +16,14 @@ import numpy as np
 
 from fracparticles.sums import BandedConvolution
 
-__all__ = ["ConvolutionOperator", "FarField", "Operator", "TwoPassOperator"]
+__all__ = [
+    "BoxFarField",
+    "ConvolutionOperator",
+    "FarField",
+    "FluxDivergenceOperator",
+    "Operator",
+    "TwoPassOperator",
+]
 
 Convolution = Callable[[np.ndarray], np.ndarray]
 
@@ -47,6 +54,36 @@ class FarField:
     def add(self, u: np.ndarray, y: np.ndarray) -> None:
         """Add the contribution of the exterior to the sums y."""
         _add_far_field(self.right, self.left, u, y)
+
+
+class _Far(Protocol):
+    def add(self, u: np.ndarray, y: np.ndarray) -> None:
+        """Add the contribution of the exterior to the sums y."""
+
+
+@dataclass(frozen=True)
+class BoxFarField:
+    """The sums over the exterior of a square or a cube, sum_k a_k S_k with a = fit u_boundary.
+
+    Attributes
+    ----------
+    boundary : array of int, shape (B,)
+        The outermost particles.
+    fit : array, shape (K, B)
+        From their strengths to the amplitudes of the K modes.
+    sums : array, shape (weights, K, points)
+        S_k for each weight.
+    """
+
+    boundary: np.ndarray
+    fit: np.ndarray
+    sums: np.ndarray
+
+    def add(self, u: np.ndarray, y: np.ndarray) -> None:
+        """Add the contribution of the exterior to the sums y of every weight."""
+        amplitudes = self.fit @ u[self.boundary]
+        for sums, total in zip(self.sums, y.reshape(self.sums.shape[0], -1), strict=True):
+            _add_modes(amplitudes, sums, total)
 
 
 class _Appliable(ABC):
@@ -84,7 +121,7 @@ class ConvolutionOperator(_Appliable):
         self,
         convolve: Convolution,
         diagonal: np.ndarray,
-        far_field: FarField | None,
+        far_field: _Far | None,
         infinite_diagonal: float | None = None,
     ) -> None:
         self.size = diagonal.size
@@ -134,6 +171,48 @@ class TwoPassOperator(_Appliable):
         self._stencil.update(q, self._diagonal, u, a, b, c, v)
 
 
+class FluxDivergenceOperator(_Appliable):
+    """A u = sum_d (S_d q_d + c_d q_d) with the flux q = (w_d * u + far field)_d, on a square or cubic lattice.
+
+    Parameters
+    ----------
+    convolve : callable
+        The flux: from the strengths, shape (N, .., N), to the `dim` components on the lattice or a little beyond.
+    divergence : callable
+        S: from the components of the flux to one value a particle, shape (N, .., N).
+    diagonal : array, shape (dim, N, .., N), or None
+        c_d; None if it is nil.
+    far_field : BoxFarField or None
+        The contribution of the exterior to q.
+    shape : tuple of int
+        The lattice.
+    """
+
+    def __init__(
+        self,
+        convolve: Convolution,
+        divergence: Convolution,
+        diagonal: np.ndarray | None,
+        far_field: BoxFarField | None,
+        shape: tuple[int, ...],
+    ) -> None:
+        self.size = int(np.prod(shape))
+        self._shape = shape
+        self._convolve, self._divergence = convolve, divergence
+        self._diagonal, self._far = diagonal, far_field
+
+    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+        """Write a (A u) + b u + c v into v."""
+        q = self._convolve(u.reshape(self._shape))
+        if self._far is not None:
+            self._far.add(u, q)
+        y = self._divergence(q)
+        if self._diagonal is not None:
+            for part, component in zip(self._diagonal, q, strict=True):
+                _add_product(part.reshape(-1), component.reshape(-1), y.reshape(-1))
+        _combine(y.reshape(-1), u, a, b, c, v)
+
+
 @nb.njit(cache=True, nogil=True)
 def _update(y, diagonal, u, a, b, c, v):
     for i in range(v.size):
@@ -145,3 +224,23 @@ def _add_far_field(right, left, u, y):
     last, first = u[-1], u[0]
     for i in range(y.size):
         y[i] += last * right[i] + first * left[i]
+
+
+@nb.njit(cache=True, nogil=True)
+def _combine(y, u, a, b, c, v):
+    for i in range(v.size):
+        v[i] = a * y[i] + b * u[i] + c * v[i]
+
+
+@nb.njit(cache=True, nogil=True)
+def _add_product(diagonal, q, y):
+    for i in range(y.size):
+        y[i] += diagonal[i] * q[i]
+
+
+@nb.njit(cache=True, nogil=True)
+def _add_modes(amplitudes, sums, y):
+    for k in range(amplitudes.size):
+        amplitude, mode = amplitudes[k], sums[k]
+        for i in range(y.size):
+            y[i] += amplitude * mode[i]

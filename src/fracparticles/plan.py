@@ -92,6 +92,8 @@ class StudyConfig(_Strict):
         Where the report goes.
     smoke : bool
         Whether these are the tiny grids, too coarse to judge the claims.
+    dvm_dt : float, optional
+        Time step of every run of DVM, whatever the scenes say, but for studies of the step.
     benchmark : dict
         Parameters of `benchmark.reference_benchmark`.
     scenes : dict
@@ -101,6 +103,7 @@ class StudyConfig(_Strict):
     results_dir: str = Field(min_length=1)
     report_dir: str = Field(min_length=1)
     smoke: bool = False
+    dvm_dt: float | None = Field(default=None, gt=0.0)
     benchmark: dict[str, Any] = {}
     scenes: dict[str, Scene] = Field(min_length=1)
 
@@ -127,7 +130,25 @@ def read_config(config: Mapping[str, Any]) -> StudyConfig:
         for other in scene.tables:
             _check_name(f"scenes.{name}.tables", other, study.scenes)
         cases_of(name, scene)
-    return study
+    if study.dvm_dt is None:
+        return study
+    stepped = {name: _with_dvm_step(scene, study.dvm_dt) for name, scene in study.scenes.items()}
+    return study.model_copy(update={"scenes": stepped})
+
+
+def _with_dvm_step(scene: Scene, dt: float) -> Scene:
+    """Return the scene with that step for DVM; a block with a list of steps is a study of the step and stays."""
+    blocks = []
+    for block in scene.runs:
+        fields = block.model_dump(exclude_none=True)
+        schemes = fields["scheme"] if isinstance(fields["scheme"], list) else [fields["scheme"]]
+        if "DVM" not in schemes or isinstance(fields.get("dt"), list):
+            blocks.append(block)
+            continue
+        others = [name for name in schemes if name != "DVM"]
+        blocks += [RunBlock(**{**fields, "scheme": others})] if others else []
+        blocks.append(RunBlock(**{**fields, "scheme": "DVM", "dt": dt}))
+    return scene.model_copy(update={"runs": blocks})
 
 
 def config_schema() -> dict[str, Any]:
@@ -211,7 +232,9 @@ def _chunks(cases: list[Case]) -> Iterable[list[Case]]:
 
 def _seconds(case: Case) -> float:
     """A rough estimate of the cost of a run: N times the number of operator applications."""
-    if case.evaluation == "stepping":
+    if case.scheme == "DVM":
+        return 8e-7 * case.particles * case.steps
+    if case.steps_taken:
         return 2e-8 * case.particles * case.steps
     applications = (case.setting.rate * (case.t_final - case.t_initial)) ** 0.5
     return 0.01 + 1.2e-7 * case.particles * applications

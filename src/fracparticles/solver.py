@@ -15,13 +15,15 @@ from fracparticles import integrators
 from fracparticles.case import FUNDAMENTAL, Case
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
 from fracparticles.operators import Operator
-from fracparticles.schemes import SCHEMES
+from fracparticles.schemes import SCHEMES, dvm
 from fracparticles.special.arguments import real_array
-from fracparticles.special.stable import central_mass, green, mean_radius
+from fracparticles.special.stable import central_mass, green
 from fracparticles.spectrum import spectral_interval
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from fracparticles.schemes.dvm import ParticleRun
 
 __all__ = ["Solution", "initial_strengths", "integrate", "relative_l1_error", "solve"]
 
@@ -35,12 +37,16 @@ class Solution:
     Attributes
     ----------
     case : Case
-    x, u0, u : array, shape (N,)
-        Positions, initial and final strengths.
+    x : array, shape (N,)
+        Positions along an axis.
+    u0, u : array, shape (N,) * dim
+        Initial and final strengths on the lattice; for DVM the final field (7) there.
     operator_applications : int
-        How often the operator was applied.
+        How often the operator was applied, or the velocity evaluated.
     initial : str
         Where the initial data came from.
+    particles : ParticleRun, optional
+        For DVM, the particles themselves and what happened to them.
     """
 
     case: Case
@@ -49,6 +55,7 @@ class Solution:
     u: np.ndarray
     operator_applications: int
     initial: str
+    particles: ParticleRun | None = None
 
 
 def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
@@ -59,8 +66,9 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
     case : Case
         The run.
     initial : array, callable or path, optional
-        Initial strengths on `case.x`, a function of x, or a NetCDF file that holds u on just these x. Without it
-        the run starts from what `case.initial` says, by default the fundamental solution at `case.t_initial`.
+        Initial strengths of shape `case.shape`, a function of `case.positions` (of x; of x and y; of x, y and z),
+        or a NetCDF file that holds u on just these. Without it the run starts from what `case.initial` says, by
+        default the fundamental solution at `case.t_initial`.
 
     Returns
     -------
@@ -81,12 +89,38 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:
     """Run a case and return its arrays: `solve` without the data set."""
-    x = case.x
     u0, origin = initial_strengths(case, initial)
     warn_if_unstable(case)
+    if case.scheme == "DVM":
+        return _advect(case, u0, origin)
     operator = SCHEMES[case.scheme].operator(case.setting)
-    u, applications = integrate(case, operator, u0)
-    return Solution(case, x, u0, u, applications, origin)
+    u, applications = integrate(case, operator, u0.reshape(-1))
+    return Solution(case, case.x, u0, u.reshape(case.shape), applications, origin)
+
+
+def _advect(case: Case, u0: np.ndarray, origin: str) -> Solution:
+    """Run DVM, whose particles move."""
+    try:
+        run = dvm.run(
+            case.x,
+            u0,
+            spacing=case.particle_spacing,
+            alpha=case.alpha,
+            order=case.order,
+            overlap=case.epsilon_over_h,
+            diffusivity=case.diffusivity,
+            start=case.t_initial,
+            dt=case.time_step,
+            steps=case.steps,
+            remeshing=case.remeshing or "M4'",
+            remesh_above=1.5 if case.remesh_above is None else case.remesh_above,
+            threshold=case.threshold or 0.0,
+            summation=case.summation,
+        )
+    except NonFiniteSolution as error:
+        raise NonFiniteSolution(f"DVM (order {case.order}): {error}") from None
+    evaluations = run.history.velocity_evaluations
+    return Solution(case, case.x, u0, run.field(case.x), evaluations, origin, run)
 
 
 def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.ndarray, str]:
@@ -94,26 +128,27 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     source: Initial = case.initial if initial is None else initial
     if isinstance(source, str) and source == FUNDAMENTAL:
         case.refuse_point_mass()
-        u0 = np.asarray(green(case.x, case.diffusivity * case.t_initial, case.alpha))
+        x = case.x if case.dim == 1 else case.radius
+        u0 = np.asarray(green(x, case.diffusivity * case.t_initial, case.alpha, case.dim))
         return u0, f"fundamental solution at t = {case.t_initial:g}"
     if isinstance(source, (str, Path)):
         from fracparticles.dataset import read_strengths
 
         return read_strengths(Path(source), case), f"file {Path(source).name}"
-    given = source(case.x) if callable(source) else source
+    given = source(*case.positions) if callable(source) else source
     u0 = np.array(real_array("initial", given))
-    if u0.shape != case.x.shape:
+    if u0.shape != case.shape:
         raise InvalidInput(
             "initial",
             f"array of shape {u0.shape}",
-            f"an array of shape {case.x.shape}, one strength for each particle of case.x",
-            "Evaluate the data on case.x.",
+            f"an array of shape {case.shape}, one strength for each particle of the lattice",
+            "Evaluate the data on case.positions.",
         )
     if not np.isfinite(u0).all():
-        where = case.x[~np.isfinite(u0)][0]
+        where = case.x[np.argwhere(~np.isfinite(u0))[0]]
         raise InvalidInput(
             "initial",
-            f"not finite at x = {where:g}",
+            f"not finite at x = {', '.join(f'{part:g}' for part in where)}",
             "finite numbers",
             "Mend the data, or shift a singularity off the lattice.",
         )
@@ -141,7 +176,7 @@ def integrate(case: Case, operator: Operator, u0: np.ndarray) -> tuple[np.ndarra
         With the scheme, the step and the time.
     """
     try:
-        if case.evaluation == "stepping":
+        if case.steps_taken:
             polynomial = integrators.STEP_POLYNOMIALS[case.method]
             return integrators.step(operator, polynomial, case.time_step, case.steps, u0)
         low, high = spectral_interval(case, operator)
@@ -155,15 +190,14 @@ def integrate(case: Case, operator: Operator, u0: np.ndarray) -> tuple[np.ndarra
         raise NonFiniteSolution(f"{case.scheme} (order {case.order}): {error}") from None
 
 
-def relative_l1_error(case: Case, x: np.ndarray, u: np.ndarray) -> float:
-    """Return the error against the fundamental solution, Eq. (48), over |x| <= 5 R_alpha.
+def relative_l1_error(case: Case, u: np.ndarray) -> float:
+    """Return the error against the fundamental solution, Eqs. (48), (59), over |x| <= `case.error_radius`.
 
-    sum_i V_i |u_i - G(x_i, t_f)| / int |G(x, t_f)| dx, the integral in closed form. On a lattice narrower than
-    5 R_alpha both run over the lattice.
+    sum_i V_i |u_i - G(x_i, t_f)| / int |G(x, t_f)| dx, the integral in closed form.
     """
-    half = min(5.0 * mean_radius(case.alpha), case.domain)
-    inside = np.abs(x) <= half * (1.0 + 1e-12)
+    radius = np.abs(case.x) if case.dim == 1 else case.radius
+    inside = radius <= case.error_radius * (1.0 + 1e-12)
     time = case.diffusivity * case.t_final
-    exact = green(x[inside], time, case.alpha)
-    deviation = case.particle_spacing * np.abs(u[inside] - exact).sum()
-    return float(deviation / central_mass(half, time, case.alpha))
+    exact = green(radius[inside], time, case.alpha, case.dim)
+    deviation = case.particle_spacing**case.dim * np.abs(u[inside] - exact).sum()
+    return float(deviation / central_mass(case.error_radius, time, case.alpha, case.dim))

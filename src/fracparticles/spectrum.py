@@ -28,7 +28,7 @@ def spectral_interval(case: Case, operator: Operator) -> tuple[float, float]:
     (tests/test_spectrum.py). Where there are positive eigenvalues, for scheme (29) or an overlap too small for the
     order, the greatest is computed.
     """
-    low, high = symbol_range(case.scheme, case.beta, case.order, case.epsilon_over_h)
+    low, high = symbol_range(case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim)
     rate, room = case.setting.rate, _MARGIN * (high - low)
     if not SCHEMES[case.scheme].DISSIPATIVE or high > room:
         high = max(high, _greatest_eigenvalue(operator) / rate)

@@ -288,7 +288,7 @@ def test_refuses_t(t):
 
 def test_refuses_the_rest():
     with pytest.raises(InvalidInput, match="dim"):
-        green(1.0, 1.0, 1.5, dim=2)
+        green(1.0, 1.0, 1.5, dim=4)
     with pytest.raises(InvalidInput, match="x = "):
         central_mass(-1.0, 1.0, 1.5)
     with pytest.raises(InvalidInput, match="x = "):

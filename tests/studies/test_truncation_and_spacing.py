@@ -39,7 +39,7 @@ def test_the_closed_form_is_the_truncation_error_of_an_exchange_scheme(beta, spa
         integrator="exponential",
     )
     solution = compute(case)
-    error = relative_l1_error(case, solution.x, solution.u)
+    error = relative_l1_error(case, solution.u)
     assert error == pytest.approx(exchange_truncation_error(case.domain, 1 + beta, 1.0), rel=0.05)
 
 

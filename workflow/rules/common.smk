@@ -11,6 +11,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 from fracparticles import plan
 from fracparticles.errors import InvalidInput
 from fracparticles.figures import FIGURES
+from fracparticles.sources import sources_of
 from fracparticles.studies import STUDIES
 
 try:
@@ -25,36 +26,49 @@ CASES, BATCHES = plan.batches(SCENES, STUDY.smoke)
 
 PACKAGE = Path("src/fracparticles")
 # What a run depends on, and nothing else: editing a plot reruns no solver.
-CORE = sorted(
-    str(path)
-    for part in ("special", "sums", "schemes", "integrators", ".")
-    for path in PACKAGE.glob(f"{part}/*.py")
-    if path.parent != PACKAGE
-    or path.stem
-    in {
-        "case",
-        "complaints",
-        "dataset",
-        "errors",
-        "exterior",
-        "kernels",
-        "operators",
-        "solver",
-        "spectrum",
-        "stability",
-    }
-)
-COMPILED = RESULTS / "runs" / ".compiled"
+CORE = sources_of(PACKAGE / "solver.py", PACKAGE)
+# The printed claims, by the letter that the inventory gives a document.
+PRINTED = {
+    "L": "report/printed/lucchesi2020.yaml",
+    "S": "report/printed/ghorbani.yaml",
+    "P": "report/printed/particle_note.yaml",
+}
+# What is compiled together: the solver, and what only some scenes need.
+AREAS = {
+    "core": CORE,
+    "random_walk": [str(PACKAGE / "random_walk.py")],
+    "sph": sorted(map(str, PACKAGE.glob("sph/*.py"))),
+}
+COMPILED = RESULTS / "runs/.compiled_core"
 LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
 
 
 wildcard_constraints:
     scene="|".join(SCENES),
+    area="|".join(AREAS),
 
 
 def run_files(scene):
     """The run files of a scene."""
     return [RESULTS / "runs" / case.path for case in CASES[scene]]
+
+
+def study_sources(scene):
+    """The source files that a scene's study is made of."""
+    return sources_of(PACKAGE / f"studies/{STUDIES[SCENES[scene].study]}.py", PACKAGE)
+
+
+def compiled_areas(scene):
+    """The marks of the compiled areas that a scene's study uses."""
+    used = study_sources(scene)
+    return [
+        RESULTS / f"runs/.compiled_{area}" for area, code in AREAS.items() if set(code) & set(used)
+    ]
+
+
+def printed_files(scene):
+    """The files of the documents whose items a scene judges."""
+    return sorted({PRINTED[item[0]] for item in SCENES[scene].items})
 
 
 def has_figure(scene):

@@ -4,11 +4,11 @@
 rule compile:
     # numba fills its cache once, before two jobs could do it at the same time.
     input:
-        code=CORE,
+        code=lambda wildcards: AREAS[wildcards.area],
     output:
-        touch(COMPILED),
+        touch(RESULTS / "runs/.compiled_{area}"),
     log:
-        RESULTS / "logs/compile.log",
+        RESULTS / "logs/compile_{area}.log",
     script:
         "../scripts/compile.py"
 

@@ -7,15 +7,10 @@ rule study:
         tables=lambda wildcards: [
             RESULTS / f"tables/{other}.csv" for other in SCENES[wildcards.scene].tables
         ],
-        printed="report/printed/lucchesi2020.yaml",
-        code=lambda wildcards: [
-            PACKAGE / "claims.py",
-            PACKAGE / "studies/common.py",
-            PACKAGE / f"studies/{STUDIES[SCENES[wildcards.scene].study]}.py",
-        ],
+        printed=lambda wildcards: printed_files(wildcards.scene),
+        code=lambda wildcards: study_sources(wildcards.scene),
         reference=lambda wildcards: SCENES[wildcards.scene].parameters.get("reference", []),
-        core=lambda wildcards: [] if SCENES[wildcards.scene].runs else CORE,
-        compiled=COMPILED,
+        compiled=lambda wildcards: compiled_areas(wildcards.scene),
     output:
         csv=RESULTS / "tables/{scene}.csv",
         md=RESULTS / "tables/{scene}.md",
@@ -57,7 +52,7 @@ rule figure:
 rule ledger:
     input:
         findings=expand(RESULTS / "findings/{scene}.json", scene=SCENES),
-        printed="report/printed/lucchesi2020.yaml",
+        printed=list(PRINTED.values()),
         code=PACKAGE / "claims.py",
     output:
         csv=report(LEDGER[0], category="Claims ledger"),

@@ -8,5 +8,5 @@ from fracparticles.claims import ledger, read_claims, read_findings, write_ledge
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
-rows = ledger(read_claims(snakemake.input.printed), read_findings(snakemake.input.findings))
+rows = ledger(read_claims(*snakemake.input.printed), read_findings(snakemake.input.findings))
 write_ledger(rows, snakemake.output.csv, snakemake.output.md)

@@ -13,7 +13,7 @@ snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
 parameters, output = snakemake.params, snakemake.output
-claims = [c for c in read_claims(snakemake.input.printed) if c.item in parameters.claimed]
+claims = [c for c in read_claims(*snakemake.input.printed) if c.item in parameters.claimed]
 inputs = Inputs(
     scene=snakemake.wildcards.scene,
     items=list(parameters.claimed),

@@ -37,6 +37,21 @@ FIGURES = {
     "fickian_limit": "fickian",
     "conservation": "conservation",
     "stiff_extreme": "extreme",
+    "random_walk": "random_walk",
+    "sph_spline": "sph",
+    "sph_operator": "sph",
+    "sph_convergence": "sph",
+    "note_particles": "pse_note",
+    "note_kernels": "pse_note",
+    "note_lattice_kernel": "pse_note",
+    "note_error_law": "pse_note",
+    "note_conservation": "pse_note",
+    "planar_green": "two_dimensions",
+    "planar_operators": "two_dimensions",
+    "planar_profiles": "two_dimensions",
+    "planar_map": "two_dimensional_map",
+    "planar_errors": "two_dimensional_errors",
+    "planar_tables": "two_dimensional_errors",
 }
 
 

@@ -9,25 +9,27 @@ from typing import Protocol
 import numpy as np
 
 from fracparticles.exterior import far_field
-from fracparticles.kernels import kernel_transform
+from fracparticles.exterior_box import box_far_field
+from fracparticles.kernel_tables import KernelValues, tabulated
+from fracparticles.kernels import KERNELS, kernel, kernel_transform
 from fracparticles.operators import ConvolutionOperator, Operator
-from fracparticles.sums import SUMMATIONS
+from fracparticles.sums import BOX_SUMMATIONS, SUMMATIONS
 
-__all__ = ["Scheme", "Setting", "lattice_transform", "one_pass_operator"]
+__all__ = ["Method", "Scheme", "Setting", "lattice_transform", "one_pass_operator"]
 
 Weights = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
 class Setting:
-    """One scheme on one lattice x_i = i h, i = -n .. n.
+    """One scheme on one lattice x_i = i h, i = -n .. n in each of `dim` coordinates.
 
     Attributes
     ----------
     n : int
-        Half the number of lattice intervals; there are N = 2 n + 1 particles.
+        Half the number of lattice intervals; there are N = 2 n + 1 particles in each direction.
     spacing : float
-        Particle spacing h, which is the particle volume too.
+        Particle spacing h; the particle volume is h^dim.
     alpha : float
         Fractional order, alpha = 1 + beta.
     order : {2, 4}
@@ -40,6 +42,10 @@ class Setting:
         See `sums`.
     exterior : {"truncated", "open"}
         See `exterior`.
+    dim : {1, 2, 3}
+        Space dimension.
+    kernel_table : float, optional
+        Step of the table that the kernels are interpolated in; exact kernels without it.
     """
 
     n: int
@@ -50,11 +56,23 @@ class Setting:
     diffusivity: float = 1.0
     summation: str = "fft"
     exterior: str = "truncated"
+    dim: int = 1
+    kernel_table: float | None = None
 
     @property
     def size(self) -> int:
-        """The number N of particles."""
+        """The number N of particles in each direction."""
         return 2 * self.n + 1
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the lattice."""
+        return (self.size,) * self.dim
+
+    @property
+    def kernel(self) -> KernelValues:
+        """The function that gives the kernels' values: exact, or interpolated."""
+        return kernel if self.kernel_table is None else tabulated(self.kernel_table)
 
     @property
     def rate(self) -> float:
@@ -62,25 +80,30 @@ class Setting:
         return self.diffusivity / self.spacing**self.alpha
 
 
-class Scheme(Protocol):
-    """The names that a scheme module defines."""
+class Method(Protocol):
+    """The names that every scheme module defines."""
 
     NAME: str
     TITLE: str
     EQUATION: str
     KERNEL: str
     ORDERS: tuple[int, ...]
+    DIMS: tuple[int, ...]
     EXTERIORS: tuple[str, ...]
     CONSERVATIVE: bool  # total strength invariant (18)
+
+
+class Scheme(Method, Protocol):
+    """The names that a module defines whose particles stay on the lattice."""
+
     DISSIPATIVE: bool  # no eigenvalue above the range of the symbol
 
     def operator(self, setting: Setting) -> Operator:
         """Return A of du/dt = A u on the lattice."""
 
-    def symbol(
-        self, theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0
-    ) -> np.ndarray:
-        """Return A(theta) h^alpha / D on the infinite lattice, theta = k h in [0, pi]."""
+    # (theta, alpha, order, overlap), and `dim` if there are several: A(theta) h^alpha / D on the infinite lattice,
+    # theta = k h in [0, pi]; for dim > 1 the last axis of theta is the vector.
+    symbol: Callable[..., np.ndarray]
 
 
 def one_pass_operator(
@@ -92,29 +115,68 @@ def one_pass_operator(
     ----------
     setting : Setting
     weights : callable
-        a_m of the scheme as a function of the offset m, in units of D / h^alpha.
+        a_m of the scheme as a function of the offset |m|, in units of D / h^alpha.
     exchange_sum : float, optional
         For a particle strength exchange, sum_j a_j (u_j - u_i): the sum of a_m over the infinite lattice, from
         the transform. None if the scheme has no - u_i.
     decay : float
         a_m ~ |m|^(-decay), for the open exterior.
     """
-    size = setting.size
 
     def scaled(m: np.ndarray) -> np.ndarray:
         return setting.rate * weights(m)
 
+    infinite = None if exchange_sum is None else -setting.rate * exchange_sum
+    if setting.dim > 1:
+        return _box_operator(setting, scaled, infinite, decay)
+    size = setting.size
     w = scaled(np.arange(size, dtype=float))
     far = None
     if setting.exterior == "open":
         far = far_field(scaled, decay, setting.alpha, setting.n)
     convolve = SUMMATIONS[setting.summation](w, size)
-    if exchange_sum is None:
+    if infinite is None:
         return ConvolutionOperator(convolve, np.zeros(size), far)
-    infinite = -setting.rate * exchange_sum
     if setting.exterior == "open":
         return ConvolutionOperator(convolve, np.full(size, infinite), far)
     return ConvolutionOperator(convolve, -present_sum(w, parity=1), far, infinite)
+
+
+def _box_operator(
+    setting: Setting, scaled: Weights, infinite: float | None, decay: float
+) -> ConvolutionOperator:
+    size, shape = setting.size, setting.shape
+    w = scaled(lattice_radii(size, setting.dim))
+    sums = BOX_SUMMATIONS[setting.summation]([w], [None], size, size)
+
+    def convolve(u: np.ndarray) -> np.ndarray:
+        return sums(u.reshape(shape)).reshape(-1)
+
+    far = None
+    if setting.exterior == "open":
+        far = box_far_field(
+            [lambda *m: scaled(np.sqrt(sum(np.square(part) for part in m)))],
+            [None],
+            decay,
+            setting.alpha,
+            setting.n,
+            setting.dim,
+        )
+    particles = size**setting.dim
+    if infinite is None:
+        return ConvolutionOperator(convolve, np.zeros(particles), far)
+    if setting.exterior == "open":
+        return ConvolutionOperator(convolve, np.full(particles, infinite), far)
+    return ConvolutionOperator(convolve, -convolve(np.ones(particles)), far, infinite)
+
+
+def lattice_radii(count: int, dim: int) -> np.ndarray:
+    """Return |m| for m = 0 .. count - 1 in each coordinate, shape (count,) * dim."""
+    squares = np.arange(count, dtype=float) ** 2
+    total = squares
+    for _ in range(dim - 1):
+        total = total[..., None] + squares
+    return np.sqrt(total)
 
 
 def present_sum(w: np.ndarray, parity: int, size: int | None = None) -> np.ndarray:
@@ -130,20 +192,56 @@ def present_sum(w: np.ndarray, parity: int, size: int | None = None) -> np.ndarr
 
 
 def lattice_transform(
-    name: str, theta: np.ndarray, alpha: float, order: int, overlap: float, parity: int = 1
+    name: str,
+    theta: np.ndarray,
+    alpha: float,
+    order: int,
+    overlap: float,
+    parity: int = 1,
+    dim: int = 1,
 ) -> np.ndarray:
-    """Return sum_m K(m / s) e^{-i m theta} / s = sum_l K^(s (theta + 2 pi l)), Poisson's summation formula.
+    """Return sum_m K(m / s) e^{-i m.theta} / s^n = sum_l K^(s (theta + 2 pi l)), Poisson's summation formula.
 
-    For an odd kernel the imaginary part, sum_l sgn(k_l) g(|k_l|). The aliases l fall like a Gaussian, those of
-    E like exp(-|k|^alpha); they are summed until they are nil.
+    For an odd kernel the imaginary part, sum_l (k_l / |k_l|) g(|k_l|): for dim = 1 with the sign of k_l, for
+    dim > 1 a vector along the last axis. The aliases l fall like a Gaussian, those of E like exp(-|k|^alpha);
+    they are summed until they are nil.
+
+    Parameters
+    ----------
+    theta : array
+        Any shape for dim = 1; for dim > 1 the last axis is the vector.
     """
     theta = np.asarray(theta, dtype=float)
+    if dim > 1:
+        return _box_transform(name, theta, alpha, order, overlap, dim)
     last = 1 + int(np.ceil(_NIL_BEYOND[name](alpha) / (2.0 * np.pi * overlap)))
     total = np.zeros_like(theta)
     for alias in range(-last, last + 1):
         k = overlap * (theta + 2.0 * np.pi * alias)
         sign = 1.0 if parity > 0 else np.sign(k)
         total += sign * kernel_transform(name, np.abs(k), alpha, order=order)
+    return total
+
+
+def _box_transform(
+    name: str, theta: np.ndarray, alpha: float, order: int, overlap: float, dim: int
+) -> np.ndarray:
+    nil = _NIL_BEYOND[name](alpha)
+    even = KERNELS[name].parity == "even"
+    total = np.zeros(theta.shape[:-1] if even else theta.shape)
+    last = 1 + int(np.ceil(nil / (2.0 * np.pi * overlap)))
+    # theta lies within |theta_d| <= pi: aliases that stay beyond `nil` for all of them are left out.
+    nearest = 2.0 * np.pi * np.maximum(np.abs(np.arange(-last, last + 1)) - 0.5, 0.0)
+    for alias in np.ndindex(*(2 * last + 1,) * dim):
+        if overlap * np.sqrt(np.square(nearest[list(alias)]).sum()) > nil:
+            continue
+        k = overlap * (theta + 2.0 * np.pi * (np.array(alias) - last))
+        size = np.sqrt(np.square(k).sum(axis=-1))
+        value = kernel_transform(name, size, alpha, dim=dim, order=order)
+        if even:
+            total += value
+        else:
+            total += k * (value / np.where(size > 0.0, size, 1.0))[..., None]
     return total
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
 from fracparticles.operators import Operator
 from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
@@ -19,24 +20,36 @@ TITLE = "Direct differentiation"
 EQUATION = "Eq. (10)"
 KERNEL = "Eq. (11)"
 ORDERS = (2, 4)
+DIMS = (1, 2, 3)
 EXTERIORS = ("truncated", "open")
 CONSERVATIVE = False
 DISSIPATIVE = True
 
 
-def weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
-    """a_m = s^(-1-alpha) G(m / s)."""
-    return overlap ** (-1.0 - alpha) * kernel("G", m / overlap, alpha, order=order)
+def weights(
+    m: np.ndarray,
+    alpha: float,
+    order: int,
+    overlap: float,
+    dim: int = 1,
+    values: KernelValues = kernel,
+) -> np.ndarray:
+    """a_m = s^(-n-alpha) G(|m| / s)."""
+    return overlap ** (-dim - alpha) * values("G", m / overlap, alpha, dim=dim, order=order)
 
 
 def operator(setting: Setting) -> Operator:
     """Return A of Eq. (10)."""
     alpha, order, overlap = setting.alpha, setting.order, setting.overlap
     return one_pass_operator(
-        setting, lambda m: weights(m, alpha, order, overlap), decay=1.0 + alpha
+        setting,
+        lambda m: weights(m, alpha, order, overlap, setting.dim, setting.kernel),
+        decay=setting.dim + alpha,
     )
 
 
-def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
+def symbol(
+    theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+) -> np.ndarray:
     """A(theta) h^alpha / D = s^(-alpha) sum_l G^(s (theta + 2 pi l)),  G^(k) = -|k|^alpha eta^(k)."""
-    return overlap**-alpha * lattice_transform("G", theta, alpha, order, overlap)
+    return overlap**-alpha * lattice_transform("G", theta, alpha, order, overlap, dim=dim)

@@ -21,6 +21,7 @@ TITLE = "Direct particle strength exchange"
 EQUATION = "Eq. (16)"
 KERNEL = "Eqs. (14), (17)"
 ORDERS = (2, 4)
+DIMS = (1,)
 EXTERIORS = ("truncated",)
 CONSERVATIVE = True
 DISSIPATIVE = True

@@ -22,6 +22,7 @@ TITLE = "Finite differences (reconstruction)"
 EQUATION = "Ref. [41]"
 KERNEL = "-"
 ORDERS = (2,)
+DIMS = (1,)
 EXTERIORS = ("truncated",)
 CONSERVATIVE = False
 DISSIPATIVE = True

@@ -10,31 +10,43 @@ Stable for D dt / h^alpha <= a; order II, aliases neglected: a = 2 (s/2)^alpha (
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from fracparticles.exterior import far_field
+from fracparticles.exterior_box import box_far_field
+from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
-from fracparticles.operators import Operator, TwoPassOperator
+from fracparticles.operators import FluxDivergenceOperator, Operator, TwoPassOperator
 from fracparticles.schemes.base import Setting, lattice_transform, present_sum
-from fracparticles.sums import SUMMATIONS, BandedConvolution
+from fracparticles.sums import BOX_SUMMATIONS, SUMMATIONS, BandedConvolution
 
 NAME = "FPSE"
 TITLE = "Flux particle strength exchange"
 EQUATION = "Eq. (25)"
 KERNEL = "Eqs. (20), (23)"
 ORDERS = (2, 4)
+DIMS = (1, 2, 3)
 EXTERIORS = ("truncated", "open")
 CONSERVATIVE = True
 DISSIPATIVE = True
 
 
-def flux_weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
-    """Q_i = h^(-beta) sum_j b_{i-j} u_j with b_m = -s^(-alpha) F(m / s), Eq. (19)."""
-    return -(overlap**-alpha) * kernel("F", m / overlap, alpha, order=order)
+def flux_weights(
+    m: np.ndarray,
+    alpha: float,
+    order: int,
+    overlap: float,
+    dim: int = 1,
+    values: KernelValues = kernel,
+) -> np.ndarray:
+    """Q_i = h^(-beta) sum_j b_{i-j} u_j with b_m = -s^(-n-beta) F(m / s), Eq. (19), along m / |m|."""
+    return -(overlap ** (1.0 - dim - alpha)) * values("F", m / overlap, alpha, dim=dim, order=order)
 
 
 def divergence_weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
-    """du_i/dt = (D / h) sum_j c_{i-j} (Q_j + Q_i) with c_m = -s^(-2) eta1(m / s), Eq. (25)."""
+    """du_i/dt = (D / h) sum_j c_{i-j} (Q_j + Q_i) with c_m = -s^(-2) eta1(m / s), Eq. (25), n = 1."""
     return -(overlap**-2.0) * kernel("eta1", m / overlap, alpha, order=order)
 
 
@@ -44,13 +56,17 @@ def operator(setting: Setting) -> Operator:
     With the open exterior, the flux is also taken at the lattice points next to the ends, as far as the
     divergence reaches; then the sum of eta1 over all neighbours vanishes and with it the term Q_i.
     """
+    return _line_operator(setting) if setting.dim == 1 else _box_operator(setting)
+
+
+def _line_operator(setting: Setting) -> Operator:
     alpha, order, overlap = setting.alpha, setting.order, setting.overlap
     size, is_open = setting.size, setting.exterior == "open"
     reach = BandedConvolution.reach(overlap, order)
     pad = reach if is_open else 0
 
     def flux(m: np.ndarray) -> np.ndarray:
-        return setting.rate * flux_weights(m, alpha, order, overlap)
+        return setting.rate * flux_weights(m, alpha, order, overlap, values=setting.kernel)
 
     convolve = SUMMATIONS[setting.summation](
         flux(np.arange(size + pad, dtype=float)), size, parity=-1, pad=pad
@@ -64,11 +80,90 @@ def operator(setting: Setting) -> Operator:
     return TwoPassOperator(convolve, BandedConvolution(c, parity=-1), diagonal, far)
 
 
-def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
-    """A(theta) h^alpha / D = -s^(-alpha) f(theta) e(theta).
+def _box_operator(setting: Setting) -> Operator:
+    alpha, order, overlap, dim = setting.alpha, setting.order, setting.overlap, setting.dim
+    size, is_open = setting.size, setting.exterior == "open"
+    pad = BandedConvolution.reach(overlap, order) if is_open else 0
 
-    f and e are the sums over the aliases of F^ = i sgn(k) |k|^beta eta^(k) and of eta1^.
+    def component(axis: int) -> Callable[..., np.ndarray]:
+        def flux(*m: np.ndarray) -> np.ndarray:
+            r = np.sqrt(sum(np.square(part) for part in m))
+            radial = setting.rate * flux_weights(r, alpha, order, overlap, dim, setting.kernel)
+            return radial * (m[axis] / np.where(r > 0.0, r, 1.0))
+
+        return flux
+
+    weights = [component(axis) for axis in range(dim)]
+    offsets = np.arange(size + pad, dtype=float)
+    grid = np.meshgrid(*(offsets,) * dim, indexing="ij", sparse=True)
+    convolve = BOX_SUMMATIONS[setting.summation](
+        [flux(*grid) for flux in weights], range(dim), size, size + 2 * pad
+    )
+    divergence = _Divergence(order, overlap, dim, size)
+    far, diagonal = None, None
+    if is_open:
+        far = box_far_field(weights, range(dim), dim + alpha - 1.0, alpha, setting.n, dim, pad=pad)
+    else:
+        diagonal = np.array([divergence.part(np.ones(setting.shape), axis) for axis in range(dim)])
+    return FluxDivergenceOperator(convolve, divergence, diagonal, far, setting.shape)
+
+
+class _Divergence:
+    """sum_j c_{i-j} . q_j with c_m = -s^(-n-1) eta1(m / s) as products of sums along the axes.
+
+    eta1 of order II is a product, x_d e^(-x_d^2) times e^(-x_e^2) in the other coordinates. That of order IV, with
+    n + 4 - 2 |r|^2 = (n + 4 - 2 x_d^2) - 2 sum_e x_e^2, is a sum of n products.
     """
-    f = lattice_transform("F", theta, alpha, order, overlap, parity=-1)
-    e = lattice_transform("eta1", theta, alpha, order, overlap, parity=-1)
-    return -(overlap**-alpha) * f * e
+
+    def __init__(self, order: int, overlap: float, dim: int, size: int) -> None:
+        self._dim, self._size = dim, size
+        x = np.arange(BandedConvolution.reach(overlap, order) + 1) / overlap
+        gauss = np.exp(-x * x) / (overlap * np.sqrt(np.pi))
+        odd = x * gauss / overlap
+        self._even = BandedConvolution(gauss, parity=1)
+        self._polynomial = None
+        if order == 2:
+            self._odd = BandedConvolution(2.0 * odd, parity=-1)
+        else:
+            self._odd = BandedConvolution((dim + 4.0 - 2.0 * x * x) * odd, parity=-1)
+            self._polynomial = (
+                BandedConvolution(-2.0 * odd, parity=-1),
+                BandedConvolution(x * x * gauss, parity=1),
+            )
+
+    def __call__(self, q: np.ndarray) -> np.ndarray:
+        """Return the sum over the components, shape (N, .., N)."""
+        total = self.part(q[0], 0)
+        for axis in range(1, self._dim):
+            total += self.part(q[axis], axis)
+        return total
+
+    def part(self, component: np.ndarray, axis: int) -> np.ndarray:
+        """Return sum_j of the component of c along `axis` times that of q, shape (N, .., N)."""
+        size, others = self._size, [other for other in range(self._dim) if other != axis]
+        p = self._odd.along(component, axis, size)
+        if self._polynomial is None:
+            for other in others:
+                p = self._even.along(p, other, size)
+            return p
+        linear, square = self._polynomial
+        # p: with the factors so far, the product for x_d; q: the same, still without a factor x_e^2.
+        q = linear.along(component, axis, size)
+        for other in others:
+            p = self._even.along(p, other, size)
+            p += square.along(q, other, size)
+            q = self._even.along(q, other, size)
+        return p
+
+
+def symbol(
+    theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+) -> np.ndarray:
+    """A(theta) h^alpha / D = -s^(-alpha) f(theta) . e(theta).
+
+    f and e are the sums over the aliases of F^ = i (k / |k|) |k|^beta eta^(k) and of eta1^.
+    """
+    f = lattice_transform("F", theta, alpha, order, overlap, parity=-1, dim=dim)
+    e = lattice_transform("eta1", theta, alpha, order, overlap, parity=-1, dim=dim)
+    product = f * e if dim == 1 else (f * e).sum(axis=-1)
+    return -(overlap**-alpha) * product

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
 from fracparticles.operators import Operator
 from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
@@ -20,34 +21,39 @@ TITLE = "Green particle strength exchange"
 EQUATION = "Eq. (41)"
 KERNEL = "Eq. (39)"
 ORDERS = (2,)
+DIMS = (1, 2, 3)
 EXTERIORS = ("truncated", "open")
 CONSERVATIVE = True
 DISSIPATIVE = True
 
 
-def weights(m: np.ndarray, alpha: float, overlap: float) -> np.ndarray:
-    """a_m = s^(-1-alpha) E(m / s)."""
-    return overlap ** (-1.0 - alpha) * kernel("E", m / overlap, alpha)
+def weights(
+    m: np.ndarray, alpha: float, overlap: float, dim: int = 1, values: KernelValues = kernel
+) -> np.ndarray:
+    """a_m = s^(-n-alpha) E(|m| / s)."""
+    return overlap ** (-dim - alpha) * values("E", m / overlap, alpha, dim=dim)
 
 
 def operator(setting: Setting) -> Operator:
     """Return A of Eq. (41); setting.overlap must be (D dt)^(1/alpha) / h."""
-    alpha, overlap = setting.alpha, setting.overlap
-    total = overlap**-alpha * lattice_transform("E", np.zeros(1), alpha, 2, overlap)
+    alpha, overlap, dim = setting.alpha, setting.overlap, setting.dim
+    total = lattice_transform("E", np.zeros((1, dim)), alpha, 2, overlap, dim=dim)
     return one_pass_operator(
         setting,
-        lambda m: weights(m, alpha, overlap),
-        exchange_sum=float(total[0]),
-        decay=1.0 + alpha,
+        lambda m: weights(m, alpha, overlap, dim, setting.kernel),
+        exchange_sum=float(overlap**-alpha * total.flat[0]),
+        decay=dim + alpha,
     )
 
 
-def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
+def symbol(
+    theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+) -> np.ndarray:
     """A(theta) h^alpha / D = s^(-alpha) sum_l [E^(s (theta + 2 pi l)) - E^(2 pi l s)].
 
     E^(k) = exp(-|k|^alpha). There is one order only.
     """
     theta = np.asarray(theta, dtype=float)
-    at_theta = lattice_transform("E", theta, alpha, 2, overlap)
-    at_zero = lattice_transform("E", np.zeros_like(theta), alpha, 2, overlap)
+    at_theta = lattice_transform("E", theta, alpha, 2, overlap, dim=dim)
+    at_zero = lattice_transform("E", np.zeros_like(theta), alpha, 2, overlap, dim=dim)
     return overlap**-alpha * (at_theta - at_zero)

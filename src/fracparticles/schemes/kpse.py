@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
 from fracparticles.operators import Operator
 from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
@@ -20,31 +21,42 @@ TITLE = "Kernel particle strength exchange"
 EQUATION = "Eq. (34)"
 KERNEL = "Eq. (31)"
 ORDERS = (2, 4)
+DIMS = (1, 2, 3)
 EXTERIORS = ("truncated", "open")
 CONSERVATIVE = True
 DISSIPATIVE = True
 
 
-def weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
-    """a_m = alpha s^(-1-alpha) K(m / s)."""
-    return alpha * overlap ** (-1.0 - alpha) * kernel("K", m / overlap, alpha, order=order)
+def weights(
+    m: np.ndarray,
+    alpha: float,
+    order: int,
+    overlap: float,
+    dim: int = 1,
+    values: KernelValues = kernel,
+) -> np.ndarray:
+    """a_m = alpha s^(-n-alpha) K(|m| / s)."""
+    k = values("K", m / overlap, alpha, dim=dim, order=order)
+    return alpha * overlap ** (-dim - alpha) * k
 
 
 def operator(setting: Setting) -> Operator:
     """Return A of Eq. (34)."""
-    alpha, order, overlap = setting.alpha, setting.order, setting.overlap
-    total = alpha * overlap**-alpha * lattice_transform("K", np.zeros(1), alpha, order, overlap)
+    alpha, order, overlap, dim = setting.alpha, setting.order, setting.overlap, setting.dim
+    total = lattice_transform("K", np.zeros((1, dim)), alpha, order, overlap, dim=dim)
     return one_pass_operator(
         setting,
-        lambda m: weights(m, alpha, order, overlap),
-        exchange_sum=float(total[0]),
-        decay=1.0 + alpha,
+        lambda m: weights(m, alpha, order, overlap, dim, setting.kernel),
+        exchange_sum=float(alpha * overlap**-alpha * total.flat[0]),
+        decay=dim + alpha,
     )
 
 
-def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
+def symbol(
+    theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+) -> np.ndarray:
     """A(theta) h^alpha / D = alpha s^(-alpha) sum_l [K^(s (theta + 2 pi l)) - K^(2 pi l s)]."""
     theta = np.asarray(theta, dtype=float)
-    at_theta = lattice_transform("K", theta, alpha, order, overlap)
-    at_zero = lattice_transform("K", np.zeros_like(theta), alpha, order, overlap)
+    at_theta = lattice_transform("K", theta, alpha, order, overlap, dim=dim)
+    at_zero = lattice_transform("K", np.zeros_like(theta), alpha, order, overlap, dim=dim)
     return alpha * overlap**-alpha * (at_theta - at_zero)

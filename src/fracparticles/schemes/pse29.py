@@ -19,6 +19,7 @@ TITLE = "Scheme (29), rejected"
 EQUATION = "Eq. (29)"
 KERNEL = "Eq. (11)"
 ORDERS = (2, 4)
+DIMS = (1,)
 EXTERIORS = ("truncated",)
 CONSERVATIVE = True
 DISSIPATIVE = False

@@ -23,6 +23,7 @@ TITLE = "Regularised Riesz potential, rejected"
 EQUATION = "Sec. 3.2.3, second remark"
 KERNEL = "K*, see the module"
 ORDERS = (2,)
+DIMS = (1,)
 EXTERIORS = ("truncated",)
 CONSERVATIVE = True
 DISSIPATIVE = True

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 
 from fracparticles.errors import InvalidInput
 
-__all__ = ["elementwise", "fractional_order", "positive_integer", "positive_real", "real_array"]
+__all__ = [
+    "dimension",
+    "elementwise",
+    "fractional_order",
+    "positive_integer",
+    "positive_real",
+    "real_array",
+]
 
 FloatArray = NDArray[np.float64]
 
@@ -91,3 +98,16 @@ def positive_integer(field: str, value: Any) -> int:
     if not (isinstance(value, int | np.integer) and not isinstance(value, bool) and value > 0):
         raise InvalidInput(field, value, "a whole number above zero", "Give 1, 2, 3, ...")
     return int(value)
+
+
+def dimension(dim: Any) -> int:
+    """Return the number of dimensions, 1 to 3, as an int.
+
+    Raises
+    ------
+    InvalidInput
+        If it is anything else.
+    """
+    if not (isinstance(dim, int | np.integer) and not isinstance(dim, bool) and 1 <= dim <= 3):
+        raise InvalidInput("dim", dim, "1, 2 or 3", "Give the number of space dimensions.")
+    return int(dim)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-__all__ = ["DEGREE", "fit", "horner", "sample_points"]
+__all__ = ["DEGREE", "evaluate", "fit", "horner", "sample_points"]
 
 DEGREE = 17
 
@@ -45,3 +45,14 @@ def horner(pieces_x: float, coefficients: NDArray[np.float64]) -> float:
     for k in range(DEGREE - 1, -1, -1):
         value = value * t + coefficients[piece, k]
     return value
+
+
+@numba.njit(cache=True, nogil=True)
+def evaluate(
+    pieces_x: NDArray[np.float64], coefficients: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Apply `horner` to an array of any shape."""
+    out = np.empty_like(pieces_x)
+    for i in range(pieces_x.size):
+        out.flat[i] = horner(pieces_x.flat[i], coefficients)
+    return out

@@ -43,6 +43,14 @@ class BandedConvolution:
         _sums(v, self._weights, self._parity, out)
         return out
 
+    def along(self, v: np.ndarray, axis: int, count: int) -> np.ndarray:
+        """Return the sums over the lines of v along one axis, for the `count` points in the middle of each."""
+        before, after = v.shape[:axis], v.shape[axis + 1 :]
+        out = np.empty((*before, count, *after))
+        lines = v.reshape(int(np.prod(before)), v.shape[axis], int(np.prod(after)))
+        _sums_along(lines, self._weights, self._parity, out.reshape(lines.shape[0], count, -1))
+        return out
+
     def update(
         self,
         q: np.ndarray,
@@ -64,6 +72,31 @@ def _sums(v, weights, parity, out):
     for start in range(0, out.size, _BLOCK):
         total = out[start : start + _BLOCK]
         _sum_block(v, weights, parity, start + skip, window, total)
+
+
+@nb.njit(cache=True, nogil=True)
+def _sums_along(v, weights, parity, out):
+    if v.shape[2] == 1:
+        for line in range(v.shape[0]):
+            _sums(v[line, :, 0], weights, parity, out[line, :, 0])
+        return
+    skip = (v.shape[1] - out.shape[1]) // 2
+    for plane in range(v.shape[0]):
+        for start in range(0, v.shape[2], _BLOCK):
+            lines, sums = v[plane, :, start : start + _BLOCK], out[plane, :, start : start + _BLOCK]
+            for i in range(out.shape[1]):
+                row = sums[i]
+                row[:] = weights[0] * lines[i + skip]
+                for m in range(1, weights.size):
+                    left, right = i + skip - m, i + skip + m
+                    if left >= 0 and right < v.shape[1]:
+                        below, above = lines[left], lines[right]
+                        for k in range(row.size):
+                            row[k] += weights[m] * (below[k] + parity * above[k])
+                    elif left >= 0:
+                        row += weights[m] * lines[left]
+                    elif right < v.shape[1]:
+                        row += weights[m] * parity * lines[right]
 
 
 @nb.njit(cache=True, nogil=True)

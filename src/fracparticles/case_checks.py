@@ -1,0 +1,215 @@
+"""What a `Case` must fulfil beyond the range of each field: one function a subject, each with a clear complaint."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from fracparticles.errors import InvalidInput
+from fracparticles.schemes import METHODS
+from fracparticles.stability import stability_limit
+
+if TYPE_CHECKING:
+    from fracparticles.case import Case
+
+__all__ = ["FUNDAMENTAL", "OVERLAPS", "SIZES", "check"]
+
+FUNDAMENTAL = "fundamental"
+SIZES = 1e-100, 1e100  # lengths and times; nothing made of them overflows
+OVERLAPS = 0.25, 1000.0
+# Measured: about 20 arrays of float64 at the peak, on a square or a cube with the padded transforms.
+_BYTES_PER_PARTICLE = {1: 200, 2: 400, 3: 600}
+_MOST_STEPS = 2**53  # more are not told apart in float64
+_STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
+
+
+def check(case: Case) -> None:
+    """Check a case whose fields are valid each by itself.
+
+    Raises
+    ------
+    InvalidInput
+        With the field, the value, what is allowed and what to do.
+    """
+    _check_time(case)
+    _check_domain(case)
+    _check_scheme(case)
+    _check_particles(case)
+    _check_integrator(case)
+    _check_work(case)
+
+
+def _check_time(case: Case) -> None:
+    if not 1.0 < case.alpha < 2.0:
+        raise InvalidInput(
+            "beta", case.beta, "a number that makes 1 + beta differ from 1 and 2", "Move it inward."
+        )
+    if case.t_final <= case.t_initial:
+        raise InvalidInput(
+            "t_final",
+            case.t_final,
+            f"a number > t_initial = {case.t_initial:g}",
+            "Give a later final time.",
+        )
+
+
+def _check_domain(case: Case) -> None:
+    if (case.truncation is None) == (case.half_width is None):
+        raise InvalidInput(
+            "truncation",
+            case.truncation,
+            "exactly one of truncation and half_width",
+            "Give the factor C of Eq. (46) or the half-width itself.",
+        )
+    if case.spacing > case.domain / 8.0:
+        raise InvalidInput(
+            "spacing",
+            case.spacing,
+            f"at most an eighth of the half-width, {case.domain / 8.0:.6g}",
+            "Take a smaller spacing or a wider domain.",
+        )
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    particles = (2.0 * case.domain / case.spacing) ** case.dim
+    needed = _BYTES_PER_PARTICLE[case.dim] * particles
+    if needed > 0.5 * memory:
+        most = (0.5 * memory / _BYTES_PER_PARTICLE[case.dim]) ** (1.0 / case.dim)
+        raise InvalidInput(
+            "spacing",
+            case.spacing,
+            f"at least {2.0 * case.domain / most:.3g} on this domain and this machine: "
+            f"{particles:.3g} particles would take {needed / 2**30:.3g} GiB, "
+            f"half of the memory is {memory / 2**31:.3g} GiB",
+            "Take a larger spacing or a narrower domain.",
+        )
+
+
+def _check_work(case: Case) -> None:
+    span = case.t_final - case.t_initial
+    if not case.steps_taken and span * case.setting.rate > _STIFFEST:
+        raise InvalidInput(
+            "t_final",
+            case.t_final,
+            f"at most {case.t_initial + _STIFFEST / case.setting.rate:.6g} with this spacing and diffusivity",
+            "Take a shorter run or a larger spacing.",
+        )
+    if case.method != "exponential" and span / case.asked_step > _MOST_STEPS:
+        raise InvalidInput(
+            "dt", case.dt, f"at least {span / _MOST_STEPS:.3g}: 2^53 steps", "Take a larger step."
+        )
+
+
+def _check_scheme(case: Case) -> None:
+    scheme = METHODS[case.scheme]
+    if case.order not in scheme.ORDERS:
+        raise InvalidInput(
+            "order",
+            case.order,
+            f"{' or '.join(map(str, scheme.ORDERS))} for {case.scheme}",
+            "Choose one of these.",
+        )
+    if case.dim not in scheme.DIMS:
+        raise InvalidInput(
+            "dim",
+            case.dim,
+            f"{' or '.join(map(str, scheme.DIMS))} for {case.scheme}",
+            "DD, FPSE, KPSE and GPSE exist for 1, 2 and 3 dimensions.",
+        )
+    if case.exterior not in scheme.EXTERIORS:
+        raise InvalidInput(
+            "exterior",
+            case.exterior,
+            f"{' or '.join(scheme.EXTERIORS)} for {case.scheme}",
+            "The far-field closure exists for DD, FPSE, KPSE and GPSE.",
+        )
+    if case.scheme == "FD":
+        for name in ("overlap", "kernel_table"):
+            if getattr(case, name) is not None:
+                raise InvalidInput(
+                    name,
+                    getattr(case, name),
+                    "nothing for FD, which has no kernel",
+                    "Leave it out.",
+                )
+    if case.kernel_table is not None and case.scheme not in ("DD", "FPSE", "KPSE", "GPSE"):
+        raise InvalidInput(
+            "kernel_table", case.kernel_table, f"nothing for {case.scheme}", "Leave it out."
+        )
+
+
+def _check_particles(case: Case) -> None:
+    """What only DVM takes, whose particles move, and what it does not."""
+    if case.scheme != "DVM":
+        for name in ("remeshing", "remesh_above", "threshold"):
+            if getattr(case, name) is not None:
+                raise InvalidInput(
+                    name,
+                    getattr(case, name),
+                    f"nothing for {case.scheme}, whose particles stay where they are",
+                    "Leave it out, or take scheme='DVM'.",
+                )
+        return
+    if case.method != "rk2":
+        raise InvalidInput("integrator", case.method, "nothing or 'rk2' for DVM", "Leave it out.")
+    if case.evaluation == "series":
+        raise InvalidInput(
+            "evaluation",
+            case.evaluation,
+            "nothing or 'stepping' for DVM, whose velocity is not linear",
+            "Leave it out.",
+        )
+    if case.remeshing == "none":
+        for name in ("remesh_above", "threshold"):
+            if getattr(case, name) is not None:
+                raise InvalidInput(
+                    name, getattr(case, name), "nothing for remeshing='none'", "Leave it out."
+                )
+
+
+def _check_integrator(case: Case) -> None:
+    if case.method == "exponential":
+        if case.dt is not None:
+            raise InvalidInput(
+                "dt", case.dt, "nothing for integrator='exponential'", "Leave dt out."
+            )
+        if case.evaluation == "stepping":
+            raise InvalidInput(
+                "evaluation",
+                case.evaluation,
+                "'series' for integrator='exponential', which takes no steps",
+                "Leave it out.",
+            )
+    if case.scheme == "GPSE":
+        if case.method != "euler":
+            raise InvalidInput(
+                "integrator",
+                case.method,
+                "nothing or 'euler' for GPSE, whose step is part of the scheme",
+                "Leave it out.",
+            )
+        if case.dt is not None and case.overlap is not None:
+            raise InvalidInput(
+                "overlap",
+                case.overlap,
+                "one of dt and overlap for GPSE, since epsilon = (D dt)^(1/alpha), Eq. (40)",
+                "Leave one of them out.",
+            )
+        if case.dt is not None and not OVERLAPS[0] <= case.epsilon_over_h <= OVERLAPS[1]:
+            least, most = ((s * case.particle_spacing) ** case.alpha for s in OVERLAPS)
+            raise InvalidInput(
+                "dt",
+                case.dt,
+                f"a step from {least / case.diffusivity:.4g} to {most / case.diffusivity:.4g} for GPSE, so that "
+                f"epsilon / h is from {OVERLAPS[0]:g} to {OVERLAPS[1]:g}",
+                "Change dt or the spacing.",
+            )
+    elif case.scheme == "DVM" and case.dt is None:
+        raise InvalidInput("dt", None, "a number > 0 for DVM", "Give the time step.")
+    elif case.dt is None and case.method != "exponential":
+        limit = stability_limit(case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim)
+        largest = limit * case.particle_spacing**case.alpha / case.diffusivity
+        raise InvalidInput(
+            "dt",
+            None,
+            f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}",
+            "Give dt, or integrator='exponential', which needs none.",
+        )

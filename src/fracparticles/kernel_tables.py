@@ -1,0 +1,38 @@
+"""Kernels by linear interpolation in a table, as the paper evaluates F and G in two dimensions (Sec. 5).
+
+    K(r) ~ K(r_k) + (r - r_k) (K(r_{k+1}) - K(r_k)) / step,   r_k = k step <= r < r_{k+1}.
+
+The error is at most step^2 max|K''| / 8. The table is there to show what it does: the exact kernels are fast enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fracparticles.kernels import kernel
+
+__all__ = ["KernelValues", "tabulated"]
+
+# kernel(name, r, alpha, dim=..., order=...)
+KernelValues = Callable[..., Any]
+
+
+def tabulated(step: float) -> KernelValues:
+    """Return a function with the parameters of `kernels.kernel` that interpolates in a table of this step.
+
+    Parameters
+    ----------
+    step : float
+        Step of the table, in units of the smoothing length.
+    """
+
+    def values(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> np.ndarray:
+        size = np.abs(np.asarray(r, dtype=float))
+        points = step * np.arange(int(size.max() / step) + 2)
+        table = np.asarray(kernel(name, points, alpha, dim=dim, order=order))
+        return np.interp(size, points, table)
+
+    return values

@@ -1,0 +1,167 @@
+r"""Redistribution of scattered particles onto the lattice x_p = p h:
+
+    U_p = sum_j U_j W((x_p - x_j) / h),
+
+with an interpolation function W of two spacings' reach, so that every particle is split among four lattice points.
+The lattice goes on as far as that takes, so that moments are conserved whatever the positions:
+
+- `M4'`: 1 - 5/2 r^2 + 3/2 r^3 for r = |x| <= 1, (2 - r)^2 (1 - r) / 2 for 1 <= r <= 2. Continuous slope; keeps
+  sum_j U_j x_j^m for m = 0, 1, 2. Monaghan, J. Comput. Phys. 60 (1985) 253.
+- `Lambda3`: (1 - r^2) (2 - r) / 2 for r <= 1, (1 - r) (2 - r) (3 - r) / 6 for 1 <= r <= 2: cubic Lagrange
+  interpolation through four points (Everett's formula). Continuous, its slope is not; keeps m = 0, 1, 2, 3.
+  Cottet & Koumoutsakos, Vortex Methods (Cambridge University Press, 2000), Section 7.2; in the spirit of
+  Schoenberg, Quart. Appl. Math. 4 (1946) 45, who asked which W reproduce polynomials.
+
+Both turn negative between one and two spacings: remeshed strengths can have either sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+
+from fracparticles.errors import InvalidInput
+from fracparticles.special.arguments import elementwise, positive_real, real_array
+
+__all__ = ["REMESHINGS", "Elimination", "eliminate", "interpolation_function", "remesh"]
+
+REMESHINGS = ("M4'", "Lambda3")
+_FARTHEST = 2**31  # lattice points from the origin: a particle beyond has run away
+_MOST_POINTS = 2**26
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """Particles that were kept, and what was left out.
+
+    Attributes
+    ----------
+    x, strength : array, shape (N,)
+        The particles kept.
+    count : int
+        How many particles were left out, not counting those of no strength at all.
+    eliminated : float
+        Their total strength: the total before less the total after.
+    """
+
+    x: np.ndarray
+    strength: np.ndarray
+    count: int
+    eliminated: float
+
+
+def interpolation_function(name: str, r: np.ndarray) -> np.ndarray:
+    """Return W(r) at signed distances r, in spacings.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no interpolation function of that name.
+    """
+    return np.asarray(elementwise(_weights, real_array("r", r), _index(name)))
+
+
+def eliminate(x: np.ndarray, strength: np.ndarray, threshold: float) -> Elimination:
+    """Leave out the particles with |U_i| <= threshold max_j |U_j|.
+
+    With threshold 0 those of no strength at all, which also means that it underflowed.
+
+    Raises
+    ------
+    InvalidInput
+        If the threshold is not in [0, 1), or no particle has any strength.
+    """
+    if not 0.0 <= threshold < 1.0:
+        raise InvalidInput(
+            "threshold", threshold, "a number from 0 to below 1", "Give a small fraction of 1."
+        )
+    size = np.abs(strength)
+    largest = size.max(initial=0.0)
+    if not largest > 0.0:
+        raise InvalidInput(
+            "strength",
+            "no particle with a strength",
+            "at least one strength that is not nil",
+            "Check the initial data, and whether they underflow.",
+        )
+    kept = size > threshold * largest
+    if kept.all():
+        return Elimination(x, strength, 0, 0.0)
+    gone = strength[~kept]
+    return Elimination(x[kept], strength[kept], int(np.count_nonzero(gone)), float(gone.sum()))
+
+
+def remesh(
+    x: np.ndarray, strength: np.ndarray, spacing: float, name: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and strengths on the lattice x_p = p h, as far as the particles reach.
+
+    From one lattice point before the first particle's cell to one after the last's, strengths of nil included.
+
+    Parameters
+    ----------
+    x, strength : array, shape (N,)
+        Particles in any order; they may coincide.
+    spacing : float
+        Lattice spacing h.
+    name : {"M4'", "Lambda3"}
+        Interpolation function.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such function, or a particle lies so far out that the lattice would not fit into memory.
+    """
+    which, spacing = _index(name), positive_real("spacing", spacing)
+    cell = x / spacing
+    low, high = cell.min(), cell.max()
+    if not (abs(low) < _FARTHEST and abs(high) < _FARTHEST and high - low < _MOST_POINTS):
+        raise InvalidInput(
+            "x",
+            f"particles from {x.min():.6g} to {x.max():.6g}",
+            f"finite positions less than {_MOST_POINTS * spacing:.4g} apart",
+            "Look for a particle that ran away.",
+        )
+    first = int(np.floor(low)) - 1
+    total = np.zeros(int(np.floor(high)) + 3 - first)
+    _distribute(cell, strength, first, which, total)
+    return np.arange(first, first + total.size) * spacing, total
+
+
+def _index(name: str) -> int:
+    if name not in REMESHINGS:
+        raise InvalidInput("remeshing", name, f"one of {', '.join(REMESHINGS)}", "Choose one.")
+    return REMESHINGS.index(name)
+
+
+@nb.njit(cache=True, nogil=True, inline="always")
+def _weight(r, which):
+    if r >= 2.0:
+        return 0.0
+    if which == 0:
+        if r <= 1.0:
+            return 1.0 - r * r * (2.5 - 1.5 * r)
+        return 0.5 * (2.0 - r) ** 2 * (1.0 - r)
+    if r <= 1.0:
+        return 0.5 * (1.0 - r * r) * (2.0 - r)
+    return (1.0 - r) * (2.0 - r) * (3.0 - r) / 6.0
+
+
+@nb.njit(cache=True, nogil=True)
+def _weights(r, which, out):
+    for i in range(r.size):
+        out[i] = _weight(abs(r[i]), which)
+
+
+@nb.njit(cache=True, nogil=True)
+def _distribute(cell, strength, first, which, total):
+    for j in range(cell.size):
+        left = np.floor(cell[j])
+        fraction = cell[j] - left
+        p = int(left) - first - 1
+        total[p] += strength[j] * _weight(1.0 + fraction, which)
+        total[p + 1] += strength[j] * _weight(fraction, which)
+        total[p + 2] += strength[j] * _weight(1.0 - fraction, which)
+        total[p + 3] += strength[j] * _weight(2.0 - fraction, which)

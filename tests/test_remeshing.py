@@ -1,0 +1,120 @@
+"""Remeshing: the interpolation functions, and what they conserve."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fracparticles.errors import InvalidInput
+from fracparticles.remeshing import REMESHINGS, eliminate, interpolation_function, remesh
+
+MOMENTS = {"M4'": 3, "Lambda3": 4}  # how many, from m = 0
+
+
+@pytest.mark.parametrize("name", REMESHINGS)
+def test_known_values(name):
+    r = np.array([-2.5, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0])
+    expected = [0.0, 0.0, -1 / 16, 0.0, 9 / 16, 1.0, 9 / 16, 0.0, -1 / 16, 0.0]
+    assert interpolation_function(name, r) == pytest.approx(expected, abs=1e-15)
+
+
+def test_slopes_at_the_knots():
+    step = 1e-6
+
+    def jump(name, r):
+        left, middle, right = interpolation_function(name, np.array([r - step, r, r + step]))
+        return (right - 2.0 * middle + left) / step
+
+    for knot in (1.0, 2.0):
+        assert abs(jump("M4'", knot)) < 1e-5  # second derivatives of up to 5, times the step
+    # One-sided slopes -1 and -1/3.
+    assert jump("Lambda3", 1.0) == pytest.approx(2.0 / 3.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("name", REMESHINGS)
+@given(shift=st.floats(0.0, 1.0))
+def test_polynomials_are_reproduced(name, shift):
+    p = np.arange(-3, 5)
+    weights = interpolation_function(name, p - shift)
+    for m in range(MOMENTS[name]):
+        assert weights @ p.astype(float) ** m == pytest.approx(shift**m, abs=1e-13)
+
+
+def test_the_third_moment_tells_them_apart():
+    p = np.arange(-3, 5)
+    weights = interpolation_function("M4'", p - 0.3)
+    assert abs(weights @ p.astype(float) ** 3 - 0.3**3) > 0.01
+
+
+@pytest.mark.parametrize("name", REMESHINGS)
+@given(
+    seed=st.integers(0, 2**32 - 1), n=st.integers(1, 50), spread=st.sampled_from([0.0, 1.0, 9.0])
+)
+def test_moments_are_conserved_whatever_the_positions(name, seed, n, spread):
+    generator = np.random.default_rng(seed)
+    x, strength = spread * generator.standard_normal(n), generator.standard_normal(n)
+    lattice, new = remesh(x, strength, 0.25, name)
+    assert np.allclose(lattice / 0.25, np.round(lattice / 0.25), atol=1e-12)
+    scale = np.abs(strength).sum()
+    reach = np.abs(x).max() + 0.5
+    for m in range(MOMENTS[name]):
+        # Round-off: of each of the 4 n terms of at most 9/8 in all, and of their sum.
+        tolerance = 8 * n * np.finfo(float).eps * 1.5 * scale * reach**m
+        assert abs(new @ lattice**m - strength @ x**m) <= tolerance
+
+
+@pytest.mark.parametrize("name", REMESHINGS)
+def test_particles_on_the_lattice_stay_as_they_are(name):
+    h = 0.125  # positions without round-off
+    x = np.arange(-5, 6) * h
+    strength = np.random.default_rng(3).standard_normal(11)
+    lattice, new = remesh(x, strength, h, name)
+    kept = eliminate(lattice, new, 0.0)
+    assert np.array_equal(kept.x, x)
+    assert np.array_equal(kept.strength, strength)
+    assert kept.count == 0
+
+
+@pytest.mark.parametrize("name", REMESHINGS)
+def test_order_does_not_matter_and_coincident_particles_add_up(name):
+    x, strength = np.array([0.3, -1.2, 0.3]), np.array([1.0, 2.0, 3.0])
+    one = remesh(x, strength, 1.0, name)
+    other = remesh(np.array([-1.2, 0.3]), np.array([2.0, 4.0]), 1.0, name)
+    assert one[0] == pytest.approx(other[0])
+    assert one[1] == pytest.approx(other[1], abs=1e-15)
+
+
+def test_elimination_reports_what_is_gone():
+    x = np.arange(5.0)
+    kept = eliminate(x, np.array([1e-3, -2e-3, 1.0, 0.0, 0.5]), 1e-2)
+    assert np.array_equal(kept.x, [2.0, 4.0])
+    assert kept.count == 2
+    assert kept.eliminated == pytest.approx(-1e-3)
+
+
+def test_without_a_threshold_only_nothing_is_left_out():
+    kept = eliminate(np.arange(3.0), np.array([1.0, 0.0, 5e-324]), 0.0)
+    assert np.array_equal(kept.strength, [1.0, 5e-324])
+    assert kept.eliminated == 0.0
+
+
+@pytest.mark.parametrize(
+    ("call", "field"),
+    [
+        (lambda: remesh(np.zeros(1), np.ones(1), 1.0, "M5"), "remeshing"),
+        (lambda: remesh(np.zeros(1), np.ones(1), 0.0, "M4'"), "spacing"),
+        (lambda: remesh(np.array([0.0, 1e30]), np.ones(2), 1.0, "M4'"), "x"),
+        (lambda: remesh(np.array([0.0, np.nan]), np.ones(2), 1.0, "M4'"), "x"),
+        (lambda: interpolation_function("M5", np.zeros(1)), "remeshing"),
+        (lambda: eliminate(np.zeros(1), np.zeros(1), 0.0), "strength"),
+        (lambda: eliminate(np.zeros(0), np.zeros(0), 0.0), "strength"),
+        (lambda: eliminate(np.zeros(1), np.ones(1), 1.0), "threshold"),
+        (lambda: eliminate(np.zeros(1), np.ones(1), -0.1), "threshold"),
+    ],
+)
+def test_bad_input_is_refused(call, field):
+    with pytest.raises(InvalidInput) as error:
+        call()
+    assert error.value.field == field
