@@ -41,3 +41,5 @@ def test_a_module_imported_from_its_package(tmp_path):
         (tmp_path / name).write_text(text)
     found = sources_of(tmp_path / "a.py", tmp_path)
     assert found == [str(tmp_path / name) for name in ("a.py", "part/__init__.py", "part/b.py")]
+    alone = sources_of(tmp_path / "a.py", tmp_path, ends=[tmp_path / "part/b.py"])
+    assert alone == [str(tmp_path / name) for name in ("a.py", "part/b.py")]

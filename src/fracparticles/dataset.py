@@ -162,6 +162,10 @@ def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
             history.eliminated_strength,
             "total strength of the particles left out",
         ),
+        "lost_strength": (
+            history.lost_strength,
+            "total strength that remeshing put beyond the lattice",
+        ),
         "final_particles": (np.int64(run.x.size), "number of particles at t_final"),
     }
     data: dict[str, tuple] = {
@@ -176,7 +180,7 @@ def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
         _describe("strength U = V u at t_final"),
     )
     if history.remeshings:
-        dimension = ("remeshing",)
+        dimension = ("event",)  # not "remeshing", which is a parameter
         data["remeshing_time"] = (
             dimension,
             np.array(history.remeshing_times),
@@ -186,6 +190,11 @@ def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
             dimension,
             np.array(history.spacings_before),
             _describe("largest spacing before a remeshing"),
+        )
+        data["spacing_where"] = (
+            dimension,
+            np.array(history.spacings_where),
+            _describe("middle of that gap"),
         )
     return data
 

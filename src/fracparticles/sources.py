@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
 __all__ = ["sources_of"]
@@ -11,7 +11,7 @@ __all__ = ["sources_of"]
 _PACKAGE = "fracparticles"
 
 
-def sources_of(path: Path, root: Path) -> list[str]:
+def sources_of(path: Path, root: Path, ends: Collection[Path] = ()) -> list[str]:
     """Return a module's file and those of all modules of the package that it imports, directly or not.
 
     Imports inside functions count. The __init__ of a package counts where names are imported from the package itself.
@@ -22,6 +22,8 @@ def sources_of(path: Path, root: Path) -> list[str]:
         The module.
     root : Path
         The folder of the package.
+    ends : collection of Path
+        Modules that count themselves, but not what they import.
     """
     found: set[Path] = set()
     open_ends = [path]
@@ -29,7 +31,7 @@ def sources_of(path: Path, root: Path) -> list[str]:
         module = open_ends.pop()
         if module not in found:
             found.add(module)
-            open_ends += _imports(module, root)
+            open_ends += () if module in ends else _imports(module, root)
     return sorted(str(module) for module in found)
 
 

@@ -54,15 +54,16 @@ def run_files(scene):
 
 
 def study_sources(scene):
-    """The source files that a scene's study is made of."""
-    return sources_of(PACKAGE / f"studies/{STUDIES[SCENES[scene].study]}.py", PACKAGE)
+    """The source files that a scene's study is made of; to read runs it does not take what makes them."""
+    study = PACKAGE / f"studies/{STUDIES[SCENES[scene].study]}.py"
+    return sources_of(study, PACKAGE, ends=[PACKAGE / "dataset.py"])
 
 
 def compiled_areas(scene):
-    """The marks of the compiled areas that a scene's study uses."""
-    used = study_sources(scene)
+    """The marks of the areas of whose compiled modules a scene's study uses any."""
+    compiled = {module for module in study_sources(scene) if "njit" in Path(module).read_text()}
     return [
-        RESULTS / f"runs/.compiled_{area}" for area, code in AREAS.items() if set(code) & set(used)
+        RESULTS / f"runs/.compiled_{area}" for area, code in AREAS.items() if compiled & set(code)
     ]
 
 
