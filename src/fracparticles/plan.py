@@ -196,8 +196,9 @@ def batches(
     for name, scene in scenes.items():
         for case in cases_of(name, scene):
             key = case.model_copy(update={"store": _STORES[0]}).path
-            needed_by.setdefault(key, []).append(name)
-            wanted[name].append(key)
+            if key not in wanted[name]:
+                needed_by.setdefault(key, []).append(name)
+                wanted[name].append(key)
             known = widest.setdefault(key, case)
             if _STORES.index(case.store) > _STORES.index(known.store):
                 widest[key] = case

@@ -52,6 +52,7 @@ FIGURES = {
     "planar_map": "two_dimensional_map",
     "planar_errors": "two_dimensional_errors",
     "planar_tables": "two_dimensional_errors",
+    "three_dimensions": "three_dimensions",
 }
 
 

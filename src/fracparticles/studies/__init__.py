@@ -55,6 +55,7 @@ STUDIES = {
     "planar_orders": "two_dimensional_orders",
     "planar_mass": "two_dimensional_mass",
     "planar_tables": "two_dimensional_tables",
+    "three_dimensions": "three_dimensions",
 }
 
 
