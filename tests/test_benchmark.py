@@ -1,4 +1,4 @@
-"""The reference benchmark on a tiny problem: its structure and its arithmetic, no run times."""
+"""The benchmarks on tiny problems: their structure and their arithmetic, no run times."""
 
 from __future__ import annotations
 
@@ -11,8 +11,15 @@ from fracparticles.benchmark import (
     reference_benchmark,
     transform_pairs,
 )
+from fracparticles.benchmark_sums import (
+    box_benchmark,
+    box_table,
+    scattered_benchmark,
+    scattered_table,
+)
 from fracparticles.case import Case
 from fracparticles.dataset import write
+from fracparticles.sums import NonuniformFourierSum
 from fracparticles.sums.fourier import transform_length
 
 TINY = {"truncation": 4.0, "spacing": 0.1, "dt": 5e-3, "green_dt": 0.05}
@@ -84,3 +91,49 @@ def test_peak_memory_is_that_of_a_process_of_its_own():
     case = Case(scheme="DD", beta=0.5, truncation=4.0, spacing=0.5, dt=0.01)
     ballast = np.ones(50_000_000)  # 400 MB here, which must not count
     assert 2e7 < peak_memory(case) < ballast.nbytes
+
+
+@pytest.fixture(scope="module")
+def boxes():
+    kinds = ("KPSE-4-truncated", "FPSE-2-truncated")
+    return box_benchmark((33,), (21,), kinds, naive_particles=2000, repeats=1, memory=False)
+
+
+def test_boxes_have_times_and_naive_sums_are_those_of_small_lattices(boxes, tmp_path):
+    assert sorted(set(boxes["particles"].values)) == [33**2, 21**3]
+    assert (boxes["setup_time"] > 0.0).all()
+    assert (boxes["application_time"] > 0.0).all()
+    assert (np.isfinite(boxes["naive_time"]) == (boxes["particles"] <= 2000)).all()
+    table = box_table(boxes)
+    assert set(table["N"]) == {"33^2", "21^3"}
+    assert table["application / ms"].to_numpy() == pytest.approx(1e3 * boxes["application_time"])
+    write(boxes, tmp_path / "boxes.nc")
+    assert (tmp_path / "boxes.nc").stat().st_size > 0
+
+
+def test_scattered_sums_agree_where_both_are_timed(tmp_path):
+    data = scattered_benchmark(particles=(100, 3000), naive_particles=100, repeats=1)
+    assert (data["transform_time"] > 0.0).all()
+    assert np.isfinite(data["naive_time"].values).tolist() == [True, False]
+    assert data["deviation"][0] < NonuniformFourierSum.accuracy
+    assert scattered_table(data)["N"].tolist() == [100, 3000]
+    write(data, tmp_path / "scattered.nc")
+    assert (tmp_path / "scattered.nc").stat().st_size > 0
+
+
+@pytest.mark.parametrize(("kind", "squares", "cubes"), [
+    ("KPSE-2-truncated", (401, 801), (55, 87)),
+    ("KPSE-2-open", (161, 321), (33, 49)),
+])  # fmt: skip
+def test_memory_is_proportional_to_the_particles(kind, squares, cubes):
+    """Four times the particles take four times the memory, beyond what the programme itself takes.
+
+    Within a factor of 1.5: transform lengths jump by a tenth in each coordinate, and the programme by some megabytes.
+    """
+    data = box_benchmark(squares, cubes, (kind,), naive_particles=0, repeats=1)
+    for dim, sizes in ((2, squares), (3, cubes)):
+        less, more = (
+            data["memory_per_particle"].values[data["particles"].values == size**dim]
+            for size in sizes
+        )
+        assert less / 1.5 < more < 1.5 * less

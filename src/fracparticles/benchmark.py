@@ -41,7 +41,14 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["benchmark_table", "peak_memory", "reference_benchmark", "transform_pairs"]
+__all__ = [
+    "benchmark_table",
+    "machine",
+    "peak_memory",
+    "peak_so_far",
+    "reference_benchmark",
+    "transform_pairs",
+]
 
 Action = Callable[[], Any]
 
@@ -147,24 +154,31 @@ def _fftw_pair(length: int, effort: str, in_place: bool) -> Action:
 
 
 def peak_memory(case: Case) -> float:
-    """Return the peak resident memory, in bytes, of a fresh process that runs the case; nan outside Linux.
-
-    VmHWM and not ru_maxrss, which a process inherits from the one that starts it.
-    """
-    if not Path("/proc/self/status").exists():
-        return float("nan")
+    """Return the peak resident memory, in bytes, of a fresh process that runs the case; nan outside Linux."""
     program = (
         "import sys\n"
+        "from fracparticles.benchmark import peak_so_far\n"
         "from fracparticles.case import Case\n"
         "from fracparticles.solver import compute\n"
         "compute(Case.from_json(sys.argv[1]))\n"
-        "lines = open('/proc/self/status').read().splitlines()\n"
-        "print(next(line.split()[1] for line in lines if line.startswith('VmHWM')))\n"
+        "print(peak_so_far())\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", program, case.to_json()], capture_output=True, text=True, check=True
     )
-    return 1024.0 * float(done.stdout)
+    return float(done.stdout)
+
+
+def peak_so_far() -> float:
+    """Return the peak resident memory of this process, in bytes; nan outside Linux.
+
+    VmHWM and not ru_maxrss, which a process inherits from the one that starts it.
+    """
+    status = Path("/proc/self/status")
+    if not status.exists():
+        return float("nan")
+    lines = status.read_text().splitlines()
+    return 1024.0 * float(next(line.split()[1] for line in lines if line.startswith("VmHWM")))
 
 
 def _time_series(case: Case, repeats: int, pairs: dict[str, Action]) -> dict[str, Any]:
@@ -311,12 +325,13 @@ def _dataset(
             "summary": "Wall times on one machine; see the long names. Naive totals are extrapolated.",
             "case": cases[0].to_json(),
             **facts,
-            **_machine(),
+            **machine(),
         },
     )
 
 
-def _machine() -> dict[str, Any]:
+def machine() -> dict[str, Any]:
+    """Return what the times were measured on, as attributes of a data set."""
     facts: dict[str, Any] = {
         "cpu": _cpu_model(),
         "cores": len(os.sched_getaffinity(0)),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fracparticles.errors import InvalidInput
 from fracparticles.schemes import METHODS
 from fracparticles.stability import stability_limit
+from fracparticles.sums import BandedConvolution
 
 if TYPE_CHECKING:
     from fracparticles.case import Case
@@ -17,8 +18,10 @@ __all__ = ["FUNDAMENTAL", "OVERLAPS", "SIZES", "check"]
 FUNDAMENTAL = "fundamental"
 SIZES = 1e-100, 1e100  # lengths and times; nothing made of them overflows
 OVERLAPS = 0.25, 1000.0
-# Measured: about 20 arrays of float64 at the peak, on a square or a cube with the padded transforms.
-_BYTES_PER_PARTICLE = {1: 200, 2: 400, 3: 600}
+# Measured, by dimension: about 20 arrays of float64 at the peak. The open exterior of a square or a cube takes its
+# own for every point where the sums are wanted, which for FPSE go beyond the lattice.
+_BYTES_PER_PARTICLE = {1: 200, 2: 220, 3: 260}
+_OPEN_BYTES = {1: 300, 2: 800, 3: 800}
 _MOST_STEPS = 2**53  # more are not told apart in float64
 _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
 
@@ -69,14 +72,20 @@ def _check_domain(case: Case) -> None:
             "Take a smaller spacing or a wider domain.",
         )
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    particles = (2.0 * case.domain / case.spacing) ** case.dim
-    needed = _BYTES_PER_PARTICLE[case.dim] * particles
+    is_open = case.exterior == "open"
+    bytes_each = (_OPEN_BYTES if is_open else _BYTES_PER_PARTICLE)[case.dim]
+    beyond = 0
+    if is_open and case.scheme == "FPSE":
+        beyond = 2 * BandedConvolution.reach(case.epsilon_over_h, case.order)
+    side = 2.0 * case.domain / case.spacing
+    particles = side**case.dim
+    needed = bytes_each * (side + beyond) ** case.dim
     if needed > 0.5 * memory:
-        most = (0.5 * memory / _BYTES_PER_PARTICLE[case.dim]) ** (1.0 / case.dim)
+        longest = max((0.5 * memory / bytes_each) ** (1.0 / case.dim) - beyond, 1.0)
         raise InvalidInput(
             "spacing",
             case.spacing,
-            f"at least {2.0 * case.domain / most:.3g} on this domain and this machine: "
+            f"at least {2.0 * case.domain / longest:.3g} on this domain and this machine: "
             f"{particles:.3g} particles would take {needed / 2**30:.3g} GiB, "
             f"half of the memory is {memory / 2**31:.3g} GiB",
             "Take a larger spacing or a narrower domain.",

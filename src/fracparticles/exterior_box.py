@@ -13,7 +13,7 @@ paper, which truncates the lattice.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from scipy.special import roots_jacobi, roots_legendre
@@ -62,17 +62,19 @@ def box_far_field(
         How many points beyond each face are wanted.
     """
     boundary, edge = _boundary(n, dim)
-    fit = np.linalg.pinv(np.array(_modes(edge / n, alpha, dim)).T)
+    fit = np.linalg.pinv(np.array(list(_modes(edge / n, alpha, dim))).T)
     near = _near_sums(weights, odd_axes, alpha, n, dim, pad)
     near += _tail_sums(weights, decay, alpha, n, dim, pad)
     return BoxFarField(boundary, fit, near.reshape(len(weights), dim + 2, -1))
 
 
-def _modes(position: np.ndarray, alpha: float, dim: int) -> list[np.ndarray]:
-    """phi_1 .. phi_{n+2} at the positions j / N, shape (dim, ...)."""
-    rho = np.sqrt(np.square(position).sum(axis=0))
-    monopole = rho ** (-dim - alpha)
-    return [monopole, monopole * rho**-alpha, *(monopole / rho**2 * position)]
+def _modes(position: Sequence[np.ndarray], alpha: float, dim: int) -> Iterator[np.ndarray]:
+    """phi_1 .. phi_{n+2}, one after the other, at the positions j / N, `dim` arrays that broadcast."""
+    square = sum(np.square(part) for part in position)
+    yield square ** (-0.5 * (dim + alpha))
+    yield square ** (-0.5 * (dim + 2.0 * alpha))
+    for part in position:
+        yield square ** (-0.5 * (dim + alpha + 2.0)) * part
 
 
 def _boundary(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
@@ -100,14 +102,16 @@ def _near_sums(
         sources,
         targets,
     )
-    j = np.indices((sources,) * dim, dtype=float) - wide
+    axis = np.arange(-wide, wide + 1) / n
     inside = (slice(wide - n, wide + n + 1),) * dim
-    j[(slice(None), *inside)] = 1.0  # no matter: made nil below
-    sums = []
-    for mode in _modes(j / n, alpha, dim):
-        mode[inside] = 0.0
-        sums.append(convolve(mode).copy())
-    return np.stack(sums, axis=1)
+    sums = np.empty((len(weights), dim + 2, *(targets,) * dim))
+    with np.errstate(divide="ignore", invalid="ignore"):  # at the origin, which is inside
+        for k, mode in enumerate(
+            _modes(np.meshgrid(*(axis,) * dim, indexing="ij", sparse=True), alpha, dim)
+        ):
+            mode[inside] = 0.0
+            sums[:, k] = convolve(mode)
+    return sums
 
 
 def _tail_sums(
@@ -118,7 +122,7 @@ def _tail_sums(
     j, volume = _midpoint_points(
         *_exterior_quadrature(_NEAR[dim] * (n + pad) + 0.5, dim, alpha + decay - 1.0)
     )
-    modes = np.array(_modes(j / n, alpha, dim)) * volume
+    modes = np.array(list(_modes(j / n, alpha, dim))) * volume
     tail = np.empty((len(weights), dim + 2, *(nodes.size,) * dim))
     for place in np.ndindex(*(nodes.size,) * dim):
         offset = nodes[list(place)][:, None] - j

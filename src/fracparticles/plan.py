@@ -29,6 +29,7 @@ __all__ = [
 
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 _BATCH_SECONDS = 8.0
+_OPENING = {1: 0.0, 2: 3e-6, 3: 1e-5}  # seconds a particle to set up the open exterior
 
 
 def _value_or_list(annotation: Any) -> Any:
@@ -238,7 +239,8 @@ def _seconds(case: Case) -> float:
     if case.steps_taken:
         return 2e-8 * case.particles * case.steps
     applications = (case.setting.rate * (case.t_final - case.t_initial)) ** 0.5
-    return 0.01 + 1.2e-7 * case.particles * applications
+    opening = _OPENING[case.dim] * case.particles if case.exterior == "open" else 0.0
+    return 0.01 + opening + 1.2e-7 * case.particles * applications
 
 
 def _check_name(field: str, value: str, allowed: Iterable[str]) -> None:
