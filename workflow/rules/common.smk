@@ -30,6 +30,7 @@ CORE = sources_of(PACKAGE / "solver.py", PACKAGE)
 # The printed claims, by the letter that the inventory gives a document.
 PRINTED = {
     "L": "report/printed/lucchesi2020.yaml",
+    "M": "report/printed/lewandowski2005.yaml",
     "S": "report/printed/ghorbani.yaml",
     "P": "report/printed/particle_note.yaml",
 }

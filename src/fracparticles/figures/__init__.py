@@ -37,6 +37,9 @@ FIGURES = {
     "fickian_limit": "fickian",
     "conservation": "conservation",
     "stiff_extreme": "extreme",
+    "dvm_particles": "dvm",
+    "dvm_remeshing": "dvm",
+    "dvm_stability": "dvm",
     "random_walk": "random_walk",
     "sph_spline": "sph",
     "sph_operator": "sph",
@@ -53,6 +56,17 @@ FIGURES = {
     "planar_errors": "two_dimensional_errors",
     "planar_tables": "two_dimensional_errors",
     "three_dimensions": "three_dimensions",
+    "marker_shapes": "marker_initial",
+    "marker_loading": "marker_initial",
+    "marker_square": "marker_diffusion",
+    "marker_fixed_grid": "marker_diffusion",
+    "marker_moving_grid": "marker_diffusion",
+    "marker_error_norm": "marker_diffusion",
+    "marker_growth": "marker_diffusion",
+    "marker_claims": "marker_diffusion",
+    "marker_nonlinear": "marker_nonlinear",
+    "marker_velocities": "marker_velocities",
+    "marker_plane": "marker_plane",
 }
 
 

@@ -36,6 +36,9 @@ STUDIES = {
     "fickian_limit": "fickian",
     "conservation": "conservation",
     "stiff_extreme": "extreme",
+    "dvm_particles": "dvm",
+    "dvm_remeshing": "dvm_remeshing",
+    "dvm_stability": "dvm_stability",
     "random_walk": "random_walk",
     "sph_spline": "sph_spline",
     "sph_operator": "sph",
@@ -56,6 +59,17 @@ STUDIES = {
     "planar_mass": "two_dimensional_mass",
     "planar_tables": "two_dimensional_tables",
     "three_dimensions": "three_dimensions",
+    "marker_shapes": "marker_shapes",
+    "marker_loading": "marker_loading",
+    "marker_square": "marker_square",
+    "marker_fixed_grid": "marker_clusters",
+    "marker_moving_grid": "marker_clusters",
+    "marker_error_norm": "marker_clusters",
+    "marker_growth": "marker_growth",
+    "marker_claims": "marker_claims",
+    "marker_nonlinear": "marker_nonlinear",
+    "marker_velocities": "marker_velocities",
+    "marker_plane": "marker_plane",
 }
 
 
