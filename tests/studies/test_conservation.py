@@ -23,6 +23,16 @@ def test_the_sum_of_absolute_weights_bounds_the_rows(scheme):
     assert rows <= weight_sum(scheme, n, h, alpha, 2, 2.0) * (1.0 + 1e-12)
 
 
+MOVING = {
+    "scheme": "DVM",
+    "beta": 0.5,
+    "half_width": 10.0,
+    "spacing": 0.2,
+    "dt": 0.01,
+    "store": "metrics",
+}
+
+
 @pytest.fixture(scope="module")
 def inputs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("conservation")
@@ -37,6 +47,8 @@ def inputs(tmp_path_factory):
         {"scheme": ["DD", "DPSE", "FPSE", "KPSE", "FD"], "dt": 1e-3, **common},
         {"scheme": ["DD", "FPSE", "KPSE"], "dt": 1e-3, "exterior": "open", **common},
         {"scheme": "GPSE", **common},
+        {**MOVING, "t_final": [0.75, 1.5], "remeshing": ["none", "M4'"]},
+        {**MOVING, "remeshing": "M4'", "threshold": 1e-3},
     ]
     paths = []
     for case in expand(blocks):
@@ -48,12 +60,27 @@ def inputs(tmp_path_factory):
 def test_exchange_keeps_the_strength_and_dd_loses_what_flows_out(inputs):
     result = study("conservation")(inputs)
     assert {finding.claim for finding in result.findings} == {
-        f"L-C18.{scheme}" for scheme in ("DPSE", "FPSE", "KPSE", "GPSE", "DD")
+        f"L-C18.{scheme}"
+        for scheme in (
+            *("DPSE", "FPSE", "KPSE", "GPSE", "DD"),
+            *("DVM", "DVM_remeshed", "DVM_moments"),
+        )
     }
     assert all(finding.verdict for finding in result.findings)
     table = result.table.set_index(["scheme", "exterior"])
     leak = -table.loc[("DD", "truncated"), "M(t_f) / M(t_0) - 1"]
     assert leak == pytest.approx(table.loc[("DD", "truncated"), "exact outflow / M(t_0)"], rel=0.1)
+
+
+def test_dvm_loses_what_remeshing_puts_beyond_the_lattice_or_leaves_out(inputs):
+    table = study("conservation")(inputs).table
+    moving = table[table["scheme"] == "DVM"].set_index("exterior")
+    change = moving["M(t_f) / M(t_0) - 1"]
+    assert abs(change["remeshing none"]) < 1e-14
+    gone = moving["put beyond ±D by remeshing / M(t_0)"] + moving["left out as too weak / M(t_0)"]
+    np.testing.assert_allclose(change, -gone, atol=1e-12)
+    assert moving.loc["remeshing M4', threshold", "left out as too weak / M(t_0)"] > 1e-4
+    assert moving.loc["remeshing M4'", "left out as too weak / M(t_0)"] == 0.0
 
 
 def test_with_the_open_exterior_the_strength_leaves_as_in_the_exact_solution(inputs):

@@ -136,6 +136,7 @@ def test_spacing_finds_the_orders_of_the_kernels(tmp_path):
 
 def test_the_reference_case_judges_both_windows(tmp_path):
     common = {"beta": 0.5, "truncation": 20.0, "spacing": 0.03, "store": "field"}
+    moving = {"scheme": "DVM", "dt": 5e-3, "remeshing": ["M4'", "none"]}
     runs = computed(
         tmp_path,
         [
@@ -147,9 +148,19 @@ def test_the_reference_case_judges_both_windows(tmp_path):
             },
             {**common, "scheme": "GPSE", "dt": 0.05, "exterior": ["truncated", "open"]},
             {**common, "scheme": "FD", "dt": 1e-3},
+            {**common, **moving, "truncation": 10.0, "spacing": 0.03},
+            {**common, **moving, "truncation": [5.0, 10.0, 20.0], "spacing": 0.1995350},
+            {
+                **common,
+                "scheme": ["DD", "KPSE"],
+                "truncation": [5.0, 10.0, 20.0],
+                "spacing": 0.1995350,
+                "dt": 1e-2,
+            },
         ],
     )
     parameters = {
+        "spacing": 0.03,
         "windows": [[0.0, 5.0], [40.0, 45.0]],
         "printed_particles": 64000,
         "mass_beta": [0.5],
@@ -159,6 +170,8 @@ def test_the_reference_case_judges_both_windows(tmp_path):
     assert verdicts["L-F2.peak"] is True, result.findings[0].evidence
     assert verdicts["L-F2.initial_decay"] is False
     assert verdicts["L-C1.odd_number"] is False
+    assert verdicts["L-F2.DVM_window"] is False
+    assert verdicts["L-C1.DVM_domain"] is False
     assert set(result.series["panel"]) == {0, 1}
     assert isinstance(result.table, pd.DataFrame)
     assert len(figure("reference_case")(result.series, result.table, parameters).axes) == 3

@@ -19,8 +19,15 @@ def conservation(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str
     """|M / M0 - 1|: round-off below, what leaves the lattice above."""
     figure, axes = axes_row(1, width=6.4, height=4.2)
     ax = axes[0]
-    outflow = series.groupby("x")["outflow"].first()
-    ax.plot(outflow.index, outflow, color="black", linewidth=4.0, alpha=0.25, label="exact outflow")
+    moving = series["scheme"] == "DVM"
+    for part, style, label in (
+        (series[~moving], "-", "exact outflow"),
+        (series[moving], ":", "exact outflow, DVM's $D$"),
+    ):
+        outflow = part.groupby("x")["outflow"].first()
+        ax.plot(
+            outflow.index, outflow, color="black", linewidth=4.0, alpha=0.25, linestyle=style, label=label
+        )  # fmt: skip
     truncated = series[series["exterior"] == "truncated"]
     for scheme, points in truncated.groupby("scheme"):
         points = points.sort_values("x")
@@ -39,6 +46,16 @@ def conservation(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str
             linestyle="none",
             label=f"{scheme}, open exterior",
         )
+    for exterior, points in series[moving].groupby("exterior", sort=False):
+        points = points.sort_values("x")
+        if len(points) == 1:  # the table has it
+            continue
+        face = "none" if exterior == "remeshing none" else COLOURS["DVM"]
+        name = exterior.replace("M4'", "$M_4'$").replace("remeshing none", "no remeshing")
+        ax.plot(
+            points["x"], points["y"].clip(lower=_FLOOR), color=COLOURS["DVM"], marker=MARKERS["DVM"],
+            markerfacecolor=face, linestyle="--" if face == "none" else "-", label=f"DVM, {name}",
+        )  # fmt: skip
     ax.axhline(2.0 * _FLOOR, color="0.5", linewidth=0.8, linestyle=":")
     ax.annotate(
         "one unit in the last place",

@@ -11,7 +11,8 @@ from fracparticles.figures.style import COLOURS, MARKERS, axes_row
 
 __all__ = ["reference_case"]
 
-_SCHEMES = ("DD", "FPSE", "KPSE", "GPSE", "FD")
+_SCHEMES = ("DD", "FPSE", "KPSE", "GPSE", "FD", "DVM, M4'", "DVM, Lambda3")
+_LABELS = {"DVM, M4'": "DVM, $M_4'$", "DVM, Lambda3": r"DVM, $\Lambda_3$"}
 
 
 def reference_case(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
@@ -33,11 +34,12 @@ def reference_case(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[s
             ax.plot(
                 points["x"],
                 points["y"],
-                color=COLOURS[scheme],
-                marker=MARKERS[scheme],
-                markevery=(k * every // 5, every),
+                color=COLOURS[scheme.split(",")[0]],
+                marker=MARKERS[scheme.split(",")[0]],
+                markerfacecolor="white" if scheme == "DVM, Lambda3" else None,
+                markevery=(k * every // len(_SCHEMES), every),
                 linewidth=0.9,
-                label=scheme,
+                label=_LABELS.get(scheme, scheme),
             )
         ax.set_title(f"({letter}) {title}", loc="left")
         ax.set_xlabel(r"position $x$")

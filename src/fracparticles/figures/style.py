@@ -18,12 +18,13 @@ __all__ = ["COLOURS", "MARKERS", "axes_row", "legend_below", "save", "slope_tria
 mpl.use("Agg")
 mpl.style.use(Path(__file__).with_name("fracparticles.mplstyle"))
 
-# Okabe & Ito (2008), one colour and one marker for each scheme, everywhere.
+# Okabe & Ito (2008), one colour and one marker for each scheme, everywhere; DVM's is not theirs.
 COLOURS = {
     "DD": "#0072B2",
     "FPSE": "#D55E00",
     "KPSE": "#009E73",
     "GPSE": "#CC79A7",
+    "DVM": "#7F3C8D",  # their yellow is too pale for lines
     "FD": "#56B4E9",
     "DPSE": "#E69F00",
     "PSE29": "#999999",
@@ -35,6 +36,7 @@ MARKERS = {
     "FPSE": "s",
     "KPSE": "^",
     "GPSE": "D",
+    "DVM": "p",
     "FD": "v",
     "DPSE": "P",
     "PSE29": "X",
