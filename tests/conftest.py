@@ -10,6 +10,12 @@ from fracparticles.schemes import SCHEMES
 settings.register_profile("fracparticles", deadline=None, derandomize=True)
 settings.load_profile("fracparticles")
 
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the complete workflow, which takes longest, so that another process does the rest meanwhile."""
+    items.sort(key=lambda item: item.path.stem != "test_workflow")
+
+
 COMBINATIONS = [
     pytest.param((name, order, exterior), id=f"{name}-{order}-{exterior}")
     for name, scheme in SCHEMES.items()

@@ -12,7 +12,8 @@ from fracparticles.plan import read_config
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [
-    ROOT / f"report/printed/{name}.yaml" for name in ("lucchesi2020", "lewandowski2005", "ghorbani", "particle_note")
+    ROOT / f"report/printed/{name}.yaml"
+    for name in ("lucchesi2020", "lewandowski2005", "ghorbani", "particle_note")
 ]
 STUDY = read_config(yaml.safe_load((ROOT / "config/study.yaml").read_text()))
 

@@ -13,7 +13,7 @@ paper, which truncates the lattice.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 from scipy.special import roots_jacobi, roots_legendre
@@ -68,7 +68,7 @@ def box_far_field(
     return BoxFarField(boundary, fit, near.reshape(len(weights), dim + 2, -1))
 
 
-def _modes(position: Sequence[np.ndarray], alpha: float, dim: int) -> Iterator[np.ndarray]:
+def _modes(position: Iterable[np.ndarray], alpha: float, dim: int) -> Iterator[np.ndarray]:
     """phi_1 .. phi_{n+2}, one after the other, at the positions j / N, `dim` arrays that broadcast."""
     square = sum(np.square(part) for part in position)
     yield square ** (-0.5 * (dim + alpha))
