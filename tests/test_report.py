@@ -112,7 +112,7 @@ def test_every_link_of_the_page_leads_somewhere_in_the_study(study):
     }
     assert all((page_path.parent / link).resolve().is_file() for link in local + page.images)
     inner = [link[1:] for link in page.links if link.startswith("#")]
-    assert inner == ["summary", "limits", "extreme", "ledger"]
+    assert inner == ["summary", "ledger", "limits", "extreme"]
     assert {*inner} <= {*page.anchors}
     assert not {"script", "link", "iframe"} & {*page.tags}
 

@@ -32,6 +32,13 @@ if TYPE_CHECKING:
 __all__ = ["ReportError", "SceneEntry", "build"]
 
 FIGURE_FORMATS = (".svg", ".png")
+# The documents by the letter that begins the ids of their claims.
+DOCUMENTS = {
+    "L": "Lucchesi et al. (2020)",
+    "M": "Lewandowski (2005), the marker method",
+    "S": "Ghorbani and Semperlotti, SPH",
+    "P": "Lecture note on particle strength exchange",
+}
 
 
 class ReportError(FracparticlesError, ValueError):
@@ -90,6 +97,16 @@ class _Section:
     claims: str
 
 
+@dataclass(frozen=True)
+class _Document:
+    """A document, or what is our own: its sections, and what came of its claims."""
+
+    title: str
+    sections: list[_Section]
+    summary: str
+    exceptions: str
+
+
 def build(
     scenes: Sequence[SceneEntry],
     results_dir: str | os.PathLike[str],
@@ -129,13 +146,12 @@ def build(
     _require(claims_csv, _target(claims_csv))
     df = read_ledger(claims_csv)
     sections = [_section(scene, df, results, captions, out) for scene in scenes]
-    exceptions = df[[Status(word).needs_reason for word in df["status"]]]
     templates = _templates(Path(template_dir))
     text = _render(
         templates["report.md.j2"],
         summary=summary_line(df),
         statuses=[(status.sign, str(status)) for status in Status],
-        exceptions=ledger_markdown(exceptions),
+        documents=_documents(sections, df),
         sections=sections,
         ledger=ledger_markdown(df),
         claims_csv=_link(claims_csv, out),
@@ -151,6 +167,21 @@ def build(
     for path, content in zip(paths, (text, page), strict=True):
         write_text(path, content.rstrip("\n") + "\n")
     return paths
+
+
+def _documents(sections: Sequence[_Section], df: pd.DataFrame) -> list[_Document]:
+    found = []
+    for letter, title in DOCUMENTS.items():
+        rows = df[df["id"].str.startswith(letter)]
+        if len(rows):
+            exceptions = rows[[Status(word).needs_reason for word in rows["status"]]]
+            own = [
+                section for section in sections if section.items and section.items[0][0] == letter
+            ]
+            text = ledger_markdown(exceptions) if len(exceptions) else ""
+            found.append(_Document(title, own, summary_line(rows), text))
+    ours = [section for section in sections if not section.items]
+    return [*found, *([_Document("Studies of our own", ours, "", "")] if ours else [])]
 
 
 def _section(
