@@ -9,14 +9,17 @@ from fracparticles.case import Case
 from fracparticles.errors import InvalidInput
 from fracparticles.exterior_box import box_far_field
 from fracparticles.kernel_tables import tabulated
-from fracparticles.kernels import kernel
+from fracparticles.kernels import PAPER_ORDERS, kernel
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.solver import compute, relative_l1_error
 from fracparticles.spectrum import dense_matrix, spectral_interval
 from fracparticles.stability import stability_limit, symbol_range
 
 BOXED = [
-    (name, order) for name, scheme in SCHEMES.items() if 2 in scheme.DIMS for order in scheme.ORDERS
+    (name, order)
+    for name, scheme in SCHEMES.items()
+    for order in scheme.BOX_ORDERS
+    if order in PAPER_ORDERS
 ]
 EPS = np.finfo(float).eps
 

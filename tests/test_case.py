@@ -119,6 +119,9 @@ CHANGES = [
     {"summation": "naive"},
     {"exterior": "open"},
     {"store": "metrics"},
+    {"kernel_family": "printed"},
+    {"kernel_family": "gamma"},
+    {"order": 12},
 ]
 
 
@@ -130,6 +133,14 @@ def test_paths_tell_cases_apart():
         assert path.endswith(".nc")
         assert path.count("/") == 2
         assert not path.startswith("/")
+
+
+def test_the_path_of_a_case_that_names_no_family():
+    """Files made before there was a choice keep their names, and their records."""
+    c = case(order=4)
+    assert c.path == "KPSE-4/beta0.5/C4_h0.1_rk2_dt0.001_t0.5-1.5_truncated_field.nc"
+    assert "kernel_family" not in c.to_json()
+    assert "_gamma_" in case(order=4, kernel_family="gamma").path
 
 
 def test_a_case_cannot_be_changed():
@@ -160,7 +171,7 @@ def test_every_field_is_described():
 
 def test_annotations():
     fields = Case.model_fields
-    assert choices_of(fields["order"].annotation) == (2, 4)
+    assert choices_of(fields["order"].annotation) == (2, 4, 6, 8, 10, 12)
     assert choices_of(fields["integrator"].annotation) == ("euler", "rk2", "rk4", "exponential")
     assert choices_of(fields["beta"].annotation) == ()
     numbers = {name for name, field in fields.items() if takes_numbers(field.annotation)}
@@ -178,10 +189,19 @@ REFUSED = [
     ({"scheme": "XYZ"}, "scheme", "one of DD, DPSE, FPSE, KPSE, GPSE, DVM, FD, PSE29, RIESZ"),
     ({"scheme": 3}, "scheme", "one of DD"),
     ({"scheme": b"KPSE"}, "scheme", "one of DD"),
-    ({"order": 3}, "order", "one of 2, 4"),
+    ({"order": 3}, "order", "one of 2, 4, 6, 8, 10, 12"),
     ({"order": "4"}, "order", "Did you mean 4?"),
-    ({"order": True}, "order", "one of 2, 4"),
+    ({"order": True}, "order", "one of 2, 4, 6, 8, 10, 12"),
     ({"scheme": "GPSE", "order": 4}, "order", "2 for GPSE"),
+    ({"scheme": "DPSE", "order": 6}, "order", "2 or 4 for DPSE"),
+    ({"scheme": "FPSE", "order": 6, "dim": 2}, "order", "2 or 4 for FPSE in 2 dimensions"),
+    ({"order": 6, "kernel_family": "printed"}, "kernel_family", "'gamma' for order 6"),
+    (
+        {"scheme": "FPSE", "order": 6, "kernel_family": "printed", "exterior": "open"},
+        *("kernel_family", "'gamma' for order 6"),
+    ),
+    ({"kernel_family": "gama"}, "kernel_family", "Did you mean 'gamma'?"),
+    ({"scheme": "DPSE", "kernel_family": "printed"}, "kernel_family", "nothing for DPSE"),
     ({"dim": 4}, "dim", "one of 1, 2, 3"),
     ({"dim": 2, "scheme": "DPSE"}, "dim", "1 for DPSE"),
     ({"dim": True}, "dim", "one of 1"),
@@ -277,7 +297,8 @@ JUNK = (
 )
 PLAUSIBLE = {
     "scheme": st.sampled_from(["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD", "PSE29", "RIESZ"]),
-    "order": st.sampled_from([2, 4]),
+    "order": st.sampled_from([2, 4, 6, 12]),
+    "kernel_family": st.sampled_from(["printed", "gamma"]),
     "beta": st.floats(0.0, 1.0),
     "truncation": st.floats(0.0, 1e300) | st.floats(1.0, 100.0),
     "half_width": st.floats(0.0, 1e300) | st.floats(1.0, 100.0),

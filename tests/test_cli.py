@@ -76,6 +76,7 @@ def test_every_flag_reaches_the_case(cli):
     everything = {
         "scheme": "FPSE",
         "order": 4,
+        "kernel_family": "gamma",
         "beta": 0.25,
         "dim": 1,
         "truncation": 6.0,
@@ -229,6 +230,9 @@ def test_limit(cli):
     assert out == f"a = {a:.6g}\ndt = {a * 0.1**1.5 / 2.0:.6g}\n"
     square = fp.stability_limit("KPSE", 0.5, dim=2)
     assert cli("limit", *words_of("--scheme KPSE --beta 0.5 --dim 2"))[1] == f"a = {square:.6g}\n"
+    high = fp.stability_limit("KPSE", 0.5, 8)
+    flags = "--scheme KPSE --beta 0.5 --order 8 --kernel-family gamma"
+    assert cli("limit", *words_of(flags))[1] == f"a = {high:.6g}\n"
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels import kernel
+from fracparticles.kernels import FAMILIES, kernel
 from fracparticles.schemes import SCHEMES, Setting, dpse, fd, fpse, kpse, riesz, scheme
 from fracparticles.special import green
 from fracparticles.spectrum import dense_matrix
@@ -326,5 +326,8 @@ def test_every_scheme_describes_itself():
         assert name == module.NAME
         assert module.TITLE
         assert module.EQUATION
-        assert set(module.ORDERS) <= {2, 4}
+        high = name in ("DD", "FPSE", "KPSE")
+        assert set(module.ORDERS) <= ({2, 4, 6, 8, 10, 12} if high else {2, 4})
+        assert (FAMILIES if high else ()) == module.FAMILIES
+        assert bool(module.BOX_ORDERS) == (2 in module.DIMS)
         assert set(module.EXTERIORS) <= {"truncated", "open"}

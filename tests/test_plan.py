@@ -44,7 +44,7 @@ def test_a_block_stands_for_the_cartesian_product_without_repeats():
         (changed(dt="1e-4"), ("scenes.one.runs.0.dt", "'1e-4'", "1.0e-4")),
         (changed(spacng=0.1), ("spacng", "Did you mean 'spacing'?")),
         (changed(scheme="KPSF"), ("scheme", "KPSF", "KPSE")),
-        (changed(order=3), ("order", "3", "2 or 4")),
+        (changed(order=3), ("order", "3", "2, 4, 6, 8, 10 or 12")),
         (changed(beta=1.5), ("beta", "1.5", "1")),
         (changed(truncation=-1.0), ("truncation", "-1.0", "0")),
         (

@@ -50,8 +50,10 @@ class Case(BaseModel):
 
     scheme: SchemeName
     """Particle scheme, or one of the rejected PSE29 and RIESZ."""
-    order: Literal[2, 4] = 2
-    """Order of the kernels."""
+    order: Literal[2, 4, 6, 8, 10, 12] = 2
+    """Order of the kernels: 2 or 4; for DD, FPSE (in one dimension) and KPSE up to 12."""
+    kernel_family: Literal["printed", "gamma"] | None = None
+    """Kernels of DD, FPSE and KPSE: the printed ones of orders 2 and 4, or gamma; gamma from order 6 if left out."""
     beta: float = Field(gt=0.0, lt=1.0)
     """Fractional order beta = alpha - 1, 0 < beta < 1."""
     dim: Literal[1, 2, 3] = 1
@@ -218,6 +220,7 @@ class Case(BaseModel):
             exterior=self.exterior,
             dim=self.dim,
             kernel_table=self.kernel_table,
+            family=self.kernel_family,
         )
 
     @property
@@ -232,7 +235,9 @@ class Case(BaseModel):
             return float("inf")
         # A displacement wave of DVM's particles in a uniform field decays by DD's symbol.
         scheme = "DD" if self.scheme == "DVM" else self.scheme
-        limit = stability_limit(scheme, self.beta, self.order, self.epsilon_over_h, self.dim)
+        limit = stability_limit(
+            scheme, self.beta, self.order, self.epsilon_over_h, self.dim, self.kernel_family
+        )
         reach = STEP_POLYNOMIALS[self.method].stability_interval / 2.0
         return float(reach * limit * self.particle_spacing**self.alpha / self.diffusivity)
 
@@ -291,6 +296,7 @@ class Case(BaseModel):
             *([] if self.initial == FUNDAMENTAL else [f"from-{_slug(self.initial)}"]),
             *([] if self.evaluation != "stepping" else [self.evaluation]),
             *([] if self.summation == "fft" else [self.summation]),
+            *([] if self.kernel_family is None else [self.kernel_family]),
             *([] if self.kernel_table is None else [f"table{self.kernel_table:g}"]),
             *([] if self.remeshing is None else [_slug(self.remeshing)]),
             *([] if self.remesh_above is None else [f"above{self.remesh_above:g}"]),

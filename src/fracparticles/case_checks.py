@@ -6,6 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from fracparticles.errors import InvalidInput
+from fracparticles.kernels import family_of
 from fracparticles.schemes import METHODS
 from fracparticles.stability import stability_limit
 from fracparticles.sums import BandedConvolution
@@ -35,8 +36,8 @@ def check(case: Case) -> None:
         With the field, the value, what is allowed and what to do.
     """
     _check_time(case)
-    _check_domain(case)
     _check_scheme(case)
+    _check_domain(case)
     _check_particles(case)
     _check_integrator(case)
     _check_work(case)
@@ -76,7 +77,7 @@ def _check_domain(case: Case) -> None:
     bytes_each = (_OPEN_BYTES if is_open else _BYTES_PER_PARTICLE)[case.dim]
     beyond = 0
     if is_open and case.scheme == "FPSE":
-        beyond = 2 * BandedConvolution.reach(case.epsilon_over_h, case.order)
+        beyond = 2 * BandedConvolution.reach(case.epsilon_over_h, case.order, case.kernel_family)
     side = 2.0 * case.domain / case.spacing
     particles = side**case.dim
     needed = bytes_each * (side + beyond) ** case.dim
@@ -109,13 +110,6 @@ def _check_work(case: Case) -> None:
 
 def _check_scheme(case: Case) -> None:
     scheme = METHODS[case.scheme]
-    if case.order not in scheme.ORDERS:
-        raise InvalidInput(
-            "order",
-            case.order,
-            f"{' or '.join(map(str, scheme.ORDERS))} for {case.scheme}",
-            "Choose one of these.",
-        )
     if case.dim not in scheme.DIMS:
         raise InvalidInput(
             "dim",
@@ -123,6 +117,21 @@ def _check_scheme(case: Case) -> None:
             f"{' or '.join(map(str, scheme.DIMS))} for {case.scheme}",
             "DD, FPSE, KPSE and GPSE exist for 1, 2 and 3 dimensions.",
         )
+    orders = scheme.ORDERS if case.dim == 1 else scheme.BOX_ORDERS
+    if case.order not in orders:
+        where = "" if case.dim == 1 else f" in {case.dim} dimensions"
+        raise InvalidInput(
+            "order",
+            case.order,
+            f"{' or '.join(map(str, orders))} for {case.scheme}{where}",
+            "Choose one of these.",
+        )
+    if case.kernel_family is not None:
+        if not scheme.FAMILIES:
+            raise InvalidInput(
+                "kernel_family", case.kernel_family, f"nothing for {case.scheme}", "Leave it out."
+            )
+        family_of(case.order, case.kernel_family, field="kernel_family")
     if case.exterior not in scheme.EXTERIORS:
         raise InvalidInput(
             "exterior",
@@ -214,7 +223,9 @@ def _check_integrator(case: Case) -> None:
     elif case.scheme == "DVM" and case.dt is None:
         raise InvalidInput("dt", None, "a number > 0 for DVM", "Give the time step.")
     elif case.dt is None and case.method != "exponential":
-        limit = stability_limit(case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim)
+        limit = stability_limit(
+            case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim, case.kernel_family
+        )
         largest = limit * case.particle_spacing**case.alpha / case.diffusivity
         raise InvalidInput(
             "dt",

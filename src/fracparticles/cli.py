@@ -89,6 +89,7 @@ def limit(
     order: Number = "2",
     overlap: Number | None = None,
     dim: Number = "1",
+    kernel_family: str | None = None,
     spacing: Number | None = None,
     diffusivity: Number = "1.0",
 ) -> None:
@@ -102,12 +103,14 @@ def limit(
         Name of a scheme.
     beta : float
         Fractional order, 0 < beta < 1.
-    order : {2, 4}
+    order : {2, 4, 6, 8, 10, 12}
         Order of the kernels.
     overlap : float
         epsilon / h; 2 if left out.
     dim : {1, 2, 3}
         Space dimension.
+    kernel_family : {printed, gamma}
+        Family of the kernels; printed for orders 2 and 4, gamma beyond if left out.
     spacing : float
         Particle spacing h.
     diffusivity : float
@@ -121,7 +124,7 @@ def limit(
             "overlap", overlap, "nothing for FD, which has no kernel", "Leave it out."
         )
     numbers = [number_or_text(text) for text in (beta, order, overlap or "2.0", dim)]
-    a = stability_limit(scheme, *numbers)
+    a = stability_limit(scheme, *[*numbers, kernel_family])
     lines = [f"a = {a:.6g}"]
     rate = positive_real("diffusivity", number_or_text(diffusivity))
     if spacing is not None:

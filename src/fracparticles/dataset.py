@@ -32,6 +32,7 @@ REFERENCE = (
 _LONG_NAMES = {
     "scheme": "particle scheme",
     "order": "order of the kernels",
+    "kernel_family": "family of the kernels",
     "beta": "fractional order beta = alpha - 1",
     "truncation": "truncation factor C = D / ((diffusivity t_final)^(1/alpha) R_alpha)",
     "half_width": "half-width D of the lattice",
@@ -306,6 +307,7 @@ def _parameters(case: Case) -> dict[str, object]:
         "summation": case.summation,
         "exterior": case.exterior,
         "dim": np.int64(case.dim),
+        **({} if case.kernel_family is None else {"kernel_family": case.kernel_family}),
         **({} if case.kernel_table is None else {"kernel_table": case.kernel_table}),
         **(_particle_parameters(case) if case.scheme == "DVM" else {}),
     }

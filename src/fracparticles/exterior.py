@@ -66,17 +66,21 @@ def far_field(
     # The tail at Chebyshev points of i, and from there to every i by barycentric interpolation.
     angle = (np.arange(_NODES) + 0.5) * (np.pi / _NODES)
     nodes = (n + pad) * np.cos(angle)
-    tail = np.array([_tail(weight, decay, tail_power, n, node) for node in nodes])
+    tail = _tails(weight, decay, tail_power, n, nodes)
     right = near + np.polynomial.chebyshev.Chebyshev.fit(
         nodes, tail, _NODES - 1, domain=[-(n + pad), n + pad]
     )(i)
     return FarField(right=right, left=parity * right[::-1])
 
 
-def _tail(
-    weight: Callable[[np.ndarray], np.ndarray], decay: float, tail_power: float, n: int, i: float
-) -> float:
-    """Return sum_{j > 4 n} (n / j)^(1+alpha) w_{i-j}.
+def _tails(
+    weight: Callable[[np.ndarray], np.ndarray],
+    decay: float,
+    tail_power: float,
+    n: int,
+    i: np.ndarray,
+) -> np.ndarray:
+    """Return sum_{j > 4 n} (n / j)^(1+alpha) w_{i-j} for each i.
 
     Euler-Maclaurin from the midpoint X = 4 n + 1/2: sum f(j) = int_X^inf f + f'(X) / 24 - ...; the integral
     by Gauss-Jacobi quadrature in v = X / j, where f(j) dj is v^(1+alpha+decay-2) times a smooth function.
@@ -85,8 +89,9 @@ def _tail(
     exponent = tail_power + decay - 2.0
     nodes, quadrature = roots_jacobi(_NODES, 0.0, exponent)
     v = 0.5 * (1.0 + nodes)
-    smooth = weight(i - start / v) * v**-decay
-    integral = start * (n / start) ** tail_power * (quadrature @ smooth) / 2.0 ** (exponent + 1.0)
-    before, after = np.array([start - 0.5, start + 0.5])
-    f = (n / np.array([before, after])) ** tail_power * weight(i - np.array([before, after]))
-    return float(integral + (f[1] - f[0]) / 24.0)
+    ends = np.array([start - 0.5, start + 0.5])
+    w = weight(i[:, None] - np.concatenate([start / v, ends]))
+    smooth = w[:, :-2] * v**-decay
+    integral = start * (n / start) ** tail_power * (smooth @ quadrature) / 2.0 ** (exponent + 1.0)
+    f = (n / ends) ** tail_power * w[:, -2:]
+    return np.asarray(integral + (f[:, 1] - f[:, 0]) / 24.0)

@@ -20,19 +20,21 @@ __all__ = ["KernelValues", "tabulated"]
 KernelValues = Callable[..., Any]
 
 
-def tabulated(step: float) -> KernelValues:
+def tabulated(step: float, family: str | None = None) -> KernelValues:
     """Return a function with the parameters of `kernels.kernel` that interpolates in a table of this step.
 
     Parameters
     ----------
     step : float
         Step of the table, in units of the smoothing length.
+    family : str, optional
+        Family of the kernels, see `kernels.kernel`.
     """
 
     def values(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> np.ndarray:
         size = np.abs(np.asarray(r, dtype=float))
         points = step * np.arange(int(size.max() / step) + 2)
-        table = np.asarray(kernel(name, points, alpha, dim=dim, order=order))
+        table = np.asarray(kernel(name, points, alpha, dim=dim, order=order, family=family))
         return np.interp(size, points, table)
 
     return values

@@ -9,6 +9,9 @@ K_eps(r) = eps^-n K(r / eps). With M(a, b, z) = 1F1(a; b; -z), orders II and IV 
 ((B.18), which misprints the last argument; compare (12), (15), (21)). In Fourier space the rule is
 2 f(k) - f(sqrt(2) k) for the two Gaussians of (8) and (9).
 
+These are the `printed` family. There is a second one, `gamma`, of any even order to 12 (`kernels_high_order`): the
+same in order 2, another in order 4, and the only one from order 6.
+
 `KERNELS` lists what there is; `kernel` evaluates, `kernel_transform` gives the Fourier transform.
 Equation numbers are those of Lucchesi et al. (2020).
 """
@@ -25,27 +28,30 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gamma, gammaincc
 
+from fracparticles import kernels_high_order
 from fracparticles.errors import InvalidInput
+from fracparticles.kernels_high_order import gamma_nb
 from fracparticles.special.arguments import fractional_order, real_array
 from fracparticles.special.hypergeometric import kummer_order_four, kummer_transformed
 from fracparticles.special.stable import reduced_green
 
-__all__ = ["KERNELS", "Kernel", "kernel", "kernel_transform"]
+__all__ = [
+    "FAMILIES",
+    "KERNELS",
+    "PAPER_ORDERS",
+    "Kernel",
+    "family_of",
+    "kernel",
+    "kernel_transform",
+]
 
 FloatArray = NDArray[np.float64]
 LARGEST = 1e150  # the square must not overflow
+FAMILIES = ("printed", "gamma")
+PAPER_ORDERS = (2, 4)  # of the printed family
 
 
 # --- in space -------------------------------------------------------------------------------------
-
-
-def _gamma_nb(n: int, b: int, alpha: float) -> float:
-    """Gamma_{n,b}(alpha) = 2^alpha Gamma((alpha+n)/2) / (pi^(n/2) Gamma((n+b)/2) b!)  (B.14)."""
-    return float(
-        2.0**alpha
-        * gamma(0.5 * (alpha + n))
-        / (math.pi ** (0.5 * n) * gamma(0.5 * (n + b)) * math.factorial(b))
-    )
 
 
 def _m(c: float, b: float, r: FloatArray, order: int) -> FloatArray:
@@ -89,7 +95,7 @@ def _phi(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
 
 def _kappa(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
     """kappa = Gamma_{n,0}(beta-1) M((beta-1+n)/2, n/2, r^2)  (14), (15)."""
-    return _gamma_nb(n, 0, alpha - 2.0) * _m(0.5 * (2.0 - alpha), 0.5 * n, r, order)
+    return gamma_nb(n, 0, alpha - 2.0) * _m(0.5 * (2.0 - alpha), 0.5 * n, r, order)
 
 
 def _f(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
@@ -99,12 +105,12 @@ def _f(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
 
 def _g(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
     """G = -Gamma_{n,0}(alpha) M((alpha+n)/2, n/2, r^2)  (11), (12)."""
-    return -_gamma_nb(n, 0, alpha) * _m(-0.5 * alpha, 0.5 * n, r, order)
+    return -gamma_nb(n, 0, alpha) * _m(-0.5 * alpha, 0.5 * n, r, order)
 
 
 def _k(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
     """K = -F . r / |r|^2 = Gamma_{n,2}(alpha) M((alpha+n)/2, (n+2)/2, r^2)  (31), (32)."""
-    return _gamma_nb(n, 2, alpha) * _m(0.5 * (2.0 - alpha), 0.5 * (n + 2), r, order)
+    return gamma_nb(n, 2, alpha) * _m(0.5 * (2.0 - alpha), 0.5 * (n + 2), r, order)
 
 
 def _e(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
@@ -183,7 +189,7 @@ class Kernel:
     symbol : str
         Symbol in TeX.
     equation : str
-        Equations of order II and order IV.
+        Equations of order II and order IV of the printed family.
     parity : str
         "even" (a radial function) or "odd" (a vector along r).
     orders, dims : tuple of int
@@ -197,7 +203,7 @@ class Kernel:
     _space: Callable[[FloatArray, float, int, int], FloatArray]
     _transform: Callable[[FloatArray, float, int, int], FloatArray]
     _excess: float = math.inf  # the far field is r^-(n + alpha + excess); inf: Gaussian
-    orders: tuple[int, ...] = (2, 4)
+    orders: tuple[int, ...] = kernels_high_order.ORDERS
     dims: tuple[int, ...] = (1, 2, 3)
 
     def decay(self, alpha: float, dim: int = 1) -> float:
@@ -222,6 +228,28 @@ KERNELS: Mapping[str, Kernel] = MappingProxyType(
 )
 
 
+def family_of(order: int, family: str | None = None, field: str = "family") -> str:
+    """Return the family, the default resolved: printed for the orders 2 and 4, gamma beyond.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such family, or it has no such order.
+    """
+    if family is None:
+        return "printed" if order in PAPER_ORDERS else "gamma"
+    if family not in FAMILIES:
+        raise InvalidInput(field, family, f"one of {', '.join(FAMILIES)}", "Choose a family.")
+    if family == "printed" and order not in PAPER_ORDERS:
+        raise InvalidInput(
+            field,
+            family,
+            f"'gamma' for order {order}: the paper prints the orders 2 and 4",
+            "Leave it out, or choose order 2 or 4.",
+        )
+    return family
+
+
 def _select(name: str, alpha: Any, dim: int, order: int) -> tuple[Kernel, float]:
     if not isinstance(name, str) or name not in KERNELS:
         raise InvalidInput("name", name, f"one of {', '.join(KERNELS)}", "Choose a kernel.")
@@ -233,7 +261,16 @@ def _select(name: str, alpha: Any, dim: int, order: int) -> tuple[Kernel, float]
     return entry, fractional_order(alpha)
 
 
-def kernel(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> FloatArray | float:
+def _takes_gamma(entry: Kernel, order: int, family: str | None) -> bool:
+    """Whether the kernel is one of the gamma family that the printed one does not have."""
+    if family is not None and len(entry.orders) == 1:
+        raise InvalidInput("family", family, f"nothing for {entry.name}", "Leave it out.")
+    return family_of(order, family) == "gamma" and order > 2
+
+
+def kernel(
+    name: str, r: Any, alpha: float, dim: int = 1, order: int = 2, family: str | None = None
+) -> FloatArray | float:
     """Return the kernel `name` at distance r, for unit smoothing length.
 
     Parameters
@@ -248,7 +285,9 @@ def kernel(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> Flo
     dim : int
         Number of dimensions, 1 to 3.
     order : int
-        2 or 4 (E: 2, it has no order-IV form).
+        2, 4, 6, 8, 10 or 12 (E: 2, it has no other form).
+    family : {"printed", "gamma"}, optional
+        Family of the kernels; printed for the orders 2 and 4, gamma beyond if left out. Order 2 is the same in both.
 
     Returns
     -------
@@ -263,6 +302,8 @@ def kernel(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> Flo
         If the kernel does not exist, alpha is outside (1, 2), or r is not a distance.
     """
     entry, alpha = _select(name, alpha, dim, order)
+    if _takes_gamma(entry, order, family):
+        return kernels_high_order.kernel(name, r, alpha, dim=dim, order=order)
     r = real_array("r", r)
     if (np.abs(r) > LARGEST).any():
         raise InvalidInput("r", float(np.abs(r).max()), "|r| <= 1e150", "Scale the distances.")
@@ -273,13 +314,13 @@ def kernel(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> Flo
 
 
 def kernel_transform(
-    name: str, k: Any, alpha: float, dim: int = 1, order: int = 2
+    name: str, k: Any, alpha: float, dim: int = 1, order: int = 2, family: str | None = None
 ) -> FloatArray | float:
     """Return the Fourier transform, int K(r) exp(-i k.r) dr, at angular wavenumber |k|.
 
     Parameters
     ----------
-    name, alpha, dim, order
+    name, alpha, dim, order, family
         As for `kernel`.
     k : array_like
         Angular wavenumbers 0 <= k <= 1e150, any shape.
@@ -296,6 +337,8 @@ def kernel_transform(
         If the kernel does not exist, alpha is outside (1, 2), or k is negative or not numeric.
     """
     entry, alpha = _select(name, alpha, dim, order)
+    if _takes_gamma(entry, order, family):
+        return kernels_high_order.kernel_transform(name, k, alpha, dim=dim, order=order)
     k = real_array("k", k)
     if not ((k >= 0.0) & (k <= LARGEST)).all():
         raise InvalidInput("k", k, "0 <= k <= 1e150", "Give the modulus of the wave vector.")

@@ -44,7 +44,7 @@ from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
 from fracparticles.special.arguments import dimension, elementwise, fractional_order, real_array
 
-__all__ = ["NAMES", "ORDERS", "kernel", "kernel_transform", "wavenumber_reach"]
+__all__ = ["NAMES", "ORDERS", "gamma_nb", "kernel", "kernel_transform", "wavenumber_reach"]
 
 FloatArray = NDArray[np.float64]
 
@@ -124,10 +124,13 @@ def _w(c: float, b: float, m: int, r: FloatArray) -> FloatArray:
 # --- in space -------------------------------------------------------------------------------------
 
 
-def _gamma_nb(n: int, b: int, alpha: float) -> float:
+def gamma_nb(n: int, b: int, alpha: float) -> float:
     """Gamma_{n,b}(alpha) = 2^alpha Gamma((alpha+n)/2) / (pi^(n/2) Gamma((n+b)/2) b!)  (B.14)."""
-    parameters = gamma(0.5 * (alpha + n)) / (gamma(0.5 * (n + b)) * math.factorial(b))
-    return float(2.0**alpha * parameters / math.pi ** (0.5 * n))
+    return float(
+        2.0**alpha
+        * gamma(0.5 * (alpha + n))
+        / (math.pi ** (0.5 * n) * gamma(0.5 * (n + b)) * math.factorial(b))
+    )
 
 
 def _laguerre_gaussian(r: FloatArray, n: int, m: int, upper: float) -> FloatArray:
@@ -157,17 +160,17 @@ def _eta1(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
 
 def _kappa(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
     """kappa = Gamma_{n,0}(beta-1) W_m((beta-1+n)/2, n/2, r^2), as (14)."""
-    return _gamma_nb(n, 0, alpha - 2.0) * _w(0.5 * (2.0 - alpha), 0.5 * n, m, r)
+    return gamma_nb(n, 0, alpha - 2.0) * _w(0.5 * (2.0 - alpha), 0.5 * n, m, r)
 
 
 def _g(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
     """G = -Gamma_{n,0}(alpha) W_m((alpha+n)/2, n/2, r^2), as (11)."""
-    return -_gamma_nb(n, 0, alpha) * _w(-0.5 * alpha, 0.5 * n, m, r)
+    return -gamma_nb(n, 0, alpha) * _w(-0.5 * alpha, 0.5 * n, m, r)
 
 
 def _k(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
     """K = Gamma_{n,2}(alpha) W_m((n+alpha)/2, (n+2)/2, r^2), as (31)."""
-    return _gamma_nb(n, 2, alpha) * _w(0.5 * (2.0 - alpha), 0.5 * (n + 2), m, r)
+    return gamma_nb(n, 2, alpha) * _w(0.5 * (2.0 - alpha), 0.5 * (n + 2), m, r)
 
 
 def _f(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
@@ -193,10 +196,14 @@ def _k_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
 
     For every n; Gamma(s, x) is the upper incomplete gamma function. K^(0) = (2^alpha / alpha) Gamma(m + s) / (m-1)!.
     """
-    s, z = 0.5 * alpha, 0.25 * k * k
-    total = np.zeros_like(z)
-    for j in range(m):
-        total += gamma(s + j) / math.factorial(j) * gammaincc(s + j, z)
+    s, z = 0.5 * alpha, np.minimum(0.25 * k * k, _NIL)
+    # Gamma(s + 1, z) = s Gamma(s, z) + z^s e^-z: no term is negative.
+    upper, power = gamma(s) * gammaincc(s, z), z**s * np.exp(-z)
+    total = upper
+    for j in range(1, m):
+        upper = (s + j - 1.0) * upper + power
+        power = power * z
+        total = total + upper / math.factorial(j)
     return 2.0 ** (alpha - 1.0) * total
 
 

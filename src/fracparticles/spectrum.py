@@ -20,15 +20,19 @@ def spectral_interval(case: Case, operator: Operator) -> tuple[float, float]:
     """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
 
     A truncated convolution (DD, FD) is a compression of the operator on the infinite lattice: its eigenvalues lie
-    in the range of the symbol. A truncated exchange is the compression plus a diagonal, the weights that lead out of
-    the lattice: positive weights only raise the eigenvalues, to nil at most, and where weights change sign (KPSE of
-    order IV from beta = 0.85) the lowest falls by no more than the least element of that diagonal (Weyl). DPSE is
-    the product of a negative and a positive symmetric matrix, so that its eigenvalues are real. That they lie in the
-    range of the symbol, and that those of FPSE and of the open exterior do and are real, was found by computation
-    (tests/test_spectrum.py). Where there are positive eigenvalues, for scheme (29) or an overlap too small for the
-    order, the greatest is computed.
+    in the range of the symbol. A truncated exchange is the compression plus a diagonal, the weights that lead out
+    of the lattice: positive weights only raise the eigenvalues, to nil at most, and where weights change sign (KPSE
+    of order IV from beta = 0.85, of higher orders) the lowest falls by no more than the least element of that
+    diagonal (Weyl). DPSE is the product of a negative and a positive symmetric matrix, so that its eigenvalues are
+    real. That they lie in the range of the symbol, and that those of FPSE and of the open exterior do and are real,
+    was found by computation (tests/test_spectrum.py), but for FPSE of order 6 and more on a truncated lattice: at
+    some overlaps (2.9) an eigenvalue is up to 1e-5 of the range above it, so little that the series, of entire
+    functions, keeps its digits (tests/test_schemes_high_order.py). Where there are positive eigenvalues, for scheme
+    (29) or an overlap too small for the order, the greatest is computed.
     """
-    low, high = symbol_range(case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim)
+    low, high = symbol_range(
+        case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim, case.kernel_family
+    )
     rate, room = case.setting.rate, _MARGIN * (high - low)
     if not SCHEMES[case.scheme].DISSIPATIVE or high > room:
         high = max(high, _greatest_eigenvalue(operator) / rate)

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import gamma, gammainc
 
 from fracparticles.errors import InvalidInput
+from fracparticles.kernels import family_of
 from fracparticles.schemes import scheme
 
 __all__ = ["closed_form_limit", "stability_limit", "symbol_range"]
@@ -21,7 +22,12 @@ _REFINEMENTS = {1: 5, 2: 9, 3: 11}
 
 
 def stability_limit(
-    scheme: str, beta: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+    scheme: str,
+    beta: float,
+    order: int = 2,
+    overlap: float = 2.0,
+    dim: int = 1,
+    family: str | None = None,
 ) -> float:
     """Return a = 2 D / (|lambda_min| h^alpha), Eq. (55), on the infinite lattice.
 
@@ -33,23 +39,30 @@ def stability_limit(
         Name of a scheme.
     beta : float
         0 < beta < 1.
-    order : {2, 4}
+    order : {2, 4, 6, 8, 10, 12}
         Order of the kernels.
     overlap : float
         epsilon / h.
     dim : {1, 2, 3}
         Space dimension.
+    family : {"printed", "gamma"}, optional
+        Family of the kernels of DD, FPSE and KPSE, see `kernels.kernel`.
 
     Raises
     ------
     InvalidInput
         If an argument is not allowed.
     """
-    return -2.0 / symbol_range(scheme, beta, order, overlap, dim)[0]
+    return -2.0 / symbol_range(scheme, beta, order, overlap, dim, family)[0]
 
 
 def symbol_range(
-    name: str, beta: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+    name: str,
+    beta: float,
+    order: int = 2,
+    overlap: float = 2.0,
+    dim: int = 1,
+    family: str | None = None,
 ) -> tuple[float, float]:
     """Return the least and the greatest value of A(theta) h^alpha / D."""
     module = scheme(name)
@@ -57,15 +70,21 @@ def symbol_range(
         raise InvalidInput(
             "beta", beta, "a number between 0 and 1 (exclusive)", "Give such a value."
         )
-    if not (_is_number(order) and order in module.ORDERS):
-        allowed = f"{' or '.join(map(str, module.ORDERS))} for {name}"
-        raise InvalidInput("order", order, allowed, "Choose one of these.")
     if not (_is_number(overlap) and 0.25 <= overlap <= 1000.0):
         raise InvalidInput("overlap", overlap, "a number from 0.25 to 1000", "Give such a value.")
     if not (_is_number(dim) and dim in module.DIMS):
         allowed = f"{' or '.join(map(str, module.DIMS))} for {name}"
         raise InvalidInput("dim", dim, allowed, "Choose one of these.")
-    return _symbol_range(name, float(beta), int(order), float(overlap), int(dim))
+    orders = module.ORDERS if dim == 1 else module.BOX_ORDERS
+    if not (_is_number(order) and order in orders):
+        where = "" if dim == 1 else f" in {dim} dimensions"
+        allowed = f"{' or '.join(map(str, orders))} for {name}{where}"
+        raise InvalidInput("order", order, allowed, "Choose one of these.")
+    if family is not None:
+        if not module.FAMILIES:
+            raise InvalidInput("family", family, f"nothing for {name}", "Leave it out.")
+        family_of(order, family)
+    return _symbol_range(name, float(beta), int(order), float(overlap), int(dim), family)
 
 
 def _is_number(value: object) -> bool:
@@ -74,16 +93,17 @@ def _is_number(value: object) -> bool:
 
 @lru_cache(maxsize=256)
 def _symbol_range(
-    name: str, beta: float, order: int, overlap: float, dim: int
+    name: str, beta: float, order: int, overlap: float, dim: int, family: str | None
 ) -> tuple[float, float]:
     module = scheme(name)
     alpha, samples = 1.0 + beta, _SAMPLES[dim]
+    given = {} if family is None else {"family": family}  # where there is a choice
 
     def symbol(axes: Sequence[np.ndarray]) -> np.ndarray:
         if dim == 1:
-            return module.symbol(axes[0], alpha, order, overlap)
+            return module.symbol(axes[0], alpha, order, overlap, **given)
         theta = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-        return module.symbol(theta, alpha, order, overlap, dim)
+        return module.symbol(theta, alpha, order, overlap, dim, **given)
 
     # The extremes lie near theta ~ 2 / s: sample evenly in theta as well as in theta s.
     near = np.linspace(0.0, min(np.pi, 16.0 / overlap), samples)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -11,7 +12,8 @@ import numpy as np
 from fracparticles.exterior import far_field
 from fracparticles.exterior_box import box_far_field
 from fracparticles.kernel_tables import KernelValues, tabulated
-from fracparticles.kernels import KERNELS, kernel, kernel_transform
+from fracparticles.kernels import KERNELS, family_of, kernel, kernel_transform
+from fracparticles.kernels_high_order import wavenumber_reach
 from fracparticles.operators import ConvolutionOperator, Operator
 from fracparticles.sums import BOX_SUMMATIONS, SUMMATIONS
 
@@ -32,7 +34,7 @@ class Setting:
         Particle spacing h; the particle volume is h^dim.
     alpha : float
         Fractional order, alpha = 1 + beta.
-    order : {2, 4}
+    order : {2, 4, 6, 8, 10, 12}
         Order of the kernels.
     overlap : float
         s = epsilon / h.
@@ -46,6 +48,8 @@ class Setting:
         Space dimension.
     kernel_table : float, optional
         Step of the table that the kernels are interpolated in; exact kernels without it.
+    family : {"printed", "gamma"}, optional
+        Family of the kernels, see `kernels.kernel`.
     """
 
     n: int
@@ -58,6 +62,7 @@ class Setting:
     exterior: str = "truncated"
     dim: int = 1
     kernel_table: float | None = None
+    family: str | None = None
 
     @property
     def size(self) -> int:
@@ -72,7 +77,9 @@ class Setting:
     @property
     def kernel(self) -> KernelValues:
         """The function that gives the kernels' values: exact, or interpolated."""
-        return kernel if self.kernel_table is None else tabulated(self.kernel_table)
+        if self.kernel_table is None:
+            return partial(kernel, family=self.family)
+        return tabulated(self.kernel_table, self.family)
 
     @property
     def rate(self) -> float:
@@ -88,6 +95,8 @@ class Method(Protocol):
     EQUATION: str
     KERNEL: str
     ORDERS: tuple[int, ...]
+    BOX_ORDERS: tuple[int, ...]  # in two and three dimensions
+    FAMILIES: tuple[str, ...]  # of kernels, where there is a choice
     DIMS: tuple[int, ...]
     EXTERIORS: tuple[str, ...]
     CONSERVATIVE: bool  # total strength invariant (18)
@@ -101,8 +110,8 @@ class Scheme(Method, Protocol):
     def operator(self, setting: Setting) -> Operator:
         """Return A of du/dt = A u on the lattice."""
 
-    # (theta, alpha, order, overlap), and `dim` if there are several: A(theta) h^alpha / D on the infinite lattice,
-    # theta = k h in [0, pi]; for dim > 1 the last axis of theta is the vector.
+    # (theta, alpha, order, overlap), and `dim` and `family` if there are several: A(theta) h^alpha / D on the infinite
+    # lattice, theta = k h in [0, pi]; for dim > 1 the last axis of theta is the vector.
     symbol: Callable[..., np.ndarray]
 
 
@@ -199,6 +208,7 @@ def lattice_transform(
     overlap: float,
     parity: int = 1,
     dim: int = 1,
+    family: str | None = None,
 ) -> np.ndarray:
     """Return sum_m K(m / s) e^{-i m.theta} / s^n = sum_l K^(s (theta + 2 pi l)), Poisson's summation formula.
 
@@ -213,20 +223,26 @@ def lattice_transform(
     """
     theta = np.asarray(theta, dtype=float)
     if dim > 1:
-        return _box_transform(name, theta, alpha, order, overlap, dim)
-    last = 1 + int(np.ceil(_NIL_BEYOND[name](alpha) / (2.0 * np.pi * overlap)))
+        return _box_transform(name, theta, alpha, order, overlap, dim, family)
+    last = 1 + int(np.ceil(_nil_beyond(name, alpha, order, family) / (2.0 * np.pi * overlap)))
     total = np.zeros_like(theta)
     for alias in range(-last, last + 1):
         k = overlap * (theta + 2.0 * np.pi * alias)
         sign = 1.0 if parity > 0 else np.sign(k)
-        total += sign * kernel_transform(name, np.abs(k), alpha, order=order)
+        total += sign * kernel_transform(name, np.abs(k), alpha, order=order, family=family)
     return total
 
 
 def _box_transform(
-    name: str, theta: np.ndarray, alpha: float, order: int, overlap: float, dim: int
+    name: str,
+    theta: np.ndarray,
+    alpha: float,
+    order: int,
+    overlap: float,
+    dim: int,
+    family: str | None,
 ) -> np.ndarray:
-    nil = _NIL_BEYOND[name](alpha)
+    nil = _nil_beyond(name, alpha, order, family)
     even = KERNELS[name].parity == "even"
     total = np.zeros(theta.shape[:-1] if even else theta.shape)
     last = 1 + int(np.ceil(nil / (2.0 * np.pi * overlap)))
@@ -237,7 +253,7 @@ def _box_transform(
             continue
         k = overlap * (theta + 2.0 * np.pi * (np.array(alias) - last))
         size = np.sqrt(np.square(k).sum(axis=-1))
-        value = kernel_transform(name, size, alpha, dim=dim, order=order)
+        value = kernel_transform(name, size, alpha, dim=dim, order=order, family=family)
         if even:
             total += value
         else:
@@ -245,11 +261,10 @@ def _box_transform(
     return total
 
 
-def _gaussian(alpha: float) -> float:
+def _nil_beyond(name: str, alpha: float, order: int, family: str | None) -> float:
+    """The wavenumber beyond which the transform is nil."""
+    if name == "E":
+        return float(44.0 ** (1.0 / alpha))
+    if order > 2 and family_of(order, family) == "gamma":
+        return wavenumber_reach(order)
     return 14.0  # k^alpha exp(-k^2 / 4) < 1e-19
-
-
-_NIL_BEYOND: dict[str, Callable[[float], float]] = {
-    "E": lambda alpha: 44.0 ** (1.0 / alpha),
-    **dict.fromkeys(("eta", "eta1", "Phi", "kappa", "F", "G", "K"), _gaussian),
-}

@@ -19,7 +19,9 @@ NAME = "DD"
 TITLE = "Direct differentiation"
 EQUATION = "Eq. (10)"
 KERNEL = "Eq. (11)"
-ORDERS = (2, 4)
+ORDERS = (2, 4, 6, 8, 10, 12)
+BOX_ORDERS = ORDERS
+FAMILIES = ("printed", "gamma")
 DIMS = (1, 2, 3)
 EXTERIORS = ("truncated", "open")
 CONSERVATIVE = False
@@ -49,7 +51,14 @@ def operator(setting: Setting) -> Operator:
 
 
 def symbol(
-    theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+    theta: np.ndarray,
+    alpha: float,
+    order: int = 2,
+    overlap: float = 2.0,
+    dim: int = 1,
+    family: str | None = None,
 ) -> np.ndarray:
     """A(theta) h^alpha / D = s^(-alpha) sum_l G^(s (theta + 2 pi l)),  G^(k) = -|k|^alpha eta^(k)."""
-    return overlap**-alpha * lattice_transform("G", theta, alpha, order, overlap, dim=dim)
+    return overlap**-alpha * lattice_transform(
+        "G", theta, alpha, order, overlap, dim=dim, family=family
+    )

@@ -26,7 +26,9 @@ NAME = "FPSE"
 TITLE = "Flux particle strength exchange"
 EQUATION = "Eq. (25)"
 KERNEL = "Eqs. (20), (23)"
-ORDERS = (2, 4)
+ORDERS = (2, 4, 6, 8, 10, 12)
+BOX_ORDERS = (2, 4)  # eta1 as a sum of products, see _Divergence
+FAMILIES = ("printed", "gamma")
 DIMS = (1, 2, 3)
 EXTERIORS = ("truncated", "open")
 CONSERVATIVE = True
@@ -45,9 +47,11 @@ def flux_weights(
     return -(overlap ** (1.0 - dim - alpha)) * values("F", m / overlap, alpha, dim=dim, order=order)
 
 
-def divergence_weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
+def divergence_weights(
+    m: np.ndarray, alpha: float, order: int, overlap: float, family: str | None = None
+) -> np.ndarray:
     """du_i/dt = (D / h) sum_j c_{i-j} (Q_j + Q_i) with c_m = -s^(-2) eta1(m / s), Eq. (25), n = 1."""
-    return -(overlap**-2.0) * kernel("eta1", m / overlap, alpha, order=order)
+    return -(overlap**-2.0) * kernel("eta1", m / overlap, alpha, order=order, family=family)
 
 
 def operator(setting: Setting) -> Operator:
@@ -62,7 +66,7 @@ def operator(setting: Setting) -> Operator:
 def _line_operator(setting: Setting) -> Operator:
     alpha, order, overlap = setting.alpha, setting.order, setting.overlap
     size, is_open = setting.size, setting.exterior == "open"
-    reach = BandedConvolution.reach(overlap, order)
+    reach = BandedConvolution.reach(overlap, order, setting.family)
     pad = reach if is_open else 0
 
     def flux(m: np.ndarray) -> np.ndarray:
@@ -71,7 +75,7 @@ def _line_operator(setting: Setting) -> Operator:
     convolve = SUMMATIONS[setting.summation](
         flux(np.arange(size + pad, dtype=float)), size, parity=-1, pad=pad
     )
-    c = divergence_weights(np.arange(reach + 1, dtype=float), alpha, order, overlap)
+    c = divergence_weights(np.arange(reach + 1, dtype=float), alpha, order, overlap, setting.family)
     far, diagonal = None, np.zeros(size)
     if is_open:
         far = far_field(flux, alpha, alpha, setting.n, parity=-1, pad=pad)
@@ -112,7 +116,7 @@ class _Divergence:
     """sum_j c_{i-j} . q_j with c_m = -s^(-n-1) eta1(m / s) as products of sums along the axes.
 
     eta1 of order II is a product, x_d e^(-x_d^2) times e^(-x_e^2) in the other coordinates. That of order IV, with
-    n + 4 - 2 |r|^2 = (n + 4 - 2 x_d^2) - 2 sum_e x_e^2, is a sum of n products.
+    n + 4 - 2 |r|^2 = (n + 4 - 2 x_d^2) - 2 sum_e x_e^2, is a sum of n products; it is the same in both families.
     """
 
     def __init__(self, order: int, overlap: float, dim: int, size: int) -> None:
@@ -157,13 +161,18 @@ class _Divergence:
 
 
 def symbol(
-    theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+    theta: np.ndarray,
+    alpha: float,
+    order: int = 2,
+    overlap: float = 2.0,
+    dim: int = 1,
+    family: str | None = None,
 ) -> np.ndarray:
     """A(theta) h^alpha / D = -s^(-alpha) f(theta) . e(theta).
 
     f and e are the sums over the aliases of F^ = i (k / |k|) |k|^beta eta^(k) and of eta1^.
     """
-    f = lattice_transform("F", theta, alpha, order, overlap, parity=-1, dim=dim)
-    e = lattice_transform("eta1", theta, alpha, order, overlap, parity=-1, dim=dim)
+    f = lattice_transform("F", theta, alpha, order, overlap, parity=-1, dim=dim, family=family)
+    e = lattice_transform("eta1", theta, alpha, order, overlap, parity=-1, dim=dim, family=family)
     product = f * e if dim == 1 else (f * e).sum(axis=-1)
     return -(overlap**-alpha) * product

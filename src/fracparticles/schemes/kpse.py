@@ -20,7 +20,9 @@ NAME = "KPSE"
 TITLE = "Kernel particle strength exchange"
 EQUATION = "Eq. (34)"
 KERNEL = "Eq. (31)"
-ORDERS = (2, 4)
+ORDERS = (2, 4, 6, 8, 10, 12)
+BOX_ORDERS = ORDERS
+FAMILIES = ("printed", "gamma")
 DIMS = (1, 2, 3)
 EXTERIORS = ("truncated", "open")
 CONSERVATIVE = True
@@ -43,7 +45,9 @@ def weights(
 def operator(setting: Setting) -> Operator:
     """Return A of Eq. (34)."""
     alpha, order, overlap, dim = setting.alpha, setting.order, setting.overlap, setting.dim
-    total = lattice_transform("K", np.zeros((1, dim)), alpha, order, overlap, dim=dim)
+    total = lattice_transform(
+        "K", np.zeros((1, dim)), alpha, order, overlap, dim=dim, family=setting.family
+    )
     return one_pass_operator(
         setting,
         lambda m: weights(m, alpha, order, overlap, dim, setting.kernel),
@@ -53,10 +57,17 @@ def operator(setting: Setting) -> Operator:
 
 
 def symbol(
-    theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0, dim: int = 1
+    theta: np.ndarray,
+    alpha: float,
+    order: int = 2,
+    overlap: float = 2.0,
+    dim: int = 1,
+    family: str | None = None,
 ) -> np.ndarray:
     """A(theta) h^alpha / D = alpha s^(-alpha) sum_l [K^(s (theta + 2 pi l)) - K^(2 pi l s)]."""
     theta = np.asarray(theta, dtype=float)
-    at_theta = lattice_transform("K", theta, alpha, order, overlap, dim=dim)
-    at_zero = lattice_transform("K", np.zeros_like(theta), alpha, order, overlap, dim=dim)
-    return alpha * overlap**-alpha * (at_theta - at_zero)
+    at_theta = lattice_transform("K", theta, alpha, order, overlap, dim=dim, family=family)
+    at_zero = lattice_transform(
+        "K", np.zeros((1, dim)), alpha, order, overlap, dim=dim, family=family
+    )
+    return alpha * overlap**-alpha * (at_theta - at_zero.flat[0])

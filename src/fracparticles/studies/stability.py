@@ -141,7 +141,8 @@ def stability(inputs: Inputs) -> Result:
         (scheme, beta, order): [spectrum(scheme, 1.0 + beta, order, size) for size in sizes]
         for beta in betas
         for scheme in (*_SCHEMES, "GPSE")
-        for order in SCHEMES[scheme].ORDERS
+        for order in ORDERS
+        if order in SCHEMES[scheme].ORDERS
     }
     iterated = {
         (scheme, beta): _iterate(scheme, beta, float(h), parameters)
@@ -411,7 +412,7 @@ def _series(betas: list[float], printed: Mapping[str, str]) -> pd.DataFrame:
     middle = betas[len(betas) // 2]
     theta = np.linspace(0.0, np.pi, 181)
     for scheme in _SCHEMES:
-        for order in SCHEMES[scheme].ORDERS:
+        for order in ORDERS:
             key = {"scheme": scheme, "order": ORDERS[order]}
             rows += [
                 {"panel": "limit", **key, "x": beta, "y": stability_limit(scheme, beta, order)}

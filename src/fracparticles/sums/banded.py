@@ -5,11 +5,17 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
+from fracparticles.kernels import family_of
+
 __all__ = ["BandedConvolution"]
 
-# exp(-r^2) falls below the round-off of a unit sum, 1e-18, at r = 6.44; the order-IV kernels may hold
-# exp(-r^2 / 2), which does so at r = 9.1.
-_REACH = {2: 6.5, 4: 9.2}
+# exp(-r^2) falls below the round-off of a unit sum, 1e-18, at r = 6.44; the printed kernels of order IV may hold
+# exp(-r^2 / 2), which does so at r = 9.1. In the gamma family it has a polynomial for a factor:
+# the ends are those measured of eta1, where it falls below _NIL of its greatest value.
+_REACH = {
+    "printed": {2: 6.5, 4: 9.2},
+    "gamma": {2: 6.5, 4: 6.7, 6: 6.9, 8: 7.1, 10: 7.3, 12: 7.4},
+}
 _NIL = 2.0**-56  # of the largest weight: an eighth of a rounding error
 _BLOCK = 512  # rows at a time, so that the sums stay in the first-level cache
 
@@ -34,9 +40,9 @@ class BandedConvolution:
         self._parity = float(parity)
 
     @staticmethod
-    def reach(overlap: float, order: int) -> int:
+    def reach(overlap: float, order: int, family: str | None = None) -> int:
         """Return the half band M beyond which a Gaussian kernel of this order and overlap is nil."""
-        return int(np.ceil(_REACH[order] * overlap))
+        return int(np.ceil(_REACH[family_of(order, family)][order] * overlap))
 
     def __call__(self, v: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write y for the points in the middle of v, as many as `out` has, into `out`; return it."""
