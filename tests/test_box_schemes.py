@@ -11,7 +11,7 @@ from fracparticles.exterior_box import box_far_field
 from fracparticles.kernel_tables import tabulated
 from fracparticles.kernels import PAPER_ORDERS, kernel
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.solver import compute, relative_l1_error
+from fracparticles.solver import compute
 from fracparticles.special import green
 from fracparticles.spectrum import dense_matrix, spectral_interval
 from fracparticles.stability import stability_limit, symbol_range

@@ -218,10 +218,11 @@ def _optimum_finding(optimum: pd.DataFrame) -> Finding:
         "M-C3.optimum",
         bool(plain.between(0.5, 2.0).all()),
         f"On a lattice of markers the best ε is {plain.min():.2f} to {plain.max():.2f} times the formula for "
-        f"{', '.join(finite['S'].unique())}; {ratio.min():.2f} to {ratio.max():.2f} times if the worst over a range of ε "
-        "as wide as h counts, since the error happens to vanish at some ε / h. S8 has no M: there it is {at.min():.2f} to {at.max():.2f} h.",
-        "The best ε is not within a factor of 2 of the formula: it falls where the lattice error happens to vanish, and "
-        "the two terms of (19) have different constants, which the formula leaves out.",
+        f"{', '.join(finite['S'].unique())}; {ratio.min():.2f} to {ratio.max():.2f} times if the worst over a range of "
+        "ε as wide as h counts, since the error happens to vanish at some ε / h. S8 has no M: there it is "
+        f"{at.min():.2f} to {at.max():.2f} h.",
+        "The best ε is not within a factor of 2 of the formula: it falls where the lattice error happens to vanish, "
+        "and the two terms of (19) have different constants, which the formula leaves out.",
     )
 
 

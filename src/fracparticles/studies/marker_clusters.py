@@ -404,7 +404,8 @@ def _traced(measured: pd.DataFrame, clustered: pd.Series) -> Finding:
     return statement(
         "M-F14.traced",
         bool(with_them.any() and agree[prone].mean() >= 0.9),
-        f"E grows where clusters are, and only there, in {_of(agree & prone, prone)} runs with S4 and S7. Started within [-1, 1], E grows in {_of(turned & with_them, with_them)} runs with clusters and in "
+        f"E grows where clusters are, and only there, in {_of(agree & prone, prone)} runs with S4 and S7. "
+        f"Started within [-1, 1], E grows in {_of(turned & with_them, with_them)} runs with clusters and in "
         f"{_of(turned & without, without)} without (S4, S7, S8); the rank correlation of its growth with the empty "
         f"part of the line is {correlation:.2f}.",
         "Clusters explain most of the growth, not all: in some runs E grows without clusters, or does not with them.",
