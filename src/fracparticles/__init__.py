@@ -25,6 +25,7 @@ _HOME = {
     "green_slope": "special.stable",
     "kernel": "kernels",
     "mean_radius": "special.stable",
+    "prepare": "solver",
     "read_run": "dataset",
     "solve": "solver",
     "stability_limit": "stability",

@@ -78,8 +78,9 @@ class Case(BaseModel):
     """"fundamental" for the fundamental solution at t_initial, or the path of a NetCDF file with u(x)."""
     integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = None
     """Time integrator; rk2 if left out. GPSE is an Euler step by construction."""
-    evaluation: Literal["series", "stepping"] | None = None
-    """How the integrator's polynomial is evaluated: one Chebyshev series (if left out) or step by step (always DVM)."""
+    evaluation: Literal["series", "stepping", "convolution"] | None = None
+    """How the integrator's polynomial is evaluated: one Chebyshev series (if left out), step by step (always DVM, and
+    a single step), or as one lattice sum with the exponential of the symbol."""
     summation: Literal["fft", "naive"] = "fft"
     """How sums over particles are done; the fast Fourier transform of DVM is a non-uniform one."""
     exterior: Literal["truncated", "open"] = "truncated"
@@ -225,7 +226,9 @@ class Case(BaseModel):
 
     @property
     def steps_taken(self) -> bool:
-        """Whether the steps are taken one by one."""
+        """Whether the steps are taken one by one; a single Euler step has nothing to gain from a series."""
+        if self.evaluation is None and self.method == "euler" and self.steps == 1:
+            return True
         return self.evaluation == "stepping" or self.scheme == "DVM"
 
     @cached_property
@@ -294,7 +297,7 @@ class Case(BaseModel):
             f"t{self.t_initial:g}-{self.t_final:g}",
             *([] if self.diffusivity == 1.0 else [f"diffusivity{self.diffusivity:g}"]),
             *([] if self.initial == FUNDAMENTAL else [f"from-{_slug(self.initial)}"]),
-            *([] if self.evaluation != "stepping" else [self.evaluation]),
+            *([] if self.evaluation in (None, "series") else [self.evaluation]),
             *([] if self.summation == "fft" else [self.summation]),
             *([] if self.kernel_family is None else [self.kernel_family]),
             *([] if self.kernel_table is None else [f"table{self.kernel_table:g}"]),

@@ -193,9 +193,11 @@ def _check_integrator(case: Case) -> None:
             raise InvalidInput(
                 "evaluation",
                 case.evaluation,
-                "'series' for integrator='exponential', which takes no steps",
+                "'series' or 'convolution' for integrator='exponential', which takes no steps",
                 "Leave it out.",
             )
+    if case.evaluation == "convolution":
+        _check_convolution(case)
     if case.scheme == "GPSE":
         if case.method != "euler":
             raise InvalidInput(
@@ -233,3 +235,19 @@ def _check_integrator(case: Case) -> None:
             f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}",
             "Give dt, or integrator='exponential', which needs none.",
         )
+
+
+def _check_convolution(case: Case) -> None:
+    """The exponential of the symbol is that of the infinite lattice, of exact kernels."""
+    needed = {
+        "scheme": (case.scheme, ("DD", "FPSE", "KPSE"), "GPSE: one Euler step is one lattice sum."),
+        "integrator": (case.method, ("exponential",), "Take integrator='exponential'."),
+        "exterior": (case.exterior, ("open",), "Take exterior='open', or evaluation='series'."),
+        "dim": (case.dim, (1,), "Take evaluation='series', or GPSE in one step."),
+        "summation": (case.summation, ("fft",), "Leave it out."),
+        "kernel_table": (case.kernel_table, (None,), "Leave it out."),
+    }
+    for name, (value, allowed, remedy) in needed.items():
+        if value not in allowed:
+            choice = " or ".join("nothing" if one is None else str(one) for one in allowed)
+            raise InvalidInput(name, value, f"{choice} for evaluation='convolution'", remedy)

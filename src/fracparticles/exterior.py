@@ -10,6 +10,16 @@ and a sum over particles gains the exterior sum u_n right_i + u_{-n} left_i with
     right_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j},   left_i = parity * right_{-i},
 
 a rank-two update of the operator, computed once. Not in the papers, which truncate the lattice.
+
+`far_field` takes w as a function of any real offset. `tabulated_far_field` takes a table of w_m, m = 0 .. M, beyond
+which w_m = C m^(-1-alpha): Huang & Oberman's far-field condition. The sum goes on to the offset M, and what is beyond
+is an integral:
+
+    right_i = sum''_{m <= M, i + m > n} w_m (n / (i + m))^(1+alpha)
+              + C int_M^inf (n / (i + y))^(1+alpha) y^(-1-alpha) dy,
+
+where '' halves the term m = M; the integral is C n^(1+alpha) M^(-1-2 alpha) / (1 + 2 alpha) times
+2F1(1+alpha, 1+2 alpha; 2+2 alpha; -i/M).
 """
 
 from __future__ import annotations
@@ -17,12 +27,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.special import roots_jacobi
+from scipy.special import gamma, hyp2f1, roots_jacobi
 
 from fracparticles.operators import FarField
 from fracparticles.sums import valid_convolution
 
-__all__ = ["far_field"]
+__all__ = ["far_field", "tabulated_far_field", "tail_constant"]
 
 # Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
 # varies on the scale n and two terms leave a relative error of order n^-4.
@@ -95,3 +105,38 @@ def _tails(
     integral = start * (n / start) ** tail_power * (smooth @ quadrature) / 2.0 ** (exponent + 1.0)
     f = (n / ends) ** tail_power * w[:, -2:]
     return np.asarray(integral + (f[:, 1] - f[:, 0]) / 24.0)
+
+
+def tabulated_far_field(w: np.ndarray, n: int, alpha: float, amplitude: float) -> FarField:
+    """Return the exterior sums for the lattice -n .. n at its own points, for an even w.
+
+    Parameters
+    ----------
+    w : array, shape (M + 1,)
+        w_m for m = 0 .. M, M > 2 n.
+    n : int
+        Half the number of lattice intervals.
+    alpha : float
+        Fractional order; the solution is continued like |x|^(-1-alpha).
+    amplitude : float
+        C of w_m ~ C m^(-1-alpha).
+    """
+    last = w.size - 1
+    i = np.arange(-n, n + 1)
+    k = np.arange(n + 1, n + last + 1)
+    present = np.zeros(2 * n + last)  # w_{i-k} for the offsets i - k = -2 n - M .. -1, nil beyond M
+    present[2 * n :] = w[:0:-1]
+    present[2 * n] *= 0.5
+    near = valid_convolution((n / k) ** (1.0 + alpha), present)
+    beyond = hyp2f1(1.0 + alpha, 1.0 + 2.0 * alpha, 2.0 + 2.0 * alpha, -i / last)
+    front = amplitude * n ** (1.0 + alpha) * float(last) ** (-1.0 - 2.0 * alpha)
+    right = near + front / (1.0 + 2.0 * alpha) * beyond
+    return FarField(right=right, left=right[::-1])
+
+
+def tail_constant(alpha: float) -> float:
+    """Return C of (-Laplacian)^(alpha/2) u(x) = C int (u(x) - u(y)) |x - y|^(-1-alpha) dy on the line.
+
+    C = 2^(alpha-1) alpha Gamma((1+alpha)/2) / (sqrt(pi) Gamma(1-alpha/2)) = Gamma(1+alpha) sin(pi alpha/2) / pi.
+    """
+    return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) / np.pi)

@@ -1,4 +1,4 @@
-"""Run a case: `integrate` on bare arrays, `solve` to a data set."""
+"""Run a case: `prepare` and then `solve` on bare arrays, or `solve` to a data set at once."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ import hashlib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fracparticles import integrators
 from fracparticles.case import FUNDAMENTAL, Case
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
+from fracparticles.integrators import STEP_POLYNOMIALS, exponential, power, step
 from fracparticles.operators import Operator
+from fracparticles.propagator import propagator
 from fracparticles.schemes import SCHEMES, dvm
 from fracparticles.special.arguments import real_array
 from fracparticles.special.stable import central_mass, green
@@ -25,9 +27,18 @@ if TYPE_CHECKING:
 
     from fracparticles.schemes.dvm import ParticleRun
 
-__all__ = ["Solution", "initial_strengths", "integrate", "relative_l1_error", "solve"]
+__all__ = [
+    "Prepared",
+    "Solution",
+    "compute",
+    "initial_strengths",
+    "prepare",
+    "relative_l1_error",
+    "solve",
+]
 
 Initial = str | Path | np.ndarray | Callable[[np.ndarray], np.ndarray]
+Advance = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -93,9 +104,9 @@ def compute(case: Case, initial: Initial | None = None) -> Solution:
     warn_if_unstable(case)
     if case.scheme == "DVM":
         return _advect(case, u0, origin)
-    operator = SCHEMES[case.scheme].operator(case.setting)
-    u, applications = integrate(case, operator, u0.reshape(-1))
-    return Solution(case, case.x, u0, u.reshape(case.shape), applications, origin)
+    ready = prepare(case)
+    u = ready.solve(u0)
+    return Solution(case, case.x, u0, u, ready.operator_applications, origin)
 
 
 def _advect(case: Case, u0: np.ndarray, origin: str) -> Solution:
@@ -118,7 +129,7 @@ def _advect(case: Case, u0: np.ndarray, origin: str) -> Solution:
             summation=case.summation,
         )
     except NonFiniteSolution as error:
-        raise NonFiniteSolution(f"DVM (order {case.order}): {error}") from None
+        raise _named(case, error) from None
     evaluations = run.history.velocity_evaluations
     return Solution(case, case.x, u0, run.field(case.x), evaluations, origin, run)
 
@@ -167,27 +178,103 @@ def warn_if_unstable(case: Case) -> None:
         )
 
 
-def integrate(case: Case, operator: Operator, u0: np.ndarray) -> tuple[np.ndarray, int]:
-    """Advance the strengths u0 from `t_initial` to `t_final` and return them with the operator count.
+@dataclass(frozen=True)
+class Prepared:
+    """A case made ready: all that does not depend on the initial data.
+
+    Attributes
+    ----------
+    case : Case
+    operator : Operator
+        A; for the convolution in time the propagator, exp(A t).
+    operator_applications : int
+        How often a solve applies it.
+    advance : callable
+        From the strengths at `t_initial`, shape (N,), to those at `t_final`.
+    """
+
+    case: Case
+    operator: Operator
+    operator_applications: int
+    advance: Advance
+
+    def solve(self, u0: np.ndarray) -> np.ndarray:
+        """Return the strengths at `t_final` from those at `t_initial`, in the shape they come in.
+
+        Raises
+        ------
+        NonFiniteSolution
+            With the scheme, the step and the time.
+        """
+        try:
+            return self.advance(u0.reshape(-1)).reshape(u0.shape)
+        except NonFiniteSolution as error:
+            raise _named(self.case, error) from None
+
+
+def prepare(case: Case, operator: Operator | None = None) -> Prepared:
+    """Do what does not depend on the initial data: kernels, transforms, far field, time series.
+
+    Parameters
+    ----------
+    case : Case
+        The run; not of DVM, whose particles move.
+    operator : Operator, optional
+        The operator of the case, if it is there already.
 
     Raises
     ------
+    InvalidInput
+        For DVM.
     NonFiniteSolution
-        With the scheme, the step and the time.
+        If the time steps would overflow.
     """
+    if case.scheme == "DVM":
+        raise InvalidInput(
+            "scheme",
+            case.scheme,
+            "a scheme whose particles stay on the lattice",
+            "Use solve: DVM's operator depends on the solution.",
+        )
+    setting = case.setting
+    if case.evaluation == "convolution":
+        operator = _exponential_sum(case)
+        return Prepared(case, operator, 1, operator.apply)
+    if operator is None:
+        operator = SCHEMES[case.scheme].operator(setting)
+    if case.steps_taken:
+        polynomial, dt, steps = STEP_POLYNOMIALS[case.method], case.time_step, case.steps
+        stepping = partial(step, operator, polynomial, dt, steps)
+        return Prepared(case, operator, steps * polynomial.stages, stepping)
+    low, high = spectral_interval(case, operator)
     try:
-        if case.steps_taken:
-            polynomial = integrators.STEP_POLYNOMIALS[case.method]
-            return integrators.step(operator, polynomial, case.time_step, case.steps, u0)
-        low, high = spectral_interval(case, operator)
         if case.method == "exponential":
-            series = integrators.exponential(case.t_final - case.t_initial, low, high)
+            series = exponential(case.t_final - case.t_initial, low, high)
         else:
-            polynomial = integrators.STEP_POLYNOMIALS[case.method]
-            series = integrators.power(polynomial, case.time_step, case.steps, low, high)
-        return series(operator, u0), series.degree
+            series = power(STEP_POLYNOMIALS[case.method], case.time_step, case.steps, low, high)
     except NonFiniteSolution as error:
-        raise NonFiniteSolution(f"{case.scheme} (order {case.order}): {error}") from None
+        raise _named(case, error) from None
+    return Prepared(case, operator, series.degree, partial(series, operator))
+
+
+def _exponential_sum(case: Case) -> Operator:
+    """Return exp(A t) of the infinite lattice as one lattice sum."""
+    setting, given = case.setting, {}
+    if setting.family is not None:
+        given["family"] = setting.family
+    symbol = partial(
+        SCHEMES[case.scheme].symbol,
+        alpha=case.alpha,
+        order=setting.order,
+        overlap=setting.overlap,
+        **given,
+    )
+    time = (case.t_final - case.t_initial) * setting.rate
+    return propagator(symbol, case.alpha, time, setting.n, setting.exterior)
+
+
+def _named(case: Case, error: NonFiniteSolution) -> NonFiniteSolution:
+    return NonFiniteSolution(f"{case.scheme} (order {case.order}): {error}")
 
 
 def relative_l1_error(case: Case, u: np.ndarray) -> float:

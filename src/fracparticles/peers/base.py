@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy.special import gamma
 
 from fracparticles.errors import InvalidInput
 from fracparticles.special.arguments import positive_integer, positive_real
 
-__all__ = ["Peer", "Solver", "check_choice", "half_intervals", "tail_constant"]
+__all__ = ["Peer", "Solver", "check_choice", "half_intervals"]
 
 
 class Solver(Protocol):
@@ -87,14 +86,6 @@ class Peer(Protocol):
     @property
     def prepare(self) -> Preparation:
         """Set-up, all that does not depend on the initial data."""
-
-
-def tail_constant(alpha: float) -> float:
-    """Return C of (-Laplacian)^(alpha/2) u(x) = C int (u(x) - u(y)) |x - y|^(-1-alpha) dy on the line.
-
-    C = 2^(alpha-1) alpha Gamma((1+alpha)/2) / (sqrt(pi) Gamma(1-alpha/2)) = Gamma(1+alpha) sin(pi alpha/2) / pi.
-    """
-    return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) / np.pi)
 
 
 def check_choice(field: str, value: str, allowed: tuple[str, ...]) -> None:

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.peers.base import tail_constant
+from fracparticles.exterior import tail_constant
 from fracparticles.peers.lattice import EXTERIORS, SERIES, LatticeSolver, prepare_lattice
 
 __all__ = ["EXTERIORS", "NAME", "PROPAGATIONS", "REFERENCE", "TITLE", "prepare", "weights"]

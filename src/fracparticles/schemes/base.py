@@ -224,7 +224,7 @@ def lattice_transform(
     theta = np.asarray(theta, dtype=float)
     if dim > 1:
         return _box_transform(name, theta, alpha, order, overlap, dim, family)
-    last = 1 + int(np.ceil(_nil_beyond(name, alpha, order, family) / (2.0 * np.pi * overlap)))
+    last = _last_alias(_nil_beyond(name, alpha, order, family), overlap)
     total = np.zeros_like(theta)
     for alias in range(-last, last + 1):
         k = overlap * (theta + 2.0 * np.pi * alias)
@@ -245,8 +245,8 @@ def _box_transform(
     nil = _nil_beyond(name, alpha, order, family)
     even = KERNELS[name].parity == "even"
     total = np.zeros(theta.shape[:-1] if even else theta.shape)
-    last = 1 + int(np.ceil(nil / (2.0 * np.pi * overlap)))
-    # theta lies within |theta_d| <= pi: aliases that stay beyond `nil` for all of them are left out.
+    last = _last_alias(nil, overlap)
+    # Aliases that stay beyond `nil` for all theta are left out.
     nearest = 2.0 * np.pi * np.maximum(np.abs(np.arange(-last, last + 1)) - 0.5, 0.0)
     for alias in np.ndindex(*(2 * last + 1,) * dim):
         if overlap * np.sqrt(np.square(nearest[list(alias)]).sum()) > nil:
@@ -259,6 +259,11 @@ def _box_transform(
         else:
             total += k * (value / np.where(size > 0.0, size, 1.0))[..., None]
     return total
+
+
+def _last_alias(nil: float, overlap: float) -> int:
+    """The last l for which s |theta + 2 pi l| <= `nil` for any |theta| <= pi."""
+    return int(nil / (2.0 * np.pi * overlap) + 0.5)
 
 
 def _nil_beyond(name: str, alpha: float, order: int, family: str | None) -> float:

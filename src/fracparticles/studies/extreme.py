@@ -101,8 +101,8 @@ def _growth(base: dict[str, float], factors: list[float]) -> pd.DataFrame:
         start = np.random.default_rng(0).standard_normal(operator.size)
         for factor in factors:
             dt = factor * case.largest_stable_step
-            u, _ = integrators.step(operator, _RK2, dt, _STEPS - 50, start)
-            v, _ = integrators.step(operator, _RK2, dt, 50, u)
+            u = integrators.step(operator, _RK2, dt, _STEPS - 50, start)
+            v = integrators.step(operator, _RK2, dt, 50, u)
             z = eigenvalues * dt
             rows.append(
                 {

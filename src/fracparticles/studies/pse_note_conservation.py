@@ -133,7 +133,7 @@ def _run(
     rate = exchange.apply(q)
     imbalance = abs(rate.sum()) / np.abs(rate).sum()
     for _ in range(parts):
-        q, _ = step(exchange, rk4, time / parts / steps, steps, q)
+        q = step(exchange, rk4, time / parts / steps, steps, q)
         change.append(float(q.sum() / start - 1.0))
     times = np.linspace(0.0, time, parts + 1)
     row = {
@@ -191,7 +191,7 @@ def _accuracy(inputs: Inputs) -> pd.DataFrame:
                 off = (exchange.apply(q) / v)[inside] - exact
                 operator.append(np.sqrt((off**2).mean() / (exact**2).mean()))
                 steps = int(np.ceil(exchange.rate * time / (0.8 * rk4.stability_interval)))
-                q, _ = step(exchange, rk4, time / steps, steps, q)
+                q = step(exchange, rk4, time / steps, steps, q)
                 final = (v * heat(x, _START + time))[inside]
                 solution.append(np.abs(q[inside] - final).sum() / final.sum())
             for panel, error in (("operator", operator), ("solution error", solution)):
