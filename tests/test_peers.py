@@ -337,8 +337,8 @@ def test_exterior_sums(name, alpha):
         # What the end of the sum at M leaves is at most the slope of the summand there.
         end = np.abs(a[last - 1 : last + 1]).max() * (n / (last + i)) ** (1.0 + alpha)
         room = (2.0 + 2.0 * alpha) / (last - n) * end
-        assert far.right[i + n] == pytest.approx(exact, abs=room + 1e-14)
-    assert np.array_equal(far.left, far.right[::-1])
+        assert far.right[0, i + n] == pytest.approx(exact, abs=room + 1e-14)
+    assert np.array_equal(far.left, far.right[:, ::-1])
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)

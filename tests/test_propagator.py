@@ -50,7 +50,7 @@ def test_weights_sum_to_one_if_the_symbol_is_nil_at_nil(alpha):
 
 @pytest.mark.parametrize(("scheme", "order"), KINDS)
 def test_the_convolution_is_the_series_but_for_the_exterior(scheme, order):
-    """Both model the field beyond the ends: what they differ by is of the size of that model's error, 1e-9 at C = 20."""
+    """Both model the field beyond the ends: they differ by the size of that model's error, 1e-9 at C = 20."""
     common = {**WIDE, "scheme": scheme, "order": order, "spacing": 0.1}
     sums = compute(fp.Case(**common, evaluation="convolution"))
     series = compute(fp.Case(**common))
@@ -59,9 +59,15 @@ def test_the_convolution_is_the_series_but_for_the_exterior(scheme, order):
     assert np.abs(sums.u - series.u)[inner].max() <= 1e-8 * series.u.max()
     # The nearer the ends, the more the model counts; twice the width, and the difference falls by more than that.
     wide = {**common, "truncation": 40.0}
-    far_sums, far_series = compute(fp.Case(**wide, evaluation="convolution")), compute(fp.Case(**wide))
+    far_sums, far_series = (
+        compute(fp.Case(**wide, evaluation="convolution")),
+        compute(fp.Case(**wide)),
+    )
     near = np.abs(far_sums.x) <= far_sums.case.error_radius
-    assert np.abs(far_sums.u - far_series.u)[near].max() <= 0.25 * np.abs(sums.u - series.u)[inner].max()
+    assert (
+        np.abs(far_sums.u - far_series.u)[near].max()
+        <= 0.25 * np.abs(sums.u - series.u)[inner].max()
+    )
 
 
 def test_the_convolution_advances_a_semigroup():
@@ -111,7 +117,15 @@ def test_dvm_cannot_be_prepared():
 
 
 def test_an_overflow_names_the_scheme():
-    case = fp.Case(scheme="KPSE", beta=0.5, truncation=20.0, spacing=0.1, dt=1.0, t_final=50.0, integrator="rk4")
+    case = fp.Case(
+        scheme="KPSE",
+        beta=0.5,
+        truncation=20.0,
+        spacing=0.1,
+        dt=1.0,
+        t_final=50.0,
+        integrator="rk4",
+    )
     with pytest.raises(NonFiniteSolution, match=r"^KPSE \(order 2\): "):
         fp.prepare(case.model_copy(update={"t_final": 500.0}))
 

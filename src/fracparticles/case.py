@@ -85,6 +85,8 @@ class Case(BaseModel):
     """How sums over particles are done; the fast Fourier transform of DVM is a non-uniform one."""
     exterior: Literal["truncated", "open"] = "truncated"
     """The papers' truncation of the lattice, or the far-field closure."""
+    far_terms: Literal[1, 2, 3] | None = None
+    """Terms of the expansion that continues the solution in an open exterior (dim = 1); 1 if left out."""
     kernel_table: float | None = Field(default=None, ge=1e-6, le=1.0)
     """Step of the table, in units of epsilon, that kernels are interpolated in (paper, Sec. 5); exact if left out."""
     remeshing: Literal["M4'", "Lambda3", "none"] | None = None
@@ -222,6 +224,7 @@ class Case(BaseModel):
             dim=self.dim,
             kernel_table=self.kernel_table,
             family=self.kernel_family,
+            far_terms=self.far_terms or 1,
         )
 
     @property
@@ -304,7 +307,7 @@ class Case(BaseModel):
             *([] if self.remeshing is None else [_slug(self.remeshing)]),
             *([] if self.remesh_above is None else [f"above{self.remesh_above:g}"]),
             *([] if self.threshold is None else [f"threshold{self.threshold:g}"]),
-            self.exterior,
+            self.exterior + ("" if self.far_terms is None else str(self.far_terms)),
             self.store,
         ]
         kind = f"{self.scheme}-{self.order}" + ("" if self.dim == 1 else f"-{self.dim}d")

@@ -139,6 +139,13 @@ def _check_scheme(case: Case) -> None:
             f"{' or '.join(scheme.EXTERIORS)} for {case.scheme}",
             "The far-field closure exists for DD, FPSE, KPSE and GPSE.",
         )
+    if case.far_terms is not None and (case.exterior != "open" or case.dim != 1):
+        raise InvalidInput(
+            "far_terms",
+            case.far_terms,
+            "nothing, but for exterior='open' and dim=1",
+            "Leave it out.",
+        )
     if case.scheme == "FD":
         for name in ("overlap", "kernel_table"):
             if getattr(case, name) is not None:
@@ -243,6 +250,7 @@ def _check_convolution(case: Case) -> None:
         "scheme": (case.scheme, ("DD", "FPSE", "KPSE"), "GPSE: one Euler step is one lattice sum."),
         "integrator": (case.method, ("exponential",), "Take integrator='exponential'."),
         "exterior": (case.exterior, ("open",), "Take exterior='open', or evaluation='series'."),
+        "far_terms": (case.far_terms, (None, 1), "Leave it out."),
         "dim": (case.dim, (1,), "Take evaluation='series', or GPSE in one step."),
         "summation": (case.summation, ("fft",), "Leave it out."),
         "kernel_table": (case.kernel_table, (None,), "Leave it out."),

@@ -43,17 +43,25 @@ class Operator(Protocol):
 
 @dataclass(frozen=True)
 class FarField:
-    """The sum over the exterior, u_n right_i + u_{-n} left_i: the last and the first strength extended.
+    """The sum over the exterior, sum_p (u_{n-p} right_i^p + u_{-n+p} left_i^p): a few strengths near the ends, extended.
 
     A truncated problem has no far field: its operators take None instead.
+
+    Attributes
+    ----------
+    depth : array of int, shape (terms,)
+        p: how far from the ends.
+    right, left : array, shape (terms, points)
+        What each of these strengths adds to the sums.
     """
 
+    depth: np.ndarray
     right: np.ndarray
     left: np.ndarray
 
     def add(self, u: np.ndarray, y: np.ndarray) -> None:
         """Add the contribution of the exterior to the sums y."""
-        _add_far_field(self.right, self.left, u, y)
+        _add_far_field(self.depth, self.right, self.left, u, y)
 
 
 class _Far(Protocol):
@@ -103,7 +111,7 @@ class _Appliable(ABC):
 
 
 class ConvolutionOperator(_Appliable):
-    """(A u)_i = sum_j w_{i-j} u_j + d_i u_i + u_n right_i + u_{-n} left_i.
+    """(A u)_i = sum_j w_{i-j} u_j + d_i u_i + far field.
 
     Parameters
     ----------
@@ -220,10 +228,12 @@ def _update(y, diagonal, u, a, b, c, v):
 
 
 @nb.njit(cache=True, nogil=True)
-def _add_far_field(right, left, u, y):
-    last, first = u[-1], u[0]
-    for i in range(y.size):
-        y[i] += last * right[i] + first * left[i]
+def _add_far_field(depth, right, left, u, y):
+    for k in range(depth.size):
+        last, first = u[u.size - 1 - depth[k]], u[depth[k]]
+        from_right, from_left = right[k], left[k]
+        for i in range(y.size):
+            y[i] += last * from_right[i] + first * from_left[i]
 
 
 @nb.njit(cache=True, nogil=True)

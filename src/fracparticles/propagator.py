@@ -66,9 +66,7 @@ def tabulated_operator(
     return ConvolutionOperator(FourierConvolution(w[:size], size), np.zeros(size), far)
 
 
-def exponential_weights(
-    symbol: Symbol, alpha: float, scaled_time: float, count: int
-) -> np.ndarray:
+def exponential_weights(symbol: Symbol, alpha: float, scaled_time: float, count: int) -> np.ndarray:
     """Return e_m, m = 0 .. count - 1.
 
     The sum over P points of the circle gives sum_l e_{m + l P}. Far away, by the expansion of the exponential at

@@ -113,13 +113,13 @@ def _symbol_range(
     for pick in (np.argmin, np.argmax):
         axes, values = [coarse] * dim, everywhere
         for _ in range(_REFINEMENTS[dim]):
-            place = np.unravel_index(int(pick(values)), values.shape)
+            place = map(int, np.unravel_index(int(pick(values)), values.shape))
             axes = [
                 np.linspace(theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)], _LOOK[dim])
                 for theta, k in zip(axes, place, strict=True)
             ]
             values = symbol(axes)
-        extremes.append(float(values[np.unravel_index(int(pick(values)), values.shape)]))
+        extremes.append(float(values.reshape(-1)[int(pick(values))]))
     return extremes[0], extremes[1]
 
 

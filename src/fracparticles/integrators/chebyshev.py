@@ -22,6 +22,7 @@ from scipy.fft import dct
 
 from fracparticles.errors import FracparticlesError, NonFiniteSolution
 from fracparticles.integrators.polynomial import StepPolynomial
+from fracparticles.integrators.stepping import all_finite
 from fracparticles.operators import Operator
 
 __all__ = ["ChebyshevSeries", "exponential", "power"]
@@ -124,7 +125,7 @@ class ChebyshevSeries:
         if self.degree % 2 == 0:
             operator.update(odd, 2.0 * scale, 2.0 * shift, -1.0, even)
             _add_terms(total, c[self.degree], even, 0.0, odd)
-        if not np.isfinite(total).all():
+        if not all_finite(total):
             raise NonFiniteSolution(
                 "the particle strengths overflow: the time step lies far outside the stability interval. "
                 "Take a smaller dt or integrator='exponential'."

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 from scipy.fft import next_fast_len, rfft
@@ -132,7 +132,7 @@ def prepare_lattice(
         series = exponential(time, *_spectral_interval(a[:size]))
         return LatticeSolver(x, volumes, lambda: operator, series, None)
     assert symbol is not None
-    one_sum = propagator(partial(symbol, alpha=alpha), alpha, time * rate, n, exterior)
+    one_sum = propagator(lambda theta: symbol(theta, alpha), alpha, time * rate, n, exterior)
     return LatticeSolver(
         x, volumes, lambda: tabulated_operator(row(), n, alpha, rate, exterior), None, one_sum
     )
@@ -148,4 +148,3 @@ def _spectral_interval(a: np.ndarray) -> tuple[float, float]:
     low, high = float(values.min()), max(0.0, float(values.max()))
     room = _MARGIN * (high - low)
     return low - room, high + room
-

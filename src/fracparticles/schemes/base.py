@@ -50,6 +50,8 @@ class Setting:
         Step of the table that the kernels are interpolated in; exact kernels without it.
     family : {"printed", "gamma"}, optional
         Family of the kernels, see `kernels.kernel`.
+    far_terms : {1, 2, 3}
+        Terms that continue the solution in an open exterior, dim = 1.
     """
 
     n: int
@@ -63,6 +65,7 @@ class Setting:
     dim: int = 1
     kernel_table: float | None = None
     family: str | None = None
+    far_terms: int = 1
 
     @property
     def size(self) -> int:
@@ -142,7 +145,7 @@ def one_pass_operator(
     w = scaled(np.arange(size, dtype=float))
     far = None
     if setting.exterior == "open":
-        far = far_field(scaled, decay, setting.alpha, setting.n)
+        far = far_field(scaled, decay, setting.alpha, setting.n, terms=setting.far_terms)
     convolve = SUMMATIONS[setting.summation](w, size)
     if infinite is None:
         return ConvolutionOperator(convolve, np.zeros(size), far)

@@ -78,7 +78,7 @@ def _line_operator(setting: Setting) -> Operator:
     c = divergence_weights(np.arange(reach + 1, dtype=float), alpha, order, overlap, setting.family)
     far, diagonal = None, np.zeros(size)
     if is_open:
-        far = far_field(flux, alpha, alpha, setting.n, parity=-1, pad=pad)
+        far = far_field(flux, alpha, alpha, setting.n, -1, pad, setting.far_terms)
     else:
         diagonal = present_sum(c, parity=-1, size=size)
     return TwoPassOperator(convolve, BandedConvolution(c, parity=-1), diagonal, far)

@@ -228,9 +228,7 @@ def _history(
         u = np.asarray(green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta))
         edge = [u[-1]]
         for _ in range(steps):
-            u = integrators.step(
-                operator, integrators.STEP_POLYNOMIALS["rk2"], 0.02 / rate, 1, u
-            )
+            u = integrators.step(operator, integrators.STEP_POLYNOMIALS["rk2"], 0.02 / rate, 1, u)
             edge.append(u[-1])
         time = 0.5 + 0.02 / rate * np.arange(steps + 1)
         y = np.abs(edge)

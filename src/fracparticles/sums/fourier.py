@@ -60,8 +60,9 @@ class FourierConvolution:
 
     def __call__(self, u: np.ndarray) -> np.ndarray:
         """Return y, shape (N + 2 pad,): a view of a buffer that the next call overwrites."""
-        np.copyto(self._particles, u)
-        self._before.fill(0.0)
+        self._particles[:] = u
+        if self.pad:
+            self._before.fill(0.0)
         self._after.fill(0.0)
         self._forward.execute()
         self._multiply(self._spectrum, self._symbol)
@@ -106,13 +107,13 @@ def _buffers(length: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def valid_convolution(u: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Return sum_k u_k w_{i-k} where every term exists, shape (w.size - u.size + 1,).
+    """Return sum_k u_k w_{i-k} along the last axis of u where every term exists, w.size - u.shape[-1] + 1 values.
 
     For sums that are done once. A circular convolution no longer than w will do: it wraps around in the other
     part only.
     """
     length = next_fast_len(w.size, real=True)
-    return irfft(rfft(u, length) * rfft(w, length), length)[u.size - 1 : w.size]
+    return irfft(rfft(u, length) * rfft(w, length), length)[..., u.shape[-1] - 1 : w.size]
 
 
 @nb.njit(cache=True, nogil=True)
