@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -22,7 +20,7 @@ from fracparticles.peers import (
     sinc_lattice,
 )
 from fracparticles.peers.lattice import _spectral_interval
-from fracparticles.propagator import exponential_weights
+from fracparticles.propagator import propagator_weights
 from fracparticles.special import central_mass, green, mean_radius
 from fracparticles.spectrum import dense_matrix
 from fracparticles.studies.common import observed_order
@@ -330,7 +328,7 @@ def test_exterior_sums(name, alpha):
     n = 40
     last, long = 4 * n + 1, 400_000
     a = LATTICE[name].weights(alpha, long)
-    far = tabulated_far_field(a[: last + 1], n, alpha, tail_constant(alpha))
+    far = tabulated_far_field(a[: last + 1], n, alpha, [tail_constant(alpha)])
     for i in (-n, -7, 0, 23, n - 1, n):
         k = np.arange(n + 1, long + i - 1)
         exact = (a[k - i] * (n / k) ** (1.0 + alpha))[::-1].sum()
@@ -419,7 +417,7 @@ def test_the_convolution_is_the_exponential_on_a_wide_lattice(name, alpha):
 def test_the_propagator_of_the_sinc_scheme_is_the_fundamental_solution(alpha):
     """e_m = h G(m h, t), but for the waves beyond pi / h: one step of GPSE over the whole time."""
     h = 0.1  # exp(-(pi / h)^1.1) = 5e-20
-    e = exponential_weights(partial(sinc_lattice.symbol, alpha=alpha), alpha, h**-alpha, 400)
+    e = propagator_weights(lambda theta: np.exp(-((theta / h) ** alpha)), alpha, h**-alpha, 400)
     exact = h * green(np.arange(400) * h, 1.0, alpha)
     # The images are taken off up to the fourth term, of order (4096 h)^(-1-4 alpha); the rest is round-off of e_0.
     assert e == pytest.approx(exact, rel=0, abs=1e-14)

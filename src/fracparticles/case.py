@@ -80,7 +80,7 @@ class Case(BaseModel):
     """Time integrator; rk2 if left out. GPSE is an Euler step by construction."""
     evaluation: Literal["series", "stepping", "convolution"] | None = None
     """How the integrator's polynomial is evaluated: one Chebyshev series (if left out), step by step (always DVM, and
-    a single step), or as one lattice sum with the exponential of the symbol."""
+    a single step), or the whole run as one lattice sum, from the symbol."""
     summation: Literal["fft", "naive"] = "fft"
     """How sums over particles are done; the fast Fourier transform of DVM is a non-uniform one."""
     exterior: Literal["truncated", "open"] = "truncated"

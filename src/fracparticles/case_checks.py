@@ -245,12 +245,12 @@ def _check_integrator(case: Case) -> None:
 
 
 def _check_convolution(case: Case) -> None:
-    """The exponential of the symbol is that of the infinite lattice, of exact kernels."""
+    """One lattice sum is that of the infinite lattice, of exact kernels; GPSE's steps are exponentials themselves."""
+    methods = ("euler",) if case.scheme == "GPSE" else ("exponential",)
     needed = {
-        "scheme": (case.scheme, ("DD", "FPSE", "KPSE"), "GPSE: one Euler step is one lattice sum."),
-        "integrator": (case.method, ("exponential",), "Take integrator='exponential'."),
+        "scheme": (case.scheme, ("DD", "FPSE", "KPSE", "GPSE"), "Take one of these."),
+        "integrator": (case.method, methods, "Leave dt out and take integrator='exponential'."),
         "exterior": (case.exterior, ("open",), "Take exterior='open', or evaluation='series'."),
-        "far_terms": (case.far_terms, (None, 1), "Leave it out."),
         "dim": (case.dim, (1,), "Take evaluation='series', or GPSE in one step."),
         "summation": (case.summation, ("fft",), "Leave it out."),
         "kernel_table": (case.kernel_table, (None,), "Leave it out."),

@@ -14,19 +14,17 @@ a rank-two update of the operator, computed once; each further term makes it two
 truncate the lattice. The error falls with D like D^(-2-2 alpha) for one term and D^(-2-3 alpha) for two (measured).
 
 `far_field` takes w as a function of any real offset. `tabulated_far_field` takes a table of w_m, m = 0 .. M, beyond
-which w_m = C m^(-1-alpha): Huang & Oberman's far-field condition, one term. The sum goes on to the offset M, and what
-is beyond is an integral:
+which w_m is a sum of powers b_l m^(-1-l alpha): with one, and one term of u, Huang & Oberman's far-field condition.
+The sum goes on to the offset M, and what is beyond is an integral. For one term of each and q = 1 + alpha,
 
-    right_i = sum''_{m <= M, i + m > n} w_m (n / (i + m))^(1+alpha)
-              + C int_M^inf (n / (i + y))^(1+alpha) y^(-1-alpha) dy,
+    right_i = sum''_{m <= M, i + m > n} w_m (n / (i + m))^q + b_1 int_M^inf (n / (i + y))^q y^(-1-alpha) dy,
 
-where '' halves the term m = M; the integral is C n^(1+alpha) M^(-1-2 alpha) / (1 + 2 alpha) times
-2F1(1+alpha, 1+2 alpha; 2+2 alpha; -i/M).
+where '' halves the term m = M; the integral is n^q M^(-alpha-q) / (alpha + q) 2F1(q, alpha+q; alpha+q+1; -i/M).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.special import gamma, hyp2f1, roots_jacobi
@@ -74,15 +72,11 @@ def far_field(
         Of the expansion that continues the solution.
     """
     i = np.arange(-n - pad, n + pad + 1)
-    powers = 1.0 + alpha * np.arange(1, terms + 1)
-    depth = np.array([round(n * share) for share in _DEPTHS[:terms]])
-    # Row k: how much a_k takes of each of the strengths that are met.
-    fit = np.linalg.inv((n / (n - depth)[:, None]) ** powers)
+    depth, powers, fit = _expansion(n, alpha, terms)
 
     j = np.arange(n + 1, _NEAR * n + 1)
     offsets = np.arange(i[0] - j[-1], i[-1] - j[0] + 1)
-    modes = (n / j) ** powers[:, None]
-    sums = valid_convolution(modes, weight(offsets.astype(float)))
+    sums = valid_convolution((n / j) ** powers[:, None], weight(offsets.astype(float)))
 
     # The tail at Chebyshev points of i, and from there to every i by barycentric interpolation.
     angle = (np.arange(_NODES) + 0.5) * (np.pi / _NODES)
@@ -92,8 +86,7 @@ def far_field(
         mode += np.polynomial.chebyshev.Chebyshev.fit(
             nodes, tail, _NODES - 1, domain=[-(n + pad), n + pad]
         )(i)
-    right = fit.T @ sums
-    return FarField(depth, right, np.ascontiguousarray(parity * right[:, ::-1]))
+    return _far_field_of(depth, fit.T @ sums, parity)
 
 
 def _tails(
@@ -120,7 +113,9 @@ def _tails(
     return np.asarray(integral + (f[:, 1] - f[:, 0]) / 24.0)
 
 
-def tabulated_far_field(w: np.ndarray, n: int, alpha: float, amplitude: float) -> FarField:
+def tabulated_far_field(
+    w: np.ndarray, n: int, alpha: float, amplitudes: Sequence[float], terms: int = 1
+) -> FarField:
     """Return the exterior sums for the lattice -n .. n at its own points, for an even w.
 
     Parameters
@@ -130,21 +125,36 @@ def tabulated_far_field(w: np.ndarray, n: int, alpha: float, amplitude: float) -
     n : int
         Half the number of lattice intervals.
     alpha : float
-        Fractional order; the solution is continued like |x|^(-1-alpha).
-    amplitude : float
-        C of w_m ~ C m^(-1-alpha).
+        Fractional order.
+    amplitudes : sequence of float
+        b_l of w_m ~ sum_l b_l m^(-1-l alpha), l = 1, 2, ...
+    terms : {1, 2, 3}
+        Of the expansion that continues the solution.
     """
+    depth, powers, fit = _expansion(n, alpha, terms)
     last = w.size - 1
     i = np.arange(-n, n + 1)
     k = np.arange(n + 1, n + last + 1)
     present = np.zeros(2 * n + last)  # w_{i-k} for the offsets i - k = -2 n - M .. -1, nil beyond M
     present[2 * n :] = w[:0:-1]
     present[2 * n] *= 0.5
-    near = valid_convolution((n / k) ** (1.0 + alpha), present)
-    beyond = hyp2f1(1.0 + alpha, 1.0 + 2.0 * alpha, 2.0 + 2.0 * alpha, -i / last)
-    front = amplitude * n ** (1.0 + alpha) * float(last) ** (-1.0 - 2.0 * alpha)
-    right = near + front / (1.0 + 2.0 * alpha) * beyond
-    return FarField(np.zeros(1, dtype=int), right[None], right[None, ::-1].copy())
+    sums = valid_convolution((n / k) ** powers[:, None], present)
+    for mode, q in zip(sums, powers, strict=True):
+        for decay, b in zip(alpha * np.arange(1, len(amplitudes) + 1), amplitudes, strict=True):
+            beyond = hyp2f1(q, decay + q, decay + q + 1.0, -i / last)
+            mode += b * n**q * float(last) ** (-decay - q) / (decay + q) * beyond
+    return _far_field_of(depth, fit.T @ sums, parity=1)
+
+
+def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the depths p, the powers 1 + k alpha, and in row k how much a_k takes of each strength that is met."""
+    powers = 1.0 + alpha * np.arange(1, terms + 1)
+    depth = np.array([round(n * share) for share in _DEPTHS[:terms]])
+    return depth, powers, np.linalg.inv((n / (n - depth)[:, None]) ** powers)
+
+
+def _far_field_of(depth: np.ndarray, right: np.ndarray, parity: int) -> FarField:
+    return FarField(depth, right, np.ascontiguousarray(parity * right[:, ::-1]))
 
 
 def tail_constant(alpha: float) -> float:

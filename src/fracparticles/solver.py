@@ -190,7 +190,7 @@ class Prepared:
     ----------
     case : Case
     operator : Operator
-        A; for the convolution in time the propagator, exp(A t).
+        A; for the convolution in time the whole run.
     operator_applications : int
         How often a solve applies it.
     advance : callable
@@ -264,7 +264,7 @@ def prepare(case: Case, operator: Operator | None = None) -> Prepared:
         )
     setting = case.setting
     if case.evaluation == "convolution":
-        operator = _exponential_sum(case)
+        operator = _lattice_sum(case)
         return Prepared(case, operator, 1, operator.apply)
     if operator is None:
         operator = SCHEMES[case.scheme].operator(setting)
@@ -285,20 +285,23 @@ def prepare(case: Case, operator: Operator | None = None) -> Prepared:
     return Prepared(case, operator, series.degree, partial(series, operator))
 
 
-def _exponential_sum(case: Case) -> Operator:
-    """Return exp(A t) of the infinite lattice as one lattice sum."""
-    setting, given = case.setting, {}
-    if setting.family is not None:
-        given["family"] = setting.family
-    symbol = partial(
-        SCHEMES[case.scheme].symbol,
-        alpha=case.alpha,
-        order=setting.order,
-        overlap=setting.overlap,
-        **given,
+def _lattice_sum(case: Case) -> Operator:
+    """Return the run on the infinite lattice as one lattice sum: exp(A t), or the steps of GPSE."""
+    setting = case.setting
+    family = {} if setting.family is None else {"family": setting.family}
+    scaled_time = (case.t_final - case.t_initial) * setting.rate
+
+    def amplification(theta: np.ndarray) -> np.ndarray:
+        symbol = SCHEMES[case.scheme].symbol(
+            theta, case.alpha, setting.order, setting.overlap, **family
+        )
+        if case.method == "exponential":
+            return np.exp(scaled_time * symbol)
+        return (1.0 + scaled_time / case.steps * symbol) ** case.steps
+
+    return propagator(
+        amplification, case.alpha, scaled_time, setting.n, setting.exterior, setting.far_terms
     )
-    time = (case.t_final - case.t_initial) * setting.rate
-    return propagator(symbol, case.alpha, time, setting.n, setting.exterior)
 
 
 def _named(case: Case, error: NonFiniteSolution) -> NonFiniteSolution:

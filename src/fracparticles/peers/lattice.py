@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 from scipy.fft import next_fast_len, rfft
 
+from fracparticles.exterior import tail_constant
 from fracparticles.integrators import ChebyshevSeries, exponential
 from fracparticles.operators import ConvolutionOperator
 from fracparticles.peers.base import check_choice, half_intervals
@@ -121,6 +122,7 @@ def prepare_lattice(
     size, h = 2 * n + 1, half_width / n
     last = 4 * n + 1  # M, odd: there a panel of Huang & Oberman's rule ends
     rate = h**-alpha
+    amplitude = rate * tail_constant(alpha)
 
     def row() -> np.ndarray:
         return rate * weights(alpha, size if exterior == "truncated" else last + 1)
@@ -128,13 +130,14 @@ def prepare_lattice(
     x, volumes = np.arange(-n, n + 1) * h, np.full(size, h)
     if propagation == "series":
         a = row()
-        operator = tabulated_operator(a, n, alpha, rate, exterior)
+        operator = tabulated_operator(a, n, alpha, [amplitude], exterior)
         series = exponential(time, *_spectral_interval(a[:size]))
         return LatticeSolver(x, volumes, lambda: operator, series, None)
     assert symbol is not None
-    one_sum = propagator(lambda theta: symbol(theta, alpha), alpha, time * rate, n, exterior)
+    tau = time * rate
+    one_sum = propagator(lambda theta: np.exp(tau * symbol(theta, alpha)), alpha, tau, n, exterior)
     return LatticeSolver(
-        x, volumes, lambda: tabulated_operator(row(), n, alpha, rate, exterior), None, one_sum
+        x, volumes, lambda: tabulated_operator(row(), n, alpha, [amplitude], exterior), None, one_sum
     )
 
 
