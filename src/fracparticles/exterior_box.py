@@ -64,7 +64,7 @@ def box_far_field(
     boundary, edge = _boundary(n, dim)
     fit = np.linalg.pinv(np.array(list(_modes(edge / n, alpha, dim))).T)
     near = _near_sums(weights, odd_axes, alpha, n, dim, pad)
-    near += _tail_sums(weights, decay, alpha, n, dim, pad)
+    near += _tail_sums(weights, odd_axes, decay, alpha, n, dim, pad)
     return BoxFarField(boundary, fit, near.reshape(len(weights), dim + 2, -1))
 
 
@@ -115,19 +115,28 @@ def _near_sums(
 
 
 def _tail_sums(
-    weights: Sequence[Weight], decay: float, alpha: float, n: int, dim: int, pad: int
+    weights: Sequence[Weight],
+    odd_axes: Sequence[int | None],
+    decay: float,
+    alpha: float,
+    n: int,
+    dim: int,
+    pad: int,
 ) -> np.ndarray:
-    """The sums over the lattice points beyond, at Chebyshev points of i and from there at every i."""
+    """The sums over the lattice points beyond, at Chebyshev points of i >= 0, mirrored, and from there at every i."""
     nodes = np.polynomial.chebyshev.chebpts1(_TARGET_NODES[dim]) * (n + pad)
+    right = nodes[nodes.size // 2 :]
     j, volume = _midpoint_points(
         *_exterior_quadrature(_NEAR[dim] * (n + pad) + 0.5, dim, alpha + decay - 1.0)
     )
     modes = np.array(list(_modes(j / n, alpha, dim))) * volume
-    tail = np.empty((len(weights), dim + 2, *(nodes.size,) * dim))
-    for place in np.ndindex(*(nodes.size,) * dim):
-        offset = nodes[list(place)][:, None] - j
+    tail = np.empty((len(weights), dim + 2, *(right.size,) * dim))
+    for place in np.ndindex(*(right.size,) * dim):
+        offset = right[list(place)][:, None] - j
         for k, weight in enumerate(weights):
             tail[(k, slice(None), *place)] = modes @ weight(*offset)
+    for axis in range(dim):
+        tail = _with_mirror_image(tail, odd_axes, axis, nodes.size % 2)
     lattice = np.arange(-n - pad, n + pad + 1) / (n + pad)
     polynomials = np.polynomial.chebyshev.chebvander(nodes / (n + pad), nodes.size - 1)
     interpolate = np.linalg.solve(
@@ -136,6 +145,21 @@ def _tail_sums(
     for axis in range(dim):
         tail = np.moveaxis(np.tensordot(tail, interpolate, axes=(2 + axis, 0)), -1, 2 + axis)
     return tail
+
+
+def _with_mirror_image(
+    tail: np.ndarray, odd_axes: Sequence[int | None], axis: int, shared: int
+) -> np.ndarray:
+    """Continue the sums from i_d >= 0 to all i_d; `shared` counts the nodes at 0, which are their own image.
+
+    Mirror i and j: the sum gets the sign of the weight times that of the mode, of which only phi_{2+d} is odd.
+    """
+    sign = np.ones(tail.shape[:2])
+    sign[[odd == axis for odd in odd_axes]] *= -1.0
+    sign[:, 2 + axis] *= -1.0
+    image = np.flip(tail, 2 + axis) * sign.reshape(*sign.shape, *(1,) * (tail.ndim - 2))
+    kept = np.take(image, range(image.shape[2 + axis] - shared), axis=2 + axis)
+    return np.concatenate([kept, tail], axis=2 + axis)
 
 
 def _exterior_quadrature(start: float, dim: int, exponent: float) -> tuple[np.ndarray, np.ndarray]:

@@ -56,8 +56,14 @@ class _Matrix(Contender):
         contender = make()
         self.radius, self.volumes = contender.radius, contender.volumes
         self.applications = 1
-        columns = [contender.solve(column) for column in np.eye(self.radius.size)]
-        self.solve = np.ascontiguousarray(np.array(columns).T).dot  # type: ignore[method-assign]
+        units = np.eye(self.radius.size).reshape(-1, *self.radius.shape)
+        columns = [contender.solve(unit).reshape(-1) for unit in units]
+        self._matrix = np.ascontiguousarray(np.array(columns).T)
+        if self.radius.ndim == 1:
+            self.solve = self._matrix.dot  # type: ignore[method-assign]
+
+    def solve(self, u0: np.ndarray) -> np.ndarray:
+        return (self._matrix @ u0.reshape(-1)).reshape(u0.shape)
 
 
 class _Naive(Contender):
@@ -221,7 +227,8 @@ def one_step_trials(
     most: float,
 ) -> Iterator[Trial]:
     """Yield GPSE over the whole time in one step: epsilon^alpha = D T."""
-    names = ("GPSE", f"one step, {_exterior(**way)}", "ours")
+    how = f", {way['evaluation']}" if "evaluation" in way else ""
+    names = ("GPSE", f"one step, {_exterior(**way)}{how}", "ours")
     for grid in _grids(problem, spacings, truncations, most):
         yield _trial(Lattice, problem, names, scheme="GPSE", dt=problem.time, **way, **grid)
 

@@ -110,6 +110,7 @@ class _Record:
     row: dict[str, Any]
     setups: Timing | None = None
     solves: Timing | None = None
+    u0: Any = None
 
     @property
     def times(self) -> tuple[float, float]:
@@ -155,8 +156,7 @@ def run_trials(
         for record in worth:
             forget_tables()
             setup, contender = measure(record.trial.prepare)
-            u0 = contender.start(problem)
-            solve, _ = measure(lambda: contender.solve(u0), repeats, seconds)  # noqa: B023
+            solve, _ = measure(lambda: contender.solve(record.u0), repeats, seconds)  # noqa: B023
             assert record.setups is not None
             assert record.solves is not None
             record.setups, record.solves = record.setups + setup, record.solves + solve
@@ -192,7 +192,7 @@ def _first(problem: Problem, trial: Trial) -> _Record:
         "extrapolated": contender.scale,
         "error": error,
     }
-    record.setups, record.solves = setup, solve
+    record.setups, record.solves, record.u0 = setup, solve, u0
     return record
 
 

@@ -59,57 +59,60 @@ def work_precision(
 
 def line_trials(
     problem: Problem,
-    orders: Sequence[int],
-    spacings: Sequence[float],
-    truncations: Sequence[float],
-    most_particles: float,
-    most_matrix: float,
+    at_once: dict[str, Any],
+    series: dict[str, Any],
     truncated: dict[str, Any],
     stepped: dict[str, Any],
     particles: dict[str, Any],
     naive: dict[str, Any],
     walkers: dict[str, Any],
-    mapped: dict[str, Any],
+    peers: dict[str, Any],
+    matrices: float,
 ) -> Iterator[Trial]:
     """Yield the trials.
 
     Parameters
     ----------
     problem : Problem
-    orders : sequence of int
-        Of the kernels.
-    spacings, truncations : sequence of float
-        h and C of every lattice whose exterior is open.
-    most_particles, most_matrix : float
-        Larger lattices are left out; larger matrices, too.
+    at_once : dict
+        `orders`, `spacings`, `truncations` and the `most` particles of runs that are one lattice sum, open.
+    series : dict
+        Likewise of those by a Chebyshev series, open; GPSE with its step tied to h is among them.
     truncated : dict
-        `orders`, `spacings` and `truncations` of the truncated ones.
-    stepped, particles, naive, walkers : dict
-        Arguments of `stepped_trials`, `particle_trials`, `naive_trials` and `walk_trials`.
-    mapped : dict
-        `scales` L and `scaled_spacings` h of the mapped line.
+        Likewise of truncated lattices, by a series.
+    stepped, particles, naive, walkers, peers : dict
+        Arguments of `stepped_trials`, `particle_trials`, `naive_trials`, `walk_trials` and `peer_trials`.
+    matrices : float
+        GPSE in one step and the peers of up to so many points also run as one matrix.
     """
-    opened = (spacings, truncations, most_particles)
-    closed = (truncated["spacings"], truncated["truncations"], most_particles)
-    cut = {"exterior": "truncated"}
+    grid = {name: value for name, value in at_once.items() if name != "orders"}
     for terms in (1, 3):
         way = {"exterior": "open", "far_terms": terms}
-        series = {**way, "evaluation": "series"}
-        yield from scheme_trials(problem, _SCHEMES, orders, series, *opened)
-        single = list(one_step_trials(problem, way, *opened))
+        summed = {**way, "evaluation": "convolution"}
+        yield from one_step_trials(problem, way, **grid)
+        single = list(one_step_trials(problem, summed, **grid))
         yield from single
-        yield from matrix_trials(single, most_matrix)
-        yield from tied_step_trials(problem, way, *opened)
-    at_once = {"exterior": "open", "far_terms": 1, "evaluation": "convolution"}
-    yield from scheme_trials(problem, _SCHEMES, orders, at_once, *opened)
-    cut_series = {**cut, "evaluation": "series"}
-    yield from scheme_trials(problem, _SCHEMES, truncated["orders"], cut_series, *closed)
-    yield from one_step_trials(problem, cut, *closed)
-    yield from tied_step_trials(problem, cut, *closed)
+        yield from matrix_trials(single, matrices)
+        # What the further terms of the exterior are worth is shown by KPSE; the others have them.
+        schemes = _SCHEMES if terms == 3 else ("KPSE",)
+        yield from _scheme_and_tied_trials(problem, schemes, way, **series)
+    yield from scheme_trials(problem, _SCHEMES, way=summed, **at_once)
+    yield from _scheme_and_tied_trials(problem, _SCHEMES, {"exterior": "truncated"}, **truncated)
     yield from stepped_trials(problem, **stepped)
     yield from particle_trials(problem, **particles)
     yield from naive_trials(problem, **naive)
     yield from walk_trials(problem, **walkers)
-    peers = list(peer_trials(problem, *opened, **mapped))
-    yield from peers
-    yield from matrix_trials((t for t in peers if t.group == "peers"), most_matrix)
+    rivals = list(peer_trials(problem, **peers))
+    yield from rivals
+    yield from matrix_trials((t for t in rivals if t.group == "peers"), matrices)
+
+
+def _scheme_and_tied_trials(
+    problem: Problem,
+    schemes: Sequence[str],
+    way: dict[str, Any],
+    orders: Sequence[int],
+    **grid: Any,
+) -> Iterator[Trial]:
+    yield from scheme_trials(problem, schemes, orders, {**way, "evaluation": "series"}, **grid)
+    yield from tied_step_trials(problem, way, **grid)
