@@ -17,12 +17,13 @@ from fracparticles.errors import InvalidInput
 from fracparticles.special.stable import mean_radius
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
     from fracparticles.schemes.dvm import ParticleRun
     from fracparticles.solver import Solution
 
-__all__ = ["read_run", "read_strengths", "to_dataset", "write"]
+__all__ = ["read_benchmark", "read_run", "read_strengths", "to_dataset", "write"]
 
 REFERENCE = (
     "Lucchesi, Allouch, Le Maitre, Mustapha, Knio (2020), Particle simulation of space-fractional diffusion "
@@ -236,6 +237,20 @@ def read_run(path: str | Path) -> xr.Dataset:
             "Make one with `fracparticles solve`.",
         )
     return dataset
+
+
+def read_benchmark(path: str | Path) -> pd.DataFrame:
+    """Read a benchmark's file: one row a measurement, the attributes of the file in `attrs`.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no readable NetCDF file.
+    """
+    data = _load(Path(path))
+    frame = data.to_dataframe().reset_index(drop=True)
+    frame.attrs = dict(data.attrs)
+    return frame
 
 
 def read_strengths(path: Path, case: Case) -> np.ndarray:

@@ -135,11 +135,11 @@ class ConvolutionOperator(_Appliable):
         self.size = diagonal.size
         if infinite_diagonal is not None:
             self.least_excess = min(0.0, float(diagonal.min()) - infinite_diagonal)
-        self._convolve, self._diagonal, self._far = convolve, diagonal, far_field
+        self.convolve, self._diagonal, self._far = convolve, diagonal, far_field
 
     def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         """Write a (A u) + b u + c v into v."""
-        y = self._convolve(u)
+        y = self.convolve(u)
         if self._far is not None:
             self._far.add(u, y)
         _update(y, self._diagonal, u, a, b, c, v)
@@ -168,12 +168,12 @@ class TwoPassOperator(_Appliable):
         far_field: FarField | None,
     ) -> None:
         self.size = diagonal.size
-        self._convolve, self._stencil = convolve, stencil
+        self.convolve, self._stencil = convolve, stencil
         self._diagonal, self._far = diagonal, far_field
 
     def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         """Write a (A u) + b u + c v into v."""
-        q = self._convolve(u)
+        q = self.convolve(u)
         if self._far is not None:
             self._far.add(u, q)
         self._stencil.update(q, self._diagonal, u, a, b, c, v)
@@ -206,12 +206,12 @@ class FluxDivergenceOperator(_Appliable):
     ) -> None:
         self.size = int(np.prod(shape))
         self._shape = shape
-        self._convolve, self._divergence = convolve, divergence
+        self.convolve, self._divergence = convolve, divergence
         self._diagonal, self._far = diagonal, far_field
 
     def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         """Write a (A u) + b u + c v into v."""
-        q = self._convolve(u.reshape(self._shape))
+        q = self.convolve(u.reshape(self._shape))
         if self._far is not None:
             self._far.add(u, q)
         y = self._divergence(q)

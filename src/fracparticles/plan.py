@@ -71,6 +71,8 @@ class Scene(_Strict):
         The cases.
     tables : list of str
         Scenes whose tables it reads.
+    benchmarks : list of str
+        Benchmarks whose data it reads.
     """
 
     title: str = Field(min_length=1)
@@ -80,6 +82,7 @@ class Scene(_Strict):
     parameters: dict[str, Any] = {}
     runs: list[RunBlock] = []
     tables: list[str] = []
+    benchmarks: list[str] = []
 
 
 class StudyConfig(_Strict):
@@ -95,8 +98,8 @@ class StudyConfig(_Strict):
         Whether these are the tiny grids, too coarse to judge the claims.
     dvm_dt : float, optional
         Time step of every run of DVM, whatever the scenes say, but for studies of the step.
-    benchmark : dict
-        Parameters of `benchmark.reference_benchmark`.
+    benchmarks : dict
+        The benchmarks by name, with their parameters: those of the function of that name in `benchmarks`.
     scenes : dict
         The scenes by name, in the order of the report.
     """
@@ -105,7 +108,7 @@ class StudyConfig(_Strict):
     report_dir: str = Field(min_length=1)
     smoke: bool = False
     dvm_dt: float | None = Field(default=None, gt=0.0)
-    benchmark: dict[str, Any] = {}
+    benchmarks: dict[str, dict[str, Any]] = {}
     scenes: dict[str, Scene] = Field(min_length=1)
 
 
@@ -117,6 +120,7 @@ def read_config(config: Mapping[str, Any]) -> StudyConfig:
     InvalidInput
         Naming the key, the value, what is allowed and what to do.
     """
+    from fracparticles.benchmarks import BENCHMARKS
     from fracparticles.figures import FIGURES
     from fracparticles.studies import STUDIES
 
@@ -124,12 +128,16 @@ def read_config(config: Mapping[str, Any]) -> StudyConfig:
         study = StudyConfig(**config)
     except ValidationError as error:
         raise _complaint(error) from None
+    for name in study.benchmarks:
+        _check_name(f"benchmarks.{name}", name, BENCHMARKS)
     for name, scene in study.scenes.items():
         _check_name(f"scenes.{name}.study", scene.study, STUDIES)
         if scene.figure is not None:
             _check_name(f"scenes.{name}.figure", scene.figure, FIGURES)
         for other in scene.tables:
             _check_name(f"scenes.{name}.tables", other, study.scenes)
+        for other in scene.benchmarks:
+            _check_name(f"scenes.{name}.benchmarks", other, study.benchmarks)
         cases_of(name, scene)
     if study.dvm_dt is None:
         return study

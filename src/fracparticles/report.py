@@ -61,6 +61,8 @@ class SceneEntry:
         Figures, each ``<results_dir>/figures/<figure>.svg``, ``.png`` or both.
     tables : sequence of str
         Tables, each ``<results_dir>/tables/<table>.md`` and ``.csv``.
+    timed : bool
+        Whether it shows run times: those sections come first.
     """
 
     name: str
@@ -68,6 +70,7 @@ class SceneEntry:
     title: str
     figures: Sequence[str] = ()
     tables: Sequence[str] = ()
+    timed: bool = False
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,7 @@ class _Section:
     name: str
     title: str
     items: Sequence[str]
+    timed: bool
     caption: str
     figures: list[_Figure]
     tables: list[_Table]
@@ -146,13 +150,14 @@ def build(
     _require(claims_csv, _target(claims_csv))
     df = read_ledger(claims_csv)
     sections = [_section(scene, df, results, captions, out) for scene in scenes]
+    documents = _documents(sections, df)
     templates = _templates(Path(template_dir))
     text = _render(
         templates["report.md.j2"],
         summary=summary_line(df),
         statuses=[(status.sign, str(status)) for status in Status],
-        documents=_documents(sections, df),
-        sections=sections,
+        documents=documents,
+        sections=[section for document in documents for section in document.sections],
         ledger=ledger_markdown(df),
         claims_csv=_link(claims_csv, out),
     )
@@ -180,8 +185,14 @@ def _documents(sections: Sequence[_Section], df: pd.DataFrame) -> list[_Document
             ]
             text = ledger_markdown(exceptions) if len(exceptions) else ""
             found.append(_Document(title, own, summary_line(rows), text))
-    ours = [section for section in sections if not section.items]
-    return [*found, *([_Document("Studies of our own", ours, "", "")] if ours else [])]
+    timed = [section for section in sections if section.timed]
+    ours = [section for section in sections if not section.items and not section.timed]
+    groups = [
+        *([_Document("Error against run time", timed, "", "")] if timed else []),
+        *found,
+        *([_Document("Studies of our own", ours, "", "")] if ours else []),
+    ]
+    return groups
 
 
 def _section(
@@ -194,6 +205,7 @@ def _section(
         name=scene.name,
         title=scene.title,
         items=scene.items,
+        timed=scene.timed,
         caption=_caption(captions / f"{scene.name}.md", scene, df),
         figures=[_figure(results / "figures" / name, scene, out) for name in scene.figures],
         tables=[_table(results / "tables" / name, scene, out) for name in scene.tables],

@@ -1,47 +1,24 @@
-# Run times. They differ from machine to machine and are no part of the target `all`.
-BENCHMARK = dict(STUDY.benchmark)
-SUMS_BENCHMARK = {name: BENCHMARK.pop(name, {}) for name in ("boxes", "scattered")}
+# Run times: one file each. They differ from machine to machine; all else that is made is the same everywhere.
 
 
-rule reference_benchmark:
+rule benchmark:
     input:
-        code=[*CORE, PACKAGE / "benchmark.py"],
-        compiled=COMPILED,
+        code=lambda wildcards: benchmark_sources(wildcards.benchmark),
+        compiled=[COMPILED, RESULTS / "runs/.compiled_random_walk"],
     output:
-        data=RESULTS / "benchmarks/reference.nc",
-        csv=RESULTS / "benchmarks/reference.csv",
-        md=RESULTS / "benchmarks/reference.md",
+        RESULTS / "benchmarks/{benchmark}.nc",
     log:
-        RESULTS / "logs/reference_benchmark.log",
+        RESULTS / "logs/benchmark_{benchmark}.log",
     # More than there are, which Snakemake scales down to all: nothing else runs while the clock does.
     threads: 1024
     params:
-        **BENCHMARK,
+        parameters=lambda wildcards: STUDY.benchmarks[wildcards.benchmark],
     script:
-        "../scripts/benchmark_reference.py"
-
-
-rule sums_benchmark:
-    input:
-        code=[*CORE, PACKAGE / "benchmark.py", PACKAGE / "benchmark_sums.py"],
-        compiled=COMPILED,
-    output:
-        boxes_data=RESULTS / "benchmarks/boxes.nc",
-        boxes_csv=RESULTS / "benchmarks/boxes.csv",
-        boxes_md=RESULTS / "benchmarks/boxes.md",
-        scattered_data=RESULTS / "benchmarks/scattered.nc",
-        scattered_csv=RESULTS / "benchmarks/scattered.csv",
-        scattered_md=RESULTS / "benchmarks/scattered.md",
-    log:
-        RESULTS / "logs/sums_benchmark.log",
-    threads: 1024
-    params:
-        **SUMS_BENCHMARK,
-    script:
-        "../scripts/benchmark_sums.py"
+        "../scripts/benchmark.py"
 
 
 rule bench:
     input:
-        rules.reference_benchmark.output,
-        rules.sums_benchmark.output,
+        expand(RESULTS / "benchmarks/{benchmark}.nc", benchmark=STUDY.benchmarks),
+        expand(RESULTS / "tables/{scene}.csv", scene=BENCHMARK_SCENES),
+        [RESULTS / f"figures/{scene}.svg" for scene in BENCHMARK_SCENES if has_figure(scene)],

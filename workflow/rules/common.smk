@@ -9,6 +9,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
 from fracparticles import plan
+from fracparticles.benchmarks import BENCHMARKS
 from fracparticles.errors import InvalidInput
 from fracparticles.figures import FIGURES
 from fracparticles.sources import sources_of
@@ -40,12 +41,14 @@ AREAS = {
     "random_walk": [str(PACKAGE / "random_walk.py")],
     "sph": sorted(map(str, PACKAGE.glob("sph/*.py"))),
 }
+BENCHMARK_SCENES = [name for name, scene in SCENES.items() if scene.benchmarks]
 COMPILED = RESULTS / "runs/.compiled_core"
 LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
 
 
 wildcard_constraints:
     scene="|".join(SCENES),
+    benchmark="|".join(STUDY.benchmarks),
     area="|".join(AREAS),
 
 
@@ -58,6 +61,11 @@ def study_sources(scene):
     """The source files that a scene's study is made of; to read runs it does not take what makes them."""
     study = PACKAGE / f"studies/{STUDIES[SCENES[scene].study]}.py"
     return sources_of(study, PACKAGE, ends=[PACKAGE / "dataset.py"])
+
+
+def benchmark_sources(benchmark):
+    """The source files that a benchmark is made of."""
+    return sources_of(PACKAGE / f"benchmarks/{BENCHMARKS[benchmark]}.py", PACKAGE)
 
 
 def compiled_areas(scene):

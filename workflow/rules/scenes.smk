@@ -7,6 +7,9 @@ rule study:
         tables=lambda wildcards: [
             RESULTS / f"tables/{other}.csv" for other in SCENES[wildcards.scene].tables
         ],
+        benchmarks=lambda wildcards: [
+            RESULTS / f"benchmarks/{name}.nc" for name in SCENES[wildcards.scene].benchmarks
+        ],
         printed=lambda wildcards: printed_files(wildcards.scene),
         code=lambda wildcards: study_sources(wildcards.scene),
         reference=lambda wildcards: SCENES[wildcards.scene].parameters.get("reference", []),
@@ -109,6 +112,7 @@ rule report:
                 "title": scene.title,
                 "figures": [name] if scene.figure else [],
                 "tables": [name],
+                "timed": bool(scene.benchmarks),
             }
             for name, scene in SCENES.items()
         ],

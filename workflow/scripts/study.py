@@ -1,11 +1,13 @@
 """Turn a scene's runs into its table, findings and series."""
 
 import sys
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from fracparticles.claims import read_claims, write_findings
+from fracparticles.dataset import read_benchmark
 from fracparticles.studies import Inputs, study
 from fracparticles.studies.common import excuse, write_table
 
@@ -26,6 +28,7 @@ inputs = Inputs(
         name: pd.read_csv(path)
         for name, path in zip(parameters.tables, snakemake.input.tables, strict=True)
     },
+    benchmarks={Path(path).stem: read_benchmark(path) for path in snakemake.input.benchmarks},
 )
 result = study(parameters.study)(inputs)
 findings = excuse(result.findings, claims) if parameters.smoke else result.findings

@@ -34,7 +34,7 @@ __all__ = ["cost_growth", "measure_sizes"]
 _BETA = 0.5
 _START, _END = 0.5, 1.5
 # The same whatever the size, so that the domain grows with N: a solve then takes the same number of operator
-# applications. That of the line does for the cube, too, which needs it no finer: the times do not depend on the data.
+# applications. The same for all dimensions, since no time depends on how well the data are resolved.
 _SPACING = 0.2
 _TINY = 17  # particles in each direction, the fewest that a case may have: all is loaded and compiled, arrays are small
 _SHORT = 1e-6  # span of a run of three applications, which holds all arrays that a longer one holds
@@ -195,7 +195,5 @@ def _set_up(case: Case, repeats: int, seconds: float) -> tuple[Timing, Prepared]
 
 def _application_time(ready: Prepared, u: np.ndarray, repeats: int, seconds: float) -> float:
     flat, v = u.reshape(-1), np.zeros(u.size)
-    timing, _ = measure(
-        partial(ready.operator.update, flat, 1.0, 0.0, 0.0, v), repeats, seconds
-    )
+    timing, _ = measure(partial(ready.operator.update, flat, 1.0, 0.0, 0.0, v), repeats, seconds)
     return timing.minimum

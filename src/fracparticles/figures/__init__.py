@@ -67,6 +67,12 @@ FIGURES = {
     "marker_nonlinear": "marker_nonlinear",
     "marker_velocities": "marker_velocities",
     "marker_plane": "marker_plane",
+    "kernel_orders": "kernel_orders",
+    "work_precision": "work_precision",
+    "time_to_accuracy": "work_precision",
+    "time_integration": "time_integration",
+    "time_spent": "time_spent",
+    "cost_growth": "cost_growth",
 }
 
 

@@ -13,7 +13,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
 
-__all__ = ["COLOURS", "MARKERS", "axes_row", "legend_below", "save", "slope_triangle"]
+__all__ = ["COLOURS", "MARKERS", "axes_row", "legend_below", "note_below", "save", "slope_triangle"]
 
 mpl.use("Agg")
 mpl.style.use(Path(__file__).with_name("fracparticles.mplstyle"))
@@ -63,6 +63,16 @@ def legend_below(figure: Figure, ax: Axes, columns: int = 4) -> None:
     """Put one frameless legend, with the entries of `ax`, below the panels."""
     handles, labels = ax.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+
+
+def note_below(figure: Figure, note: str) -> None:
+    """Write what was timed, and on what machine, in small print: above the legend, or below the panels without one."""
+    if not figure.legends:
+        figure.supxlabel(note, fontsize=7, color="0.4")
+        return
+    legend = figure.legends[-1]
+    legend.set_title(note, prop={"size": 7})
+    legend.get_title().set_color("0.4")
 
 
 def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = False) -> None:

@@ -70,6 +70,16 @@ STUDIES = {
     "marker_nonlinear": "marker_nonlinear",
     "marker_velocities": "marker_velocities",
     "marker_plane": "marker_plane",
+    "kernel_orders": "kernel_orders",
+    "work_precision": "work_precision",
+    "time_to_accuracy": "work_precision",
+    "which_method": "which_method",
+    "run_time_goals": "which_method",
+    "time_integration": "time_integration",
+    "time_spent": "time_spent",
+    "cost_growth": "cost_growth",
+    "reference_times": "run_times",
+    "scattered_sums": "run_times",
 }
 
 

@@ -46,6 +46,8 @@ class Inputs:
         The run files of the scene, in the order of its configuration.
     tables : mapping
         Tables of other scenes that this one reads, by scene.
+    benchmarks : mapping
+        The data of benchmarks that it reads, one row a measurement, by benchmark; what they were measured on in `attrs`.
     """
 
     scene: str
@@ -53,6 +55,7 @@ class Inputs:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     runs: Sequence[str] = ()
     tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+    benchmarks: Mapping[str, pd.DataFrame] = field(default_factory=dict)
 
     @cached_property
     def scalars(self) -> pd.DataFrame:

@@ -1,0 +1,18 @@
+"""What run times were measured on, in a line."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+__all__ = ["machine_note"]
+
+
+def machine_note(frame: pd.DataFrame) -> str:
+    """Return the processor, the threads and the repeats of a benchmark's data."""
+    facts = frame.attrs
+    return f"{facts['cpu']}, one core; minimum of up to {_solves(frame)} repeats"
+
+
+def _solves(frame: pd.DataFrame) -> int:
+    """Solves are counted where their number varies."""
+    return int(frame["solves"].max()) if "solves" in frame else int(frame.attrs["repeats"])
