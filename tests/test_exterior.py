@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from fracparticles.case import Case
-from fracparticles.exterior import far_field
+from fracparticles.errors import InvalidInput
+from fracparticles.exterior import far_field, tabulated_far_field
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.solver import compute, relative_l1_error
+from fracparticles.spectrum import dense_matrix
+from fracparticles.stability import symbol_range
 
 LONG = 2_000_000
 
@@ -95,3 +98,89 @@ def test_every_open_scheme_beats_its_truncation(scheme, order):
     given = {"scheme": scheme, "order": order, "truncation": 8.0, "spacing": 0.03}
     given |= {"dt": None} if scheme == "GPSE" else {"dt": None, "integrator": "exponential"}
     assert error(**given) < 0.2 * error(**given, exterior="truncated")
+
+
+def expansion(x, alpha, terms):
+    """A decaying field that is its own far-field expansion, with coefficients of both signs."""
+    return sum(
+        c * np.abs(x) ** (-1.0 - k * alpha)
+        for k, c in zip(range(1, terms + 1), (1.0, -2.0, 3.0), strict=False)
+    )
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
+@pytest.mark.parametrize("terms", [1, 2, 3])
+@pytest.mark.parametrize("parity", [1, -1])
+def test_a_field_that_is_the_expansion_is_continued_exactly(alpha, terms, parity):
+    n = 40
+    decay = 1.0 + alpha if parity > 0 else alpha
+
+    def weight(m):
+        even = (1.0 + np.square(m)) ** (-0.5 * decay)
+        return even if parity > 0 else np.sign(m) * even
+
+    far = far_field(weight, decay, alpha, n, parity, terms=terms)
+    u = expansion(np.where(np.arange(-n, n + 1) == 0, 1.0, np.arange(-n, n + 1)), alpha, terms)
+    points = np.array([-n, -7, 0, 11, n])
+    y = np.zeros(2 * n + 1)
+    far.add(u, y)
+    j = np.arange(LONG, n, -1.0)
+    right = np.array([(expansion(j, alpha, terms) * weight(i - j)).sum() for i in points])
+    left = np.array([(expansion(j, alpha, terms) * weight(i + j)).sum() for i in points])
+    # As above: what the long sum lacks, and what Euler-Maclaurin leaves of sums whose powers are higher by 2 alpha.
+    cut = 2.0 * float(LONG) ** (-alpha - decay)
+    relative = 7.0 / 5760.0 * ((6.0 + (terms - 1) * alpha) / (3.0 * n)) ** 3
+    scale = np.abs(expansion(float(n), alpha, 1)) * np.abs(weight(points - j[-1])).max()
+    assert np.abs(y[points + n] - right - left).max() <= cut + relative * n * scale + 1e-14
+
+
+@pytest.mark.parametrize("terms", [1, 2, 3])
+def test_a_table_and_a_function_give_the_same_far_field(terms):
+    """w_m = b m^(-1-alpha) beyond the table: both sums end with the same integral, but for Euler-Maclaurin's rest."""
+    alpha, n = 1.5, 30
+
+    def weight(m):
+        return np.where(m == 0, 1.0, np.maximum(np.abs(m), 1.0)) ** (-1.0 - alpha)
+
+    by_function = far_field(weight, 1.0 + alpha, alpha, n, terms=terms)
+    table = weight(np.arange(8.0 * n))
+    by_table = tabulated_far_field(table, n, alpha, [1.0], terms)
+    assert np.array_equal(by_table.depth, by_function.depth)
+    # The trapezoidal end at M leaves w' / 12 there: (1+alpha+q) / (12 M^2) of a sum that is (n / M)^q of the first term.
+    room = 5.0 / (12.0 * (8.0 * n) ** 2) * 8.0**-alpha * np.abs(by_function.right).max()
+    assert np.abs(by_table.right - by_function.right).max() <= 10.0 * room
+
+
+@pytest.mark.parametrize("scheme", ["DD", "FPSE", "KPSE", "GPSE"])
+def test_more_terms_of_the_exterior_leave_less_error(scheme):
+    """By D^-alpha for each further term; a factor of five is asked at C = 7, where D^-alpha is one thirtieth."""
+    given = {"scheme": scheme, "order": 12, "truncation": 7.0, "spacing": 0.1}
+    given |= {"dt": None, "integrator": "exponential", "overlap": 3.0}
+    if scheme == "GPSE":
+        given |= {"order": 2, "dt": 1.0, "integrator": None, "overlap": None}
+    one, two, three = (error(**given, far_terms=terms) for terms in (1, 2, 3))
+    assert two < 0.2 * one
+    assert three < 0.2 * two
+
+
+@pytest.mark.parametrize("terms", [1, 2, 3])
+@pytest.mark.parametrize(("scheme", "order"), [("DD", 4), ("FPSE", 2), ("KPSE", 12), ("GPSE", 2)])
+def test_the_terms_of_the_exterior_leave_the_operator_dissipative(scheme, order, terms):
+    """No eigenvalue above nil, whatever the terms: the series and the steps stay stable."""
+    setting = Setting(
+        n=40, spacing=0.4, alpha=1.5, order=order, exterior="open", far_terms=terms
+    )
+    eigenvalues = np.linalg.eigvals(dense_matrix(SCHEMES[scheme].operator(setting)))
+    low, high = (setting.rate * edge for edge in symbol_range(scheme, 0.5, order))
+    room = 1e-6 * (high - low)
+    assert eigenvalues.real.max() <= max(high, 0.0) + room
+    assert eigenvalues.real.min() >= low - room
+    assert np.abs(eigenvalues.imag).max() <= 1e-8 * (high - low)
+
+
+def test_terms_are_for_an_open_exterior_on_the_line():
+    given = {"scheme": "KPSE", "beta": 0.5, "truncation": 10.0, "spacing": 0.5, "dt": 0.01}
+    for wrong in ({"exterior": "truncated"}, {"exterior": "open", "dim": 2}):
+        with pytest.raises(InvalidInput, match=r"far_terms.*exterior='open' and dim=1"):
+            Case(**given, **wrong, far_terms=2)
+    assert "_open3_" in Case(**given, exterior="open", far_terms=3).path

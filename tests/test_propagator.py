@@ -111,6 +111,39 @@ def test_a_single_step_of_gpse_is_taken_as_it_is():
     assert compute(single).u == pytest.approx(compute(series).u, rel=1e-13)
 
 
+@pytest.mark.parametrize("terms", [1, 2, 3])
+def test_a_step_of_gpse_and_its_lattice_sum_agree(terms):
+    """The kernel's own values, or the inverse transform of its symbol: the same weights and far field, to 1e-10."""
+    common = {"scheme": "GPSE", "beta": 0.5, "truncation": 7.0, "spacing": 0.4, "dt": 1.0}
+    step = fp.Case(**common, exterior="open", far_terms=terms)
+    at_once = fp.Case(**common, exterior="open", far_terms=terms, evaluation="convolution")
+    u, v = compute(step).u, compute(at_once).u
+    # Euler-Maclaurin beyond 4 n on one side, three terms of the expansion of the weights on the other: 1e-4 and
+    # (4 n)^(-3 alpha) of a far field of 1e-4 beyond 4 n.
+    assert np.abs(u - v).max() <= 1e-8 * u.max()
+
+
+def test_a_prepared_case_as_a_matrix():
+    case = fp.Case(**WIDE | {"truncation": 5.0}, scheme="KPSE", order=12, spacing=0.4)
+    ready = fp.prepare(case)
+    u0 = np.random.default_rng(2).standard_normal(case.shape)
+    matrix = ready.as_matrix()
+    assert matrix.shape == (case.particles, case.particles)
+    assert np.abs(matrix @ u0 - ready.solve(u0)).max() <= 1e-13 * np.abs(u0).sum()
+
+
+def test_strengths_of_another_lattice_are_refused():
+    ready = fp.prepare(fp.Case(**WIDE, scheme="KPSE", spacing=0.4))
+    with pytest.raises(InvalidInput, match=r"initial = 'array of shape \(3,\)'.* of shape \(225,\)"):
+        ready.solve(np.ones(3))
+
+
+def test_one_step_of_nonsense_is_an_error():
+    case = fp.Case(scheme="GPSE", beta=0.5, truncation=10.0, spacing=0.4, dt=1.0)
+    with pytest.raises(NonFiniteSolution, match=r"GPSE .* not finite after one step of dt = 1"):
+        fp.prepare(case).solve(np.full(case.shape, np.inf))
+
+
 def test_dvm_cannot_be_prepared():
     case = fp.Case(scheme="DVM", beta=0.5, truncation=10.0, spacing=0.5, dt=0.01)
     with pytest.raises(InvalidInput, match=r"scheme.*DVM.*Use solve"):

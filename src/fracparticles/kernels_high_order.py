@@ -73,10 +73,14 @@ class _Table(NamedTuple):
 
 @lru_cache(maxsize=1)
 def _poisson() -> FloatArray:
-    """p_k(x) = e^-x x^k / k! at the sample points, shape (points, k): the same for every kernel."""
-    x = chebyshev.sample_points(_WIDTH, int(_FAR / _WIDTH)).reshape(-1, 1)
-    ratios = x / np.arange(1, _LAST)
-    return np.hstack([np.exp(-x), np.exp(-x) * np.cumprod(ratios, axis=1)])
+    """p_k(x) = e^-x x^k / k! at the sample points, shape (k, points): the same for every kernel."""
+    x = chebyshev.sample_points(_WIDTH, int(_FAR / _WIDTH)).reshape(-1)
+    p = np.empty((_LAST, x.size))
+    p[0] = 1.0
+    for k in range(1, _LAST):  # whole rows, one after the other: faster than cumprod along them
+        np.multiply(p[k - 1], x / k, out=p[k])
+    p *= np.exp(-x)
+    return p
 
 
 @lru_cache(maxsize=256)
@@ -87,7 +91,7 @@ def _table(c: float, b: float, m: int) -> _Table:
     # (c-j)_k / (b)_k. k - j first: c itself, and c + 1, enter as exact factors.
     ratios = np.vstack([np.ones(m), np.cumprod(((k - j) + c) / (b + k), axis=0)])
     q = ratios @ (poch(a, j) / gamma(j + 1.0))
-    samples = (_poisson() @ q).reshape(-1, chebyshev.DEGREE + 1)
+    samples = (q @ _poisson()).reshape(-1, chebyshev.DEGREE + 1)
     terms = np.arange(m, _TERMS)
     far = poch(a, terms) * poch(1.0 - c, terms) / gamma(terms + 1.0) * binom(terms - 1, m - 1)
     return _Table(

@@ -164,7 +164,10 @@ def _ways(
 def _expm_multiply(
     operator: Operator, time: float, u0: np.ndarray, trace: float
 ) -> tuple[int, Callable[[], np.ndarray]]:
-    """scipy's, with the trace of A that it would have to estimate; counted by a first run."""
+    """scipy's, with the trace of A that it would have to estimate; counted by a first run.
+
+    Norms are estimated from random vectors: another run may take a few applications more or less.
+    """
     calls = 0
 
     def product(u: np.ndarray) -> np.ndarray:

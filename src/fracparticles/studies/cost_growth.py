@@ -41,7 +41,6 @@ _COLUMNS = {
 _FITTED = {
     "setup_time": "setup_time",
     "application_time": "application_time",
-    "solve_time": "solve_time",
     "naive_time": "naive_time",
     _BEYOND: "gigabytes",
 }

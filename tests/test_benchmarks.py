@@ -1,0 +1,273 @@
+"""The benchmarks on tiny problems: their structure and their arithmetic, no run times."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+import fracparticles as fp
+from fracparticles.benchmarks import BENCHMARKS, benchmark, clock
+from fracparticles.benchmarks.contenders import (
+    Lattice,
+    matrix_trials,
+    naive_trials,
+    one_step_trials,
+    particle_trials,
+    peer_trials,
+    plane_peer_trials,
+    scheme_trials,
+    stepped_trials,
+    tied_step_trials,
+    walk_trials,
+)
+from fracparticles.benchmarks.problem import Problem
+from fracparticles.benchmarks.reference import reference, transform_pairs
+from fracparticles.benchmarks.trial import Contender, Trial, run_trials
+from fracparticles.dataset import read_benchmark, write
+from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.peers import PEERS
+from fracparticles.solver import compute, relative_l1_error
+from fracparticles.stability import _symbol_range, stability_limit
+from fracparticles.sums.fourier import transform_length
+
+LINE, PLANE = Problem(0.5), Problem(0.5, dim=2)
+GRID = {"spacings": [0.4], "truncations": [5.0], "most": 1000}
+OPEN = {"exterior": "open", "far_terms": 3}
+PEER_GRID = {**GRID, "scales": [2.5], "scaled_spacings": [0.4]}
+
+
+def solved(trial: Trial, problem: Problem = LINE):
+    contender = trial.prepare()
+    u0 = contender.start(problem)
+    u = contender.solve(u0)
+    return contender, u, contender.error(problem, u)
+
+
+# --- the clock ------------------------------------------------------------------------------------
+
+
+def test_an_action_is_repeated_until_the_time_is_up():
+    timing, result = clock.measure(lambda: 7, repeats=5)
+    assert result == 7
+    assert len(timing.times) == 5
+    assert timing.minimum <= timing.median <= max(timing.times)
+    short, _ = clock.measure(lambda: None, repeats=100, seconds=0.0)
+    assert len(short.times) == 1
+    assert len((timing + short).times) == 6
+
+
+def test_tables_are_forgotten():
+    stability_limit("KPSE", 0.5)
+    assert _symbol_range.cache_info().currsize > 0
+    clock.forget_tables()
+    assert _symbol_range.cache_info().currsize == 0
+
+
+
+def test_peak_memory_is_that_of_a_process_of_its_own():
+    """An interpreter with numpy and numba takes some hundred megabytes; what is here must not count."""
+    here = np.ones(100_000_000)
+    assert 2e7 < clock.in_fresh_process(clock.peak_so_far) < here.nbytes
+
+
+def test_rows_become_a_data_set_and_a_frame(tmp_path):
+    rows = [{"name": "a", "x": 1.0, "what": ""}, {"name": "b", "what": "broken"}]
+    data = clock.timings_dataset(
+        "row", rows, {"name": "a name"}, {"x": ("a number", "s"), "what": ("a text", "1")}, "t", {"repeats": 3}
+    )  # fmt: skip
+    write(data, tmp_path / "rows.nc")
+    frame = read_benchmark(tmp_path / "rows.nc")
+    assert list(frame["name"]) == ["a", "b"]
+    assert list(frame["what"]) == ["", "broken"]
+    assert frame["x"][0] == 1.0
+    assert np.isnan(frame["x"][1])
+    assert frame.attrs["repeats"] == 3
+    for fact in ("cpu", "cores", "threads", "python", "numpy", "pyfftw", "load_average"):
+        assert fact in frame.attrs, fact
+
+
+def test_unknown_benchmarks_are_refused():
+    with pytest.raises(InvalidInput, match="work_precision"):
+        benchmark("nothing")
+    for name in BENCHMARKS:
+        assert callable(benchmark(name))
+
+
+# --- the problem and the contenders ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("dim", "spacing"), [(1, 0.1), (2, 0.4)])
+def test_the_error_is_that_of_the_runs(dim, spacing):
+    case = fp.Case(
+        scheme="KPSE", beta=0.5, dim=dim, truncation=4.0, spacing=spacing, integrator="exponential"
+    )
+    problem, run = Problem(0.5, dim=dim), compute(case)
+    radius = np.abs(case.x) if dim == 1 else case.radius
+    ours = problem.error(radius, case.particle_spacing**dim, run.u)
+    assert ours == pytest.approx(relative_l1_error(case, run.u), rel=1e-13)
+    assert problem.half_width(4.0) == case.domain
+
+
+def test_unequal_volumes_count():
+    x = np.array([-1.0, 0.0, 2.0])
+    exact = fp.green(x, 1.5, 1.5)
+    u = exact + np.array([0.1, 0.0, 0.2])
+    one, two = (LINE.error(np.abs(x), v, u) for v in (np.array([1.0, 1.0, 3.0]), 1.0))
+    assert one / two == pytest.approx(0.7 / 0.3)
+
+
+def test_every_trial_solves_the_problem():
+    """To a few per cent on a lattice of half the width of the initial data, whoever it is."""
+    grid = {"spacings": [0.25], "truncations": [8.0], "most": 1000}
+    trials = [
+        *scheme_trials(LINE, ("DD", "FPSE", "KPSE"), [4], {**OPEN, "evaluation": "series"}, **grid),
+        *scheme_trials(LINE, ("KPSE",), [12], {**OPEN, "evaluation": "convolution"}, **grid),
+        *one_step_trials(LINE, OPEN, **grid),
+        *one_step_trials(LINE, {**OPEN, "evaluation": "convolution"}, **grid),
+        *tied_step_trials(LINE, OPEN, **grid),
+        *peer_trials(LINE, **{**PEER_GRID, **grid}),
+        *particle_trials(LINE, [4], 8.0, [0.25], [100]),
+        *naive_trials(LINE, ["KPSE", "FD"], [2, 4], 1e-3, 1, **grid),
+    ]
+    assert {trial.family for trial in trials} == {
+        "DD", "FPSE", "KPSE", "GPSE", "DVM", "FD", *PEERS
+    }  # fmt: skip
+    for trial in trials:
+        _, _, error = solved(trial)
+        assert error < 0.06, trial
+
+
+def test_walkers_are_compared_with_the_mass_of_each_cell():
+    (trial,) = walk_trials(LINE, [40_000], 50)
+    contender, u, error = solved(trial)
+    assert u.sum() == pytest.approx(contender._masses.sum(), abs=4.0 / np.sqrt(40_000))
+    # The mean of |N_k / n - p_k| is sqrt(2 p_k / (pi n)); summed over 50 cells, its spread is a seventh of that.
+    expected = np.sqrt(2.0 * contender._masses / (np.pi * 40_000)).sum() / contender._masses.sum()
+    assert error == pytest.approx(expected, rel=0.5)
+
+
+def test_a_naive_trial_takes_a_few_steps_and_counts_all():
+    (trial,) = naive_trials(LINE, ["KPSE"], [2], 1e-3, 4, **GRID)
+    contender, u, error = solved(trial)
+    assert contender.scale == 250.0
+    assert contender.applications == 2000
+    case = fp.Case(scheme="KPSE", beta=0.5, truncation=5.0, spacing=0.4, dt=1e-3)
+    assert error == pytest.approx(relative_l1_error(case, compute(case).u), rel=1e-12)
+    four = fp.Case(
+        scheme="KPSE", beta=0.5, half_width=case.domain, spacing=0.4, dt=1e-3, t_final=0.504
+    )
+    assert u == pytest.approx(compute(four).u, rel=1e-12)
+
+
+def test_only_stable_steps_are_taken():
+    fields = {"scheme": "KPSE", "order": 4, "exterior": "open", "truncation": 5.0, "spacing": 0.2}
+    trials = list(stepped_trials(LINE, ["rk2", "rk4"], ["series"], [1, 4, 16, 64, 256], **fields))
+    limit = stability_limit("KPSE", 0.5, 4) * 0.2**1.5
+    assert 0 < len(trials) < 10
+    assert max(trial.dt for trial in trials if "rk2" in trial.variant) <= limit * 1.001
+
+
+@pytest.mark.parametrize("problem", [LINE, PLANE])
+def test_a_matrix_is_the_run_itself(problem):
+    grid = {"spacings": [0.8], "truncations": [5.0], "most": 1000}
+    way = OPEN if problem is LINE else {"exterior": "open"}
+    (trial,) = one_step_trials(problem, way, **grid)
+    (matrix,) = matrix_trials([trial], 1000)
+    assert matrix.variant == f"{trial.variant}, matrix"
+    _, u, _ = solved(trial, problem)
+    _, v, _ = solved(matrix, problem)
+    assert v == pytest.approx(u, rel=1e-12, abs=1e-15)
+    assert not list(matrix_trials([trial], 10))
+
+
+def test_peers_of_the_plane_solve_the_problem():
+    trials = list(plane_peer_trials(PLANE, [0.4], [4.0], 5000))
+    assert {trial.group for trial in trials} == {"peers", "limit"}
+    for trial in trials:
+        assert solved(trial, PLANE)[2] < 0.02, trial
+
+
+def test_lattices_too_small_or_too_large_are_left_out():
+    grid = {"spacings": [0.1, 0.4, 4.0], "truncations": [5.0], "most": 100}
+    assert [trial.spacing for trial in one_step_trials(LINE, OPEN, **grid)] == [0.4]
+
+
+# --- trials ---------------------------------------------------------------------------------------
+
+
+class Failing(Contender):
+    radius, volumes = np.zeros(3), 1.0
+
+    def solve(self, u0):
+        raise NonFiniteSolution("it blew up\nas it should")
+
+
+def test_rows_of_trials():
+    good = next(one_step_trials(LINE, OPEN, **GRID))
+    bad = Trial("KPSE", "none", "ours", Failing, points=3.0)
+    slower = replace(good, prepare=partial(Lattice, good.prepare.args[0]))
+    rows = run_trials(LINE, [good, bad, slower], rounds=2, repeats=3, seconds=1.0)
+    assert [row["failure"] for row in rows] == ["", "it blew up", ""]
+    assert "solve_time" not in rows[1]
+    for row in (rows[0], rows[2]):
+        assert row["setups"] == 3
+        assert row["solves"] == 7
+        assert row["solve_time_median"] >= row["solve_time"] > 0.0
+        assert row["error"] == rows[0]["error"]
+        assert row["particles"] == 57
+
+
+def test_trials_off_the_front_are_timed_once():
+    """A narrow lattice has a larger error, and with a hundred times the particles it is slower, too."""
+    wide = one_step_trials(LINE, OPEN, [0.2], [5.0], 1e5)
+    narrow = one_step_trials(LINE, OPEN, [0.002], [2.5], 1e5)
+    rows = run_trials(LINE, [*wide, *narrow], rounds=2, repeats=2, seconds=1.0)
+    assert [row["setups"] for row in rows] == [3, 1]
+
+
+# --- the reference problem ------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def data():
+    return reference(
+        repeats=2, truncation=4.0, spacing=0.1, dt=5e-3, green_dt=0.05, stepping=["KPSE"],
+        naive=["KPSE"], naive_steps=2, memory=False, measured_plans=False,
+    )  # fmt: skip
+
+
+def test_every_scheme_is_there(data):
+    runs = list(zip(data["scheme"].values, data["order"].values, strict=True))
+    one_pass = [(scheme, order) for scheme in ("DD", "FPSE", "KPSE") for order in (2, 4)]
+    assert runs == [*one_pass, ("GPSE", 2)]
+
+
+def test_ratios_follow_from_the_times(data):
+    pairs = data["operator_applications"] * data["fastest_pair_time"]
+    assert data["floor_ratio"].values == pytest.approx((data["solve_time"] / pairs).values)
+    assert (data["own_ratio"] <= data["floor_ratio"]).all()
+    assert (data["transform_length"] == transform_length(2 * int(data["particles"][0]) - 1)).all()
+    for name in ("setup_time", "single_pair_time", "cosine_pair_time"):
+        assert (data[name] > 0.0).all(), name
+
+
+def test_stepping_and_naive_steps_are_those_of_the_schemes_asked_for(data):
+    asked = (data["scheme"] == "KPSE") & (data["order"] == 2)
+    for name in ("stepping_time", "naive_step_time", "naive_over_series", "stepping_over_series"):
+        assert (np.isfinite(data[name]) == asked).all(), name
+    run = data.isel(run=int(np.flatnonzero(asked)[0]))
+    assert run["stepping_applications"] == 2 * run["steps"] == 400
+    assert run["naive_measured_steps"] == 2
+    assert run["naive_time"] == pytest.approx(float(run["naive_step_time"] * run["steps"]))
+    # Series and stepping are one polynomial of A: 400 products, each with a rounding error of some ulp.
+    assert run["stepping_deviation"] < 400 * 4 * np.finfo(float).eps
+
+
+@pytest.mark.parametrize("length", [64, 250])
+def test_a_transform_pair_can_be_repeated(length):
+    for pair in transform_pairs(length, measured_plans=True).values():
+        pair()
+        pair()
