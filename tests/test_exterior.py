@@ -146,7 +146,8 @@ def test_a_table_and_a_function_give_the_same_far_field(terms):
     table = weight(np.arange(8.0 * n))
     by_table = tabulated_far_field(table, n, alpha, [1.0], terms)
     assert np.array_equal(by_table.depth, by_function.depth)
-    # The trapezoidal end at M leaves w' / 12 there: (1+alpha+q) / (12 M^2) of a sum that is (n / M)^q of the first term.
+    # The trapezoidal end at M leaves a twelfth of the summand's slope there: (1+alpha+q) / (12 M^2) of a sum that is
+    # (n / M)^q of the first term.
     room = 5.0 / (12.0 * (8.0 * n) ** 2) * 8.0**-alpha * np.abs(by_function.right).max()
     assert np.abs(by_table.right - by_function.right).max() <= 10.0 * room
 
@@ -167,9 +168,7 @@ def test_more_terms_of_the_exterior_leave_less_error(scheme):
 @pytest.mark.parametrize(("scheme", "order"), [("DD", 4), ("FPSE", 2), ("KPSE", 12), ("GPSE", 2)])
 def test_the_terms_of_the_exterior_leave_the_operator_dissipative(scheme, order, terms):
     """No eigenvalue above nil, whatever the terms: the series and the steps stay stable."""
-    setting = Setting(
-        n=40, spacing=0.4, alpha=1.5, order=order, exterior="open", far_terms=terms
-    )
+    setting = Setting(n=40, spacing=0.4, alpha=1.5, order=order, exterior="open", far_terms=terms)
     eigenvalues = np.linalg.eigvals(dense_matrix(SCHEMES[scheme].operator(setting)))
     low, high = (setting.rate * edge for edge in symbol_range(scheme, 0.5, order))
     room = 1e-6 * (high - low)

@@ -21,9 +21,7 @@ KINDS = [("DD", 2), ("DD", 12), ("FPSE", 4), ("FPSE", 8), ("KPSE", 2), ("KPSE", 
 def test_weights_of_the_stable_law_are_its_density_on_a_fine_lattice(alpha):
     """For tau = h^-alpha, e_m / h is the fundamental solution at t = 1 but for what exp(-k^alpha) is at pi / h."""
     h = 0.05
-    e = propagator_weights(
-        lambda theta: np.exp(-((theta / h) ** alpha)), alpha, h**-alpha, 3000
-    )
+    e = propagator_weights(lambda theta: np.exp(-((theta / h) ** alpha)), alpha, h**-alpha, 3000)
     exact = h * fp.green(h * np.arange(3000), 1.0, alpha)
     # Images of the circle from the fourth term of the expansion on.
     assert np.abs(e - exact).max() <= 1e-13 * exact[0]
@@ -134,7 +132,9 @@ def test_a_prepared_case_as_a_matrix():
 
 def test_strengths_of_another_lattice_are_refused():
     ready = fp.prepare(fp.Case(**WIDE, scheme="KPSE", spacing=0.4))
-    with pytest.raises(InvalidInput, match=r"initial = 'array of shape \(3,\)'.* of shape \(225,\)"):
+    with pytest.raises(
+        InvalidInput, match=r"initial = 'array of shape \(3,\)'.* of shape \(225,\)"
+    ):
         ready.solve(np.ones(3))
 
 

@@ -6,7 +6,7 @@ Beyond the half-width D the solution falls like the fundamental solution, whose 
     u_j = sum_k a_k (n / |j|)^(1 + k alpha),   |j| > n,
 
 that meet the strengths at as many particles, n - p = n, 3 n / 4, n / 2 (and likewise on the left). A sum over
-particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p: with one term, u_j = u_n (n / |j|)^(1+alpha),
+particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p. With one term these are
 
     right_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j},   left_i = parity * right_{-i},
 

@@ -43,7 +43,7 @@ class Operator(Protocol):
 
 @dataclass(frozen=True)
 class FarField:
-    """The sum over the exterior, sum_p (u_{n-p} right_i^p + u_{-n+p} left_i^p): a few strengths near the ends, extended.
+    """The sum over the exterior, sum_p (u_{n-p} right_i^p + u_{-n+p} left_i^p): some strengths near the ends, extended.
 
     A truncated problem has no far field: its operators take None instead.
 

@@ -6,7 +6,8 @@ values; a block stands for the Cartesian product. Cases that several scenes need
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import inspect
+from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from typing import Any, Union
 
@@ -120,7 +121,7 @@ def read_config(config: Mapping[str, Any]) -> StudyConfig:
     InvalidInput
         Naming the key, the value, what is allowed and what to do.
     """
-    from fracparticles.benchmarks import BENCHMARKS
+    from fracparticles.benchmarks import BENCHMARKS, benchmark
     from fracparticles.figures import FIGURES
     from fracparticles.studies import STUDIES
 
@@ -128,8 +129,9 @@ def read_config(config: Mapping[str, Any]) -> StudyConfig:
         study = StudyConfig(**config)
     except ValidationError as error:
         raise _complaint(error) from None
-    for name in study.benchmarks:
+    for name, parameters in study.benchmarks.items():
         _check_name(f"benchmarks.{name}", name, BENCHMARKS)
+        _check_parameters(f"benchmarks.{name}", benchmark(name), parameters)
     for name, scene in study.scenes.items():
         _check_name(f"scenes.{name}.study", scene.study, STUDIES)
         if scene.figure is not None:
@@ -254,6 +256,21 @@ def _seconds(case: Case) -> float:
 def _check_name(field: str, value: str, allowed: Iterable[str]) -> None:
     if value not in allowed:
         raise InvalidInput(field, value, f"one of {', '.join(allowed)}", "Choose one of these.")
+
+
+def _check_parameters(
+    field: str, function: Callable[..., Any], parameters: Mapping[str, Any]
+) -> None:
+    signature = inspect.signature(function)
+    try:
+        signature.bind(**parameters)
+    except TypeError as error:
+        raise InvalidInput(
+            field,
+            ", ".join(parameters),
+            f"the parameters {', '.join(signature.parameters)}",
+            f"Mend the block: {error}.",
+        ) from None
 
 
 def _complaint(error: ValidationError) -> InvalidInput:

@@ -1,7 +1,7 @@
 """A whole run as one lattice sum, where the Fourier symbol of the operator is known.
 
 On the infinite lattice an operator with the symbol A(theta) is a Toeplitz matrix, and so is any function of it. With
-tau = D t / h^alpha, the symbol in units of D / h^alpha and f(theta) = exp(tau A(theta)), or what n time steps make of it,
+tau = D t / h^alpha, the symbol in units of D / h^alpha and f = exp(tau A), or what n time steps make of it,
 
     u_i(t) = sum_j e_{i-j} u_j(0),    e_m = (1 / 2 pi) int_{-pi}^{pi} f(theta) e^(i m theta) dtheta.
 

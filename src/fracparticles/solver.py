@@ -227,7 +227,6 @@ class Prepared:
         except NonFiniteSolution as error:
             raise _named(self.case, error) from None
 
-
     def as_matrix(self) -> np.ndarray:
         """Return the whole run as one matrix, shape (N^dim, N^dim): u(t_final) = M u(t_initial).
 
@@ -273,7 +272,9 @@ def prepare(case: Case, operator: Operator | None = None) -> Prepared:
         applications = steps * polynomial.stages
         if applications == 1:
             return Prepared(case, operator, 1, partial(euler_step, operator, dt))
-        return Prepared(case, operator, applications, partial(step, operator, polynomial, dt, steps))
+        return Prepared(
+            case, operator, applications, partial(step, operator, polynomial, dt, steps)
+        )
     low, high = spectral_interval(case, operator)
     try:
         if case.method == "exponential":

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fracparticles.peers.plane import PlaneSolver
 
 __all__ = [
-    "Lattice",
+    "lattice",
     "matrix_trials",
     "naive_trials",
     "one_step_trials",
@@ -38,68 +38,46 @@ __all__ = [
 _EXACT_STEPS = 1e-9  # relative: a step that is to be one of n equal ones
 
 
-class Lattice(Contender):
-    """A case whose particles stay on their lattice."""
-
-    def __init__(self, case: Case) -> None:
-        ready = prepare(case)
-        self.radius = np.abs(case.x) if case.dim == 1 else case.radius
-        self.volumes = case.particle_spacing**case.dim
-        self.applications = ready.operator_applications
-        self.solve = ready.solve  # type: ignore[method-assign]
+# --- the contenders -------------------------------------------------------------------------------
 
 
-class _Matrix(Contender):
-    """Another contender whose whole run is made one matrix: what its set-up does is do all unit vectors."""
-
-    def __init__(self, make: Callable[[], Contender]) -> None:
-        contender = make()
-        self.radius, self.volumes = contender.radius, contender.volumes
-        self.applications = 1
-        units = np.eye(self.radius.size).reshape(-1, *self.radius.shape)
-        columns = [contender.solve(unit).reshape(-1) for unit in units]
-        self._matrix = np.ascontiguousarray(np.array(columns).T)
-        if self.radius.ndim == 1:
-            self.solve = self._matrix.dot  # type: ignore[method-assign]
-
-    def solve(self, u0: np.ndarray) -> np.ndarray:
-        return (self._matrix @ u0.reshape(-1)).reshape(u0.shape)
+def lattice(case: Case) -> Contender:
+    """Return a case whose particles stay on their lattice."""
+    ready = prepare(case)
+    return Contender(*_points(case), ready.solve, ready.operator_applications)
 
 
-class _Naive(Contender):
-    """The papers' way: a few of the time steps, sums over all pairs. The solution is that of the same steps by FFT."""
-
-    def __init__(self, case: Case, steps: int) -> None:
-        fields = case.model_dump(exclude_none=True, exclude={"truncation"})
-        few = {
-            "half_width": case.domain,  # C would follow from the final time
-            "t_final": case.t_initial + steps * case.time_step,
-            "summation": "naive",
-            "evaluation": "stepping",
-        }
-        self._twin, self._ready = case, prepare(Case(**{**fields, **few}))
-        self.radius = np.abs(case.x) if case.dim == 1 else case.radius
-        self.volumes = case.particle_spacing**case.dim
-        self.applications = self._ready.operator_applications // steps * case.steps
-        self.scale = case.steps / steps
-
-    def solve(self, u0: np.ndarray) -> np.ndarray:
-        return self._ready.solve(u0)
-
-    def error(self, problem: Problem, u: np.ndarray) -> float:
-        return problem.error(self.radius, self.volumes, compute(self._twin).u)
+def _naive(case: Case, steps: int) -> Contender:
+    """The papers' way: a few of the time steps, sums over all pairs. The solution is that of all steps by FFT."""
+    fields = case.model_dump(exclude_none=True, exclude={"truncation"})
+    few = {
+        "half_width": case.domain,  # C would follow from the final time
+        "t_final": case.t_initial + steps * case.time_step,
+        "summation": "naive",
+        "evaluation": "stepping",
+    }
+    ready = prepare(Case(**{**fields, **few}))
+    radius, volume = _points(case)
+    problem = Problem(case.beta, case.dim, case.t_initial, case.t_final)
+    return Contender(
+        radius,
+        volume,
+        ready.solve,
+        applications=ready.operator_applications // steps * case.steps,
+        scale=case.steps / steps,
+        judge=lambda _: problem.error(radius, volume, compute(case).u),
+    )
 
 
-class _Particles(Contender):
+def _points(case: Case) -> tuple[np.ndarray, float]:
+    radius = np.abs(case.x) if case.dim == 1 else case.radius
+    return radius, case.particle_spacing**case.dim
+
+
+def _particles(case: Case) -> Contender:
     """DVM; its solution is the field (7) at the places where the particles began."""
 
-    def __init__(self, case: Case) -> None:
-        self._case = case
-        self.radius, self.volumes = np.abs(case.x), case.particle_spacing
-        self.applications = 2 * case.steps
-
-    def solve(self, u0: np.ndarray) -> np.ndarray:
-        case = self._case
+    def solve(u0: np.ndarray) -> np.ndarray:
         run = dvm.run(
             case.x,
             u0,
@@ -113,65 +91,68 @@ class _Particles(Contender):
         )
         return run.field(case.x)
 
+    return Contender(*_points(case), solve, applications=2 * case.steps)
 
-class _Walk(Contender):
+
+def _walk(problem: Problem, walkers: int, cells: int) -> Contender:
     """Walkers, counted in cells; each cell is compared with its exact mass."""
+    half, alpha = problem.error_radius, problem.alpha
+    masses = cell_masses(np.linspace(-half, half, cells + 1), problem.t_final, alpha)
+    generator = np.random.default_rng(1)
 
-    def __init__(self, problem: Problem, walkers: int, cells: int) -> None:
-        half = problem.error_radius
-        self._problem, self._cells = problem, cells
-        self.radius, self.volumes = np.empty(walkers), 2.0 * half / cells
-        self._masses = cell_masses(
-            np.linspace(-half, half, cells + 1), problem.t_final, problem.alpha
-        )
-        self._generator = np.random.default_rng(1)
+    def solve(x: np.ndarray) -> np.ndarray:
+        moved = walk(x, alpha, problem.time, generator)
+        return cell_counts(moved, half, cells)[0] / walkers
 
-    def start(self, problem: Problem) -> np.ndarray:
-        origin = np.zeros(self.radius.size)
-        return walk(origin, problem.alpha, problem.t_initial, np.random.default_rng(0))
-
-    def solve(self, u0: np.ndarray) -> np.ndarray:
-        x = walk(u0, self._problem.alpha, self._problem.time, self._generator)
-        return cell_counts(x, self._problem.error_radius, self._cells)[0] / u0.size
-
-    def error(self, problem: Problem, u: np.ndarray) -> float:
-        return float(np.abs(u - self._masses).sum() / self._masses.sum())
+    return Contender(
+        np.empty(walkers),
+        2.0 * half / cells,
+        solve,
+        draw=lambda: walk(np.zeros(walkers), alpha, problem.t_initial, np.random.default_rng(0)),
+        judge=lambda shares: float(np.abs(shares - masses).sum() / masses.sum()),
+    )
 
 
-class _Peer(Contender):
+def _peer(make: Callable[[], Solver]) -> Contender:
     """A method of the literature on the line."""
-
-    def __init__(self, make: Callable[[], Solver]) -> None:
-        solver = make()
-        self.radius, self.volumes = np.abs(solver.x), solver.volumes
-        self.applications = int(getattr(solver, "applications", 1))
-        self.solve = solver.solve  # type: ignore[method-assign]
+    solver = make()
+    applications = int(getattr(solver, "applications", 1))
+    return Contender(np.abs(solver.x), solver.volumes, solver.solve, applications)
 
 
-class _PlanePeer(Contender):
+def _plane_peer(make: Callable[[], PlaneSolver]) -> Contender:
     """A method of the literature in the plane."""
+    solver = make()
+    radius = np.hypot(solver.axis[:, None], solver.axis)
+    return Contender(radius, solver.spacing**2, solver.solve)
 
-    applications = 1
 
-    def __init__(self, make: Callable[[], PlaneSolver]) -> None:
-        solver = make()
-        self.radius = np.hypot(solver.axis[:, None], solver.axis)
-        self.volumes = solver.spacing**2
-        self.solve = solver.solve  # type: ignore[method-assign]
+def _matrix(make: Callable[[], Contender]) -> Contender:
+    """Another contender whose whole run is made one matrix: its set-up solves for all unit vectors."""
+    contender = make()
+    shape = contender.radius.shape
+    units = np.eye(contender.radius.size).reshape(-1, *shape)
+    columns = [contender.solve(unit).reshape(-1) for unit in units]
+    matrix = np.ascontiguousarray(np.array(columns).T)
+
+    def solve(u0: np.ndarray) -> np.ndarray:
+        return (matrix @ u0.reshape(-1)).reshape(shape)
+
+    line = len(shape) == 1
+    return Contender(contender.radius, contender.volumes, matrix.dot if line else solve)
 
 
 # --- the trials -----------------------------------------------------------------------------------
 
 
-def _trial(kind: type[Any], problem: Problem, names: tuple[str, str, str], **fields: Any) -> Trial:
+def _trial(
+    kind: Callable[[Case], Contender],
+    problem: Problem,
+    names: tuple[str, str, str],
+    **fields: Any,
+) -> Trial:
     """Return the trial of a case of the problem."""
-    case = Case(
-        beta=problem.beta,
-        dim=problem.dim,
-        t_initial=problem.t_initial,
-        t_final=problem.t_final,
-        **fields,
-    )
+    case = _case(problem, fields)
     return Trial(
         *names,
         partial(kind, case),
@@ -179,6 +160,16 @@ def _trial(kind: type[Any], problem: Problem, names: tuple[str, str, str], **fie
         spacing=fields["spacing"],
         truncation=fields["truncation"],
         dt=case.time_step or float("nan"),
+    )
+
+
+def _case(problem: Problem, fields: Mapping[str, Any]) -> Case:
+    return Case(
+        beta=problem.beta,
+        dim=problem.dim,
+        t_initial=problem.t_initial,
+        t_final=problem.t_final,
+        **fields,
     )
 
 
@@ -210,7 +201,7 @@ def scheme_trials(
         names = (scheme, f"order {order}, {_exterior(**way)}, {way['evaluation']}", "ours")
         fixed = {"scheme": scheme, "order": order, "integrator": "exponential", **way}
         for grid in _grids(problem, spacings, truncations, most):
-            yield _trial(Lattice, problem, names, **fixed, **grid)
+            yield _trial(lattice, problem, names, **fixed, **grid)
 
 
 def _exterior(exterior: str, far_terms: int | None = None, **_: Any) -> str:
@@ -230,7 +221,7 @@ def one_step_trials(
     how = f", {way['evaluation']}" if "evaluation" in way else ""
     names = ("GPSE", f"one step, {_exterior(**way)}{how}", "ours")
     for grid in _grids(problem, spacings, truncations, most):
-        yield _trial(Lattice, problem, names, scheme="GPSE", dt=problem.time, **way, **grid)
+        yield _trial(lattice, problem, names, scheme="GPSE", dt=problem.time, **way, **grid)
 
 
 def matrix_trials(trials: Iterable[Trial], most: float) -> Iterator[Trial]:
@@ -238,7 +229,7 @@ def matrix_trials(trials: Iterable[Trial], most: float) -> Iterator[Trial]:
     for trial in trials:
         if trial.points <= most:
             variant = f"{trial.variant}, matrix"
-            yield replace(trial, variant=variant, prepare=partial(_Matrix, trial.prepare))
+            yield replace(trial, variant=variant, prepare=partial(_matrix, trial.prepare))
 
 
 def tied_step_trials(
@@ -251,7 +242,7 @@ def tied_step_trials(
     """Yield GPSE as the paper has it, epsilon = 2 h, its steps in one series."""
     names = ("GPSE", f"epsilon = 2 h, {_exterior(**way)}", "ours")
     for grid in _grids(problem, spacings, truncations, most):
-        yield _trial(Lattice, problem, names, scheme="GPSE", overlap=2.0, **way, **grid)
+        yield _trial(lattice, problem, names, scheme="GPSE", overlap=2.0, **way, **grid)
 
 
 def stepped_trials(
@@ -268,13 +259,15 @@ def stepped_trials(
             f"order {fields['order']}, {fields['exterior']}, {integrator} {evaluation}",
             "ours",
         )
-        dt = problem.time / count * (1.0 + _EXACT_STEPS)
-        trial = _trial(
-            Lattice, problem, names, integrator=integrator, evaluation=evaluation, dt=dt, **fields
-        )
-        case = trial.prepare.args[0]  # type: ignore[attr-defined]
+        own = {
+            "integrator": integrator,
+            "evaluation": evaluation,
+            "dt": problem.time / count * (1.0 + _EXACT_STEPS),
+            **fields,
+        }
+        case = _case(problem, own)
         if case.time_step <= case.largest_stable_step:
-            yield trial
+            yield _trial(lattice, problem, names, **own)
 
 
 def particle_trials(
@@ -287,7 +280,7 @@ def particle_trials(
     """Yield DVM with remeshing by M4'."""
     for order, spacing, count in product(orders, spacings, steps):
         yield _trial(
-            _Particles,
+            _particles,
             problem,
             ("DVM", f"order {order}, M4' remeshing", "ours"),
             scheme="DVM",
@@ -315,7 +308,7 @@ def naive_trials(
         names = (scheme, f"order {order}, naive sums, RK2 steps", "papers")
         for grid in _grids(problem, spacings, truncations, most):
             yield _trial(
-                partial(_Naive, steps=steps), problem, names,
+                partial(_naive, steps=steps), problem, names,
                 scheme=scheme, order=order, dt=dt, **grid,
             )  # fmt: skip
 
@@ -323,7 +316,7 @@ def naive_trials(
 def walk_trials(problem: Problem, walkers: Sequence[int], cells: int) -> Iterator[Trial]:
     """Yield the random walk."""
     for count in walkers:
-        make = partial(_Walk, problem, int(count), cells)
+        make = partial(_walk, problem, int(count), cells)
         yield Trial("random walk", "exact increments", "papers", make, points=count)
 
 
@@ -361,7 +354,7 @@ def peer_trials(
                 name,
                 f"{exterior}, {propagation}",
                 group,
-                partial(_Peer, prepare_peer),
+                partial(_peer, prepare_peer),
                 points=2.0 * grid["half_width"] / grid["spacing"] + 1.0,
                 spacing=grid["spacing"],
                 truncation=truncation,
@@ -389,7 +382,7 @@ def plane_peer_trials(
                 name,
                 "periodic, exact" if limit else "truncated, convolution",
                 "limit" if limit else "peers",
-                partial(_PlanePeer, prepare_peer),
+                partial(_plane_peer, prepare_peer),
                 points=(2.0 * problem.half_width(grid["truncation"]) / grid["spacing"] + 1.0) ** 2,
                 **grid,
             )

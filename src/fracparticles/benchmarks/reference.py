@@ -172,7 +172,8 @@ def _time_series(case: Case, repeats: int, pairs: dict[str, Action]) -> dict[str
     u0, _ = initial_strengths(case)
     ready = prepare(case)
     ready.solve(u0)  # compiles what is not compiled yet
-    setups, solves = [], []
+    setups: list[float] = []
+    solves: list[float] = []
     pair_times: dict[str, list[float]] = {name: [] for name in pairs}
     for _ in range(repeats):
         forget_tables()

@@ -18,6 +18,7 @@ _SLACK = 2.0  # a trial is timed again if no other one of its method is so much 
 _LONG = 0.25  # seconds; what takes longer is timed once
 
 
+@dataclass(frozen=True)
 class Contender:
     """A method made ready for one grid: all that does not depend on the initial data is done.
 
@@ -27,27 +28,34 @@ class Contender:
         |x| of its points.
     volumes : array or float
         What each of them stands for.
+    solve : callable
+        From the initial data to the solution at the final time.
     applications : int
-        How often a solve applies the operator, or evaluates its velocity; 0 where that has no meaning.
+        How often a solve applies the operator, or evaluates its velocity.
     scale : float
         The time of a run over that of `solve`: more than 1 where only some of the time steps are taken.
+    draw : callable, optional
+        The initial data of a method that does not start from the fundamental solution at its points.
+    judge : callable, optional
+        The error of what `solve` returns, where that is not the solution at the points at the final time.
     """
 
     radius: np.ndarray
     volumes: np.ndarray | float
-    applications: int = 0
+    solve: Callable[[Any], Any]
+    applications: int = 1
     scale: float = 1.0
+    draw: Callable[[], Any] | None = None
+    judge: Callable[[Any], float] | None = None
 
     def start(self, problem: Problem) -> Any:
         """Return the initial data."""
-        return problem.initial(self.radius)
-
-    def solve(self, u0: Any) -> Any:
-        """Return the solution at the final time."""
-        raise NotImplementedError
+        return problem.initial(self.radius) if self.draw is None else self.draw()
 
     def error(self, problem: Problem, u: Any) -> float:
         """Return the relative error of what `solve` returned."""
+        if self.judge is not None:
+            return self.judge(u)
         return problem.error(self.radius, self.volumes, u)
 
 

@@ -47,11 +47,12 @@ def work_precision(
         See `line_trials`.
     """
     one_core()
+    problems = [Problem(one) for one in beta]
+    # All of them first: what is wrong with them shows before any time is spent.
+    trials = [list(line_trials(problem, **grids)) for problem in problems]
     rows: list[dict[str, Any]] = []
-    for one in beta:
-        problem = Problem(one)
-        trials = list(line_trials(problem, **grids))
-        rows += run_trials(problem, trials, rounds, repeats, seconds)
+    for problem, one in zip(problems, trials, strict=True):
+        rows += run_trials(problem, one, rounds, repeats, seconds)
     title = "Error against run time on the line"
     facts = {"rounds": rounds, "repeats": repeats, "t_initial": 0.5, "t_final": 1.5}
     return timings_dataset("trial", rows, LABELS, VARIABLES, title, facts)

@@ -17,9 +17,7 @@ _SHADES = mpl.colormaps["viridis_r"]
 _STYLES = ("-", "--", ":")
 
 
-def kernel_orders(
-    series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]
-) -> Figure:
+def kernel_orders(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
     """Draw a panel a scheme: a shade an order, a line style an overlap, and GPSE in one step as the floor."""
     schemes = [scheme for scheme in ("DD", "FPSE", "KPSE") if scheme in set(series["scheme"])]
     figure, axes = axes_row(len(schemes), height=4.6, sharey=True)

@@ -71,8 +71,8 @@ def note_below(figure: Figure, note: str) -> None:
         figure.supxlabel(note, fontsize=7, color="0.4")
         return
     legend = figure.legends[-1]
-    legend.set_title(note, prop={"size": 7})
-    legend.get_title().set_color("0.4")
+    legend.set_title(note)
+    legend.get_title().set(fontsize=7, color="0.4")
 
 
 def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = False) -> None:

@@ -27,17 +27,17 @@ _PEERS = {
 }
 _OURS = ("DD", "FPSE", "KPSE", "GPSE", "DVM")
 _PAPERS = ("DD", "FPSE", "KPSE", "FD")
-_FRONT = {"color": "0.82", "linewidth": 7.0, "solid_capstyle": "round", "zorder": 0}
+_FRONT: dict[str, Any] = {"color": "0.82", "linewidth": 7.0, "solid_capstyle": "round", "zorder": 0}
 _FLOOR = 1e-13
 _TIMES = {"solve_time": "time of a solve / s", "total_time": "time of set-up and solve / s"}
 
 
-def work_precision(
-    series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]
-) -> Figure:
+def work_precision(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
     """Draw the front of each method and of all, a column a beta: above the solve alone, below with its set-up."""
     betas = sorted(series["beta"].unique())
-    figure = Figure(figsize=(4.4 * len(betas) if len(betas) > 1 else 7.4, 8.6), layout="constrained")
+    figure = Figure(
+        figsize=(4.4 * len(betas) if len(betas) > 1 else 7.4, 8.6), layout="constrained"
+    )
     grid = figure.subplots(2, len(betas), sharey=True, squeeze=False)
     for column, beta in enumerate(betas):
         part = series[series["beta"] == beta]

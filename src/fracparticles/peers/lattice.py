@@ -137,7 +137,11 @@ def prepare_lattice(
     tau = time * rate
     one_sum = propagator(lambda theta: np.exp(tau * symbol(theta, alpha)), alpha, tau, n, exterior)
     return LatticeSolver(
-        x, volumes, lambda: tabulated_operator(row(), n, alpha, [amplitude], exterior), None, one_sum
+        x,
+        volumes,
+        lambda: tabulated_operator(row(), n, alpha, [amplitude], exterior),
+        None,
+        one_sum,
     )
 
 

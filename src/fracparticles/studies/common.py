@@ -47,7 +47,7 @@ class Inputs:
     tables : mapping
         Tables of other scenes that this one reads, by scene.
     benchmarks : mapping
-        The data of benchmarks that it reads, one row a measurement, by benchmark; what they were measured on in `attrs`.
+        The data of benchmarks that it reads, one row a measurement, by benchmark; the machine is in `attrs`.
     """
 
     scene: str

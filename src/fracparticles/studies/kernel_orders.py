@@ -1,8 +1,8 @@
 """Kernels of order 2 to 12: the order in h, and the floor where it ends.
 
 With the exterior in three terms and exact in time, the error at a given order falls like h^order until one of three
-things ends it: the model of the exterior, the alias of the lattice, or rounding. GPSE in one step has no smoothing error
-and shows what the first and the last leave.
+things ends it: the model of the exterior, the alias of the lattice, or rounding. GPSE in one step has no smoothing
+error and shows what the first and the last leave.
 """
 
 from __future__ import annotations

@@ -100,7 +100,10 @@ def _contest(trials: pd.DataFrame, beta: float, error: float) -> dict[str, Any]:
     solve, whole = {}, {}
     for group in (_OURS, _PEERS, _PAPERS, _LIMIT):
         part = trials[trials["group"] == group]
-        solve[group], whole[group] = best(part, error, "solve_time"), best(part, error, "total_time")
+        solve[group], whole[group] = (
+            best(part, error, "solve_time"),
+            best(part, error, "total_time"),
+        )
     for group, name in ((_OURS, "ours"), (_PEERS, "peer")):
         row |= _described(name, solve[group])
     row["ours / peer"] = _ratio(solve[_OURS], solve[_PEERS], "solve_time")
