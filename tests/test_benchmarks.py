@@ -10,6 +10,7 @@ import pytest
 import fracparticles as fp
 from fracparticles.benchmarks import BENCHMARKS, benchmark, clock
 from fracparticles.benchmarks.contenders import (
+    graded_trials,
     matrix_trials,
     naive_trials,
     one_step_trials,
@@ -127,6 +128,7 @@ def test_every_trial_solves_the_problem():
         *one_step_trials(LINE, {**OPEN, "evaluation": "convolution"}, **grid),
         *tied_step_trials(LINE, OPEN, **grid),
         *peer_trials(LINE, **{**PEER_GRID, **grid}),
+        *graded_trials(LINE, [81], [80.0], [3.0]),
         *particle_trials(LINE, [4], 8.0, [0.25], [100]),
         *naive_trials(LINE, ["KPSE", "FD"], [2, 4], 1e-3, 1, **grid),
     ]
@@ -191,6 +193,15 @@ def test_peers_of_the_plane_solve_the_problem():
         assert solved(trial, PLANE)[2] < 0.02, trial
 
 
+def test_nothing_is_judged_on_less_than_the_whole_norm():
+    """Neither a lattice nor graded particles that end within |x| <= 5 R_alpha."""
+    half = LINE.error_radius / LINE.half_width(1.0)
+    grid = {"spacings": [0.1], "truncations": [0.9 * half, 1.1 * half], "most": 1000}
+    assert [trial.truncation for trial in one_step_trials(LINE, OPEN, **grid)] == [1.1 * half]
+    reaches = [0.9 * LINE.error_radius, 1.1 * LINE.error_radius]
+    assert len(list(graded_trials(LINE, [21], reaches, [1.0]))) == 2  # the two forms
+
+
 def test_lattices_too_small_or_too_large_are_left_out():
     grid = {"spacings": [0.1, 0.4, 4.0], "truncations": [5.0], "most": 100}
     assert [trial.spacing for trial in one_step_trials(LINE, OPEN, **grid)] == [0.4]
@@ -222,8 +233,8 @@ def test_rows_of_trials():
 
 def test_trials_off_the_front_are_timed_once():
     """A narrow lattice has a larger error, and with a hundred times the particles it is slower, too."""
-    wide = one_step_trials(LINE, OPEN, [0.2], [5.0], 1e5)
-    narrow = one_step_trials(LINE, OPEN, [0.002], [2.5], 1e5)
+    wide = one_step_trials(LINE, OPEN, [0.2], [7.0], 1e5)
+    narrow = one_step_trials(LINE, OPEN, [0.002], [4.0], 1e5)
     rows = run_trials(LINE, [*wide, *narrow], rounds=2, repeats=2, seconds=1.0)
     assert [row["setups"] for row in rows] == [3, 1]
 

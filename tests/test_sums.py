@@ -35,6 +35,22 @@ def bound(weights, u):
     )
 
 
+@pytest.mark.parametrize(("parity", "pad"), [(1, 0), (-1, 7)])
+def test_a_sum_so_long_that_it_shares_its_memory(parity, pad):
+    """Three particles on a long lattice: the sum is three shifted weights."""
+    size = 600_001
+    m = np.arange(size + pad)
+    w = 1.0 / (1.0 + m) ** 2 * (1.0 if parity > 0 else m > 0)
+    convolve = FourierConvolution(w, size, parity=parity, pad=pad)
+    u, expected = np.zeros(size), np.zeros(size + 2 * pad)
+    i = np.arange(-pad, size + pad)
+    for place, strength in ((0, 1.0), (1234, -2.0), (size - 1, 3.0)):
+        u[place] = strength
+        expected += strength * np.where(i >= place, 1.0, parity) * w[np.abs(i - place)]
+    # A circular convolution by transforms of length L: some log2(L) ulp of the largest sum.
+    assert np.abs(convolve(u) - expected).max() <= 21 * 3.0 * np.finfo(float).eps
+
+
 @pytest.mark.parametrize("summation", SUMMATIONS)
 @pytest.mark.parametrize("parity", [1, -1])
 @given(size=st.integers(1, 40), pad=st.integers(0, 9), seed=st.integers(0, 2**32 - 1))

@@ -155,14 +155,18 @@ def test_goals_are_met_or_not():
     goals = {"error 1e-8": 5.0, "error 1e-9": 1e-3, "set-up": 30.0, "printed lattice": 0.3}
     goals |= {"naive": 1e4, "front": 1.2}
     errors = [1e-4, 1e-9]
-    given = inputs({"goals": goals, "errors": errors}, work_precision=frame(), reference=reference())
+    given = inputs(
+        {"goals": goals, "errors": errors}, work_precision=frame(), reference=reference()
+    )
     table = run_time_goals(given).table
     assert list(table["measured"]) == pytest.approx([4e-3, 4e-3, 2.0, 2.0, 2.0, 0.1, 2e4, 1.5])
     assert list(table["met"]) == ["yes", "no", "yes", "no", "yes", "yes", "yes", "no"]
 
 
 def test_a_goal_that_nobody_reaches_is_not_met():
-    goals = {name: 1e9 for name in ("error 1e-8", "error 1e-9", "set-up", "printed lattice", "front")}
+    goals = {
+        name: 1e9 for name in ("error 1e-8", "error 1e-9", "set-up", "printed lattice", "front")
+    }
     peers_only = frame()[lambda data: data["group"] == "peers"]
     peers_only.attrs = frame().attrs
     given = inputs(

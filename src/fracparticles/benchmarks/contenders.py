@@ -13,6 +13,7 @@ import numpy as np
 from fracparticles.benchmarks.problem import Problem
 from fracparticles.benchmarks.trial import Contender, Trial
 from fracparticles.case import Case
+from fracparticles.graded import FORMS, graded_particles, green_step
 from fracparticles.peers import PEERS, Solver
 from fracparticles.random_walk import cell_counts, cell_masses, walk
 from fracparticles.schemes import dvm
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from fracparticles.peers.plane import PlaneSolver
 
 __all__ = [
+    "graded_trials",
     "lattice",
     "matrix_trials",
     "naive_trials",
@@ -92,6 +94,13 @@ def _particles(case: Case) -> Contender:
         return run.field(case.x)
 
     return Contender(*_points(case), solve, applications=2 * case.steps)
+
+
+def _graded(problem: Problem, form: str, count: int, reach: float, scale: float) -> Contender:
+    """One Green step on graded particles."""
+    x, volumes = graded_particles(count, reach, scale)
+    matrix = green_step(x, volumes, problem.alpha, problem.time, form)
+    return Contender(np.abs(x), volumes, matrix.dot)
 
 
 def _walk(problem: Problem, walkers: int, cells: int) -> Contender:
@@ -174,9 +183,11 @@ def _case(problem: Problem, fields: Mapping[str, Any]) -> Case:
 
 
 def _fits(problem: Problem, truncation: float, spacing: float, most: float) -> bool:
-    """Whether a lattice has at least 8 intervals on each side and no more particles than that."""
-    half = problem.half_width(truncation) / spacing
-    return half >= 8.0 and (2.0 * half + 1.0) ** problem.dim <= most
+    """Whether a lattice reaches over all that is judged, has 8 intervals on each side and not too many particles."""
+    width = problem.half_width(truncation)
+    half = width / spacing
+    covers = width >= problem.error_radius
+    return covers and half >= 8.0 and (2.0 * half + 1.0) ** problem.dim <= most
 
 
 def _grids(
@@ -222,6 +233,16 @@ def one_step_trials(
     names = ("GPSE", f"one step, {_exterior(**way)}{how}", "ours")
     for grid in _grids(problem, spacings, truncations, most):
         yield _trial(lattice, problem, names, scheme="GPSE", dt=problem.time, **way, **grid)
+
+
+def graded_trials(
+    problem: Problem, counts: Sequence[int], reaches: Sequence[float], scales: Sequence[float]
+) -> Iterator[Trial]:
+    """Yield GPSE in one step on graded particles, in both forms, where they reach over all that is judged."""
+    for form, count, reach, scale in product(FORMS, counts, reaches, scales):
+        if reach >= problem.error_radius:
+            make = partial(_graded, problem, form, count, reach, scale)
+            yield Trial("GPSE", f"one step, graded particles, {form}", "ours", make, points=count)
 
 
 def matrix_trials(trials: Iterable[Trial], most: float) -> Iterator[Trial]:

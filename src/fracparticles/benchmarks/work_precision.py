@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fracparticles.benchmarks.clock import one_core, timings_dataset
 from fracparticles.benchmarks.contenders import (
+    graded_trials,
     matrix_trials,
     naive_trials,
     one_step_trials,
@@ -63,6 +64,7 @@ def line_trials(
     at_once: dict[str, Any],
     series: dict[str, Any],
     truncated: dict[str, Any],
+    graded: dict[str, Any],
     stepped: dict[str, Any],
     particles: dict[str, Any],
     naive: dict[str, Any],
@@ -81,8 +83,9 @@ def line_trials(
         Likewise of those by a Chebyshev series, open; GPSE with its step tied to h is among them.
     truncated : dict
         Likewise of truncated lattices, by a series.
-    stepped, particles, naive, walkers, peers : dict
-        Arguments of `stepped_trials`, `particle_trials`, `naive_trials`, `walk_trials` and `peer_trials`.
+    graded, stepped, particles, naive, walkers, peers : dict
+        Arguments of `graded_trials`, `stepped_trials`, `particle_trials`, `naive_trials`, `walk_trials` and
+        `peer_trials`.
     matrices : float
         GPSE in one step and the peers of up to so many points also run as one matrix.
     """
@@ -99,6 +102,7 @@ def line_trials(
         yield from _scheme_and_tied_trials(problem, schemes, way, **series)
     yield from scheme_trials(problem, _SCHEMES, way=summed, **at_once)
     yield from _scheme_and_tied_trials(problem, _SCHEMES, {"exterior": "truncated"}, **truncated)
+    yield from graded_trials(problem, **graded)
     yield from stepped_trials(problem, **stepped)
     yield from particle_trials(problem, **particles)
     yield from naive_trials(problem, **naive)

@@ -21,7 +21,8 @@ def which_method(inputs: Inputs) -> Result:
     """Hold, for each situation, the method to take against the best peer and against the papers' way.
 
     Parameters of the scene: `situations`, a list of mappings with `situation` and `take`, words; `benchmark`, `beta`
-    and `error`; `time`, "solve_time" or "total_time"; and `family` and `variant`, which the method's must contain.
+    and `error`; `time`, "solve_time" or "total_time"; and `family` and `variant`, which the method's must contain; and
+    `against`, which the rival's name must contain, for a situation that not all of them can serve.
     """
     rows = [_contest(inputs, **situation) for situation in inputs.parameters["situations"]]
     return Result(pd.DataFrame(rows))
@@ -37,6 +38,7 @@ def _contest(
     time: str,
     family: str,
     variant: str,
+    against: str = "",
 ) -> dict[str, Any]:
     trials = trials_of(inputs, benchmark)
     trials = trials[trials["beta"] == beta]
@@ -46,7 +48,9 @@ def _contest(
         error,
         time,
     )
-    peer = best(trials[trials["group"].isin(["peers", "limit"])], error, time)
+    names = trials["family"] + ", " + trials["variant"]
+    rivals = trials["group"].isin(["peers", "limit"]) & names.str.contains(against, regex=False)
+    peer = best(trials[rivals], error, time)
     papers = best(trials[trials["group"] == "papers"], error, time)
     ratio = _time(taken, time) / _time(peer, time)
     return {
@@ -57,7 +61,7 @@ def _contest(
         "timed": "set-up and solve" if time == "total_time" else "solve",
         "N": np.nan if taken is None else taken["particles"],
         "time / ms": 1e3 * _time(taken, time),
-        "best peer or limit": "none gets there" if peer is None else peer["family"],
+        "best peer or limit": "none" if peer is None else names[peer.name],
         "its time / ms": 1e3 * _time(peer, time),
         "ours / peer": ratio,
         "ahead": _verdict(taken is not None, peer is not None, ratio),

@@ -1,0 +1,100 @@
+"""One Green step on graded particles: GPSE over the whole time, on particles that stand for unequal volumes.
+
+Eqs. (38)-(41) do not ask for a lattice. With epsilon^alpha = D T, so that one step goes the whole way, and particles
+x_j that stand for the volumes V_j, Eq. (41) is
+
+    u_i(T) = u_i + sum_j V_j (u_j - u_i) E_epsilon(x_i - x_j)                    (exchange)
+
+and what it approximates is u(x, T) = int E_epsilon(x - y) u(y, 0) dy, whose plain sum is
+
+    u_i(T) = sum_j V_j u_j E_epsilon(x_i - x_j).                                 (quadrature)
+
+Particles that are dense in the middle and ever wider apart towards the ends,
+
+    x_j = L sinh(s_j),   V_j = L cosh(s_j) ds,   s_j equally spaced,
+
+reach far with few of them, and need no model of the exterior. The quadrature is the trapezoidal rule in s: its error
+falls faster than any power of ds where the volumes resolve E, about V_j < epsilon. Where they do not, far out, the
+exchange is right to leading order, since particle i keeps what no neighbour takes; it conserves sum V u. A step is a
+product with an N x N matrix: for tens or some hundred of particles, where it is faster than any sum by FFT.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fracparticles.errors import InvalidInput
+from fracparticles.special import green
+from fracparticles.special.arguments import (
+    fractional_order,
+    positive_integer,
+    positive_real,
+    real_array,
+)
+
+__all__ = ["FORMS", "graded_particles", "green_step"]
+
+FORMS = ("exchange", "quadrature")
+
+
+def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the positions x_j = L sinh(s_j) in ascending order, and their volumes; both of shape (count,).
+
+    Parameters
+    ----------
+    count : int
+        N, odd: one particle is at x = 0.
+    reach : float
+        The outermost particles are at -reach and reach.
+    scale : float
+        L: within it the particles are nearly equally spaced.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    count = positive_integer("count", count)
+    if count < 3 or count % 2 == 0:
+        raise InvalidInput("count", count, "an odd number > 1", "Add one particle.")
+    reach, scale = positive_real("reach", reach), positive_real("scale", scale)
+    step = 2.0 * np.arcsinh(reach / scale) / (count - 1)
+    s = (np.arange(count) - count // 2) * step
+    return scale * np.sinh(s), scale * np.cosh(s) * step
+
+
+def green_step(
+    x: np.ndarray, volumes: np.ndarray, alpha: float, time: float, form: str = "exchange"
+) -> np.ndarray:
+    """Return the matrix M of one step, u(T) = M u(0), shape (N, N).
+
+    Parameters
+    ----------
+    x, volumes : array, shape (N,)
+        The particles, anywhere on the line, and what they stand for.
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    time : float
+        D T.
+    form : {"exchange", "quadrature"}
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    if form not in FORMS:
+        raise InvalidInput("form", form, " or ".join(FORMS), "Choose one of these.")
+    alpha, time = fractional_order(alpha), positive_real("time", time)
+    x, volumes = real_array("x", x), real_array("volumes", volumes)
+    if x.ndim != 1 or x.shape != volumes.shape:
+        raise InvalidInput(
+            "volumes",
+            f"an array of shape {volumes.shape}",
+            f"an array of shape {x.shape}, one volume for each particle on the line",
+            "Give a volume for each position.",
+        )
+    matrix = volumes * np.asarray(green(x[:, None] - x, time, alpha))
+    if form == "exchange":
+        matrix[np.diag_indices_from(matrix)] += 1.0 - matrix.sum(axis=1)
+    return matrix

@@ -1,0 +1,99 @@
+"""One Green step on graded particles."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fracparticles as fp
+from fracparticles.benchmarks.problem import Problem
+from fracparticles.errors import InvalidInput
+from fracparticles.graded import graded_particles, green_step
+from fracparticles.solver import prepare
+
+
+def error(beta, count, reach, scale, form):
+    problem = Problem(beta)
+    x, volumes = graded_particles(count, reach, scale)
+    u = green_step(x, volumes, problem.alpha, problem.time, form) @ problem.initial(np.abs(x))
+    return problem.error(np.abs(x), volumes, u)
+
+
+def test_particles_are_symmetric_and_their_volumes_fill_the_line():
+    x, volumes = graded_particles(101, 50.0, 2.0)
+    assert x[50] == 0.0
+    assert np.array_equal(x, -x[::-1])
+    assert x[-1] == pytest.approx(50.0, rel=1e-14)
+    # The trapezoidal rule for the length: half a volume too much at each end, and ds^2 / 12 of the slope there.
+    ds = volumes[50] / 2.0
+    length = volumes.sum() - 0.5 * (volumes[0] + volumes[-1])
+    assert length == pytest.approx(100.0, abs=1.1 * ds**2 / 12.0 * 2.0 * 50.0)
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
+@pytest.mark.parametrize("form", ["exchange", "quadrature"])
+def test_a_matrix_of_unequal_volumes_is_the_sum_over_pairs(alpha, form):
+    rng = np.random.default_rng(3)
+    x, volumes, u = np.sort(rng.normal(size=12)), rng.uniform(0.1, 0.5, 12), rng.normal(size=12)
+    expected = np.empty(12)
+    for i in range(12):
+        kernel = [fp.green(x[i] - x[j], 0.7, alpha) for j in range(12)]
+        if form == "exchange":
+            terms = [volumes[j] * (u[j] - u[i]) * kernel[j] for j in range(12)]
+            expected[i] = u[i] + sum(terms)
+        else:
+            expected[i] = sum(volumes[j] * u[j] * kernel[j] for j in range(12))
+    ours = green_step(x, volumes, alpha, 0.7, form) @ u
+    assert ours == pytest.approx(expected, rel=1e-13, abs=1e-13)
+
+
+def test_on_a_lattice_the_exchange_is_gpse():
+    case = fp.Case(scheme="GPSE", beta=0.5, half_width=8.0, spacing=0.4, dt=1.0)
+    u0 = np.random.default_rng(4).normal(size=case.shape)
+    matrix = green_step(case.x, np.full(case.shape, case.particle_spacing), 1.5, 1.0)
+    assert matrix @ u0 == pytest.approx(prepare(case).solve(u0), rel=1e-12, abs=1e-13)
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.9])
+def test_the_exchange_conserves_and_keeps_constants(alpha):
+    x, volumes = graded_particles(61, 1000.0, 1.0)
+    matrix = green_step(x, volumes, alpha, 1.0)
+    assert matrix @ np.ones(61) == pytest.approx(1.0, abs=1e-13)
+    # The total is sum V u: the largest volume is some hundred, its roundings count.
+    assert volumes @ matrix == pytest.approx(volumes, rel=1e-12)
+
+
+@pytest.mark.parametrize(("beta", "reach", "counts"), [
+    (0.5, 1000.0, (65, 81, 101)),
+    (0.9, 200.0, (41, 51, 65)),
+])  # fmt: skip
+def test_the_quadrature_converges_faster_than_any_power(beta, reach, counts):
+    """The order between two numbers of particles is above eight, and rises."""
+    errors = [error(beta, count, reach, 5.0, "quadrature") for count in counts]
+    orders = np.log(np.divide(errors[:-1], errors[1:])) / np.log(np.divide(counts[1:], counts[:-1]))
+    assert (orders > 8.0).all()
+    assert orders[1] > orders[0]
+
+
+def test_where_the_volumes_are_wide_the_exchange_is_right_to_leading_order():
+    """beta = 0.1: forty particles reach to 1000; by quadrature the far ones are lost."""
+    assert error(0.1, 41, 1000.0, 1.0, "exchange") < 1e-3
+    assert error(0.1, 41, 1000.0, 1.0, "quadrature") > 1e-2
+
+
+@pytest.mark.parametrize(
+    ("call", "field"),
+    [
+        (lambda: graded_particles(10, 5.0, 1.0), "count"),
+        (lambda: graded_particles(1, 5.0, 1.0), "count"),
+        (lambda: graded_particles(11, -5.0, 1.0), "reach"),
+        (lambda: graded_particles(11, 5.0, 0.0), "scale"),
+        (lambda: green_step(np.zeros(3), np.ones(2), 1.5, 1.0), "volumes"),
+        (lambda: green_step(np.zeros(3), np.ones(3), 2.5, 1.0), "alpha"),
+        (lambda: green_step(np.zeros(3), np.ones(3), 1.5, 0.0), "time"),
+        (lambda: green_step(np.zeros(3), np.ones(3), 1.5, 1.0, "other"), "form"),
+    ],
+)
+def test_bad_input_is_refused(call, field):
+    with pytest.raises(InvalidInput, match=f"^{field} = "):
+        call()
