@@ -138,9 +138,11 @@ def test_strengths_of_another_lattice_are_refused():
         ready.solve(np.ones(3))
 
 
-def test_one_step_of_nonsense_is_an_error():
-    case = fp.Case(scheme="GPSE", beta=0.5, truncation=10.0, spacing=0.4, dt=1.0)
-    with pytest.raises(NonFiniteSolution, match=r"GPSE .* not finite after one step of dt = 1"):
+@pytest.mark.parametrize("evaluation", [None, "convolution"])
+def test_one_pass_of_nonsense_is_an_error(evaluation):
+    common = {"scheme": "GPSE", "beta": 0.5, "truncation": 10.0, "spacing": 0.4, "dt": 1.0}
+    case = fp.Case(**common, exterior="open", evaluation=evaluation)
+    with pytest.raises(NonFiniteSolution, match=r"GPSE .* not finite after the one pass"):
         fp.prepare(case).solve(np.full(case.shape, np.inf))
 
 

@@ -11,7 +11,8 @@ particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p. Wi
     right_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j},   left_i = parity * right_{-i},
 
 a rank-two update of the operator, computed once; each further term makes it two larger. Not in the papers, which
-truncate the lattice. The error falls with D like D^(-2-2 alpha) for one term and D^(-2-3 alpha) for two (measured).
+truncate the lattice. A step of GPSE without the exterior lacks int_D E u dy ~ D^(-1-2 alpha); what each term leaves is
+smaller by another D^(-alpha).
 
 `far_field` takes w as a function of any real offset. `tabulated_far_field` takes a table of w_m, m = 0 .. M, beyond
 which w_m is a sum of powers b_l m^(-1-l alpha): with one, and one term of u, Huang & Oberman's far-field condition.

@@ -14,7 +14,14 @@ import numpy as np
 
 from fracparticles.case import FUNDAMENTAL, Case
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
-from fracparticles.integrators import STEP_POLYNOMIALS, euler_step, exponential, power, step
+from fracparticles.integrators import (
+    STEP_POLYNOMIALS,
+    applied,
+    euler_step,
+    exponential,
+    power,
+    step,
+)
 from fracparticles.operators import Operator
 from fracparticles.propagator import propagator
 from fracparticles.schemes import SCHEMES, dvm
@@ -264,7 +271,7 @@ def prepare(case: Case, operator: Operator | None = None) -> Prepared:
     setting = case.setting
     if case.evaluation == "convolution":
         operator = _lattice_sum(case)
-        return Prepared(case, operator, 1, operator.apply)
+        return Prepared(case, operator, 1, partial(applied, operator))
     if operator is None:
         operator = SCHEMES[case.scheme].operator(setting)
     if case.steps_taken:

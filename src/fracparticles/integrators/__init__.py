@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from fracparticles.integrators.chebyshev import ChebyshevSeries, exponential, power
 from fracparticles.integrators.polynomial import STEP_POLYNOMIALS, StepPolynomial
-from fracparticles.integrators.stepping import euler_step, step
+from fracparticles.integrators.stepping import applied, euler_step, step
 
 __all__ = [
     "STEP_POLYNOMIALS",
     "ChebyshevSeries",
     "StepPolynomial",
+    "applied",
     "euler_step",
     "exponential",
     "power",

@@ -9,7 +9,7 @@ from fracparticles.errors import NonFiniteSolution
 from fracparticles.integrators.polynomial import StepPolynomial
 from fracparticles.operators import Operator
 
-__all__ = ["all_finite", "euler_step", "step"]
+__all__ = ["all_finite", "applied", "euler_step", "step"]
 
 _CHECK_EVERY = 16  # steps between two looks at the solution
 
@@ -22,11 +22,28 @@ def euler_step(operator: Operator, dt: float, u: np.ndarray) -> np.ndarray:
     NonFiniteSolution
         If a particle strength is not finite.
     """
+    return _single_pass(operator, dt, 1.0, u)
+
+
+def applied(operator: Operator, u: np.ndarray) -> np.ndarray:
+    """Return P u, where P is a whole run.
+
+    Raises
+    ------
+    NonFiniteSolution
+        If a particle strength is not finite.
+    """
+    return _single_pass(operator, 1.0, 0.0, u)
+
+
+def _single_pass(operator: Operator, a: float, b: float, u: np.ndarray) -> np.ndarray:
+    """a (A u) + b u, checked."""
     out = np.zeros(u.size)
-    operator.update(np.ascontiguousarray(u, dtype=float), dt, 1.0, 0.0, out)
+    operator.update(np.ascontiguousarray(u, dtype=float), a, b, 0.0, out)
     if not all_finite(out):
         raise NonFiniteSolution(
-            f"the particle strengths are not finite after one step of dt = {dt:.6g}. Check the initial data."
+            "the particle strengths are not finite after the one pass that takes them to the final time. "
+            "Check the initial data."
         )
     return out
 
