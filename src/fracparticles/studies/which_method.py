@@ -22,7 +22,7 @@ def which_method(inputs: Inputs) -> Result:
 
     Parameters of the scene: `situations`, a list of mappings with `situation` and `take`, words; `benchmark`, `beta`
     and `error`; `time`, "solve_time" or "total_time"; and `family` and `variant`, which the method's must contain; and
-    `against`, which the rival's name must contain, for a situation that not all of them can serve.
+    `against`, which the rival's variant must end with, for a situation that not all of them can serve.
     """
     rows = [_contest(inputs, **situation) for situation in inputs.parameters["situations"]]
     return Result(pd.DataFrame(rows))
@@ -49,7 +49,7 @@ def _contest(
         time,
     )
     names = trials["family"] + ", " + trials["variant"]
-    rivals = trials["group"].isin(["peers", "limit"]) & names.str.contains(against, regex=False)
+    rivals = trials["group"].isin(["peers", "limit"]) & names.str.endswith(against)
     peer = best(trials[rivals], error, time)
     papers = best(trials[trials["group"] == "papers"], error, time)
     ratio = _time(taken, time) / _time(peer, time)
