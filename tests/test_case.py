@@ -178,6 +178,7 @@ def test_annotations():
     assert numbers == {
         *("order", "beta", "dim", "truncation", "half_width", "spacing", "overlap", "dt"),
         *("diffusivity", "t_initial", "t_final", "kernel_table", "remesh_above", "threshold"),
+        "far_terms",
     }
 
 

@@ -91,6 +91,7 @@ def test_every_flag_reaches_the_case(cli):
         "evaluation": "stepping",
         "summation": "naive",
         "exterior": "open",
+        "far_terms": 2,
         "kernel_table": 0.01,
         "store": "profile",
     }

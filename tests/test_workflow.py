@@ -145,8 +145,10 @@ def touch(path: Path) -> None:
 
 def _merged(project: Path) -> dict:
     import yaml
+    from snakemake.utils import update_config
 
     study, smoke = (
         yaml.safe_load((project / f"config/{name}.yaml").read_text()) for name in ("study", "smoke")
     )
-    return {**study, **smoke}
+    update_config(study, smoke)  # as Snakemake lays one file over the other
+    return study
