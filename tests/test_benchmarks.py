@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pyfftw
 import pytest
 
 import fracparticles as fp
@@ -26,7 +27,7 @@ from fracparticles.benchmarks.problem import Problem
 from fracparticles.benchmarks.reference import reference, transform_pairs
 from fracparticles.benchmarks.trial import Contender, Trial, run_trials
 from fracparticles.dataset import read_benchmark, write
-from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
 from fracparticles.peers import PEERS
 from fracparticles.random_walk import cell_masses
 from fracparticles.solver import compute, relative_l1_error
@@ -63,7 +64,16 @@ def test_tables_are_forgotten():
     stability_limit("KPSE", 0.5)
     assert _symbol_range.cache_info().currsize > 0
     clock.forget_tables()
+    forgotten = pyfftw.export_wisdom()[0]
     assert _symbol_range.cache_info().currsize == 0
+    pyfftw.FFTW(pyfftw.zeros_aligned(346), pyfftw.zeros_aligned(174, dtype=complex))
+    assert len(pyfftw.export_wisdom()[0]) > len(forgotten)
+
+
+def test_a_benchmark_wants_one_thread_of_blas(monkeypatch):
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")
+    with pytest.raises(FracparticlesError, match="OPENBLAS_NUM_THREADS=1"):
+        clock.one_core()
 
 
 def test_peak_memory_is_that_of_a_process_of_its_own():
@@ -84,7 +94,16 @@ def test_rows_become_a_data_set_and_a_frame(tmp_path):
     assert frame["x"][0] == 1.0
     assert np.isnan(frame["x"][1])
     assert frame.attrs["repeats"] == 3
-    for fact in ("cpu", "cores", "threads", "python", "numpy", "pyfftw", "load_average"):
+    for fact in (
+        "cpu",
+        "cores",
+        "threads_numba",
+        "threads_blas",
+        "python",
+        "numpy",
+        "pyfftw",
+        "load_average",
+    ):
         assert fact in frame.attrs, fact
 
 

@@ -89,6 +89,8 @@ def test_where_the_volumes_are_wide_the_exchange_is_right_to_leading_order():
         (lambda: graded_particles(11, -5.0, 1.0), "reach"),
         (lambda: graded_particles(11, 5.0, 0.0), "scale"),
         (lambda: green_step(np.zeros(3), np.ones(2), 1.5, 1.0), "volumes"),
+        (lambda: green_step(np.zeros(3), np.array([1.0, 0.0, 1.0]), 1.5, 1.0), "volumes"),
+        (lambda: green_step(np.array([0.0, np.inf]), np.ones(2), 1.5, 1.0), "volumes"),
         (lambda: green_step(np.zeros(3), np.ones(3), 2.5, 1.0), "alpha"),
         (lambda: green_step(np.zeros(3), np.ones(3), 1.5, 0.0), "time"),
         (lambda: green_step(np.zeros(3), np.ones(3), 1.5, 1.0, "other"), "form"),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import fracparticles as fp
-from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
 from fracparticles.exterior import tail_constant
 from fracparticles.propagator import propagator, propagator_weights
 from fracparticles.solver import compute, initial_strengths, prepare
@@ -111,7 +111,7 @@ def test_a_single_step_of_gpse_is_taken_as_it_is():
 
 @pytest.mark.parametrize("terms", [1, 2, 3])
 def test_a_step_of_gpse_and_its_lattice_sum_agree(terms):
-    """The kernel's own values, or the inverse transform of its symbol: the same weights and far field, to 1e-10."""
+    """The kernel's own values, or the inverse transform of its symbol: the same weights and far field."""
     common = {"scheme": "GPSE", "beta": 0.5, "truncation": 7.0, "spacing": 0.4, "dt": 1.0}
     step = fp.Case(**common, exterior="open", far_terms=terms)
     at_once = fp.Case(**common, exterior="open", far_terms=terms, evaluation="convolution")
@@ -152,18 +152,33 @@ def test_dvm_cannot_be_prepared():
         fp.prepare(case)
 
 
-def test_an_overflow_names_the_scheme():
-    case = fp.Case(
-        scheme="KPSE",
-        beta=0.5,
-        truncation=20.0,
-        spacing=0.1,
-        dt=1.0,
-        t_final=50.0,
-        integrator="rk4",
-    )
-    with pytest.raises(NonFiniteSolution, match=r"^KPSE \(order 2\): "):
-        fp.prepare(case.model_copy(update={"t_final": 500.0}))
+def test_an_overflow_names_the_scheme_after_a_warning():
+    common = {"scheme": "KPSE", "beta": 0.5, "truncation": 20.0, "spacing": 0.1, "dt": 1.0}
+    case = fp.Case(**common, t_final=500.0, integrator="rk4")
+    with (
+        pytest.warns(StabilityWarning, match="outside the stability interval of KPSE"),
+        pytest.raises(NonFiniteSolution, match=r"^KPSE \(order 2\): "),
+    ):
+        fp.prepare(case)
+
+
+def test_a_matrix_has_a_limit():
+    ready = fp.prepare(fp.Case(**WIDE, scheme="KPSE", spacing=0.005))
+    with pytest.raises(InvalidInput, match="at most 16384 for a matrix"):
+        ready.as_matrix()
+
+
+@pytest.mark.parametrize(("change", "why"), [
+    ({"spacing": 1.3}, "smoothing lengths"),
+    ({"spacing": 0.01, "t_final": 5000.0, "truncation": None, "half_width": 45.0}, "T D / h"),
+])  # fmt: skip
+def test_several_terms_used_again_and_again_have_limits(change, why):
+    """Too near the middle the fit makes modes that grow; a single sum or step has none."""
+    fields = {**WIDE, "scheme": "KPSE", "spacing": 0.4, "far_terms": 3, **change}
+    with pytest.raises(InvalidInput, match=f"far_terms.*{why}"):
+        fp.Case(**fields)
+    fp.Case(**fields, evaluation="convolution")
+    fp.Case(**{**fields, "far_terms": 1})
 
 
 @pytest.mark.parametrize(

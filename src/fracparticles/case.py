@@ -234,6 +234,11 @@ class Case(BaseModel):
             return True
         return self.evaluation == "stepping" or self.scheme == "DVM"
 
+    @property
+    def _series_by_default(self) -> bool:
+        """Whether `evaluation` says "series" where it would be one anyway: but for a single Euler step."""
+        return self.evaluation == "series" and not (self.method == "euler" and self.steps == 1)
+
     @cached_property
     def largest_stable_step(self) -> float:
         """The largest dt inside the stability interval; infinite for the exponential."""
@@ -300,7 +305,7 @@ class Case(BaseModel):
             f"t{self.t_initial:g}-{self.t_final:g}",
             *([] if self.diffusivity == 1.0 else [f"diffusivity{self.diffusivity:g}"]),
             *([] if self.initial == FUNDAMENTAL else [f"from-{_slug(self.initial)}"]),
-            *([] if self.evaluation in (None, "series") else [self.evaluation]),
+            *([] if self.evaluation is None or self._series_by_default else [self.evaluation]),
             *([] if self.summation == "fft" else [self.summation]),
             *([] if self.kernel_family is None else [self.kernel_family]),
             *([] if self.kernel_table is None else [f"table{self.kernel_table:g}"]),

@@ -94,6 +94,13 @@ def green_step(
             f"an array of shape {x.shape}, one volume for each particle on the line",
             "Give a volume for each position.",
         )
+    if not (np.isfinite(x).all() and np.isfinite(volumes).all() and (volumes > 0.0).all()):
+        raise InvalidInput(
+            "volumes",
+            float(volumes.min()),
+            "positive, and all numbers finite",
+            "Mend the particles; `graded_particles` makes such.",
+        )
     matrix = volumes * np.asarray(green(x[:, None] - x, time, alpha))
     if form == "exchange":
         matrix[np.diag_indices_from(matrix)] += 1.0 - matrix.sum(axis=1)

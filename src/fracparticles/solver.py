@@ -39,12 +39,14 @@ __all__ = [
     "Solution",
     "compute",
     "initial_strengths",
+    "matrix_of",
     "prepare",
     "relative_l1_error",
     "solve",
 ]
 
 Initial = str | Path | np.ndarray | Callable[[np.ndarray], np.ndarray]
+_LARGEST_MATRIX = 16384  # particles
 Advance = Callable[[np.ndarray], np.ndarray]
 
 
@@ -108,8 +110,8 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
 def compute(case: Case, initial: Initial | None = None) -> Solution:
     """Run a case and return its arrays: `solve` without the data set."""
     u0, origin = initial_strengths(case, initial)
-    warn_if_unstable(case)
     if case.scheme == "DVM":
+        warn_if_unstable(case)
         return _advect(case, u0, origin)
     ready = prepare(case)
     u = ready.solve(u0)
@@ -240,8 +242,27 @@ class Prepared:
         For many initial data on few particles: up to some hundred a product with M is faster than any sum by FFT. It
         takes N^dim solves.
         """
-        columns = [self.advance(column) for column in np.eye(int(np.prod(self.shape)))]
-        return np.ascontiguousarray(np.array(columns).T)
+        return matrix_of(self.solve, self.shape)
+
+
+def matrix_of(solve: Advance, shape: tuple[int, ...]) -> np.ndarray:
+    """Return a linear map of arrays of that shape as a matrix, column by column: what it makes of the unit vectors.
+
+    Raises
+    ------
+    InvalidInput
+        If the matrix would take more than 2 GiB.
+    """
+    size = int(np.prod(shape))
+    if size > _LARGEST_MATRIX:
+        raise InvalidInput(
+            "particles",
+            size,
+            f"at most {_LARGEST_MATRIX} for a matrix",
+            "Use solve for each of the data.",
+        )
+    columns = [solve(unit).reshape(-1) for unit in np.eye(size).reshape(-1, *shape)]
+    return np.ascontiguousarray(np.array(columns).T)
 
 
 def prepare(case: Case, operator: Operator | None = None) -> Prepared:
@@ -268,12 +289,15 @@ def prepare(case: Case, operator: Operator | None = None) -> Prepared:
             "a scheme whose particles stay on the lattice",
             "Use solve: DVM's operator depends on the solution.",
         )
-    setting = case.setting
     if case.evaluation == "convolution":
         operator = _lattice_sum(case)
         return Prepared(case, operator, 1, partial(applied, operator))
     if operator is None:
-        operator = SCHEMES[case.scheme].operator(setting)
+        operator = SCHEMES[case.scheme].operator(case.setting)
+    if not (
+        case.scheme == "GPSE" and case.steps == 1
+    ):  # which cannot grow, nor should its set-up ask
+        warn_if_unstable(case)
     if case.steps_taken:
         polynomial, dt, steps = STEP_POLYNOMIALS[case.method], case.time_step, case.steps
         applications = steps * polynomial.stages

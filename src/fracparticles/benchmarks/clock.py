@@ -18,6 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 import numba as nb
 import numpy as np
+import pyfftw
+
+from fracparticles.errors import FracparticlesError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,7 +76,11 @@ def measure(
 
 
 def forget_tables() -> None:
-    """Empty the tables that the package keeps from call to call, so that a set-up is measured as a first one."""
+    """Empty the tables that the package keeps from call to call, and the plans that FFTW does.
+
+    A set-up is then measured as the first one of a process.
+    """
+    pyfftw.forget_wisdom()
     for name, module in list(sys.modules.items()):
         if name.startswith("fracparticles."):
             for kept in vars(module).values():
@@ -82,7 +89,17 @@ def forget_tables() -> None:
 
 
 def one_core() -> None:
-    """Keep this process to one thread: the loops that numba runs in parallel, too."""
+    """Keep this process to one thread: the loops that numba runs in parallel, and the matrix products.
+
+    Raises
+    ------
+    FracparticlesError
+        If BLAS, which reads its number of threads once, when it is loaded, was not told to take one.
+    """
+    if os.environ.get("OPENBLAS_NUM_THREADS", os.environ.get("OMP_NUM_THREADS")) != "1":
+        raise FracparticlesError(
+            "a benchmark wants one thread of BLAS: set OMP_NUM_THREADS=1 and OPENBLAS_NUM_THREADS=1 before it starts."
+        )
     nb.set_num_threads(1)
 
 
@@ -116,7 +133,10 @@ def machine() -> dict[str, Any]:
     facts: dict[str, Any] = {
         "cpu": _cpu_model(),
         "cores": len(os.sched_getaffinity(0)),
-        "threads": 1,
+        "threads_numba": nb.get_num_threads(),
+        "threads_blas": os.environ.get(
+            "OPENBLAS_NUM_THREADS", os.environ.get("OMP_NUM_THREADS", "")
+        ),
         "load_average": os.getloadavg()[0],
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),

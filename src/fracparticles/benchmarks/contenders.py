@@ -17,7 +17,7 @@ from fracparticles.graded import FORMS, graded_particles, green_step
 from fracparticles.peers import PEERS, Solver
 from fracparticles.random_walk import cell_counts, cell_masses, walk
 from fracparticles.schemes import dvm
-from fracparticles.solver import compute, prepare
+from fracparticles.solver import compute, matrix_of, prepare
 
 if TYPE_CHECKING:
     from fracparticles.peers.plane import PlaneSolver
@@ -140,9 +140,7 @@ def _matrix(make: Callable[[], Contender]) -> Contender:
     """Another contender whose whole run is made one matrix: its set-up solves for all unit vectors."""
     contender = make()
     shape = contender.radius.shape
-    units = np.eye(contender.radius.size).reshape(-1, *shape)
-    columns = [contender.solve(unit).reshape(-1) for unit in units]
-    matrix = np.ascontiguousarray(np.array(columns).T)
+    matrix = matrix_of(contender.solve, shape)
 
     def solve(u0: np.ndarray) -> np.ndarray:
         return (matrix @ u0.reshape(-1)).reshape(shape)
@@ -182,19 +180,29 @@ def _case(problem: Problem, fields: Mapping[str, Any]) -> Case:
     )
 
 
-def _fits(problem: Problem, truncation: float, spacing: float, most: float) -> bool:
-    """Whether a lattice reaches over all that is judged, has 8 intervals on each side and not too many particles."""
+def _least_half(way: Mapping[str, Any]) -> float:
+    """The least half of a lattice in h: what a case asks of one whose far field has several terms, at overlap 2."""
+    several = way.get("far_terms", 1) > 1 and way.get("evaluation") != "convolution"
+    return 21.0 if several else 8.0
+
+
+def _fits(problem: Problem, truncation: float, spacing: float, most: float, least: float) -> bool:
+    """Whether a lattice reaches over all that is judged, and is neither too small nor too large."""
     width = problem.half_width(truncation)
     half = width / spacing
     covers = width >= problem.error_radius
-    return covers and half >= 8.0 and (2.0 * half + 1.0) ** problem.dim <= most
+    return covers and half >= least and (2.0 * half + 1.0) ** problem.dim <= most
 
 
 def _grids(
-    problem: Problem, spacings: Sequence[float], truncations: Sequence[float], most: float
+    problem: Problem,
+    spacings: Sequence[float],
+    truncations: Sequence[float],
+    most: float,
+    least: float = 8.0,
 ) -> Iterator[dict[str, float]]:
     for truncation, spacing in product(truncations, spacings):
-        if _fits(problem, truncation, spacing, most):
+        if _fits(problem, truncation, spacing, most, least):
             yield {"truncation": truncation, "spacing": spacing}
 
 
@@ -211,7 +219,7 @@ def scheme_trials(
     for scheme, order in product(schemes, orders):
         names = (scheme, f"order {order}, {_exterior(**way)}, {way['evaluation']}", "ours")
         fixed = {"scheme": scheme, "order": order, "integrator": "exponential", **way}
-        for grid in _grids(problem, spacings, truncations, most):
+        for grid in _grids(problem, spacings, truncations, most, _least_half(way)):
             yield _trial(lattice, problem, names, **fixed, **grid)
 
 
@@ -262,7 +270,7 @@ def tied_step_trials(
 ) -> Iterator[Trial]:
     """Yield GPSE as the paper has it, epsilon = 2 h, its steps in one series."""
     names = ("GPSE", f"epsilon = 2 h, {_exterior(**way)}", "ours")
-    for grid in _grids(problem, spacings, truncations, most):
+    for grid in _grids(problem, spacings, truncations, most, _least_half(way)):
         yield _trial(lattice, problem, names, scheme="GPSE", overlap=2.0, **way, **grid)
 
 

@@ -142,8 +142,8 @@ def _other_kinds(length: int) -> dict[str, Action]:
     backward = pyfftw.FFTW(
         spectrum, single, direction="FFTW_BACKWARD", flags=("FFTW_ESTIMATE", "FFTW_DESTROY_INPUT")
     )
-    half = pyfftw.zeros_aligned(length // 2 + 1)
-    cosine = pyfftw.FFTW(half, half, direction="FFTW_REDFT00", flags=("FFTW_ESTIMATE",))
+    half, cosines = pyfftw.zeros_aligned(length // 2 + 1), pyfftw.zeros_aligned(length // 2 + 1)
+    cosine = pyfftw.FFTW(half, cosines, direction="FFTW_REDFT00", flags=("FFTW_ESTIMATE",))
     return {
         _OTHER_KINDS[0]: lambda: (forward.execute(), backward.execute()),
         _OTHER_KINDS[1]: lambda: (cosine.execute(), cosine.execute()),

@@ -10,8 +10,8 @@ from scipy.fft import irfft, next_fast_len, rfft
 __all__ = ["FourierConvolution", "shares_memory", "transform_length"]
 
 # FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths chosen below its plans take about a tenth longer to run
-# (`benchmark`), but they are made in milliseconds instead of seconds, and they are the same every time, so that
-# the same case gives the same bytes.
+# (`benchmarks.reference`), but they are made in milliseconds instead of seconds, and they are the same every time, so
+# that the same case gives the same bytes.
 _PLAN = ("FFTW_ESTIMATE",)
 _CLOSE = 1.03  # a power of two is taken up to this ratio
 _LONG = 10**6
@@ -98,7 +98,7 @@ def _is_smooth(length: int) -> bool:
 def shares_memory(length: int) -> bool:
     """Return whether the real array and its spectrum share their memory: powers of two and long ones are faster so.
 
-    Beyond the caches it halves the traffic: at a length of 6 10^6 a pair takes half the time.
+    Beyond the caches it halves the traffic.
     """
     return length & (length - 1) == 0 or length >= _LONG
 
