@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from hypothesis import settings
 
-from fracparticles.kernels import PAPER_ORDERS
-from fracparticles.schemes import SCHEMES
+# BLAS reads its number of threads once, when it is loaded: a benchmark wants one.
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
+
+from fracparticles.kernels import PAPER_ORDERS  # noqa: E402
+from fracparticles.schemes import SCHEMES  # noqa: E402
 
 settings.register_profile("fracparticles", deadline=None, derandomize=True)
 settings.load_profile("fracparticles")

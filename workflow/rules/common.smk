@@ -6,7 +6,7 @@ from snakemake.exceptions import WorkflowError
 
 # One thread a job: the jobs run side by side.
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(name, "1")
+    os.environ[name] = "1"
 
 from fracparticles import plan
 from fracparticles.benchmarks import BENCHMARKS
