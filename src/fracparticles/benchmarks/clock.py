@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 import numba as nb
 import numpy as np
 import pyfftw
-
-from fracparticles.errors import FracparticlesError
+import scipy.linalg  # noqa: F401  it brings a BLAS of its own, which must be there to be told
+from threadpoolctl import threadpool_info, threadpool_limits
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,17 +89,8 @@ def forget_tables() -> None:
 
 
 def one_core() -> None:
-    """Keep this process to one thread: the loops that numba runs in parallel, and the matrix products.
-
-    Raises
-    ------
-    FracparticlesError
-        If BLAS, which reads its number of threads once, when it is loaded, was not told to take one.
-    """
-    if os.environ.get("OPENBLAS_NUM_THREADS", os.environ.get("OMP_NUM_THREADS")) != "1":
-        raise FracparticlesError(
-            "a benchmark wants one thread of BLAS: set OMP_NUM_THREADS=1 and OPENBLAS_NUM_THREADS=1 before it starts."
-        )
+    """Keep this process to one thread: the loops that numba runs in parallel, and the matrix products of BLAS."""
+    threadpool_limits(1)
     nb.set_num_threads(1)
 
 
@@ -134,9 +125,7 @@ def machine() -> dict[str, Any]:
         "cpu": _cpu_model(),
         "cores": len(os.sched_getaffinity(0)),
         "threads_numba": nb.get_num_threads(),
-        "threads_blas": os.environ.get(
-            "OPENBLAS_NUM_THREADS", os.environ.get("OMP_NUM_THREADS", "")
-        ),
+        "threads_blas": _blas_threads(),
         "load_average": os.getloadavg()[0],
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
@@ -147,6 +136,10 @@ def machine() -> dict[str, Any]:
         except PackageNotFoundError:
             facts[library] = "not installed"
     return facts
+
+
+def _blas_threads() -> int:
+    return max(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
 
 
 def _cpu_model() -> str:
