@@ -220,7 +220,7 @@ def test_nothing_is_judged_on_less_than_the_whole_norm():
     grid = {"spacings": [0.1], "truncations": [0.9 * half, 1.1 * half], "most": 1000}
     assert [trial.truncation for trial in one_step_trials(LINE, OPEN, **grid)] == [1.1 * half]
     reaches = [0.9 * LINE.error_radius, 1.1 * LINE.error_radius]
-    assert len(list(graded_trials(LINE, [21], reaches, [1.0]))) == 2  # the two forms
+    assert len(list(graded_trials(LINE, [21], reaches, [1.0]))) == 3  # the three forms
 
 
 def test_lattices_too_small_or_too_large_are_left_out():

@@ -25,6 +25,7 @@ _HOME = {
     "green_rate": "special.stable",
     "green_slope": "special.stable",
     "green_step": "graded",
+    "green_step_of_field": "graded_field",
     "kernel": "kernels",
     "mean_radius": "special.stable",
     "prepare": "solver",

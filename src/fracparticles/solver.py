@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Prepared",
     "Solution",
+    "advect",
     "compute",
     "initial_strengths",
     "matrix_of",
@@ -112,16 +113,31 @@ def compute(case: Case, initial: Initial | None = None) -> Solution:
     u0, origin = initial_strengths(case, initial)
     if case.scheme == "DVM":
         warn_if_unstable(case)
-        return _advect(case, u0, origin)
+        run = advect(case, u0)
+        evaluations = run.history.velocity_evaluations
+        return Solution(case, case.x, u0, run.field(case.x), evaluations, origin, run)
     ready = prepare(case)
     u = ready.solve(u0)
     return Solution(case, case.x, u0, u, ready.operator_applications, origin)
 
 
-def _advect(case: Case, u0: np.ndarray, origin: str) -> Solution:
-    """Run DVM, whose particles move."""
+def advect(case: Case, u0: np.ndarray) -> ParticleRun:
+    """Run DVM, whose particles move, and return them.
+
+    Parameters
+    ----------
+    case : Case
+        Of scheme "DVM".
+    u0 : array, shape `case.shape`
+        Initial strengths.
+
+    Raises
+    ------
+    NonFiniteSolution
+        If the run blows up.
+    """
     try:
-        run = dvm.run(
+        return dvm.run(
             case.x,
             u0,
             spacing=case.particle_spacing,
@@ -139,8 +155,6 @@ def _advect(case: Case, u0: np.ndarray, origin: str) -> Solution:
         )
     except NonFiniteSolution as error:
         raise _named(case, error) from None
-    evaluations = run.history.velocity_evaluations
-    return Solution(case, case.x, u0, run.field(case.x), evaluations, origin, run)
 
 
 def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.ndarray, str]:

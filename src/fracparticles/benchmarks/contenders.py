@@ -14,10 +14,10 @@ from fracparticles.benchmarks.problem import Problem
 from fracparticles.benchmarks.trial import Contender, Trial
 from fracparticles.case import Case
 from fracparticles.graded import FORMS, graded_particles, green_step
+from fracparticles.graded_field import green_step_of_field
 from fracparticles.peers import PEERS, Solver
 from fracparticles.random_walk import cell_counts, cell_masses, walk
-from fracparticles.schemes import dvm
-from fracparticles.solver import compute, matrix_of, prepare
+from fracparticles.solver import advect, compute, matrix_of, prepare
 
 if TYPE_CHECKING:
     from fracparticles.peers.plane import PlaneSolver
@@ -38,6 +38,7 @@ __all__ = [
 ]
 
 _EXACT_STEPS = 1e-9  # relative: a step that is to be one of n equal ones
+_FIELD = "interpolated"  # graded particles whose field takes the step
 
 
 # --- the contenders -------------------------------------------------------------------------------
@@ -80,26 +81,18 @@ def _particles(case: Case) -> Contender:
     """DVM; its solution is the field (7) at the places where the particles began."""
 
     def solve(u0: np.ndarray) -> np.ndarray:
-        run = dvm.run(
-            case.x,
-            u0,
-            spacing=case.particle_spacing,
-            alpha=case.alpha,
-            order=case.order,
-            overlap=case.epsilon_over_h,
-            start=case.t_initial,
-            dt=case.time_step,
-            steps=case.steps,
-        )
-        return run.field(case.x)
+        return advect(case, u0).field(case.x)
 
     return Contender(*_points(case), solve, applications=2 * case.steps)
 
 
 def _graded(problem: Problem, form: str, count: int, reach: float, scale: float) -> Contender:
-    """One Green step on graded particles."""
+    """One Green step on graded particles, or of the field between them."""
     x, volumes = graded_particles(count, reach, scale)
-    matrix = green_step(x, volumes, problem.alpha, problem.time, form)
+    if form == _FIELD:
+        matrix = green_step_of_field(count, reach, scale, problem.alpha, problem.time)
+    else:
+        matrix = green_step(x, volumes, problem.alpha, problem.time, form)
     return Contender(np.abs(x), volumes, matrix.dot)
 
 
@@ -246,8 +239,8 @@ def one_step_trials(
 def graded_trials(
     problem: Problem, counts: Sequence[int], reaches: Sequence[float], scales: Sequence[float]
 ) -> Iterator[Trial]:
-    """Yield GPSE in one step on graded particles, in both forms, where they reach over all that is judged."""
-    for form, count, reach, scale in product(FORMS, counts, reaches, scales):
+    """Yield GPSE in one step on graded particles, in all forms, where they reach over all that is judged."""
+    for form, count, reach, scale in product((*FORMS, _FIELD), counts, reaches, scales):
         if reach >= problem.error_radius:
             make = partial(_graded, problem, form, count, reach, scale)
             yield Trial("GPSE", f"one step, graded particles, {form}", "ours", make, points=count)
