@@ -13,6 +13,7 @@ import fracparticles as fp
 from fracparticles.benchmarks import BENCHMARKS, benchmark, clock
 from fracparticles.benchmarks.contenders import (
     graded_trials,
+    lent_exterior_trials,
     matrix_trials,
     naive_trials,
     one_step_trials,
@@ -149,6 +150,7 @@ def test_every_trial_solves_the_problem():
         *one_step_trials(LINE, {**OPEN, "evaluation": "convolution"}, **grid),
         *tied_step_trials(LINE, OPEN, **grid),
         *peer_trials(LINE, **{**PEER_GRID, **grid}),
+        *lent_exterior_trials(LINE, **grid),
         *graded_trials(LINE, [81], [80.0], [3.0]),
         *particle_trials(LINE, [4], 8.0, [0.25], [100]),
         *naive_trials(LINE, ["KPSE", "FD"], [2, 4], 1e-3, 1, **grid),
@@ -159,6 +161,20 @@ def test_every_trial_solves_the_problem():
     for trial in trials:
         _, _, error = solved(trial)
         assert error < 0.06, trial
+
+
+def test_the_lent_exterior_is_that_of_gpse():
+    """At epsilon / h = 5 the aliases of GPSE, at most exp(-(pi epsilon / h)^alpha), are nil: the same sums, the same error."""
+    grid = {"spacings": [0.2], "truncations": [5.0], "most": 1000}
+    way = {**OPEN, "evaluation": "convolution"}
+    (lent,), (ours,) = lent_exterior_trials(LINE, **grid), one_step_trials(LINE, way, **grid)
+    assert solved(lent)[1] == pytest.approx(solved(ours)[1], rel=1e-12)
+    (own,) = (
+        trial
+        for trial in peer_trials(LINE, **{**PEER_GRID, **grid})
+        if trial.family == "sinc-lattice" and trial.variant == "open, convolution"
+    )
+    assert solved(own)[2] > 100.0 * solved(lent)[2]
 
 
 def test_walkers_are_compared_with_the_mass_of_each_cell():

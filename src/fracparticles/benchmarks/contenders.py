@@ -15,7 +15,9 @@ from fracparticles.benchmarks.trial import Contender, Trial
 from fracparticles.case import Case
 from fracparticles.graded import FORMS, graded_particles, green_step
 from fracparticles.graded_field import green_step_of_field
-from fracparticles.peers import PEERS, Solver
+from fracparticles.peers import PEERS, Solver, sinc_lattice
+from fracparticles.peers.base import half_intervals
+from fracparticles.propagator import propagator
 from fracparticles.random_walk import cell_counts, cell_masses, walk
 from fracparticles.solver import advect, compute, matrix_of, prepare
 
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "graded_trials",
     "lattice",
+    "lent_exterior_trials",
     "matrix_trials",
     "naive_trials",
     "one_step_trials",
@@ -120,6 +123,18 @@ def _peer(make: Callable[[], Solver]) -> Contender:
     solver = make()
     applications = int(getattr(solver, "applications", 1))
     return Contender(np.abs(solver.x), solver.volumes, solver.solve, applications)
+
+
+def _lent_exterior(problem: Problem, half_width: float, spacing: float) -> Contender:
+    """The sinc lattice as one lattice sum, its exterior continued by three terms as ours."""
+    n = half_intervals(half_width, spacing, None)
+    h = half_width / n
+    tau = problem.time * h**-problem.alpha
+    run = propagator(
+        lambda theta: np.exp(tau * sinc_lattice.symbol(theta, problem.alpha)),
+        problem.alpha, tau, n, "open", terms=3,
+    )  # fmt: skip
+    return Contender(np.abs(np.arange(-n, n + 1) * h), h, run.apply)
 
 
 def _plane_peer(make: Callable[[], PlaneSolver]) -> Contender:
@@ -381,6 +396,22 @@ def peer_trials(
                 spacing=grid["spacing"],
                 truncation=truncation,
             )
+
+
+def lent_exterior_trials(
+    problem: Problem, spacings: Sequence[float], truncations: Sequence[float], most: float
+) -> Iterator[Trial]:
+    """Yield the sinc lattice with our exterior: how much of our lead is the exterior's."""
+    for grid in _grids(problem, spacings, truncations, most):
+        half_width = problem.half_width(grid["truncation"])
+        yield Trial(
+            sinc_lattice.NAME,
+            "our exterior, 3 terms, convolution",
+            "peers",
+            partial(_lent_exterior, problem, half_width, grid["spacing"]),
+            points=2.0 * half_width / grid["spacing"] + 1.0,
+            **grid,
+        )
 
 
 def plane_peer_trials(

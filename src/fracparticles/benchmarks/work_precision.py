@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fracparticles.benchmarks.clock import one_core, timings_dataset
 from fracparticles.benchmarks.contenders import (
     graded_trials,
+    lent_exterior_trials,
     matrix_trials,
     naive_trials,
     one_step_trials,
@@ -85,7 +86,7 @@ def line_trials(
         Likewise of truncated lattices, by a series.
     graded, stepped, particles, naive, walkers, peers : dict
         Arguments of `graded_trials`, `stepped_trials`, `particle_trials`, `naive_trials`, `walk_trials` and
-        `peer_trials`.
+        `peer_trials`; the lattices of the peers are those of `lent_exterior_trials`, too.
     matrices : float
         GPSE in one step and the peers of up to so many points also run as one matrix.
     """
@@ -107,7 +108,8 @@ def line_trials(
     yield from particle_trials(problem, **particles)
     yield from naive_trials(problem, **naive)
     yield from walk_trials(problem, **walkers)
-    rivals = list(peer_trials(problem, **peers))
+    lattices = {name: peers[name] for name in ("spacings", "truncations", "most")}
+    rivals = [*peer_trials(problem, **peers), *lent_exterior_trials(problem, **lattices)]
     yield from rivals
     yield from matrix_trials((t for t in rivals if t.group == "peers"), matrices)
 
