@@ -20,7 +20,7 @@ from scipy.special import gamma, zeta
 
 from fracparticles.exterior import tabulated_far_field, tail_constant
 from fracparticles.operators import ConvolutionOperator
-from fracparticles.sums import FourierConvolution
+from fracparticles.sums import fast_convolution
 
 __all__ = ["propagator", "propagator_weights", "tabulated_operator", "tail_amplitude"]
 
@@ -76,7 +76,7 @@ def tabulated_operator(
     far = None
     if exterior == "open":
         far = tabulated_far_field(w, n, alpha, amplitudes, terms)
-    return ConvolutionOperator(FourierConvolution(w[:size], size), np.zeros(size), far)
+    return ConvolutionOperator(fast_convolution(w[:size], size), np.zeros(size), far)
 
 
 def tail_amplitude(j: int, alpha: float, scaled_time: float) -> float:

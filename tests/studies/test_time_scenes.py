@@ -100,10 +100,10 @@ def test_the_times_of_the_integrators_are_in_units_of_the_series_of_their_operat
 def synthetic_parts():
     fields = {"run": "one", "particles": 9, "applications": 3, "setup_time": 0.010}
     fields |= dict(zip(PARTS["setup_time"], (0.001, 0.002, 0.003, 0.0, 0.0, 0.004), strict=True))
-    first = {**fields, "solve_time": 0.004, "sums by FFT": 0.003, "rest of the solve": 0.001}
+    first = {**fields, "solve_time": 0.004, "lattice sums": 0.003, "rest of the solve": 0.001}
     # One sum, times three, came out above the solve.
     second = {
-        **fields, "run": "two", "solve_time": 0.004, "sums by FFT": 0.005,
+        **fields, "run": "two", "solve_time": 0.004, "lattice sums": 0.005,
         "rest of the solve": -0.001,
     }  # fmt: skip
     frame = pd.DataFrame([first, second])
@@ -122,8 +122,8 @@ def test_the_parts_are_listed_in_milliseconds_and_drawn_as_shares():
     assert one["set-up / solve"] == pytest.approx(2.5)
     share = result.series.set_index(["case", "part"])["share"]
     assert share["one", "plans and the rest"] == pytest.approx(0.4)
-    assert share["one", "sums by FFT"] == pytest.approx(0.75)
-    assert share["two", "sums by FFT"] == 1.0
+    assert share["one", "lattice sums"] == pytest.approx(0.75)
+    assert share["two", "lattice sums"] == 1.0
     assert np.allclose(result.series.groupby(["case", "panel"])["share"].sum(), 1.0)
 
 

@@ -50,7 +50,7 @@ _VARIABLES = {
     "setup_time": ("set-up, nothing kept from before, minimum", "s"),
     **{name: (f"of the set-up: {name}", "s") for name in (*PARTS, _OTHER)},
     "solve_time": ("solve, minimum", "s"),
-    "sums by FFT": (
+    "lattice sums": (
         "of the solve: the sums over the particles, one of them times their number",
         "s",
     ),
@@ -96,7 +96,7 @@ def _row(name: str, case: Case, repeats: int) -> dict[str, Any]:
         "applications": ready.operator_applications,
         **best,
         "solve_time": solve.minimum,
-        "sums by FFT": sums,
+        "lattice sums": sums,
         "rest of the solve": solve.minimum - sums,
     }
 

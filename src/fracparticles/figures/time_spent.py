@@ -22,7 +22,7 @@ _COLOURS = {
     "time series": "#CC79A7",
     "weights from the symbol": "#56B4E9",
     "plans and the rest": "#BBBBBB",
-    "sums by FFT": "#D55E00",
+    "lattice sums": "#D55E00",
     "rest of the solve": "#DDDDDD",
 }
 _DARK = ("#0072B2", "#009E73", "#D55E00")  # of these, on which white is read better than black

@@ -22,7 +22,7 @@ PARTS = {
         "weights from the symbol",
         "plans and the rest",
     ),
-    "solve_time": ("sums by FFT", "rest of the solve"),
+    "solve_time": ("lattice sums", "rest of the solve"),
 }
 _NAMES = {"setup_time": "set-up", "solve_time": "solve"}
 
