@@ -14,7 +14,7 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM1
 
 
 def core() -> None:
-    """Every scheme, in one dimension and two; what only studies evaluate."""
+    """Every scheme, in one dimension, with few particles and with many, and in two; what only studies evaluate."""
     from fracparticles.case import Case
     from fracparticles.kernels import PAPER_ORDERS
     from fracparticles.schemes import METHODS
@@ -27,11 +27,13 @@ def core() -> None:
         orders = [order for order in scheme.ORDERS if order in PAPER_ORDERS]
         own = {} if name == "GPSE" else {"dt": 0.01}
         for exterior, order in product(scheme.EXTERIORS, orders):
-            line = {"beta": 0.5, "truncation": 5.0, "spacing": 0.5, "exterior": exterior, **own}
+            few = {"beta": 0.5, "truncation": 5.0, "spacing": 0.5, "exterior": exterior, **own}
+            many = {**few, "spacing": 0.1}
             for evaluation in ("stepping",) if name == "DVM" else ("series", "stepping"):
-                solve(Case(scheme=name, order=order, evaluation=evaluation, **line))
+                solve(Case(scheme=name, order=order, evaluation=evaluation, **few))
+                solve(Case(scheme=name, order=order, evaluation=evaluation, **many))
             if 2 in scheme.DIMS:
-                solve(Case(scheme=name, order=order, dim=2, **line))
+                solve(Case(scheme=name, order=order, dim=2, **few))
 
 
 def random_walk() -> None:
