@@ -25,7 +25,7 @@ class MatrixConvolution:
         return self._sums
 
 
-# Compiled for its price: a call of numpy takes as long again as the product.
+# Compiled, since numpy's own call would warn of overflows, which the solver reports itself.
 @nb.njit(cache=True, nogil=True)
 def _product(matrix, u, y):
     np.dot(matrix, u, y)
