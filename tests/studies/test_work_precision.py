@@ -11,7 +11,7 @@ from fracparticles.figures.work_precision import time_to_accuracy as draw_bars
 from fracparticles.figures.work_precision import work_precision as draw_fronts
 from fracparticles.studies.common import Inputs
 from fracparticles.studies.run_times import reference_times, scattered_sums
-from fracparticles.studies.which_method import run_time_goals, which_method
+from fracparticles.studies.which_method import _off_the_front, run_time_goals, which_method
 from fracparticles.studies.work_precision import (
     best,
     front,
@@ -178,6 +178,20 @@ def test_a_goal_that_nobody_reaches_is_not_met():
     )  # fmt: skip
     met = run_time_goals(given).table["met"]
     assert list(met) == ["no"] * 5 + ["yes", "yes", "no"]
+
+
+@pytest.mark.parametrize(("error", "ratio"), [(1e-9 * (1.0 + 1e-8), 1.0), (1e-9 * 1.1, 1.5)])
+def test_errors_that_agree_are_one(error, ratio):
+    """A peer and a trial of ours, of the same time: whether the error of ours is that of the peer, or larger."""
+    data = frame()
+    ours, peer = data.iloc[[0]], data[data["group"] == "peers"].iloc[[0]]
+    same = {"failure": "", "setup_time": 0.0, "solve_time": 2.0}
+    trials = pd.concat([
+        peer.assign(error=1e-9, **same),
+        ours.assign(error=error, **same),
+        ours.assign(error=1e-10, **same | {"solve_time": 3.0}),
+    ])  # fmt: skip
+    assert _off_the_front(trials.assign(failed=False), [1e-3, 1e-9]) == pytest.approx(ratio)
 
 
 def test_tables_of_the_reference_problem_and_of_scattered_sums():
