@@ -11,7 +11,9 @@ from threadpoolctl import threadpool_limits
 
 import fracparticles as fp
 from fracparticles.benchmarks import BENCHMARKS, benchmark, clock
-from fracparticles.benchmarks.contenders import (
+from fracparticles.benchmarks.problem import Problem
+from fracparticles.benchmarks.reference import reference, transform_pairs
+from fracparticles.benchmarks.sweeps import (
     graded_trials,
     lent_exterior_trials,
     matrix_trials,
@@ -25,8 +27,6 @@ from fracparticles.benchmarks.contenders import (
     tied_step_trials,
     walk_trials,
 )
-from fracparticles.benchmarks.problem import Problem
-from fracparticles.benchmarks.reference import reference, transform_pairs
 from fracparticles.benchmarks.trial import Contender, Trial, run_trials
 from fracparticles.dataset import read_benchmark, write
 from fracparticles.errors import InvalidInput, NonFiniteSolution

@@ -12,9 +12,8 @@ from fracparticles.kernels import kernel
 from fracparticles.plan import expand
 from fracparticles.schemes import riesz
 from fracparticles.solver import solve
-from fracparticles.special.stable import green
+from fracparticles.special.stable import green, green_flux
 from fracparticles.studies import Inputs, study
-from fracparticles.studies.rejected import exact_flux
 
 
 def inputs(folder, scene, items, blocks, parameters):
@@ -32,7 +31,7 @@ def test_the_exact_flux_carries_the_mass_that_leaves(alpha):
     mass = [
         quad(lambda x, s=s: green(x, s, alpha), a, b, epsabs=1e-14)[0] for s in (t - dt, t + dt)
     ]
-    flux = exact_flux(np.array([a, b]), t, alpha)
+    flux = green_flux(np.array([a, b]), t, alpha)
     assert (mass[1] - mass[0]) / (2.0 * dt) == pytest.approx(flux[0] - flux[1], rel=1e-6)
 
 

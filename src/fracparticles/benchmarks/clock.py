@@ -139,7 +139,9 @@ def machine() -> dict[str, Any]:
 
 
 def _blas_threads() -> int:
-    return max(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+    """The most that a BLAS takes; 0 if there is none that can be told and asked."""
+    threads = (pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+    return max(threads, default=0)
 
 
 def _cpu_model() -> str:

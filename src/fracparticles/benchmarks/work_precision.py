@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fracparticles.benchmarks.clock import one_core, timings_dataset
-from fracparticles.benchmarks.contenders import (
+from fracparticles.benchmarks.problem import Problem
+from fracparticles.benchmarks.sweeps import (
     graded_trials,
     lent_exterior_trials,
     matrix_trials,
@@ -19,7 +20,6 @@ from fracparticles.benchmarks.contenders import (
     tied_step_trials,
     walk_trials,
 )
-from fracparticles.benchmarks.problem import Problem
 from fracparticles.benchmarks.trial import LABELS, VARIABLES, Trial, run_trials
 
 if TYPE_CHECKING:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from fracparticles.benchmarks.clock import one_core, timings_dataset
-from fracparticles.benchmarks.contenders import (
+from fracparticles.benchmarks.problem import Problem
+from fracparticles.benchmarks.sweeps import (
     matrix_trials,
     naive_trials,
     one_step_trials,
@@ -14,7 +15,6 @@ from fracparticles.benchmarks.contenders import (
     scheme_trials,
     tied_step_trials,
 )
-from fracparticles.benchmarks.problem import Problem
 from fracparticles.benchmarks.trial import LABELS, VARIABLES, Trial, run_trials
 
 if TYPE_CHECKING:

@@ -15,9 +15,7 @@ __all__ = ["run_time_goals", "which_method"]
 
 _LINE, _PLANE = "work_precision", "work_precision_plane"
 _TIE = 1.2  # two times within this ratio are told apart by nothing but noise
-_SAME = (
-    1.001  # two errors within this ratio are one: the norm is a sum that is true to less than that
-)
+_SAME = 1.001  # two errors within this ratio are told apart by nothing but the norm's own sum
 
 
 def which_method(inputs: Inputs) -> Result:
