@@ -15,23 +15,25 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.claims import (
-    COLUMNS,
     Claim,
     Finding,
     LedgerError,
     Status,
     judge_value,
+    read_claims,
+    read_findings,
+    unit_of_last_digit,
+    write_findings,
+    write_text,
+)
+from fracparticles.ledger import (
+    COLUMNS,
     ledger,
     ledger_markdown,
     ours_text,
-    read_claims,
-    read_findings,
     read_ledger,
     summary_line,
-    unit_of_last_digit,
-    write_findings,
     write_ledger,
-    write_text,
 )
 
 ROOT = Path(__file__).parents[1]

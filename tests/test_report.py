@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from fracparticles.claims import Claim, Finding, ledger, write_ledger
+from fracparticles.claims import Claim, Finding
+from fracparticles.ledger import ledger, write_ledger
 from fracparticles.report import ReportError, SceneEntry, build
 
 REPORT = Path(__file__).parents[1] / "report"

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fracparticles.claims import Status, read_claims, read_ledger, summary_line
+from fracparticles.claims import Status, read_claims
+from fracparticles.ledger import read_ledger, summary_line
 from fracparticles.plan import read_config
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -1,7 +1,7 @@
-"""The claims ledger: what the documents print, against what we find.
+"""Claims: what the documents print, against what we find.
 
 A claim is a printed number or a checkable statement (`report/printed/*.yaml`); a finding is what a
-study measured for it (`results/findings/*.json`). The ledger joins the two, one row a claim.
+study measured for it (`results/findings/*.json`). `ledger` joins the two, one row a claim.
 
 With p the printed number, u one unit of its last printed digit and o ours, a value is
 
@@ -18,11 +18,11 @@ import json
 import math
 import os
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from enum import StrEnum
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Self
+from typing import Literal, Self
 
 import yaml
 from pydantic import (
@@ -36,40 +36,20 @@ from pydantic import (
 
 from fracparticles.errors import FracparticlesError
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 __all__ = [
-    "COLUMNS",
+    "PRINTED_NUMBER",
     "Claim",
     "Finding",
     "LedgerError",
     "Status",
     "judge",
     "judge_value",
-    "ledger",
-    "ledger_markdown",
-    "ours_text",
     "read_claims",
     "read_findings",
-    "read_ledger",
-    "summary_line",
+    "refuse_repeats",
     "write_findings",
-    "write_ledger",
     "write_text",
 ]
-
-COLUMNS = (
-    "id",
-    "item",
-    "what",
-    "printed",
-    "ours",
-    "relative_deviation",
-    "status",
-    "reason",
-    "runs",
-)
 
 PRINTED_NUMBER = r"^-?[0-9]+(\.[0-9]+)?(e-?[0-9]{1,3})?$"
 
@@ -205,7 +185,7 @@ def read_claims(*paths: str | os.PathLike[str]) -> list[Claim]:
             claims += TypeAdapter(list[Claim]).validate_python(found)
         except (yaml.YAMLError, ValidationError) as error:
             raise LedgerError(f"{path}: {error}") from error
-        _refuse_repeats([claim.id for claim in claims], f"{path}: claimed twice")
+        refuse_repeats([claim.id for claim in claims], f"{path}: claimed twice")
     return claims
 
 
@@ -267,62 +247,11 @@ def relative_deviation(printed: str, ours: float) -> float:
     return (ours - p) / p if p else math.nan
 
 
-def ledger(printed: Sequence[Claim], findings: Sequence[Finding]) -> pd.DataFrame:
-    """Join claims and findings, one row a claim, in the order of the claims.
-
-    Parameters
-    ----------
-    printed : sequence of Claim
-        What the documents print.
-    findings : sequence of Finding
-        What we found, exactly one for each claim.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns `COLUMNS`. `printed` is text; `ours` is our number for a value and the evidence for
-        a statement; `relative_deviation` is nan for statements; `status` is a word of `Status`;
-        `runs` are joined by "; ".
-
-    Raises
-    ------
-    LedgerError
-        For a claim without a finding or with two, a finding for an unknown claim, a finding of the
-        wrong kind, and a deviation, refutation or untestable claim without a reason. A deviation
-        with its reason never raises.
-    """
-    import pandas as pd
-
-    known = [claim.id for claim in printed]
-    _refuse_repeats(known, "claimed twice")
-    _refuse_repeats([finding.claim for finding in findings], "found twice")
-    found = {finding.claim: finding for finding in findings}
-    if unknown := sorted(found.keys() - set(known)):
-        raise LedgerError(f"finding for an unknown claim: {', '.join(unknown)}")
-    if missing := [claim for claim in known if claim not in found]:
-        raise LedgerError(f"claim without a finding: {', '.join(missing)}")
-    rows = [_row(claim, found[claim.id]) for claim in printed]
-    return pd.DataFrame(rows, columns=list(COLUMNS)).astype({"relative_deviation": float})
-
-
 def judge(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
     """Return the status of a claim, our number or evidence, and the relative deviation."""
     if claim.kind == "value":
         return _judge_number(claim, finding)
     return _judge_statement(claim, finding)
-
-
-def _row(claim: Claim, finding: Finding) -> dict[str, object]:
-    status, ours, deviation = judge(claim, finding)
-    # A study gives the reason for the case that its number deviates; one that does not needs none.
-    reason = "" if status is Status.REPRODUCED else finding.reason.strip()
-    if status.needs_reason and not reason:
-        raise LedgerError(f"{claim.id}: the status is {status!s}, and no reason is given")
-    values = (
-        claim.id, claim.item, claim.what, claim.text, ours, deviation, str(status), reason,
-        "; ".join(finding.runs),
-    )  # fmt: skip
-    return dict(zip(COLUMNS, values, strict=True))
 
 
 def _judge_number(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
@@ -347,131 +276,10 @@ def _judge_statement(claim: Claim, finding: Finding) -> tuple[Status, float | st
     return words[finding.verdict], finding.evidence.strip(), math.nan
 
 
-def _refuse_repeats(ids: Iterable[str], complaint: str) -> None:
+def refuse_repeats(ids: Iterable[str], complaint: str) -> None:
+    """Raise LedgerError, with the complaint and the names, if some come twice."""
     if repeated := sorted(name for name, count in Counter(ids).items() if count > 1):
         raise LedgerError(f"{complaint}: {', '.join(repeated)}")
-
-
-def summary_line(df: pd.DataFrame) -> str:
-    """Count the ledger in one line.
-
-    Returns
-    -------
-    str
-        As in "71 claims: 52 reproduced, 9 within the print's rounding, 6 deviate, 4 refuted,
-        0 not testable".
-    """
-    count = Counter(Status(word) for word in df["status"])
-    noun = "claim" if len(df) == 1 else "claims"
-    return (
-        f"{len(df)} {noun}: {count[Status.REPRODUCED]} reproduced, "
-        f"{count[Status.WITHIN_ROUNDING]} within the print's rounding, "
-        f"{count[Status.DEVIATES]} deviate, {count[Status.REFUTED]} refuted, "
-        f"{count[Status.NOT_TESTABLE]} not testable"
-    )
-
-
-def ledger_markdown(df: pd.DataFrame) -> str:
-    """Render rows of the ledger as Markdown: a table of the values, then one of the statements.
-
-    Either is left out when it has no rows. The columns are printed, ours, deviation (values only),
-    status and reason, after the claim.
-    """
-    is_value = df["printed"].str.match(PRINTED_NUMBER)
-    values = [
-        (
-            _claim_cell(row),
-            row["printed"],
-            ours_text(row["printed"], row["ours"]),
-            _percent(row["relative_deviation"]),
-            _status_cell(row),
-            _cell(row["reason"]),
-        )
-        for row in df[is_value].to_dict("records")
-    ]
-    statements = [
-        (
-            _claim_cell(row),
-            _cell(row["printed"]),
-            _cell(row["ours"]),
-            _status_cell(row),
-            _cell(row["reason"]),
-        )
-        for row in df[~is_value].to_dict("records")
-    ]
-    tables = (
-        _table(("claim", "printed", "ours", "deviation", "status", "reason"), values),
-        _table(("claim", "printed", "ours", "status", "reason"), statements),
-    )
-    return "\n".join(table for table in tables if table)
-
-
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    if not rows:
-        return ""
-    numbers = ("printed", "ours", "deviation") if "deviation" in head else ()
-    rule = tuple("--:" if name in numbers else ":--" for name in head)
-    lines = (head, rule, *rows)
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
-
-
-def _claim_cell(row: dict[str, str]) -> str:
-    return f"`{row['id']}`<br>{_cell(row['what'])}"
-
-
-def _status_cell(row: dict[str, str]) -> str:
-    status = Status(row["status"])
-    return f"{status.sign} {status}"
-
-
-def ours_text(printed: str, ours: float | str) -> str:
-    """Our number with two digits more than the print, or our evidence as it is."""
-    if isinstance(ours, str):
-        return ours
-    mantissa, _, exponent = printed.partition("e")
-    decimals = len(mantissa.partition(".")[2]) + 2
-    if not exponent:
-        return f"{ours:.{decimals}f}"
-    return f"{ours / 10.0 ** int(exponent):.{decimals}f}e{exponent}"
-
-
-def _percent(deviation: float) -> str:
-    return "" if math.isnan(deviation) else f"{100 * deviation:+.3g} %".replace("+0 %", "0 %")
-
-
-def _cell(text: str) -> str:
-    """Text that a Markdown table shows as it is, on one line."""
-    for mark in ("\\", "|", "*", "`"):
-        text = text.replace(mark, f"\\{mark}")
-    return " ".join(text.replace("&", "&amp;").replace("<", "&lt;").split())
-
-
-def write_ledger(
-    df: pd.DataFrame, csv_path: str | os.PathLike[str], md_path: str | os.PathLike[str]
-) -> None:
-    """Write the ledger as CSV and as Markdown, each whole or not at all."""
-    write_text(csv_path, df.to_csv(index=False, lineterminator="\n"))
-    write_text(md_path, f"{summary_line(df)}\n\n{ledger_markdown(df)}")
-
-
-def read_ledger(csv_path: str | os.PathLike[str]) -> pd.DataFrame:
-    """Read back what `write_ledger` wrote as CSV.
-
-    Raises
-    ------
-    LedgerError
-        If the columns are not those of a ledger.
-    """
-    import pandas as pd
-
-    df = pd.read_csv(csv_path, dtype=str, keep_default_na=False, encoding="utf-8")
-    if tuple(df.columns) != COLUMNS:
-        raise LedgerError(f"{csv_path}: the columns are {[*df.columns]}, not those of a ledger")
-    is_value = df["printed"].str.match(PRINTED_NUMBER) & (df["ours"] != "")
-    ours = [float(o) if number else o for o, number in zip(df["ours"], is_value, strict=True)]
-    df["ours"] = pd.Series(ours, dtype=object)
-    df["relative_deviation"] = [float(deviation or "nan") for deviation in df["relative_deviation"]]
-    return df
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:

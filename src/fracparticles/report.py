@@ -16,15 +16,9 @@ from typing import TYPE_CHECKING
 import jinja2
 import markdown
 
-from fracparticles.claims import (
-    Status,
-    ledger_markdown,
-    ours_text,
-    read_ledger,
-    summary_line,
-    write_text,
-)
+from fracparticles.claims import Status, write_text
 from fracparticles.errors import FracparticlesError
+from fracparticles.ledger import ledger_markdown, ours_text, read_ledger, summary_line
 
 if TYPE_CHECKING:
     import pandas as pd

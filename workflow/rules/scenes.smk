@@ -56,7 +56,7 @@ rule ledger:
     input:
         findings=expand(RESULTS / "findings/{scene}.json", scene=SCENES),
         printed=list(PRINTED.values()),
-        code=PACKAGE / "claims.py",
+        code=[PACKAGE / "claims.py", PACKAGE / "ledger.py"],
     output:
         csv=report(LEDGER[0], category="Claims ledger"),
         md=LEDGER[1],
@@ -98,7 +98,7 @@ rule report:
             "report/template/report.html.j2",
             "report/template/style.css",
         ],
-        code=[PACKAGE / "report.py", PACKAGE / "claims.py"],
+        code=[PACKAGE / name for name in ("report.py", "claims.py", "ledger.py")],
     output:
         REPORT / "report.md",
         REPORT / "report.html",
