@@ -235,7 +235,7 @@ REFUSED = [
     ({"dt": None}, "dt", "stable up to"),
     ({"dt": 1e-20}, "dt", "2^53 steps"),
     ({"integrator": "exponential"}, "dt", "nothing for integrator='exponential'"),
-    ({"scheme": "GPSE", "dt": 1e-9}, "dt", "for GPSE, so that epsilon / h is from 0.25 to 1000"),
+    ({"scheme": "GPSE", "dt": 1e-9}, "dt", "so that epsilon / h is from 0.25 to 1000"),
     ({"scheme": "GPSE", "overlap": 2.0}, "overlap", "one of dt and overlap"),
     ({"scheme": "GPSE", "integrator": "rk2"}, "integrator", "nothing or 'euler' for GPSE"),
     ({"t_final": 0.5}, "t_final", "a number > t_initial = 0.5"),

@@ -113,8 +113,13 @@ def initial_data(kind: str, case) -> np.ndarray:
 
 
 def both(combination, beta, integrator, courant, steps, kind, overlap=2.0, n=60):
-    """Stepping and series, with dt = courant times the largest stable step."""
+    """Stepping and series, with dt = courant times the largest stable step.
+
+    An open lattice must be wider than what a point mass spreads over: five times the width, a tenth of the steps.
+    """
     scheme = combination[0]
+    if combination[2] == "open":
+        n, steps = 5 * n, max(steps // 10, 40)
     if scheme == "GPSE":
         dt = overlap ** (1.0 + beta)
     else:

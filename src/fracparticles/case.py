@@ -16,7 +16,7 @@ from fracparticles.errors import InvalidInput
 from fracparticles.integrators import STEP_POLYNOMIALS
 from fracparticles.schemes import Setting
 from fracparticles.special.stable import mean_radius
-from fracparticles.stability import stability_limit
+from fracparticles.stability import stability_limit, symbol_range
 
 __all__ = ["FUNDAMENTAL", "Case"]
 
@@ -171,9 +171,14 @@ class Case(BaseModel):
 
     @property
     def error_radius(self) -> float:
-        """The errors are taken over |x| <= 5 R_alpha (47) for dim = 1, over |x| <= 5 (59) otherwise, or the lattice."""
+        """The errors are taken over |x| <= 5 R_alpha (47) for dim = 1, over |x| <= 5 (59) otherwise, or the lattice.
+
+        That is for the papers' D t_f = 1.5; for another it grows with the solution, like (D t_f)^(1/alpha), so that
+        the error does not depend on the units.
+        """
         half = 5.0 * mean_radius(self.alpha) if self.dim == 1 else 5.0
-        return min(half, self.domain)
+        spread = (self.diffusivity * self.t_final / 1.5) ** (1.0 / self.alpha)
+        return min(half * spread, self.domain)
 
     @property
     def method(self) -> str:
@@ -244,13 +249,21 @@ class Case(BaseModel):
         """The largest dt inside the stability interval; infinite for the exponential."""
         if self.method == "exponential":
             return float("inf")
-        # A displacement wave of DVM's particles in a uniform field decays by DD's symbol.
-        scheme = "DD" if self.scheme == "DVM" else self.scheme
-        limit = stability_limit(
-            scheme, self.beta, self.order, self.epsilon_over_h, self.dim, self.kernel_family
-        )
+        limit = stability_limit(*self._of_the_symbol)
         reach = STEP_POLYNOMIALS[self.method].stability_interval / 2.0
         return float(reach * limit * self.particle_spacing**self.alpha / self.diffusivity)
+
+    @property
+    def symbol_range(self) -> tuple[float, float]:
+        """The least and the greatest value of A(theta) h^alpha / D."""
+        return symbol_range(*self._of_the_symbol)
+
+    @property
+    def _of_the_symbol(self) -> tuple[str, float, int, float, int, str | None]:
+        # A displacement wave of DVM's particles in a uniform field decays by DD's symbol.
+        scheme = "DD" if self.scheme == "DVM" else self.scheme
+        overlap = self.epsilon_over_h
+        return scheme, self.beta, self.order, overlap, self.dim, self.kernel_family
 
     def refuse_point_mass(self) -> None:
         """Refuse to start from the fundamental solution at t = 0, where it is a point mass.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels import family_of
 from fracparticles.schemes import METHODS
+from fracparticles.special.stable import central_mass
 from fracparticles.stability import stability_limit
 from fracparticles.sums import BandedConvolution
 
@@ -27,6 +28,7 @@ _MOST_STEPS = 2**53  # more are not told apart in float64
 _FAR_OVERLAPS = 10  # half the lattice in smoothing lengths, at least, and
 _FAR_STIFFEST = 1e6  # T D / h^alpha, at most, for more than one term of the exterior
 _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
+_ROUNDED = 1e-9  # of an overlap that is a quotient
 
 
 def check(case: Case) -> None:
@@ -112,12 +114,14 @@ def _check_work(case: Case) -> None:
 
 
 def _check_far_field(case: Case) -> None:
-    """More than one term, used again and again: far enough from the middle, and not for ever.
+    """The lattice must end in the tail of the solution; more than one term, used again and again, ask for more.
 
     Found by computation (tests/test_exterior.py): from n = 10 epsilon / h on, no eigenvalue leaves the range of the
-    symbol by more than 2e-6 of it, nor lies above nil by more than 4e-7, but nearer the ends the fit to strengths at
+    symbol by more than 2e-6 of it, nor lies above zero by more than 4e-7, but nearer the ends the fit to strengths at
     n / 2 makes modes that grow.
     """
+    if case.exterior == "open":
+        _check_width(case)
     if case.far_terms in (None, 1) or case.evaluation == "convolution":
         return
     if case.method == "euler" and case.steps == 1:
@@ -138,6 +142,22 @@ def _check_far_field(case: Case) -> None:
             case.far_terms,
             f"nothing or 1 where T D / h^alpha = {stiffness:.3g}, more than {_FAR_STIFFEST:g}",
             "Leave it out, or take a shorter run or a larger spacing.",
+        )
+
+
+def _check_width(case: Case) -> None:
+    """A point mass must not spread beyond the lattice: no power of |x| continues a solution that is flat there."""
+    time = case.diffusivity * (case.t_final - case.t_initial)
+    inside = float(central_mass(case.domain, time, case.alpha, case.dim))
+    if inside < 0.5:
+        given = "half_width" if case.truncation is None else "truncation"
+        raise InvalidInput(
+            given,
+            getattr(case, given),
+            "a lattice that is wider than the solution for exterior='open', and of a point mass only the share "
+            f"{inside:.2g} stays on |x| <= {case.domain:.4g} for the time of this run; half is asked for, 0.95 is good",
+            f"The solution spreads over about (D T)^(1/alpha) = {time ** (1.0 / case.alpha):.4g}: take a half-width of "
+            "several times that, or a shorter run.",
         )
 
 
@@ -253,14 +273,18 @@ def _check_integrator(case: Case) -> None:
                 "one of dt and overlap for GPSE, since epsilon = (D dt)^(1/alpha), Eq. (40)",
                 "Leave one of them out.",
             )
-        if case.dt is not None and not OVERLAPS[0] <= case.epsilon_over_h <= OVERLAPS[1]:
-            least, most = ((s * case.particle_spacing) ** case.alpha for s in OVERLAPS)
+        low, high = OVERLAPS[0] * (1.0 - _ROUNDED), OVERLAPS[1] * (1.0 + _ROUNDED)
+        if not low <= case.epsilon_over_h <= high:
+            least, most = (
+                (s * case.particle_spacing) ** case.alpha / case.diffusivity for s in OVERLAPS
+            )
+            given = "overlap" if case.dt is None else "dt"
             raise InvalidInput(
-                "dt",
-                case.dt,
-                f"a step from {least / case.diffusivity:.4g} to {most / case.diffusivity:.4g} for GPSE, so that "
-                f"epsilon / h is from {OVERLAPS[0]:g} to {OVERLAPS[1]:g}",
-                "Change dt or the spacing.",
+                given,
+                getattr(case, given),
+                f"for GPSE a step from {least:.4g} to {most:.4g}, so that epsilon / h is from {OVERLAPS[0]:g} to "
+                f"{OVERLAPS[1]:g}; this run takes {case.steps} steps of {case.time_step:.4g}",
+                "Change it, the spacing, or the time of the run.",
             )
     elif case.scheme == "DVM" and case.dt is None:
         raise InvalidInput("dt", None, "a number > 0 for DVM", "Give the time step.")

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-__all__ = ["FracparticlesError", "InvalidInput", "NonFiniteSolution", "StabilityWarning"]
+__all__ = [
+    "AccuracyWarning",
+    "FracparticlesError",
+    "FracparticlesWarning",
+    "InvalidInput",
+    "NonFiniteSolution",
+    "StabilityWarning",
+]
 
 _LONGEST = 200  # characters of a value that a message shows
 
@@ -40,5 +47,13 @@ class NonFiniteSolution(FracparticlesError, ArithmeticError):
     """The particle strengths overflowed or became nan; says when and why."""
 
 
-class StabilityWarning(UserWarning):
-    """The time step lies outside the stability interval: the run will blow up."""
+class FracparticlesWarning(UserWarning):
+    """Base class of every warning of the package: the run is computed as it is, and may not be what is wanted."""
+
+
+class StabilityWarning(FracparticlesWarning):
+    """The discrete problem grows: the time step is too large, or the scheme amplifies some wave at any step."""
+
+
+class AccuracyWarning(FracparticlesWarning):
+    """The numbers may be far from the solution: names the quantity that says so and what would mend it."""

@@ -33,7 +33,7 @@ from scipy.special import gamma, hyp2f1, roots_jacobi
 from fracparticles.operators import FarField
 from fracparticles.sums import valid_convolution
 
-__all__ = ["far_field", "tabulated_far_field", "tail_constant"]
+__all__ = ["continuation", "far_field", "tabulated_far_field", "tail_constant"]
 
 # Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
 # varies on the scale n and two terms leave a relative error of order n^-4.
@@ -41,7 +41,8 @@ _NEAR = 4
 # Sums over j > 4 n are analytic in i / n in |i| <= 4 n and in n / j: these many nodes give round-off.
 _NODES = 24
 # Where the expansion meets the strengths: at n, 3 n / 4 and n / 2. Closer together, the fit would magnify round-off.
-_DEPTHS = (0.0, 0.25, 0.5)
+# The last is where three terms are compared with a strength that they do not meet.
+_DEPTHS = (0.0, 0.25, 0.5, 0.625)
 
 
 def far_field(
@@ -145,6 +146,24 @@ def tabulated_far_field(
             beyond = hyp2f1(q, decay + q, decay + q + 1.0, -i / last)
             mode += b * n**q * float(last) ** (-decay - q) / (decay + q) * beyond
     return _far_field_of(depth, fit.T @ sums, parity=1)
+
+
+def continuation(
+    u: np.ndarray, n: int, alpha: float, terms: int = 1
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the expansion of the exterior where it was not made to meet u: the next depth inward, at either side.
+
+    Returns
+    -------
+    places : array of int, shape (2,)
+        Indices into u.
+    values : array, shape (2,)
+        What the expansion says there.
+    """
+    depth, powers, fit = _expansion(n, alpha, terms)
+    p = round(n * _DEPTHS[terms])
+    modes = (n / (n - p)) ** powers @ fit
+    return np.array([2 * n - p, p]), np.array([modes @ u[2 * n - depth], modes @ u[depth]])
 
 
 def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ from scipy.special import roots_jacobi, roots_legendre
 from fracparticles.operators import BoxFarField
 from fracparticles.sums import BoxConvolution
 
-__all__ = ["box_far_field"]
+__all__ = ["box_continuation", "box_far_field"]
 
 # Lattice points up to this many times the cube wanted are summed one by one, those beyond by an integral whose
 # relative error is of order (2 N)^-4. In three dimensions a larger cube would take too much memory.
@@ -68,6 +68,23 @@ def box_far_field(
     return BoxFarField(boundary, fit, near.reshape(len(weights), dim + 2, -1))
 
 
+def box_continuation(u: np.ndarray, n: int, alpha: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the modes, as they fit the outermost particles of u, on the particles with max |j_d| = 3 n / 4.
+
+    Returns
+    -------
+    places : array of int, shape (P,)
+        Flat indices into u.
+    values : array, shape (P,)
+        What the modes say there.
+    """
+    boundary, edge = _boundary(n, u.ndim)
+    modes = np.array(list(_modes(edge / n, alpha, u.ndim))).T
+    amplitudes = np.linalg.lstsq(modes, u.reshape(-1)[boundary], rcond=None)[0]
+    inner, position = _shell(n, u.ndim, round(0.75 * n))
+    return inner, amplitudes @ np.array(list(_modes(position / n, alpha, u.ndim)))
+
+
 def _modes(position: Iterable[np.ndarray], alpha: float, dim: int) -> Iterator[np.ndarray]:
     """phi_1 .. phi_{n+2}, one after the other, at the positions j / N, `dim` arrays that broadcast."""
     square = sum(np.square(part) for part in position)
@@ -79,9 +96,14 @@ def _modes(position: Iterable[np.ndarray], alpha: float, dim: int) -> Iterator[n
 
 def _boundary(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
     """The flat indices and the coordinates of the outermost particles."""
+    return _shell(n, dim, n)
+
+
+def _shell(n: int, dim: int, distance: int) -> tuple[np.ndarray, np.ndarray]:
+    """The flat indices and the coordinates of the particles with max |j_d| = distance."""
     lattice = np.indices((2 * n + 1,) * dim).reshape(dim, -1) - n
-    outermost = np.flatnonzero(np.abs(lattice).max(axis=0) == n)
-    return outermost, lattice[:, outermost].astype(float)
+    there = np.flatnonzero(np.abs(lattice).max(axis=0) == distance)
+    return there, lattice[:, there].astype(float)
 
 
 def _near_sums(

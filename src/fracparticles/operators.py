@@ -2,6 +2,8 @@
 
 Every operator has `size`, `apply(u)` and the fused `update(u, a, b, c, v)`, which writes
 a (A u) + b u + c v into v in one pass over memory: stepping and Chebyshev recurrences are made of it.
+
+The sums keep work arrays. An operator locks them while it uses them, so that threads may share it: they take turns.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from threading import Lock
 from typing import Protocol
 
 import numba as nb
@@ -21,6 +24,7 @@ __all__ = [
     "ConvolutionOperator",
     "FarField",
     "FluxDivergenceOperator",
+    "LatticeOperator",
     "Operator",
     "TwoPassOperator",
 ]
@@ -29,10 +33,9 @@ Convolution = Callable[[np.ndarray], np.ndarray]
 
 
 class Operator(Protocol):
-    """What an integrator needs to know of a scheme."""
+    """What an integrator needs."""
 
     size: int
-    least_excess: float
 
     def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         """Write a (A u) + b u + c v into v; u and v are different arrays."""
@@ -94,14 +97,27 @@ class BoxFarField:
             _add_modes(amplitudes, sums, total)
 
 
-class _Appliable(ABC):
+class LatticeOperator(ABC):
+    """The operator of a scheme, with what is known of its spectrum."""
+
     size: int
-    # The least of what the bounded lattice adds to the diagonal of the infinite one, if below nil.
+    dim: int = 1
+    symmetric: bool = False  # the matrix of A
+    # The least and the greatest of what the bounded lattice adds to the diagonal of the infinite one, with zero.
     least_excess: float = 0.0
+    greatest_excess: float = 0.0
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+
+    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+        """Write a (A u) + b u + c v into v; u and v are different arrays."""
+        with self._lock:
+            self._update(u, a, b, c, v)
 
     @abstractmethod
-    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
-        """Write a (A u) + b u + c v into v."""
+    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+        """Do so with the work arrays to itself."""
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return A u as a new array."""
@@ -110,7 +126,7 @@ class _Appliable(ABC):
         return out
 
 
-class ConvolutionOperator(_Appliable):
+class ConvolutionOperator(LatticeOperator):
     """(A u)_i = sum_j w_{i-j} u_j + d_i u_i + far field.
 
     Parameters
@@ -123,6 +139,8 @@ class ConvolutionOperator(_Appliable):
         The contribution of the exterior.
     infinite_diagonal : float, optional
         d_i of a particle in the middle of an infinite lattice, if the bounded one differs from it.
+    dim : {1, 2, 3}
+        Space dimension of the lattice.
     """
 
     def __init__(
@@ -131,21 +149,23 @@ class ConvolutionOperator(_Appliable):
         diagonal: np.ndarray,
         far_field: _Far | None,
         infinite_diagonal: float | None = None,
+        dim: int = 1,
     ) -> None:
-        self.size = diagonal.size
+        super().__init__()
+        self.size, self.dim, self.symmetric = diagonal.size, dim, far_field is None
         if infinite_diagonal is not None:
             self.least_excess = min(0.0, float(diagonal.min()) - infinite_diagonal)
+            self.greatest_excess = max(0.0, float(diagonal.max()) - infinite_diagonal)
         self.convolve, self._diagonal, self._far = convolve, diagonal, far_field
 
-    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
-        """Write a (A u) + b u + c v into v."""
+    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         y = self.convolve(u)
         if self._far is not None:
             self._far.add(u, y)
-        _update(y, self._diagonal, u, a, b, c, v)
+        _add_diagonal(y, self._diagonal, u, a, b, c, v)
 
 
-class TwoPassOperator(_Appliable):
+class TwoPassOperator(LatticeOperator):
     """A u = S q + d q with q = (w * u + far field): a slow kernel first, a Gaussian one second.
 
     Parameters
@@ -167,19 +187,19 @@ class TwoPassOperator(_Appliable):
         diagonal: np.ndarray,
         far_field: FarField | None,
     ) -> None:
+        super().__init__()
         self.size = diagonal.size
         self.convolve, self._stencil = convolve, stencil
         self._diagonal, self._far = diagonal, far_field
 
-    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
-        """Write a (A u) + b u + c v into v."""
+    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         q = self.convolve(u)
         if self._far is not None:
             self._far.add(u, q)
         self._stencil.update(q, self._diagonal, u, a, b, c, v)
 
 
-class FluxDivergenceOperator(_Appliable):
+class FluxDivergenceOperator(LatticeOperator):
     """A u = sum_d (S_d q_d + c_d q_d) with the flux q = (w_d * u + far field)_d, on a square or cubic lattice.
 
     Parameters
@@ -189,7 +209,7 @@ class FluxDivergenceOperator(_Appliable):
     divergence : callable
         S: from the components of the flux to one value a particle, shape (N, .., N).
     diagonal : array, shape (dim, N, .., N), or None
-        c_d; None if it is nil.
+        c_d; None if it is zero.
     far_field : BoxFarField or None
         The contribution of the exterior to q.
     shape : tuple of int
@@ -204,13 +224,13 @@ class FluxDivergenceOperator(_Appliable):
         far_field: BoxFarField | None,
         shape: tuple[int, ...],
     ) -> None:
-        self.size = int(np.prod(shape))
+        super().__init__()
+        self.size, self.dim = int(np.prod(shape)), len(shape)
         self._shape = shape
         self.convolve, self._divergence = convolve, divergence
         self._diagonal, self._far = diagonal, far_field
 
-    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
-        """Write a (A u) + b u + c v into v."""
+    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
         q = self.convolve(u.reshape(self._shape))
         if self._far is not None:
             self._far.add(u, q)
@@ -222,7 +242,7 @@ class FluxDivergenceOperator(_Appliable):
 
 
 @nb.njit(cache=True, nogil=True)
-def _update(y, diagonal, u, a, b, c, v):
+def _add_diagonal(y, diagonal, u, a, b, c, v):
     for i in range(v.size):
         v[i] = a * (y[i] + diagonal[i] * u[i]) + b * u[i] + c * v[i]
 

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.fft import irfft
 from scipy.special import gamma, zeta
 
+from fracparticles.errors import InvalidInput
 from fracparticles.exterior import tabulated_far_field, tail_constant
 from fracparticles.operators import ConvolutionOperator
 from fracparticles.sums import fast_convolution
@@ -26,8 +27,11 @@ __all__ = ["propagator", "propagator_weights", "tabulated_operator", "tail_ampli
 
 Amplification = Callable[[np.ndarray], np.ndarray]  # theta in [0, pi] -> f(theta)
 
-# e_m comes from a circle of this many times its length; of its images these many terms are taken off.
+# e_m comes from a circle of this many times its length, and of its width tau^(1/alpha); of its images these many terms
+# are taken off.
 _CIRCLE = 8
+_WIDTHS = 128
+_LONGEST = 2**26
 _IMAGE_TERMS = 3
 # The table of e_m goes on to this many n; beyond, its expansion takes over.
 _REACH = 4
@@ -95,9 +99,22 @@ def propagator_weights(
     """Return e_m, m = 0 .. count - 1.
 
     The sum over P points of the circle gives sum_l e_{m + l P}; the images l = +-1, +-2, .. of a power of m are Hurwitz
-    zeta functions, and those of the first terms of the expansion are taken off.
+    zeta functions, and those of the first terms of the expansion are taken off. P is much larger than the width of e_m.
+
+    Raises
+    ------
+    InvalidInput
+        If it takes a circle of more than 2^26 points.
     """
-    circle = 1 << (_CIRCLE * count - 1).bit_length()
+    wide = _WIDTHS * scaled_time ** (1.0 / alpha)
+    if not wide <= _LONGEST:
+        raise InvalidInput(
+            "scaled_time",
+            scaled_time,
+            f"at most {(_LONGEST / _WIDTHS) ** alpha:.3g}: the run spreads a particle over {wide / _WIDTHS:.3g} others",
+            "Take a larger spacing or a shorter time.",
+        )
+    circle = 1 << (max(_CIRCLE * count, int(wide)) - 1).bit_length()
     theta = np.arange(circle // 2 + 1) * (2.0 * np.pi / circle)
     e = np.asarray(irfft(amplification(theta), circle)[:count])
     m = np.arange(count) / circle

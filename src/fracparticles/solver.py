@@ -2,32 +2,43 @@
 
 from __future__ import annotations
 
-import hashlib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fracparticles.case import FUNDAMENTAL, Case
-from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
+from fracparticles.case import Case
+from fracparticles.errors import (
+    FracparticlesError,
+    InvalidInput,
+    NonFiniteSolution,
+    StabilityWarning,
+)
+from fracparticles.initial import (
+    Initial,
+    bare_strengths,
+    initial_strengths,
+    refuse_non_finite,
+)
 from fracparticles.integrators import (
     STEP_POLYNOMIALS,
+    Flow,
     applied,
     euler_step,
-    exponential,
-    power,
+    exponential_flow,
+    power_flow,
     step,
 )
-from fracparticles.operators import Operator
+from fracparticles.operators import LatticeOperator
 from fracparticles.propagator import propagator
+from fracparticles.reliability import Estimates, estimates, warn_if_doubtful
 from fracparticles.schemes import SCHEMES, dvm
-from fracparticles.special.arguments import real_array
 from fracparticles.special.stable import central_mass, green
-from fracparticles.spectrum import spectral_interval
+from fracparticles.spectrum import largest_degree, spectral_interval
+from fracparticles.stability import grows
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,8 +57,8 @@ __all__ = [
     "solve",
 ]
 
-Initial = str | Path | np.ndarray | Callable[[np.ndarray], np.ndarray]
 _LARGEST_MATRIX = 16384  # particles
+_NO_GROWTH = 1e-3  # over the run, as an exponent
 Advance = Callable[[np.ndarray], np.ndarray]
 
 
@@ -68,6 +79,8 @@ class Solution:
         Where the initial data came from.
     particles : ParticleRun, optional
         For DVM, the particles themselves and what happened to them.
+    estimates : dict
+        What the strengths say of the accuracy, see `reliability`.
     """
 
     case: Case
@@ -77,6 +90,7 @@ class Solution:
     operator_applications: int
     initial: str
     particles: ParticleRun | None = None
+    estimates: Estimates = field(default_factory=dict)
 
 
 def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
@@ -109,16 +123,26 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
 
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:
-    """Run a case and return its arrays: `solve` without the data set."""
+    """Run a case and return its arrays: `solve` without the data set.
+
+    Warns
+    -----
+    StabilityWarning
+        If some wave grows.
+    AccuracyWarning
+        If the strengths say that they may be far from the solution, see `reliability`.
+    """
     u0, origin = initial_strengths(case, initial)
+    particles = None
     if case.scheme == "DVM":
         warn_if_unstable(case)
-        run = advect(case, u0)
-        evaluations = run.history.velocity_evaluations
-        return Solution(case, case.x, u0, run.field(case.x), evaluations, origin, run)
-    ready = prepare(case)
-    u = ready.solve(u0)
-    return Solution(case, case.x, u0, u, ready.operator_applications, origin)
+        particles = advect(case, u0)
+        u, applications = particles.field(case.x), particles.history.velocity_evaluations
+    else:
+        u, applications = prepare(case).run(u0)
+    found = estimates(case, u0, u)
+    warn_if_doubtful(case, u0, u, found)
+    return Solution(case, case.x, u0, u, applications, origin, particles, found)
 
 
 def advect(case: Case, u0: np.ndarray) -> ParticleRun:
@@ -157,51 +181,29 @@ def advect(case: Case, u0: np.ndarray) -> ParticleRun:
         raise _named(case, error) from None
 
 
-def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.ndarray, str]:
-    """Return the initial strengths on `case.x` and one line on where they come from."""
-    source: Initial = case.initial if initial is None else initial
-    if isinstance(source, str) and source == FUNDAMENTAL:
-        case.refuse_point_mass()
-        x = case.x if case.dim == 1 else case.radius
-        u0 = np.asarray(green(x, case.diffusivity * case.t_initial, case.alpha, case.dim))
-        return u0, f"fundamental solution at t = {case.t_initial:g}"
-    if isinstance(source, (str, Path)):
-        from fracparticles.dataset import read_strengths
-
-        return read_strengths(Path(source), case), f"file {Path(source).name}"
-    given = source(*case.positions) if callable(source) else source
-    u0 = np.array(real_array("initial", given))
-    if u0.shape != case.shape:
-        raise _wrong_shape(u0, case.shape)
-    if not np.isfinite(u0).all():
-        where = case.x[np.argwhere(~np.isfinite(u0))[0]]
-        raise InvalidInput(
-            "initial",
-            f"not finite at x = {', '.join(f'{part:g}' for part in where)}",
-            "finite numbers",
-            "Mend the data, or shift a singularity off the lattice.",
-        )
-    digest = hashlib.sha256(u0.tobytes()).hexdigest()[:16]
-    return u0, f"{'callable' if callable(source) else 'array'}, sha256 {digest}"
-
-
-def _wrong_shape(u0: np.ndarray, shape: tuple[int, ...]) -> InvalidInput:
-    return InvalidInput(
-        "initial",
-        f"array of shape {u0.shape}",
-        f"an array of shape {shape}, one strength for each particle of the lattice",
-        "Evaluate the data on case.positions.",
-    )
-
-
 def warn_if_unstable(case: Case) -> None:
-    """Warn, with the numbers, if the time step lies outside the stability interval.
+    """Warn, with the numbers, if some wave grows: outside the stability interval, or where the symbol is positive.
 
     A single step of GPSE, the whole run, cannot grow; whoever takes it for its speed does not pay for its limit.
+
+    Warns
+    -----
+    StabilityWarning
     """
     if case.scheme == "GPSE" and case.steps == 1:
         return
-    if case.time_step > case.largest_stable_step:
+    low, high = case.symbol_range
+    exponent = (case.t_final - case.t_initial) * case.setting.rate * high
+    if grows(low, high):
+        if exponent > _NO_GROWTH:
+            warnings.warn(
+                f"{case.scheme} of order {case.order} amplifies some waves at overlap = {case.epsilon_over_h:.4g}, "
+                f"beta = {case.beta:g}, whatever the time step: by exp({exponent:.4g}) over this run. The run is "
+                "computed as it is. Take a larger overlap, or a lower order.",
+                StabilityWarning,
+                stacklevel=3,
+            )
+    elif case.time_step > case.largest_stable_step:
         warnings.warn(
             f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
             f"{case.method}: at most {case.largest_stable_step:.6g} is stable. The run is computed as it is.",
@@ -214,13 +216,16 @@ def warn_if_unstable(case: Case) -> None:
 class Prepared:
     """A case made ready: all that does not depend on the initial data.
 
+    For bare arrays, again and again: nothing is estimated on the way, as `solve` of the module does. `reliability`
+    takes the arrays, too. Threads may share it; they take turns at the operator.
+
     Attributes
     ----------
     case : Case
-    operator : Operator
+    operator : LatticeOperator
         A; for the convolution in time the whole run.
     operator_applications : int
-        How often a solve applies it.
+        How often a solve applies it, unless the data ask for more pieces (`integrators.pieces`).
     advance : callable
         From the strengths at `t_initial`, shape (N^dim,), to those at `t_final`.
     shape : tuple of int
@@ -228,7 +233,7 @@ class Prepared:
     """
 
     case: Case
-    operator: Operator
+    operator: LatticeOperator
     operator_applications: int
     advance: Advance
     shape: tuple[int, ...] = field(init=False)
@@ -242,18 +247,28 @@ class Prepared:
         Raises
         ------
         InvalidInput
-            If the strengths are not of that shape.
+            If the strengths are not of that shape, not real, masked, or not finite.
         NonFiniteSolution
             With the scheme, the step and the time.
         """
-        if u0.shape != self.shape:
-            raise _wrong_shape(u0, self.shape)
+        u0 = bare_strengths(u0, self.shape)
         try:
             if u0.ndim == 1:
                 return self.advance(u0)
             return self.advance(u0.reshape(-1)).reshape(u0.shape)
         except NonFiniteSolution as error:
+            refuse_non_finite(u0, self.case.x)  # looked at only when it may have been the data
             raise _named(self.case, error) from None
+
+    def run(self, u0: np.ndarray) -> tuple[np.ndarray, int]:
+        """Return what `solve` does, and how often the operator was applied."""
+        if not isinstance(self.advance, Flow):
+            return self.solve(u0), self.operator_applications
+        try:
+            u, applications = self.advance.run(u0.reshape(-1))
+        except NonFiniteSolution as error:
+            raise _named(self.case, error) from None
+        return u.reshape(u0.shape), applications
 
     def as_matrix(self) -> np.ndarray:
         """Return the whole run as one matrix, shape (N^dim, N^dim): u(t_final) = M u(t_initial).
@@ -284,14 +299,14 @@ def matrix_of(solve: Advance, shape: tuple[int, ...]) -> np.ndarray:
     return np.ascontiguousarray(np.array(columns).T)
 
 
-def prepare(case: Case, operator: Operator | None = None) -> Prepared:
+def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     """Do what does not depend on the initial data: kernels, transforms, far field, time series.
 
     Parameters
     ----------
     case : Case
         The run; not of DVM, whose particles move.
-    operator : Operator, optional
+    operator : LatticeOperator, optional
         The operator of the case, if it is there already.
 
     Raises
@@ -323,17 +338,26 @@ def prepare(case: Case, operator: Operator | None = None) -> Prepared:
             case, operator, applications, partial(step, operator, polynomial, dt, steps)
         )
     low, high = spectral_interval(case, operator)
+    most = largest_degree(case, operator)
     try:
         if case.method == "exponential":
-            series = exponential(case.t_final - case.t_initial, low, high)
+            flow = exponential_flow(operator, case.t_final - case.t_initial, low, high, most)
         else:
-            series = power(STEP_POLYNOMIALS[case.method], case.time_step, case.steps, low, high)
+            polynomial = STEP_POLYNOMIALS[case.method]
+            flow = power_flow(operator, polynomial, case.time_step, case.steps, low, high, most)
     except NonFiniteSolution as error:
         raise _named(case, error) from None
-    return Prepared(case, operator, series.degree, partial(series, operator))
+    except FracparticlesError as error:
+        raise InvalidInput(
+            "t_final",
+            case.t_final,
+            f"a time that can be reached: {error}",
+            "Take a shorter run, or a larger spacing.",
+        ) from None
+    return Prepared(case, operator, flow.operator_applications, flow)
 
 
-def _lattice_sum(case: Case) -> Operator:
+def _lattice_sum(case: Case) -> LatticeOperator:
     """Return the run on the infinite lattice as one lattice sum: exp(A t), or the steps of GPSE."""
     setting = case.setting
     family = {} if setting.family is None else {"family": setting.family}

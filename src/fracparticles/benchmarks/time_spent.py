@@ -38,7 +38,7 @@ PARTS = {
         "propagator.tabulated_far_field",
     ),
     "range of the symbol": ("solver.spectral_interval",),
-    "time series": ("solver.exponential", "solver.power"),
+    "time series": ("solver.exponential_flow", "solver.power_flow"),
     "weights from the symbol": ("propagator.propagator_weights",),
 }
 _OTHER = "plans and the rest"

@@ -2,22 +2,27 @@
 
 An explicit Runge-Kutta scheme multiplies the solution by its step polynomial p(A dt) (Eq. 52); n steps give
 p(A dt)^n u0. `stepping` does just that; `chebyshev` evaluates the same polynomial, or the exponential
-exp(A t), as one Chebyshev series on the interval that holds the spectrum of A.
+exp(A t), as one Chebyshev series on the interval that holds the spectrum of A, and `pieces` as several where one would
+lose digits.
 """
 
 from __future__ import annotations
 
 from fracparticles.integrators.chebyshev import ChebyshevSeries, exponential, power
+from fracparticles.integrators.pieces import Flow, exponential_flow, power_flow
 from fracparticles.integrators.polynomial import STEP_POLYNOMIALS, StepPolynomial
 from fracparticles.integrators.stepping import applied, euler_step, step
 
 __all__ = [
     "STEP_POLYNOMIALS",
     "ChebyshevSeries",
+    "Flow",
     "StepPolynomial",
     "applied",
     "euler_step",
     "exponential",
+    "exponential_flow",
     "power",
+    "power_flow",
     "step",
 ]

@@ -9,6 +9,10 @@ recurrence T_{k+1} = 2 B T_k - T_{k-1}. For f = p(A dt)^n, n steps of a Runge-Ku
 discrete solution as stepping gives, up to round-off; but p^n is so smooth on the interval that its
 coefficients fall below round-off after about sqrt(74 T |low| / 2) terms, whatever the number of steps.
 Tal-Ezer & Kosloff, J. Chem. Phys. 81 (1984) 3967, for the exponential.
+
+What is summed may be far larger than the sum: where the operator is not normal or its eigenvalues are not real, so that
+T_k(B) u grows with k, or where the solution decays by many decades. The evaluation looks at the size of its terms and
+raises `LostDigits`; `pieces` takes it from there.
 """
 
 from __future__ import annotations
@@ -25,12 +29,21 @@ from fracparticles.integrators.polynomial import StepPolynomial
 from fracparticles.integrators.stepping import all_finite
 from fracparticles.operators import Operator
 
-__all__ = ["ChebyshevSeries", "exponential", "power"]
+__all__ = ["ChebyshevSeries", "LostDigits", "exponential", "power"]
 
 _ROUND_OFF = 2.0**-54
 _MET = 1e-6  # of the largest value: how close the series is to f at the ends
 _MOST_POINTS = 2**25
 _LARGEST_EXPONENT = np.log(np.finfo(float).max)
+
+_LOOK_EVERY = 32  # terms between two looks at their size
+_DIGITS_KEPT = 1e-10  # the share of the sum that the round-off of its terms may reach
+_SHORT = 64  # so few terms cannot cancel by much: a piece of this degree is taken as it is
+_UNDERFLOW = 1e-280  # below this the strengths have no full precision to lose
+
+
+class LostDigits(FracparticlesError):
+    """The terms of a series are so much larger than their sum that their round-off spoils it."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +53,7 @@ class ChebyshevSeries:
     Attributes
     ----------
     coefficients : array, shape (degree + 1,)
-        c_k; those at the end that are nil against the largest are left out.
+        c_k; those at the end that vanish against the largest are left out.
     low, high : float
         The interval.
     """
@@ -93,7 +106,7 @@ class ChebyshevSeries:
             points *= 2
         raise FracparticlesError(
             f"the time integration from the spectrum in [{low:.3g}, {high:.3g}] takes a Chebyshev series of more than "
-            f"{_MOST_POINTS} terms. Take a larger spacing or a shorter time span."
+            f"{_MOST_POINTS} terms"
         )
 
     @property
@@ -106,6 +119,8 @@ class ChebyshevSeries:
 
         Raises
         ------
+        LostDigits
+            If the round-off of the terms is more than 1e-10 of the sum, in the maximum norm.
         NonFiniteSolution
             If a particle strength is not finite.
         """
@@ -115,6 +130,7 @@ class ChebyshevSeries:
         even, odd = np.array(u, dtype=float), np.zeros(np.shape(u))  # T_k(B) u, k even and odd
         if self.degree == 0:
             return c[0] * even
+        largest = abs(c[0]) * _size(even)
         operator.update(even, scale, shift, 0.0, odd)
         total = np.zeros_like(even)
         _add_terms(total, c[0], even, c[1], odd)
@@ -122,15 +138,25 @@ class ChebyshevSeries:
             operator.update(odd, 2.0 * scale, 2.0 * shift, -1.0, even)
             operator.update(even, 2.0 * scale, 2.0 * shift, -1.0, odd)
             _add_terms(total, c[k], even, c[k + 1], odd)
+            if k % _LOOK_EVERY == 0:
+                largest = max(largest, abs(c[k]) * _size(even))
         if self.degree % 2 == 0:
             operator.update(odd, 2.0 * scale, 2.0 * shift, -1.0, even)
             _add_terms(total, c[self.degree], even, 0.0, odd)
+        self._look_at(largest, total)
+        return total
+
+    def _look_at(self, largest: float, total: np.ndarray) -> None:
         if not all_finite(total):
             raise NonFiniteSolution(
                 "the particle strengths overflow: the time step lies far outside the stability interval. "
                 "Take a smaller dt or integrator='exponential'."
             )
-        return total
+        lost = _ROUND_OFF * np.sqrt(self.degree) * largest
+        if self.degree > _SHORT and largest > _UNDERFLOW and lost > _DIGITS_KEPT * _size(total):
+            raise LostDigits(
+                f"terms of {largest:.3g} in a Chebyshev series whose sum is {_size(total):.3g}"
+            )
 
 
 def power(
@@ -167,10 +193,26 @@ def power(
 
 
 def exponential(time: float, low: float, high: float) -> ChebyshevSeries:
-    """Return the series of exp(z time) on [low, high]: exact in time."""
+    """Return the series of exp(z time) on [low, high]: exact in time.
+
+    Raises
+    ------
+    NonFiniteSolution
+        If exp(z time) overflows on the interval.
+    """
+    growth = high * time
+    if growth > _LARGEST_EXPONENT:
+        raise NonFiniteSolution(
+            f"the operator has the eigenvalue {high:.6g} and amplifies its mode by exp({growth:.6g}) over the "
+            f"time {time:.6g}: the particle strengths overflow. Take a larger overlap, or a shorter time."
+        )
     return ChebyshevSeries.of(
         lambda z: np.exp(z * time), low, high, lambda z: 1.0 + np.abs(z * time)
     )
+
+
+def _size(u: np.ndarray) -> float:
+    return float(max(u.max(), -u.min()))
 
 
 @nb.njit(cache=True, nogil=True)

@@ -14,7 +14,7 @@ from fracparticles.exterior_box import box_far_field
 from fracparticles.kernel_tables import KernelValues, tabulated
 from fracparticles.kernels import KERNELS, family_of, kernel, kernel_transform
 from fracparticles.kernels_high_order import wavenumber_reach
-from fracparticles.operators import ConvolutionOperator, Operator
+from fracparticles.operators import ConvolutionOperator, LatticeOperator
 from fracparticles.sums import BOX_SUMMATIONS, SUMMATIONS
 
 __all__ = ["Method", "Scheme", "Setting", "lattice_transform", "one_pass_operator"]
@@ -110,7 +110,7 @@ class Scheme(Method, Protocol):
 
     DISSIPATIVE: bool  # no eigenvalue above the range of the symbol
 
-    def operator(self, setting: Setting) -> Operator:
+    def operator(self, setting: Setting) -> LatticeOperator:
         """Return A of du/dt = A u on the lattice."""
 
     # (theta, alpha, order, overlap), and `dim` and `family` if there are several: A(theta) h^alpha / D on the infinite
@@ -176,10 +176,11 @@ def _box_operator(
         )
     particles = size**setting.dim
     if infinite is None:
-        return ConvolutionOperator(convolve, np.zeros(particles), far)
+        return ConvolutionOperator(convolve, np.zeros(particles), far, dim=setting.dim)
     if setting.exterior == "open":
-        return ConvolutionOperator(convolve, np.full(particles, infinite), far)
-    return ConvolutionOperator(convolve, -convolve(np.ones(particles)), far, infinite)
+        return ConvolutionOperator(convolve, np.full(particles, infinite), far, dim=setting.dim)
+    diagonal = -convolve(np.ones(particles))
+    return ConvolutionOperator(convolve, diagonal, far, infinite, setting.dim)
 
 
 def lattice_radii(count: int, dim: int) -> np.ndarray:

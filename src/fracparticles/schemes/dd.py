@@ -12,7 +12,7 @@ import numpy as np
 
 from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
-from fracparticles.operators import Operator
+from fracparticles.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
 
 NAME = "DD"
@@ -40,7 +40,7 @@ def weights(
     return overlap ** (-dim - alpha) * values("G", m / overlap, alpha, dim=dim, order=order)
 
 
-def operator(setting: Setting) -> Operator:
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of Eq. (10)."""
     alpha, order, overlap = setting.alpha, setting.order, setting.overlap
     return one_pass_operator(

@@ -18,7 +18,7 @@ from fracparticles.exterior import far_field
 from fracparticles.exterior_box import box_far_field
 from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
-from fracparticles.operators import FluxDivergenceOperator, Operator, TwoPassOperator
+from fracparticles.operators import FluxDivergenceOperator, LatticeOperator, TwoPassOperator
 from fracparticles.schemes.base import Setting, lattice_transform, present_sum
 from fracparticles.sums import BOX_SUMMATIONS, SUMMATIONS, BandedConvolution
 
@@ -54,7 +54,7 @@ def divergence_weights(
     return -(overlap**-2.0) * kernel("eta1", m / overlap, alpha, order=order, family=family)
 
 
-def operator(setting: Setting) -> Operator:
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of Eqs. (19), (25).
 
     With the open exterior, the flux is also taken at the lattice points next to the ends, as far as the
@@ -63,7 +63,7 @@ def operator(setting: Setting) -> Operator:
     return _line_operator(setting) if setting.dim == 1 else _box_operator(setting)
 
 
-def _line_operator(setting: Setting) -> Operator:
+def _line_operator(setting: Setting) -> LatticeOperator:
     alpha, order, overlap = setting.alpha, setting.order, setting.overlap
     size, is_open = setting.size, setting.exterior == "open"
     reach = BandedConvolution.reach(overlap, order, setting.family)
@@ -84,7 +84,7 @@ def _line_operator(setting: Setting) -> Operator:
     return TwoPassOperator(convolve, BandedConvolution(c, parity=-1), diagonal, far)
 
 
-def _box_operator(setting: Setting) -> Operator:
+def _box_operator(setting: Setting) -> LatticeOperator:
     alpha, order, overlap, dim = setting.alpha, setting.order, setting.overlap, setting.dim
     size, is_open = setting.size, setting.exterior == "open"
     pad = BandedConvolution.reach(overlap, order) if is_open else 0

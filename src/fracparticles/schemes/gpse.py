@@ -13,7 +13,7 @@ import numpy as np
 
 from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
-from fracparticles.operators import Operator
+from fracparticles.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
 
 NAME = "GPSE"
@@ -36,7 +36,7 @@ def weights(
     return overlap ** (-dim - alpha) * values("E", m / overlap, alpha, dim=dim)
 
 
-def operator(setting: Setting) -> Operator:
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of Eq. (41); setting.overlap must be (D dt)^(1/alpha) / h."""
     alpha, overlap, dim = setting.alpha, setting.overlap, setting.dim
     total = lattice_transform("E", np.zeros((1, dim)), alpha, 2, overlap, dim=dim)

@@ -13,7 +13,7 @@ import numpy as np
 
 from fracparticles.kernel_tables import KernelValues
 from fracparticles.kernels import kernel
-from fracparticles.operators import Operator
+from fracparticles.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
 
 NAME = "KPSE"
@@ -42,7 +42,7 @@ def weights(
     return alpha * overlap ** (-dim - alpha) * k
 
 
-def operator(setting: Setting) -> Operator:
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of Eq. (34)."""
     alpha, order, overlap, dim = setting.alpha, setting.order, setting.overlap, setting.dim
     total = lattice_transform(
