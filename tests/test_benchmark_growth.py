@@ -112,6 +112,18 @@ def test_memory_is_proportional_to_the_particles(kind, squares, cubes):
         assert less / 1.5 < more < 1.5 * less
 
 
+@pytest.mark.parametrize("memory", [False, True])
+def test_the_threads_are_those_of_the_process_that_measures(memory, monkeypatch):
+    """The one that collects has as many as it likes, here seven."""
+    mine = {"threads_numba": 7, "threads_blas": 7}
+    monkeypatch.setattr("fracparticles.benchmarks.clock.threads", lambda: mine)
+    if not memory:  # then it is the one that measures
+        mine |= {"threads_numba": 1, "threads_blas": 1}
+    kinds, limits = {"square": ["KPSE-2-truncated"]}, {**LIMITS, "naive_particles": 0}
+    data = measure_growth((), (17,), (), kinds, memory=memory, **{**limits, "repeats": 1})
+    assert (data.attrs["threads_numba"], data.attrs["threads_blas"]) == (1, 1)
+
+
 def synthetic() -> pd.DataFrame:
     """A line and a cube whose every quantity is a power of N; the sums over all pairs of small sizes only."""
     parts = []

@@ -110,6 +110,20 @@ def test_rows_become_a_data_set_and_a_frame(tmp_path):
         assert fact in frame.attrs, fact
 
 
+def test_a_benchmark_says_the_commit_as_a_run_does():
+    """Package, version and, in a checkout, the commit."""
+    case = fp.Case(scheme="KPSE", beta=0.5, half_width=8.0, spacing=0.5, integrator="exponential")
+    data = clock.timings_dataset("row", [{"x": 1.0}], {}, {"x": ("a number", "s")}, "t", {})
+    assert data.attrs["source"] == fp.solve(case).attrs["source"]
+    assert data.attrs["source"].startswith(f"fracparticles {fp.__version__}")
+
+
+def test_what_was_measured_elsewhere_says_its_own_facts():
+    data = clock.timings_dataset("row", [], {}, {}, "t", {"threads_numba": 3})
+    assert data.attrs["threads_numba"] == 3
+    assert data.attrs["threads_blas"] == clock.threads()["threads_blas"]
+
+
 def test_unknown_benchmarks_are_refused():
     with pytest.raises(InvalidInput, match="work_precision"):
         benchmark("nothing")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import fracparticles as fp
 from fracparticles.benchmarks.problem import Problem
@@ -63,6 +65,42 @@ def test_the_exchange_conserves_and_keeps_constants(alpha):
     assert volumes @ matrix == pytest.approx(volumes, rel=1e-12)
 
 
+@pytest.mark.parametrize(("alpha", "reach", "time"), [
+    (1.1, 1e17, 1.0), (1.1, 1e8, 1.0), (1.5, 1e30, 1.0), (1.9, 1e4, 1e-30), (1.01, 1e100, 1e-8),
+])  # fmt: skip
+def test_a_particle_far_wider_than_the_kernel_keeps_what_its_neighbours_leave(alpha, reach, time):
+    """The diagonal is 1 less the others' weights: there V E(0) is up to 1e108, and would leave nothing of the 1."""
+    x, volumes = graded_particles(201, reach, 1.0)
+    matrix = green_step(x, volumes, alpha, time)
+    for i in (0, 1, 150, 200):
+        others = [volumes[j] * fp.green(x[i] - x[j], time, alpha) for j in range(201) if j != i]
+        assert matrix[i, i] == pytest.approx(1.0 - sum(others), rel=1e-14)
+    assert matrix[0, 0] > 0.9
+
+
+@given(
+    alpha=st.floats(1.0001, 1.9999),
+    reach=st.floats(-3.0, 60.0),
+    time=st.floats(-60.0, 60.0),
+    half=st.integers(1, 40),
+)
+def test_every_column_keeps_its_strength(alpha, reach, time, half):
+    """sum_i V_i M_ij = V_j: off the diagonal V_i V_j E is symmetric, so that only the sums of N terms round."""
+    x, volumes = graded_particles(2 * half + 1, 10.0**reach, 1.0)
+    matrix = green_step(x, volumes, alpha, 10.0**time)
+    size = volumes @ np.abs(matrix)
+    room = 2.0 * x.size * np.finfo(float).eps
+    assert (np.abs(volumes @ matrix - volumes) <= room * (size + volumes)).all()
+    assert np.abs(matrix.sum(axis=1) - 1.0).max() <= room * np.abs(matrix).sum(axis=1).max()
+
+
+def test_where_reach_is_far_below_scale_the_particles_are_a_lattice():
+    for reach, scale in ((1e-9, 1.0), (1e-100, 1e100), (3.0, 1e30)):
+        x, volumes = graded_particles(11, reach, scale)
+        assert x == pytest.approx(reach * np.linspace(-1.0, 1.0, 11), rel=1e-14)
+        assert volumes == pytest.approx(np.full(11, 0.2 * reach), rel=1e-14)
+
+
 @pytest.mark.parametrize(("beta", "reach", "counts"), [
     (0.5, 1000.0, (65, 81, 101)),
     (0.9, 200.0, (41, 51, 65)),
@@ -87,10 +125,15 @@ def test_where_the_volumes_are_wide_the_exchange_is_right_to_leading_order():
         (lambda: graded_particles(10, 5.0, 1.0), "count"),
         (lambda: graded_particles(1, 5.0, 1.0), "count"),
         (lambda: graded_particles(11, -5.0, 1.0), "reach"),
+        (lambda: graded_particles(11, 1e300, 1.0), "reach"),
         (lambda: graded_particles(11, 5.0, 0.0), "scale"),
+        (lambda: graded_particles(11, 5.0, 1e-300), "scale"),
+        (lambda: green_step(np.zeros(0), np.ones(0), 1.5, 1.0), "volumes"),
+        (lambda: green_step(np.zeros(3), np.array([1.0, np.inf, 1.0]), 1.5, 1.0), "volumes"),
+        (lambda: green_step(np.zeros(10003), np.ones(10003), 1.5, 1.0), "x"),
         (lambda: green_step(np.zeros(3), np.ones(2), 1.5, 1.0), "volumes"),
         (lambda: green_step(np.zeros(3), np.array([1.0, 0.0, 1.0]), 1.5, 1.0), "volumes"),
-        (lambda: green_step(np.array([0.0, np.inf]), np.ones(2), 1.5, 1.0), "volumes"),
+        (lambda: green_step(np.array([0.0, np.inf]), np.ones(2), 1.5, 1.0), "x"),
         (lambda: green_step(np.zeros(3), np.ones(3), 2.5, 1.0), "alpha"),
         (lambda: green_step(np.zeros(3), np.ones(3), 1.5, 0.0), "time"),
         (lambda: green_step(np.zeros(3), np.ones(3), 1.5, 1.0, "other"), "form"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -262,3 +264,13 @@ def test_the_box_is_left_with_its_images():
     # mass 2 pi A t / (alpha D^alpha), are as much; and |x| <= 2 adds (p / 2)^2 |x / r|^2 = 0.2 % and less.
     assert errors[-1] == pytest.approx(amplitude * images * 160.0**-p, rel=0.02)
     assert observed_order(1.0 / widths, np.array(errors))[-1] == pytest.approx(3.5, abs=0.05)
+
+
+@pytest.mark.parametrize("name", PLANE_PEERS)
+def test_threads_may_share_a_solver(name):
+    solver = prepare_plane(name, alpha=1.5, half_width=5.0, time=1.0, spacing=0.2)
+    data = np.random.default_rng(5).normal(size=(24, solver.axis.size, solver.axis.size))
+    expected = [solver.solve(u0) for u0 in data]
+    with ThreadPoolExecutor(8) as threads:
+        for ours, right in zip(threads.map(solver.solve, data), expected, strict=True):
+            assert np.array_equal(ours, right)

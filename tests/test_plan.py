@@ -10,6 +10,7 @@ import yaml
 
 from fracparticles import plan
 from fracparticles.errors import InvalidInput
+from fracparticles.studies import OWN_PARAMETERS, STUDIES
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = {
@@ -66,6 +67,50 @@ def test_a_mistake_is_named_in_one_line(broken, words):
     assert "\n" not in message
     for word in words:
         assert word in message, message
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        {"beta": 0.5000001},
+        {"order": [2, 4], "spacing": [0.25, 0.5]},
+        {"scheme": "DD", "store": "metrics"},
+        {
+            "half_width": 3.0,
+            "t_final": 1.5,
+        },  # the runs have a truncation; the end is that of the case
+        {"spacing": {"0.5": 0.1}, "lines": 4},  # words of the study
+    ],
+)
+def test_a_parameter_may_say_what_the_runs_are(parameters):
+    plan.read_config(config(parameters=parameters))
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"beta": 0.3}, ("beta = 0.3", "0.5")),
+        ({"beta": [0.5, 0.3]}, ("beta", "0.5")),
+        ({"truncation": 20.0}, ("truncation = 20.0", "10.0")),
+        ({"spacing": 0.3}, ("spacing", "0.5 or 0.25")),
+        ({"scheme": "FPSE"}, ("scheme", "DD or KPSE")),
+        ({"t_final": 2.0}, ("t_final", "1.5")),
+        ({"order": "2"}, ("order", "2 or 4")),
+    ],
+)
+def test_a_parameter_that_the_runs_do_not_have_is_refused_before_anything_runs(parameters, words):
+    """Else a figure would be drawn from the runs that are there, under another name."""
+    with pytest.raises(InvalidInput, match=r"^scenes\.one\.parameters\.") as error:
+        plan.read_config(config(parameters=parameters))
+    for word in (*words, "Change the runs"):
+        assert word in str(error.value)
+
+
+def test_a_study_may_have_parameters_of_its_own():
+    plan.read_config(config(study="random_walk", parameters={"dt": [0.5, 0.05]}))
+    with pytest.raises(InvalidInput, match="beta"):
+        plan.read_config(config(study="random_walk", parameters={"beta": 0.3}))
+    assert set(OWN_PARAMETERS) <= set(STUDIES)
 
 
 def test_one_switch_for_the_step_of_dvm():

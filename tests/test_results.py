@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
@@ -59,3 +61,65 @@ def test_the_readme_and_the_report_quote_the_ledger(ledger):
     assert line in (ROOT / "README.md").read_text()
     assert line in (ROOT / "report/report.md").read_text()
     assert line in (ROOT / "results/claims.md").read_text()
+
+
+# --- tables that are tables --------------------------------------------------------------------------------------
+
+
+def markdown_tables(text: str) -> list[list[int]]:
+    """The number of cells of each row, table by table; a bar that is escaped is none, nor one in prose."""
+    tables, rows = [], []
+    for line in [*text.splitlines(), ""]:
+        if line.startswith("|") and line.rstrip().endswith("|"):
+            rows.append(len(re.split(r"(?<!\\)\|", line.rstrip())) - 2)
+        elif rows:
+            tables.append(rows)
+            rows = []
+    return tables
+
+
+def tracked_markdown() -> list[Path]:
+    return sorted(
+        path
+        for folder in ("", "config", "results", "results/tables", "report", "report/captions")
+        for path in (ROOT / folder).glob("*.md")
+    )
+
+
+@pytest.mark.parametrize("path", tracked_markdown(), ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_row_of_a_markdown_table_has_the_cells_of_its_header(path):
+    for rows in markdown_tables(path.read_text("utf-8")):
+        assert len(rows) >= 2
+        assert set(rows) == {rows[0]}
+
+
+class Tables(HTMLParser):
+    """The number of cells of each row of each table."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tables: list[list[int]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append(0)
+        elif tag in ("th", "td"):
+            self.tables[-1][-1] += 1
+
+
+def test_every_table_of_the_report_is_one_in_its_page():
+    page = Tables((ROOT / "report/report.html").read_text("utf-8"))
+    text = markdown_tables((ROOT / "report/report.md").read_text("utf-8"))
+    assert len(page.tables) == len(text)
+    # The rule below the header is no row of the page.
+    for shown, rows in zip(page.tables, text, strict=True):
+        assert shown == [rows[0], *rows[2:]]
+
+
+def test_the_tables_of_the_report_are_those_of_the_results():
+    text = (ROOT / "report/report.md").read_text("utf-8")
+    for name in STUDY.scenes:
+        assert (ROOT / f"results/tables/{name}.md").read_text("utf-8").strip() in text, name

@@ -266,21 +266,26 @@ def test_dd_at_a_small_overlap_says_that_a_constant_decays():
 @st.composite
 def cases(draw) -> Case:
     scheme = draw(st.sampled_from(["DD", "FPSE", "KPSE", "GPSE", "DPSE", "FD"]))
-    dim = draw(st.sampled_from([1, 1, 2])) if len(SCHEMES[scheme].DIMS) > 1 else 1
+    dim = draw(st.sampled_from([1, 1, 1, 2, 2, 3])) if len(SCHEMES[scheme].DIMS) > 1 else 1
     orders = SCHEMES[scheme].ORDERS if dim == 1 else SCHEMES[scheme].BOX_ORDERS
     order = draw(st.sampled_from(orders))
-    exterior = draw(st.sampled_from(SCHEMES[scheme].EXTERIORS))
+    # The set-up of an open cube takes seconds.
+    exterior = draw(st.sampled_from(SCHEMES[scheme].EXTERIORS)) if dim < 3 else "truncated"
     beta = draw(st.sampled_from([0.02, 0.3, 0.5, 0.77, 0.98]))
-    n = draw(st.integers(10, 60 if dim == 1 else 12))
+    n = draw(st.integers(8, {1: 60, 2: 12, 3: 8}[dim]))
+    if scheme == "GPSE" and exterior == "open":
+        n = max(n, 20)  # two steps must not outgrow the lattice
     fields = {"scheme": scheme, "order": order, "beta": beta, "dim": dim, "exterior": exterior}
     fields |= {"half_width": float(n), "spacing": 1.0, "t_initial": 0.0}
     overlap = draw(st.sampled_from([1.5, 2.0, 2.5]))
-    # Stiff where the lattice may be outgrown, up to 1e5 beyond its own time scale.
-    widest = n ** (1.0 + beta) * (0.1 if exterior == "open" else 10.0 ** draw(st.integers(0, 4)))
+    # Stiff where the lattice may be outgrown, up to 1e4 beyond its own time scale.
+    widest = n ** (1.0 + beta) * (
+        0.05 if exterior == "open" else 10.0 ** draw(st.integers(0, {1: 4, 2: 2, 3: 0}[dim]))
+    )
     if scheme == "GPSE":
         step = overlap ** (1.0 + beta)
         steps = 2 * draw(st.integers(1, max(1, int(min(widest / step, 1e6) / 2))))
-        return Case(**fields, dt=step, t_final=steps * step)
+        return Case(**fields, dt=step, t_final=steps * step, evaluation=evaluation_of(draw, steps))
     if scheme != "FD":
         fields["overlap"] = overlap
     if draw(st.booleans()):
@@ -289,7 +294,12 @@ def cases(draw) -> Case:
     probe = Case(**fields, integrator=integrator, dt=1.0, t_final=widest)
     dt = 0.9 * probe.largest_stable_step
     steps = 2 * max(1, int(min(widest / dt, 1e6) / 2))
-    return Case(**fields, integrator=integrator, dt=dt, t_final=steps * dt)
+    fields |= {"integrator": integrator, "evaluation": evaluation_of(draw, steps)}
+    return Case(**fields, dt=dt, t_final=steps * dt)
+
+
+def evaluation_of(draw, steps: int) -> str:
+    return draw(st.sampled_from(["series", "stepping"])) if steps <= 200 else "series"
 
 
 def data(case: Case, seed: int = 0) -> np.ndarray:
@@ -316,7 +326,7 @@ def halved(case: Case) -> Case:
     return Case(**{**case.model_dump(exclude_none=True), "t_final": 0.5 * case.t_final})
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=40, deadline=None, derandomize=True)
 @given(case=cases())
 def test_one_run_is_two_runs_of_half_the_time(case):
     u0 = data(case)
@@ -325,7 +335,7 @@ def test_one_run_is_two_runs_of_half_the_time(case):
     assert np.abs(whole - again).max() <= room(case) * max(np.abs(u0).max(), np.abs(whole).max())
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=25, deadline=None, derandomize=True)
 @given(case=cases(), factor=st.sampled_from([1e-200, 2.0, -3.0, 1e200]))
 def test_a_run_is_linear_and_mirrors(case, factor):
     u0 = data(case)

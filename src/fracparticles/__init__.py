@@ -14,8 +14,10 @@ __version__ = "0.1.0"
 
 # Name -> module. Imported at first use: a caller of `green` pays for neither numba kernels nor xarray.
 _HOME = {
+    "AccuracyWarning": "errors",
     "Case": "case",
     "FracparticlesError": "errors",
+    "FracparticlesWarning": "errors",
     "InvalidInput": "errors",
     "NonFiniteSolution": "errors",
     "StabilityWarning": "errors",

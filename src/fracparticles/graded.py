@@ -15,8 +15,9 @@ Particles that are dense in the middle and ever wider apart towards the ends,
 
 reach far with few of them, and need no model of the exterior. The quadrature is the trapezoidal rule in s: its error
 falls faster than any power of ds where the volumes resolve E, about V_j < epsilon. Where they do not, far out, the
-exchange is right to leading order, since particle i keeps what no neighbour takes; it conserves sum V u. A step is a
-product with an N x N matrix: for tens or some hundred of particles, where it is faster than any sum by FFT.
+exchange is right to leading order, since particle i keeps what no neighbour takes; it conserves sum V u. There the
+quadrature gives a particle V E(0) times its own strength, far more than it has. A step is a product with an N x N
+matrix: for tens or some hundred of particles, where it is faster than any sum by FFT.
 """
 
 from __future__ import annotations
@@ -32,9 +33,12 @@ from fracparticles.special.arguments import (
     real_array,
 )
 
-__all__ = ["FORMS", "graded_particles", "green_step"]
+__all__ = ["FORMS", "MOST", "SIZES", "graded_particles", "green_step"]
 
 FORMS = ("exchange", "quadrature")
+MOST = 10001  # particles: the matrix then takes 800 MB
+SIZES = 1e-100, 1e100  # lengths; no ratio, square or sum of them overflows
+_LARGEST = 1e150  # of the positions and volumes that `green_step` takes
 
 
 def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray, np.ndarray]:
@@ -47,7 +51,7 @@ def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray
     reach : float
         The outermost particles are at -reach and reach.
     scale : float
-        L: within it the particles are nearly equally spaced.
+        L: within it the particles are nearly equally spaced; all are where reach is far below it.
 
     Raises
     ------
@@ -57,10 +61,33 @@ def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray
     count = positive_integer("count", count)
     if count < 3 or count % 2 == 0:
         raise InvalidInput("count", count, "an odd number > 1", "Add one particle.")
-    reach, scale = positive_real("reach", reach), positive_real("scale", scale)
+    reach, scale = _length("reach", reach), _length("scale", scale)
     step = 2.0 * np.arcsinh(reach / scale) / (count - 1)
     s = (np.arange(count) - count // 2) * step
     return scale * np.sinh(s), scale * np.cosh(s) * step
+
+
+def _length(field: str, value: float) -> float:
+    size = positive_real(field, value)
+    if not SIZES[0] <= size <= SIZES[1]:
+        raise InvalidInput(
+            field, value, f"from {SIZES[0]:g} to {SIZES[1]:g}", "Take another unit of length."
+        )
+    return size
+
+
+def refuse_many(field: str, count: int) -> None:
+    """Refuse more particles than a dense matrix is for.
+
+    Raises
+    ------
+    InvalidInput
+        If there are more than `MOST`.
+    """
+    if count > MOST:
+        raise InvalidInput(
+            field, count, f"at most {MOST} particles in a dense matrix", "Take fewer particles."
+        )
 
 
 def green_step(
@@ -77,6 +104,8 @@ def green_step(
     time : float
         D T.
     form : {"exchange", "quadrature"}
+        The exchange keeps sum V u to round-off, however far volumes and smoothing length are apart: its diagonal is
+        1 less the weights of all others, in which the particle's own, V E(0), never enters.
 
     Raises
     ------
@@ -87,21 +116,27 @@ def green_step(
         raise InvalidInput("form", form, " or ".join(FORMS), "Choose one of these.")
     alpha, time = fractional_order(alpha), positive_real("time", time)
     x, volumes = real_array("x", x), real_array("volumes", volumes)
-    if x.ndim != 1 or x.shape != volumes.shape:
+    if x.ndim != 1 or x.shape != volumes.shape or x.size == 0:
         raise InvalidInput(
             "volumes",
             f"an array of shape {volumes.shape}",
-            f"an array of shape {x.shape}, one volume for each particle on the line",
+            f"an array of shape {x.shape}, one volume for each particle on the line, one particle at least",
             "Give a volume for each position.",
         )
-    if not (np.isfinite(x).all() and np.isfinite(volumes).all() and (volumes > 0.0).all()):
+    refuse_many("x", x.size)
+    if not (np.abs(x) <= _LARGEST).all():
+        raise InvalidInput(
+            "x", float(np.abs(x).max()), f"at most {_LARGEST:g} in size", "Take another unit."
+        )
+    if not ((volumes > 0.0) & (volumes <= _LARGEST)).all():
         raise InvalidInput(
             "volumes",
-            float(volumes.min()),
-            "positive, and all numbers finite",
+            float(volumes[np.argmin((volumes > 0.0) & (volumes <= _LARGEST))]),
+            f"above zero, and at most {_LARGEST:g}",
             "Mend the particles; `graded_particles` makes such.",
         )
     matrix = volumes * np.asarray(green(x[:, None] - x, time, alpha))
     if form == "exchange":
-        matrix[np.diag_indices_from(matrix)] += 1.0 - matrix.sum(axis=1)
+        np.fill_diagonal(matrix, 0.0)
+        np.fill_diagonal(matrix, 1.0 - matrix.sum(axis=1))
     return matrix

@@ -12,9 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.errors import InvalidInput
 from fracparticles.kernels import kernel
 
 __all__ = ["KernelValues", "tabulated"]
+
+_MOST_POINTS = 2**25  # of a table: 256 MB, and as much again to make it
 
 # kernel(name, r, alpha, dim=..., order=...)
 KernelValues = Callable[..., Any]
@@ -29,11 +32,24 @@ def tabulated(step: float, family: str | None = None) -> KernelValues:
         Step of the table, in units of the smoothing length.
     family : str, optional
         Family of the kernels, see `kernels.kernel`.
+
+    Raises
+    ------
+    InvalidInput
+        By the function, if the distances ask for a table of more than 2^25 points.
     """
 
     def values(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> np.ndarray:
         size = np.abs(np.asarray(r, dtype=float))
-        points = step * np.arange(int(size.max() / step) + 2)
+        largest = float(size.max(initial=0.0))
+        if not largest < _MOST_POINTS * step:
+            raise InvalidInput(
+                "kernel_table",
+                step,
+                f"at least {largest / _MOST_POINTS:.3g} for distances up to {largest:.4g} smoothing lengths",
+                "Take a larger step, or a narrower domain.",
+            )
+        points = step * np.arange(int(largest / step) + 2)
         table = np.asarray(kernel(name, points, alpha, dim=dim, order=order, family=family))
         return np.interp(size, points, table)
 

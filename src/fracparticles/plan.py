@@ -7,6 +7,7 @@ values; a block stands for the Cartesian product. Cases that several scenes need
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from typing import Any, Union
@@ -116,6 +117,9 @@ class StudyConfig(_Strict):
 def read_config(config: Mapping[str, Any]) -> StudyConfig:
     """Validate a configuration, its cases included.
 
+    A parameter of a scene that has the name of a field of its runs says what they are, in a title or a selection: it
+    must be a value of theirs, or several (but for `studies.OWN_PARAMETERS`).
+
     Raises
     ------
     InvalidInput
@@ -140,7 +144,7 @@ def read_config(config: Mapping[str, Any]) -> StudyConfig:
             _check_name(f"scenes.{name}.tables", other, study.scenes)
         for other in scene.benchmarks:
             _check_name(f"scenes.{name}.benchmarks", other, study.benchmarks)
-        cases_of(name, scene)
+        _check_against_runs(name, scene, cases_of(name, scene))
     if study.dvm_dt is None:
         return study
     stepped = {name: _with_dvm_step(scene, study.dvm_dt) for name, scene in study.scenes.items()}
@@ -251,6 +255,37 @@ def _seconds(case: Case) -> float:
     applications = (case.setting.rate * (case.t_final - case.t_initial)) ** 0.5
     opening = _OPENING[case.dim] * case.particles if case.exterior == "open" else 0.0
     return 0.01 + opening + 1.2e-7 * case.particles * applications
+
+
+def _check_against_runs(name: str, scene: Scene, cases: Iterable[Case]) -> None:
+    """Refuse a parameter that says what the runs of the scene do not."""
+    from fracparticles.studies import OWN_PARAMETERS
+
+    cases = list(cases)
+    for parameter, given in scene.parameters.items():
+        if parameter not in Case.model_fields or parameter in OWN_PARAMETERS.get(scene.study, ()):
+            continue
+        found = dict.fromkeys(getattr(case, parameter) for case in cases)
+        found.pop(None, None)
+        if not found or isinstance(
+            given, dict
+        ):  # nothing the runs give, or a word of the study's own
+            continue
+        for one in given if isinstance(given, list) else [given]:
+            if not any(_same(one, other) for other in found):
+                raise InvalidInput(
+                    f"scenes.{name}.parameters.{parameter}",
+                    given,
+                    f"what the runs of the scene have, {' or '.join(map(str, found))}",
+                    "Change the runs, too: they are what is shown.",
+                )
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Equal, numbers to six digits, as `Inputs.select` compares them."""
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return math.isclose(one, other, rel_tol=1e-6)
+    return bool(one == other)
 
 
 def _check_name(field: str, value: str, allowed: Iterable[str]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -14,7 +16,10 @@ from fracparticles.special import (
     central_mass,
     green,
     green_asymptotic,
+    green_flux,
+    green_rate,
     green_series,
+    green_slope,
     mean_radius,
     reduced_green,
     tail_mass,
@@ -296,3 +301,31 @@ def test_refuses_the_rest():
     for terms in (0, -1, 1.5, "3", True):
         with pytest.raises(InvalidInput, match="terms"):
             green_series(1.0, 1.5, terms)
+
+
+@pytest.mark.parametrize("function", [green, green_slope, green_flux, green_rate, tail_mass])
+@pytest.mark.parametrize("alpha", [1.0 + 1e-15, 1.5, 2.0 - 1e-15])
+@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize("t", [5e-324, 1e-310, 1e-200, 1e-100, 1e200, 1.7e308])
+def test_at_any_time_the_values_are_finite_or_the_time_is_refused(function, alpha, dim, t):
+    """Close to t = 0 the peak is above the largest float64, never an infinity, a nan or another's exception."""
+    x = np.array([0.0, 1e-300, 1.0, 1e300, np.inf])
+    if t < 1e-90:
+        with contextlib.suppress(InvalidInput):
+            assert np.isfinite(function(x, t, alpha, dim)).all()
+    else:
+        assert np.isfinite(function(x, t, alpha, dim)).all()
+
+
+def test_a_time_too_short_is_refused_by_its_name():
+    for t, alpha, dim in ((5e-324, 1.0 + 1e-15, 1), (1e-310, 1.5, 2), (1e-200, 1.5, 3)):
+        with pytest.raises(InvalidInput, match=r"^t = "):
+            green(np.array([0.0, 1.0]), t, alpha, dim)
+
+
+def test_a_peak_that_float64_holds_is_not_refused():
+    for t, alpha, dim in ((1e-300, 1.5, 1), (1e-150, 1.5, 3), (1e-308, 1.05, 1)):
+        peak = float(mp.mpf(t) ** (-mp.mpf(dim) / mp.mpf(alpha)))
+        assert green(0.0, t, alpha, dim) == pytest.approx(
+            peak * reduced_green(0.0, alpha, dim), rel=1e-12
+        )

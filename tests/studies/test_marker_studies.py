@@ -11,6 +11,7 @@ from fracparticles.claims import Status, judge, read_claims
 from fracparticles.figures import figure
 from fracparticles.lagrangian import FieldNotPositive
 from fracparticles.markers import SHAPES, Square
+from fracparticles.markers.stability import rate
 from fracparticles.studies import Inputs, study
 from fracparticles.studies.marker_claims import quadrature_exponent, smoothing_exponent
 from fracparticles.studies.marker_growth import largest_step, measured_rate
@@ -86,6 +87,23 @@ def test_two_printed_constants_are_wrong():
     result = study("marker_shapes")(Inputs("scene", items, parameters))
     refuted = {f.claim for f in result.findings if judge(CLAIMS[f.claim], f)[0] is Status.REFUTED}
     assert refuted == {"M-SHAPES.beta", "M-SHAPES.alpha"}
+
+
+def test_the_growth_is_called_unbounded_where_it_is():
+    """-k^2 S^(k) of the gate is -k sin k; of the others it falls, or nears twice the slope at the end."""
+    items, parameters = SCENES["marker_shapes"]
+    table = study("marker_shapes")(Inputs("scene", items, parameters)).table.set_index("S")
+    assert list(table.index[table["beyond"] == "unbounded"]) == ["S1"]
+    largest = table["largest growth × ε², k < 30"]
+    # The highest wave below 30 ends at 3 pi / 2 + 8 pi, its top is where tan k = -k.
+    assert largest["S1"] == pytest.approx(29.8618, abs=1e-3)
+    for waves in (10, 100, 1000):
+        k = np.array((2.0 * waves + 1.5) * np.pi)
+        assert rate(SHAPES["S1"], k) == pytest.approx(k, rel=1e-9)
+    beyond = np.linspace(30.0, 1000.0, 20001)
+    for name in table.index.drop("S1"):
+        # The transform is good to 1e-14, its product with k^2 to 1e-8.
+        assert rate(SHAPES[name], beyond).max() <= largest[name] + 1e-7, name
 
 
 def test_clusters_of_known_places():

@@ -33,6 +33,7 @@ __all__ = [
     "measure",
     "one_core",
     "peak_so_far",
+    "threads",
     "timings_dataset",
 ]
 
@@ -119,13 +120,17 @@ def in_fresh_process(function: Callable[..., Any], *arguments: Any) -> Any:
     return json.loads(done.stdout)
 
 
+def threads() -> dict[str, int]:
+    """Return how many threads numba and BLAS take in this process, which is not what they take in another."""
+    return {"threads_numba": nb.get_num_threads(), "threads_blas": _blas_threads()}
+
+
 def machine() -> dict[str, Any]:
     """Return what the times were measured on, as attributes of a data set."""
     facts: dict[str, Any] = {
         "cpu": _cpu_model(),
         "cores": len(os.sched_getaffinity(0)),
-        "threads_numba": nb.get_num_threads(),
-        "threads_blas": _blas_threads(),
+        **threads(),
         "load_average": os.getloadavg()[0],
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
@@ -175,9 +180,13 @@ def timings_dataset(
         The variables: name, and long name and unit.
     title : str
     facts : mapping
-        More attributes, such as the repeats; those of the machine are added.
+        More attributes, such as the repeats; the package, its version and commit, and those of the machine are
+        added. What was measured in another process says its threads here.
     """
     import xarray as xr
+
+    from fracparticles import __version__
+    from fracparticles.dataset import _commit
 
     def values(name: str) -> np.ndarray:
         given = [row.get(name) for row in rows]
@@ -198,7 +207,8 @@ def timings_dataset(
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": title,
             "summary": "Wall times on one machine, one core; see the long names.",
-            **facts,
+            "source": f"fracparticles {__version__}{_commit()}",
             **machine(),
+            **facts,
         },
     )

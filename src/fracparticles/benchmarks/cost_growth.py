@@ -20,6 +20,7 @@ from fracparticles.benchmarks.clock import (
     measure,
     one_core,
     peak_so_far,
+    threads,
     timings_dataset,
 )
 from fracparticles.case import Case
@@ -37,7 +38,7 @@ _START, _END = 0.5, 1.5
 # applications. The same for all dimensions, since no time depends on how well the data are resolved.
 _SPACING = 0.2
 _TINY = 17  # particles in each direction, the fewest that a case may have: all is loaded and compiled, arrays are small
-_SHORT = 1e-6  # span of a run of three applications, which holds all arrays that a longer one holds
+_SHORT = 1e-6  # span of a run of three applications, which holds all arrays that a longer one holds, on any lattice
 
 _DIMENSIONS = {"line": 1, "square": 2, "cube": 3}
 _LABELS = {"kind": "scheme, order and exterior", "dim": "space dimension"}
@@ -97,7 +98,9 @@ def cost_growth(
                 beyond = row["peak_memory"] - tiny["peak_memory"]
                 row["memory_per_particle"] = beyond / row["particles"]
                 rows.append({"kind": kind, "dim": dim, "machine_memory": machine_memory, **row})
-    facts = {"repeats": repeats, "beta": _BETA, "spacing": _SPACING}
+    # Of the processes that measured, not of this one.
+    taken = {name: max(row[name] for row in rows) for name in threads() if rows}
+    facts = {"repeats": repeats, "beta": _BETA, "spacing": _SPACING, **taken}
     title = "Run time and memory against the number of particles"
     return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
 
@@ -118,13 +121,14 @@ def measure_sizes(
 ) -> list[dict[str, Any]]:
     """Measure one kind on lattices of several sizes, the smallest first: one row a size, see `cost_growth`.
 
-    The peak memory, nan if it is not wanted, is that of the process so far.
+    The smallest makes a short run: an open exterior would be too close for the whole one. The peak memory, nan if it
+    is not wanted, is that of the process so far.
     """
     one_core()
     rows = []
-    for size in sizes:
-        case = _case(kind, dim, size)
-        row: dict[str, Any] = {"particles": case.particles}
+    for number, size in enumerate(sizes):
+        case = _case(kind, dim, size, _END if number else _START + _SHORT)
+        row: dict[str, Any] = {"particles": case.particles, **threads()}
         if case.particles <= naive_particles and case.exterior == "truncated":
             row["naive_time"] = _naive_time(case, repeats, seconds)
         row |= _run_times(case, most_solved, repeats, seconds)
@@ -133,7 +137,7 @@ def measure_sizes(
     return rows
 
 
-def _case(kind: str, dim: int, size: int) -> Case:
+def _case(kind: str, dim: int, size: int, end: float) -> Case:
     scheme, order, exterior = kind.split("-")
     half_width = (size // 2) * _SPACING
     return Case(
@@ -145,7 +149,7 @@ def _case(kind: str, dim: int, size: int) -> Case:
         half_width=half_width,
         spacing=_SPACING * (1.0 - 1e-12),  # the smallest lattice is not refused for round-off
         t_initial=_START,
-        t_final=_END,
+        t_final=end,
         integrator="exponential",
     )
 

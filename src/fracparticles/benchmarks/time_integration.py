@@ -127,7 +127,7 @@ def _operators(
             exterior="open",
             propagation="series",
         )
-        yield name, solver.x, solver.operator, (solver.series.low, solver.series.high)
+        yield name, solver.x, solver.operator, solver.interval
 
 
 def _ways(

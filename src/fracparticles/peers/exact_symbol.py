@@ -9,6 +9,7 @@ and the initial data beyond D are missing.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from threading import Lock
 
 import numpy as np
 import pyfftw
@@ -38,7 +39,7 @@ _PLAN = ("FFTW_ESTIMATE",)  # the same plan every time, as in `sums.fourier`
 
 @dataclass(frozen=True)
 class ExactSymbolSolver:
-    """The method made ready, see `base.Solver`.
+    """The method made ready, see `base.Solver`. Threads may share it: they take turns at its work arrays.
 
     Attributes
     ----------
@@ -54,6 +55,7 @@ class ExactSymbolSolver:
     decay: np.ndarray
     _forward: pyfftw.FFTW = field(init=False, repr=False)
     _backward: pyfftw.FFTW = field(init=False, repr=False)
+    _lock: Lock = field(init=False, repr=False, default_factory=Lock)
 
     def __post_init__(self) -> None:
         real = pyfftw.empty_aligned(self.x.size)
@@ -72,11 +74,12 @@ class ExactSymbolSolver:
         return self._multiplied(u0, self.decay)
 
     def _multiplied(self, u: np.ndarray, symbol: np.ndarray) -> np.ndarray:
-        np.copyto(self._forward.input_array, u)
-        self._forward.execute()
-        np.multiply(self._forward.output_array, symbol, out=self._forward.output_array)
-        self._backward.execute()
-        return self._backward.output_array / u.size
+        with self._lock:
+            np.copyto(self._forward.input_array, u)
+            self._forward.execute()
+            np.multiply(self._forward.output_array, symbol, out=self._forward.output_array)
+            self._backward.execute()
+            return self._backward.output_array / u.size
 
 
 def prepare(

@@ -1,11 +1,11 @@
 """What the peers on a lattice x_i = i h, i = -n .. n, share.
 
 All are Toeplitz, (A u)_i = h^(-alpha) sum_j a_{i-j} u_j, with a_m -> C |m|^(-1-alpha) for large m (`tail_constant`).
-Outside the lattice u is nil (`truncated`), or it falls like |x|^(-1-alpha) (`open`): Huang & Oberman's
+Outside the lattice u is zero (`truncated`), or it falls like |x|^(-1-alpha) (`open`): Huang & Oberman's
 far-field condition, here for all of them (`exterior.tabulated_far_field`).
 
-In time, exp(A t) is one Chebyshev series (`series`), or, where the symbol a(theta) of A is known, one lattice sum
-(`convolution`, see `propagator`).
+In time, exp(A t) is one Chebyshev series (`series`; several where one would lose digits, see `integrators.pieces`), or,
+where the symbol a(theta) of A is known, one lattice sum (`convolution`, see `propagator`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from scipy.fft import next_fast_len, rfft
 
 from fracparticles.exterior import tail_constant
-from fracparticles.integrators import ChebyshevSeries, exponential
+from fracparticles.integrators import Flow, exponential_flow
 from fracparticles.operators import ConvolutionOperator
 from fracparticles.peers.base import check_choice, half_intervals
 from fracparticles.propagator import propagator, tabulated_operator
@@ -33,8 +33,7 @@ SERIES_OR_CONVOLUTION = ("series", "convolution")
 Weights = Callable[[float, int], np.ndarray]  # (alpha, count) -> a_m, m = 0 .. count - 1
 Symbol = Callable[[np.ndarray, float], np.ndarray]  # (theta, alpha) -> a(theta)
 
-# The eigenvalues lie inside the symbol's range up to round-off and the sampling of the symbol.
-_MARGIN = 1e-6
+_MARGIN = 1e-6  # of the range, below its low end: what the sampling of the symbol may miss
 _OVERSAMPLING = 4
 
 
@@ -48,17 +47,20 @@ class LatticeSolver:
         The lattice, and h.
     make_operator : callable
         Returns A.
-    series : ChebyshevSeries or None
-        exp(A t); None if there is a propagator.
+    series : Flow or None
+        exp(A t) by Chebyshev series; None if there is a propagator.
     propagator : ConvolutionOperator or None
         exp(A t) as one lattice sum.
+    interval : tuple of float or None
+        What holds the eigenvalues of A, for the series.
     """
 
     x: np.ndarray
     volumes: np.ndarray
     make_operator: Callable[[], ConvolutionOperator]
-    series: ChebyshevSeries | None
+    series: Flow | None
     propagator: ConvolutionOperator | None
+    interval: tuple[float, float] | None = None
 
     @cached_property
     def operator(self) -> ConvolutionOperator:
@@ -68,7 +70,7 @@ class LatticeSolver:
     @property
     def applications(self) -> int:
         """The number of lattice sums that a solve takes."""
-        return 1 if self.series is None else self.series.degree
+        return 1 if self.series is None else self.series.operator_applications
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return A u."""
@@ -77,7 +79,7 @@ class LatticeSolver:
     def solve(self, u0: np.ndarray) -> np.ndarray:
         """Return exp(A t) u0."""
         if self.series is not None:
-            return self.series(self.operator, u0)
+            return self.series(np.asarray(u0, dtype=float))
         assert self.propagator is not None
         return self.propagator.apply(u0)
 
@@ -131,8 +133,9 @@ def prepare_lattice(
     if propagation == "series":
         a = row()
         operator = tabulated_operator(a, n, alpha, [amplitude], exterior)
-        series = exponential(time, *_spectral_interval(a[:size]))
-        return LatticeSolver(x, volumes, lambda: operator, series, None)
+        interval = _spectral_interval(a[:size])
+        series = exponential_flow(operator, time, *interval)
+        return LatticeSolver(x, volumes, lambda: operator, series, None, interval)
     assert symbol is not None
     tau = time * rate
     one_sum = propagator(lambda theta: np.exp(tau * symbol(theta, alpha)), alpha, tau, n, exterior)
@@ -148,10 +151,12 @@ def prepare_lattice(
 def _spectral_interval(a: np.ndarray) -> tuple[float, float]:
     """Return an interval that holds the eigenvalues of the Toeplitz matrix with the first row a.
 
-    They lie between the least and the largest value of sum_m a_|m| e^(i m theta), whatever a is beyond the row.
+    They lie between the least and the largest value of sum_m a_|m| e^(i m theta), whatever a is beyond the row. With
+    the infinite row that is the symbol, nowhere positive for any peer: zero is the upper end, with no room above it,
+    where the series would be that of a function that grows.
     """
-    length = next_fast_len(_OVERSAMPLING * a.size, real=True)
-    values = 2.0 * rfft(a, length).real - a[0]
-    low, high = float(values.min()), max(0.0, float(values.max()))
-    room = _MARGIN * (high - low)
-    return low - room, high + room
+    length = 2 * next_fast_len(
+        _OVERSAMPLING * a.size // 2, real=True
+    )  # even, so that theta = pi is there
+    low = float((2.0 * rfft(a, length).real - a[0]).min())
+    return low * (1.0 + _MARGIN), 0.0

@@ -4,7 +4,7 @@ The exact symbol on the periodic square of period 2 D is, as on the line,
 
     u^_k(t) = exp(-t |k|^alpha) u^_k(0),    k = pi m / D,  m in {-N/2, .., N/2}^2.
 
-The others live on the square lattice x_ij = (i h, j h), i, j = -n .. n, and take u for nil beyond it. Their symbol is
+The others live on the square lattice x_ij = (i h, j h), i, j = -n .. n, and take u for zero beyond it. Their symbol is
 a(theta) = -s^(alpha/2) h^(-alpha), where s stands for |theta|^2. On the infinite lattice its exponential is Toeplitz,
 and with tau = t / h^alpha one sum takes u from 0 to t, whatever t is:
 
@@ -20,9 +20,10 @@ The data beyond the square, missing once, leave an error of the order D^(-2-2 al
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from math import ceil
+from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
@@ -52,7 +53,7 @@ _SPREADS = 40
 
 @dataclass(frozen=True)
 class PlaneSolver:
-    """A peer made ready for one lattice, one alpha and one time.
+    """A peer made ready for one lattice, one alpha and one time. Threads may share it: they take turns.
 
     Attributes
     ----------
@@ -67,6 +68,7 @@ class PlaneSolver:
     axis: np.ndarray
     spacing: float
     advance: Callable[[np.ndarray], np.ndarray]
+    _lock: Lock = field(init=False, repr=False, default_factory=Lock)
 
     def solve(self, u0: np.ndarray) -> np.ndarray:
         """Return u at the time prepared for from u0 at time 0, both of shape (N, N).
@@ -81,7 +83,8 @@ class PlaneSolver:
             raise InvalidInput(
                 "u0", u0.shape, f"the shape ({size}, {size})", "Give a value at each lattice point."
             )
-        return self.advance(u0)
+        with self._lock:
+            return self.advance(u0)
 
 
 class PlanePeer(NamedTuple):
@@ -149,7 +152,7 @@ def plane_weights(squares: Squares, alpha: float, scaled_time: float, count: int
     Parameters
     ----------
     squares : callable
-        The part of s that one component of theta in [0, pi] contributes; theta^2 near nil.
+        The part of s that one component of theta in [0, pi] contributes; theta^2 near zero.
     alpha : float
         Fractional order.
     scaled_time : float

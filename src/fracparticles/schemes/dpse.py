@@ -5,6 +5,9 @@
 
 The classical exchange approximation of the Laplacian, applied to the Riesz potential of u. Conservative, but the
 potential decays so slowly, like |x|^(-beta), that cutting it at the ends spoils the solution there.
+
+For beta near zero kappa is nearly the constant 1 / beta, of which the differences v_j - v_i leave nothing but its
+roundings. There a constant is taken off the weights first, which changes no v_j - v_i: see `potential_differences`.
 """
 
 from __future__ import annotations
@@ -12,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from fracparticles.kernels import kernel
-from fracparticles.operators import Operator, TwoPassOperator
+from fracparticles.operators import LatticeOperator, TwoPassOperator
 from fracparticles.schemes.base import Setting, lattice_transform, present_sum
 from fracparticles.sums import SUMMATIONS, BandedConvolution
 
@@ -28,10 +31,26 @@ EXTERIORS = ("truncated",)
 CONSERVATIVE = True
 DISSIPATIVE = True
 
+_NEARLY_CONSTANT = 0.005  # beta, below which the constant 1 / beta would cost more than two digits
+_NODES = 24  # of a panel of 1 / s <= 4 smoothing lengths: exact to round-off for the kernel, a Gaussian at its worst
+
 
 def potential_weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
     """v_i = h^(1-beta) sum_j b_{i-j} u_j with b_m = s^(-beta) kappa(m / s), Eq. (13)."""
     return overlap ** (1.0 - alpha) * kernel("kappa", m / overlap, alpha, order=order)
+
+
+def potential_differences(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
+    """b_m - b_0 of `potential_weights` for m = 0, 1, 2, .., without the cancellation.
+
+    kappa' = F = -r K, so that b_m - b_(m-1) = -s^(-beta) int r K(r) dr from (m - 1) / s to m / s: all of one sign.
+    """
+    nodes, gauss = np.polynomial.legendre.leggauss(_NODES)
+    steps = np.zeros(m.size)
+    for node, weight in zip(nodes, gauss, strict=True):
+        r = (m[1:] - 0.5 * (1.0 - node)) / overlap
+        steps[1:] -= 0.5 * weight / overlap * r * kernel("K", r, alpha, order=order)
+    return overlap ** (1.0 - alpha) * np.cumsum(steps)
 
 
 def laplacian_weights(m: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:
@@ -39,10 +58,11 @@ def laplacian_weights(m: np.ndarray, alpha: float, order: int, overlap: float) -
     return 2.0 * overlap**-3.0 * kernel("Phi", m / overlap, alpha, order=order)
 
 
-def operator(setting: Setting) -> Operator:
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of Eqs. (13), (16)."""
     alpha, order, overlap, size = setting.alpha, setting.order, setting.overlap, setting.size
-    b = potential_weights(np.arange(size, dtype=float), alpha, order, overlap)
+    potential = potential_differences if alpha - 1.0 < _NEARLY_CONSTANT else potential_weights
+    b = potential(np.arange(size, dtype=float), alpha, order, overlap)
     reach = BandedConvolution.reach(overlap, order)
     c = laplacian_weights(np.arange(reach + 1, dtype=float), alpha, order, overlap)
     return TwoPassOperator(
@@ -56,7 +76,7 @@ def operator(setting: Setting) -> Operator:
 def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
     """A(theta) h^alpha / D = 2 s^(-1-beta) kappa^(theta) [Phi^(theta) - Phi^(0)], sums over the aliases.
 
-    At theta = 0 the potential's kappa^ ~ |k|^(alpha-2) is infinite and the product nil.
+    At theta = 0 the potential's kappa^ ~ |k|^(alpha-2) is infinite and the product zero.
     """
     theta = np.asarray(theta, dtype=float)
     out = np.zeros_like(theta)

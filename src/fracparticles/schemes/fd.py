@@ -5,16 +5,19 @@ Dirichlet conditions. With omega(z) = z^(1-beta) / Gamma(2-beta) and delta_j = (
 
     L_i = sum_{j <= i} [omega(x_i - x_{j-1}) - omega(x_i - x_j)] delta_j,     R_i its mirror image,
     du_i/dt = D [(L_{i+1} - L_i) + (R_i - R_{i-1})] / (2 h |cos(pi alpha / 2)|).
+
+As beta goes to zero |cos(pi alpha / 2)| does, and with it all but the nearest weights of L: what is first order in h is
+of the size h / beta there.
 """
 
 from __future__ import annotations
 
-from math import gamma
+from math import factorial, gamma
 
 import numpy as np
-from scipy.special import zeta
+from scipy.special import bernoulli, poch, zeta
 
-from fracparticles.operators import Operator
+from fracparticles.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, one_pass_operator
 
 NAME = "FD"
@@ -29,6 +32,8 @@ EXTERIORS = ("truncated",)
 CONSERVATIVE = False
 DISSIPATIVE = True
 
+_CLOSE = 0.005  # of beta or 1 - beta: closer, omega is nearly z or 1, and its differences are taken of the rest
+_ZETA_TERMS = 10  # and as many corrections: the next is below round-off
 _FAR = 200.0  # the next Taylor term, omega^(9), is below 1e-16 of the first there
 
 
@@ -40,7 +45,15 @@ def weights(m: np.ndarray, alpha: float) -> np.ndarray:
     m = np.abs(np.asarray(m, dtype=float))
     one_sided = _one_sided(m, alpha)
     mirrored = np.where(m <= 1.0, _one_sided(-m, alpha), 0.0)
-    return 0.5 * (one_sided + mirrored) / abs(np.cos(0.5 * np.pi * alpha))
+    return 0.5 * (one_sided + mirrored) / _cosine(alpha)
+
+
+def _cosine(alpha: float) -> float:
+    """|cos(pi alpha / 2)| = sin(pi beta / 2), which keeps its digits as beta goes to zero."""
+    beta = alpha - 1.0
+    if beta < _CLOSE:
+        return float(np.sin(0.5 * np.pi * beta))
+    return float(abs(np.cos(0.5 * np.pi * alpha)))
 
 
 def _one_sided(m: np.ndarray, alpha: float) -> np.ndarray:
@@ -50,6 +63,8 @@ def _one_sided(m: np.ndarray, alpha: float) -> np.ndarray:
     omega''' + omega^(5) / 8 + 13 omega^(7) / 1920, where the difference itself would cancel.
     """
     near = _g(m + 1.0, alpha) - 2.0 * _g(m, alpha) + _g(m - 1.0, alpha)
+    if min(alpha - 1.0, 2.0 - alpha) < _CLOSE:
+        near = np.where(m >= 1.0, _third_difference(m, alpha), near)
     p = 2.0 - alpha
     c = np.maximum(m, _FAR) + 0.5
     third = p * (p - 1.0) * (p - 2.0) * c ** (p - 3.0)
@@ -60,13 +75,27 @@ def _one_sided(m: np.ndarray, alpha: float) -> np.ndarray:
 
 
 def _g(m: np.ndarray, alpha: float) -> np.ndarray:
-    """g_m = omega(m + 1) - omega(m) for m >= 0, nil for m < 0."""
+    """g_m = omega(m + 1) - omega(m) for m >= 0, zero for m < 0."""
     p = 2.0 - alpha
     base = np.maximum(m, 0.0)
     return np.where(m < 0.0, 0.0, (base + 1.0) ** p - base**p) / gamma(p + 1.0)
 
 
-def operator(setting: Setting) -> Operator:
+def _third_difference(m: np.ndarray, alpha: float) -> np.ndarray:
+    """The same for m >= 1 and beta near zero or one: that of omega less z or 1, which have none."""
+    m, beta = np.maximum(m, 1.0), alpha - 1.0
+
+    def rest(z: np.ndarray) -> np.ndarray:
+        logarithm = np.log(np.maximum(z, 1.0))
+        if beta < 0.5:
+            return z * np.expm1(-beta * logarithm)
+        return np.where(z == 0.0, -1.0, np.expm1((1.0 - beta) * logarithm))
+
+    difference = rest(m + 2.0) - 3.0 * rest(m + 1.0) + 3.0 * rest(m) - rest(m - 1.0)
+    return difference / gamma(2.0 - beta)
+
+
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of the module's formula, Dirichlet conditions beyond the last particles."""
     return one_pass_operator(setting, lambda m: weights(m, setting.alpha))
 
@@ -82,10 +111,32 @@ def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0
     t = theta[theta != 0.0]
     power = 3.0 - alpha
     turns = t / (2.0 * np.pi)
-    quarter = np.exp(-0.5j * np.pi * power)
-    aliases = (2.0 * np.pi) ** -power * (
-        quarter * zeta(power, turns) + np.conj(quarter) * zeta(power, 1.0 - turns)
-    )
+    if 2.0 - alpha < _CLOSE:
+        aliases = _aliases_near_the_pole(2.0 - alpha, turns)
+    else:
+        quarter = np.exp(-0.5j * np.pi * power)
+        aliases = quarter * zeta(power, turns) + np.conj(quarter) * zeta(power, 1.0 - turns)
+    aliases = (2.0 * np.pi) ** -power * aliases
     flux = -4.0 * np.sin(0.5 * t) ** 2 * aliases
-    out[theta != 0.0] = ((np.exp(1j * t) - 1.0) * flux).real / abs(np.cos(0.5 * np.pi * alpha))
+    out[theta != 0.0] = ((np.exp(1j * t) - 1.0) * flux).real / _cosine(alpha)
     return out
+
+
+def _aliases_near_the_pole(delta: float, t: np.ndarray) -> np.ndarray:
+    """i^-p zeta(p, t) + i^p zeta(p, 1 - t), p = 1 + delta: the poles 1 / delta of both are taken off, exactly."""
+    left, right = _zeta_less_pole(delta, t), _zeta_less_pole(delta, 1.0 - t)
+    # i^-p = -sin(pi delta / 2) - i cos(pi delta / 2)
+    sine, cosine = np.sin(0.5 * np.pi * delta), np.cos(0.5 * np.pi * delta)
+    return np.asarray(-sine * (2.0 / delta + left + right) - 1j * cosine * (left - right))
+
+
+def _zeta_less_pole(delta: float, t: np.ndarray) -> np.ndarray:
+    """zeta(p, t) - 1 / delta by the formula of Euler and Maclaurin from the tenth term on (DLMF 25.11.5)."""
+    p, z = 1.0 + delta, _ZETA_TERMS + t
+    total = sum(((k + t) ** -p for k in range(_ZETA_TERMS)), start=0.5 * z**-p)
+    total = total + np.expm1(-delta * np.log(z)) / delta
+    power = z**-delta / (z * z)
+    for j, number in enumerate(bernoulli(2 * _ZETA_TERMS)[2::2], start=1):
+        total += number * power * poch(p, 2 * j - 1) / factorial(2 * j)
+        power = power / (z * z)
+    return total

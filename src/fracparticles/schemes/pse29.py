@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.operators import Operator
+from fracparticles.operators import LatticeOperator
 from fracparticles.schemes import dd
 from fracparticles.schemes.base import Setting, one_pass_operator
 
@@ -27,7 +27,7 @@ CONSERVATIVE = True
 DISSIPATIVE = False
 
 
-def operator(setting: Setting) -> Operator:
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of Eq. (29)."""
     alpha, order, overlap = setting.alpha, setting.order, setting.overlap
     at_zero = dd.symbol(np.zeros(1), alpha, order, overlap)

@@ -15,7 +15,7 @@ from math import gamma, pi, sqrt
 import numpy as np
 from scipy.special import kv
 
-from fracparticles.operators import Operator
+from fracparticles.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, one_pass_operator
 
 NAME = "RIESZ"
@@ -58,7 +58,7 @@ def weights(m: np.ndarray, alpha: float, overlap: float) -> np.ndarray:
     return alpha * overlap ** (-1.0 - alpha) * kernel_star(m / overlap, alpha)
 
 
-def operator(setting: Setting) -> Operator:
+def operator(setting: Setting) -> LatticeOperator:
     """Return A of the module's formula."""
     alpha, overlap = setting.alpha, setting.overlap
     return one_pass_operator(

@@ -114,7 +114,27 @@ def _reduced(x: FloatArray, alpha: float, n: int) -> FloatArray | float:
 
 def _similarity(t: Any, alpha: Any) -> float:
     """Return t^(-1/alpha)."""
-    return positive_real("t", t) ** (-1.0 / fractional_order(alpha))
+    t, power = positive_real("t", t), -1.0 / fractional_order(alpha)
+    try:
+        return t**power
+    except OverflowError:
+        raise _too_short(t) from None
+
+
+def _too_short(t: float) -> InvalidInput:
+    return InvalidInput(
+        "t",
+        t,
+        "a time at which the solution is below 1e308",
+        "Take another unit of time or length.",
+    )
+
+
+def _finite(t: float, value: FloatArray | float) -> FloatArray | float:
+    """Return the value; the solution is never infinite, but may be too large for a float64."""
+    if not np.isfinite(value).all():
+        raise _too_short(t)
+    return value
 
 
 def _scaled(x: Any, scale: float) -> FloatArray:
@@ -129,9 +149,10 @@ def _product(x: FloatArray, value: FloatArray | float) -> FloatArray:
 
 
 def _times_power(scale: float, n: int, value: FloatArray | float) -> FloatArray | float:
-    """Return scale^n value; scale^n alone may overflow."""
-    for _ in range(n):
-        value = scale * value
+    """Return scale^n value; scale^n alone may overflow. What overflows all the same is infinite."""
+    with np.errstate(over="ignore"):
+        for _ in range(n):
+            value = scale * np.asarray(value)
     return value
 
 
@@ -194,7 +215,9 @@ def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
         If an argument is outside its range.
     """
     scale, n = _similarity(t, alpha), dimension(dim)
-    return _times_power(scale, n, reduced_green(_scaled(x, scale), alpha, n))
+    x = real_array("x", x)
+    value = _times_power(scale, n, reduced_green(_scaled(x, scale), alpha, n))
+    return _like(x, _finite(t, value))
 
 
 def green_slope(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -218,7 +241,7 @@ def green_slope(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | fl
     scale, n = _similarity(t, alpha), dimension(dim)
     r = _scaled(x, scale)
     slope = -2.0 * math.pi * _product(r, _reduced(r, float(alpha), n + 2))
-    return _like(r, _times_power(scale, n + 1, slope))
+    return _like(r, _finite(t, _times_power(scale, n + 1, slope)))
 
 
 def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -244,7 +267,9 @@ def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     """
     value = green(x, t, alpha, dim)
     x = real_array("x", x)
-    return _like(x, _product(x, value) / (alpha * t))
+    with np.errstate(over="ignore"):
+        flux = _product(x, value) / (alpha * t)
+    return _like(x, _finite(t, flux))
 
 
 def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -271,8 +296,9 @@ def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     scale, n = _similarity(t, alpha), dimension(dim)
     r = _scaled(x, scale)
     growth = 2.0 * math.pi * _product(r, _product(r, _reduced(r, float(alpha), n + 2)))
-    rate = (growth - n * _reduced(r, float(alpha), n)) / (alpha * t)
-    return _like(r, _times_power(scale, n, rate))
+    with np.errstate(over="ignore"):
+        rate = (growth - n * _reduced(r, float(alpha), n)) / (alpha * t)
+    return _like(r, _finite(t, _times_power(scale, n, rate)))
 
 
 def mean_radius(alpha: float) -> float:

@@ -12,7 +12,7 @@ from importlib import import_module
 from fracparticles.errors import InvalidInput
 from fracparticles.studies.common import Inputs, Result, statement, value
 
-__all__ = ["STUDIES", "Inputs", "Result", "statement", "study", "value"]
+__all__ = ["OWN_PARAMETERS", "STUDIES", "Inputs", "Result", "statement", "study", "value"]
 
 # Name in the configuration -> module of this package; the function has the name of the study.
 STUDIES = {
@@ -80,6 +80,12 @@ STUDIES = {
     "cost_growth": "cost_growth",
     "reference_times": "run_times",
     "scattered_sums": "run_times",
+}
+
+# Parameters that are the study's own although they have the name of a field of a run: by study.
+OWN_PARAMETERS = {
+    "random_walk": ("dt",),  # the steps of the walkers
+    "rejected_riesz": ("half_width", "spacing", "overlap"),  # of the sums that it does itself
 }
 
 

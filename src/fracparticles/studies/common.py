@@ -153,12 +153,19 @@ def excuse(findings: Iterable[Finding], claims: Iterable[Claim]) -> list[Finding
 
 
 def write_table(table: pd.DataFrame, csv: str, md: str | None = None) -> None:
-    """Write a table as CSV with full precision and, if asked, as Markdown with four digits."""
+    """Write a table as CSV with full precision and, if asked, as Markdown with four digits, a | in it escaped."""
     write_text(csv, table.to_csv(index=False, lineterminator="\n") if len(table.columns) else "\n")
     if md is not None:
-        shown = table.astype(object).where(table.notna(), None)
+        shown = table.map(_shown).astype(object).where(table.notna(), None)
+        shown = shown.rename(columns=_shown)
         text = shown.to_markdown(index=False, floatfmt=".4g", missingval="")
         write_text(md, f"{text}\n")
+
+
+def _shown(cell: Any) -> Any:
+    if isinstance(cell, str):
+        return cell.replace("|", r"\|")
+    return cell + 0.0 if isinstance(cell, float) else cell  # no -0
 
 
 def observed_order(h: np.ndarray, error: np.ndarray) -> np.ndarray:
