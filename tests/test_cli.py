@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import fracparticles as fp
 from fracparticles.case import Case
@@ -178,8 +179,59 @@ def test_outputs_that_cannot_be_written_are_refused_before_any_work(cli, tmp_pat
     given = (*SMALL, "--dt", 0.05, "-o")
     assert refused(cli("solve", *given, "none/run.nc"), "none/run.nc", "a directory that exists")
     assert refused(cli("solve", *given, tmp_path), "this is a directory")
+    os.mkfifo("pipe")
+    os.symlink("/dev/null", "null")
+    os.symlink("none.nc", "dangling")
+    for path in ("/dev/null", "/dev/full", "pipe", "null"):
+        assert refused(cli("solve", *given, path), "output", "a device, a pipe or a socket")
+    assert refused(cli("solve", *given, "dangling"), "output", "does not exist")
     monkeypatch.setattr(os, "access", lambda *_: False)
     assert refused(cli("solve", *given, "run.nc"), "a directory that can be written")
+
+
+def test_an_output_that_is_a_link_is_written_through(cli, tmp_path):
+    (tmp_path / "run.nc").write_text("old")
+    (tmp_path / "link").symlink_to("run.nc")
+    assert cli("solve", *SMALL, "--dt", 0.05, "-o", "link") == (0, "link\n", "")
+    assert (tmp_path / "link").is_symlink()
+    assert fp.read_run("run.nc").identical(fp.solve(CASE))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ("--beta 0.3 --t-initial 1", ("beta = 0.3", "beta = 0.5")),
+        ("--diffusivity 5 --t-initial 1", ("diffusivity = 5", "diffusivity = 1")),
+        ("--t-initial 0.75", ("t_initial = 0.75", "t_final = 1")),
+        ("", ("t_initial = 0.5", "t_final = 1", "Set t_initial = 1")),
+    ],
+)
+def test_a_restart_that_does_not_go_on(cli, changes, words):
+    given = words_of("--scheme KPSE --half-width 10 --spacing 0.25 --integrator exponential")
+    cli("solve", *given, "--beta", 0.5, "--t-final", 1.0, "-o", "a.nc")
+    if "--beta" not in changes:
+        given += ["--beta", "0.5"]
+    result = cli("solve", *given, *changes.split(), "--initial", "a.nc", "-o", "b.nc")
+    assert refused(result, "a.nc", *words)
+    assert not os.path.exists("b.nc")
+
+
+def test_a_file_without_a_time_is_one_line_of_warning(cli):
+    u = xr.DataArray(np.exp(-(CASE.x**2)), {"x": CASE.x[::-1]}, "x", name="u")
+    u.to_netcdf("u.nc")
+    status, out, err = cli("solve", *SMALL, "--dt", 0.05, "--initial", "u.nc", "-o", "run.nc")
+    assert (status, out) == (0, "run.nc\n")
+    assert err.startswith("warning: the initial data are your own and t_initial was not given")
+    assert err.count("\n") == 1
+    given = (*SMALL, "--dt", 0.05, "--initial", "u.nc", "--t-initial", 0.5)
+    assert cli("solve", *given, "-o", "run.nc") == (0, "run.nc\n", "")
+
+
+def test_a_stored_case_whose_data_came_with_the_call(cli):
+    marker = fp.solve(CASE, np.exp(-(CASE.x**2))).attrs["case"].split('"initial": "')[1][:30]
+    assert marker.startswith("given, sha256 ")
+    result = cli("solve", *SMALL, "--dt", 0.05, "--initial", marker, "-o", "run.nc")
+    assert refused(result, marker, "Pass the data again")
 
 
 def test_damaged_initial_data(cli, tmp_path):
@@ -231,9 +283,33 @@ def test_limit(cli):
     assert out == f"a = {a:.6g}\ndt = {a * 0.1**1.5 / 2.0:.6g}\n"
     square = fp.stability_limit("KPSE", 0.5, dim=2)
     assert cli("limit", *words_of("--scheme KPSE --beta 0.5 --dim 2"))[1] == f"a = {square:.6g}\n"
+    assert err == ""
     high = fp.stability_limit("KPSE", 0.5, 8)
     flags = "--scheme KPSE --beta 0.5 --order 8 --kernel-family gamma"
     assert cli("limit", *words_of(flags))[1] == f"a = {high:.6g}\n"
+
+
+def test_a_limit_says_what_it_does_not_bind(cli):
+    """One step of GPSE, the whole run, is exp or less for every wave; steps repeated are stable to the limit."""
+    flags = words_of("--scheme GPSE --beta 0.5 --spacing 0.1")
+    status, out, err = cli("limit", *flags)
+    a = fp.stability_limit("GPSE", 0.5)
+    assert (status, out) == (0, f"a = {a:.6g}\ndt = {a * 0.1**1.5:.6g}\n")
+    assert err.startswith("note: this binds steps that are repeated; a single step of GPSE")
+    assert err.count("\n") == 1
+    once = Case(scheme="GPSE", beta=0.5, half_width=10.0, spacing=0.1, dt=1.0)
+    assert once.time_step > a * 0.1**1.5
+    u = fp.solve(once, np.exp(-(once.x**2))).u.values
+    assert np.abs(u).max() <= 1.0
+
+
+@pytest.mark.parametrize("flags", ["--order 12 --overlap 1", "--order 8 --overlap 0.85"])
+def test_a_limit_of_zero_says_that_no_step_is_stable(cli, flags):
+    status, out, err = cli("limit", *words_of("--scheme KPSE --beta 0.9"), *flags.split())
+    assert (status, out) == (0, "a = 0\n")
+    assert (
+        err == "note: no step is stable, some wave grows: take a larger overlap or a lower order\n"
+    )
 
 
 @pytest.mark.parametrize(

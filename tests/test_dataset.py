@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import socket
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -13,8 +16,10 @@ import xarray as xr
 
 import fracparticles as fp
 from fracparticles.case import Case
-from fracparticles.dataset import read_strengths
 from fracparticles.errors import InvalidInput
+from fracparticles.files import replaceable
+from fracparticles.initial import read_strengths
+from fracparticles.solver import compute
 from fracparticles.special import mean_radius
 
 GIVEN = {
@@ -77,6 +82,7 @@ def test_variables_and_masses():
         "mass_initial",
         "mass_final",
         "operator_applications",
+        *compute(case()).estimates,
     }
     assert run.u.dims == ("x",)
     assert run.mass_final.item() == pytest.approx(0.25 * run.u.values.sum(), rel=1e-15)
@@ -94,6 +100,57 @@ def test_attributes_follow_the_conventions():
     for name, variable in run.variables.items():
         assert variable.attrs["long_name"], name
         assert variable.attrs["units"] == "1", name
+
+
+def test_the_title_says_all_of_the_equation():
+    for diffusivity, words in ((1.0, "D = 1"), (0.02, "D = 0.02"), (3e5, "D = 300000")):
+        run = fp.solve(
+            case(
+                diffusivity=diffusivity,
+                store="metrics",
+                integrator="exponential",
+                dt=None,
+                t_final=0.6,
+            )
+        )
+        assert run.attrs["title"].endswith(
+            f"u_t = -D (-Laplacian)^(alpha/2) u, alpha = 1.5, {words}"
+        )
+
+
+def test_strength_and_mass_are_told_apart():
+    """u is a density, the strength; V u a mass."""
+    dvm = {**GIVEN, "scheme": "DVM", "t_final": 0.6, "remesh_above": 1.01}
+    plane = {**GIVEN, "half_width": 4.0, "spacing": 0.5, "dim": 2, "store": "profile"}
+    runs = [fp.solve(Case(**fields)) for fields in (GIVEN, plane, dvm)]
+    assert runs[2].remeshings.item() > 0
+    named = {
+        name: variable.attrs["long_name"]
+        for run in runs
+        for name, variable in run.data_vars.items()
+    }
+    strengths = {name for name, words in named.items() if "strength" in words}
+    masses = {name for name, words in named.items() if "mass" in words}
+    assert strengths == {"u_axis", "u_diagonal"}
+    assert masses == {
+        "mass_initial",
+        "mass_final",
+        "particle_strength",
+        "eliminated_strength",
+        "lost_strength",
+    }
+    assert runs[0].u.attrs["long_name"] == "particle strength u at t_final"
+    assert runs[2].u.attrs["long_name"] == "field u at t_final"
+    assert runs[2].particle_strength.sum().item() == runs[2].mass_final.item()
+
+
+def test_estimates_are_scalars_of_the_run():
+    solution = compute(case())
+    assert solution.estimates
+    run = fp.solve(case())
+    for name, (value, meaning) in solution.estimates.items():
+        assert run[name].item() == value
+        assert run[name].attrs == {"long_name": meaning, "units": "1"}
 
 
 def test_own_initial_data_have_no_error_but_a_digest():
@@ -121,7 +178,7 @@ def test_a_square_is_read_again(tmp_path):
     fp.write(fp.solve(first), path)
     second = fp.solve(whole.model_copy(update={"t_initial": 1.0}), path)
     assert np.abs(second.u.values - fp.solve(whole).u.values).max() <= 1e-14
-    with pytest.raises(InvalidInput, match=r"u\(x\) and the coordinates x"):
+    with pytest.raises(InvalidInput, match=r"dim = 1, .* dim = 2"):
         read_strengths(path, case())
 
 
@@ -175,10 +232,45 @@ def test_write_makes_the_directories(tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["run.nc"]
 
 
-def test_a_write_that_fails_leaves_nothing(tmp_path):
+CANNOT_BE_HELD = [
+    {"a": 1},
+    None,
+    object(),
+    {1, 2},
+    1j,
+    [1, "a", None],
+    np.datetime64("2020-01-01"),
+    2**70,
+    print,
+]
+
+
+@pytest.mark.parametrize("value", CANNOT_BE_HELD, ids=range(len(CANNOT_BE_HELD)))
+@pytest.mark.parametrize("holder", ["run", "u", "x", "beta"])
+def test_an_attribute_that_cannot_be_written_is_named_and_leaves_nothing(tmp_path, value, holder):
     run = fp.solve(case())
-    run.attrs["broken"] = {"a": 1}
-    with pytest.raises(TypeError):
+    (run if holder == "run" else run[holder]).attrs["broken"] = value
+    of = "" if holder == "run" else f" of {holder},"
+    with pytest.raises(InvalidInput, match=f"^attribute{of} 'broken' = ") as refused:
+        fp.write(run, tmp_path / "run.nc")
+    assert "\n" not in str(refused.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["a/b", "", 3, "trailing "])
+def test_a_name_that_cannot_be_written(tmp_path, name):
+    run = fp.solve(case(store="metrics"))
+    run.attrs[name] = 1
+    with pytest.raises(InvalidInput, match=r"^attribute "):
+        fp.write(run, tmp_path / "run.nc")
+
+
+@pytest.mark.parametrize(
+    "values", [np.array([1j, 2j]), np.array([{}, {}], object)], ids=["complex", "object"]
+)
+def test_a_variable_that_cannot_be_written(tmp_path, values):
+    run = fp.solve(case(store="metrics")).assign(odd=("i", values))
+    with pytest.raises(InvalidInput, match=r"^variable 'odd' = "):
         fp.write(run, tmp_path / "run.nc")
     assert list(tmp_path.iterdir()) == []
 
@@ -187,10 +279,141 @@ def test_a_write_that_fails_keeps_the_old_file(run_file):
     before = run_file.read_bytes()
     run = fp.solve(case())
     run.attrs["broken"] = {"a": 1}
-    with pytest.raises(TypeError):
+    with pytest.raises(InvalidInput):
         fp.write(run, run_file)
     assert run_file.read_bytes() == before
     assert [p.name for p in run_file.parent.iterdir()] == ["run.nc"]
+
+
+def test_what_is_not_a_data_set_is_refused(tmp_path):
+    for thing in (None, fp.solve(case()).u, {}, tmp_path / "run.nc"):
+        with pytest.raises(InvalidInput, match="dataset = "):
+            fp.write(thing, tmp_path / "run.nc")
+    for path in (None, 3, b"run.nc", "a\0b", tmp_path, ""):
+        with pytest.raises(InvalidInput, match="path = "):
+            fp.write(fp.solve(case(store="metrics")), path)
+
+
+@pytest.mark.parametrize("umask", [0o022, 0o077, 0o027, 0o002])
+def test_the_mode_is_what_the_umask_leaves(tmp_path, umask):
+    program = (
+        "import os, sys, xarray as xr\n"
+        "from fracparticles.dataset import write\n"
+        f"os.umask({umask})\n"
+        "write(xr.Dataset({'a': 1.0}), sys.argv[1])"
+    )
+    path = tmp_path / "a.nc"
+    path.touch(0o600)  # the mode of what was there does not count
+    subprocess.run([sys.executable, "-c", program, str(path)], check=True)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o666 & ~umask
+
+
+def test_only_regular_files_are_replaced(tmp_path, monkeypatch):
+    run = fp.solve(case(store="metrics"))
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe")
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind("socket")
+        Path("null").symlink_to("/dev/null")
+        Path("again").symlink_to("pipe")
+        for path in ("/dev/null", "/dev/full", "pipe", "socket", "null", "again"):
+            before = os.stat(path)
+            with pytest.raises(InvalidInput, match="a device, a pipe or a socket"):
+                fp.write(run, path)
+            after = os.stat(path)
+            assert (after.st_mode, after.st_ino, after.st_rdev) == (
+                before.st_mode,
+                before.st_ino,
+                before.st_rdev,
+            )
+
+
+def test_a_link_is_written_through(tmp_path):
+    run, there = fp.solve(case(store="metrics")), tmp_path / "store"
+    there.mkdir()
+    old = there / "old.nc"
+    old.write_text("old")
+    for name, target in (("near", old), ("far", tmp_path / "near"), ("relative", "store/old.nc")):
+        old.write_text("old")
+        link = tmp_path / name
+        link.symlink_to(target)
+        fp.write(run, link)
+        assert link.is_symlink()
+        assert not old.is_symlink()
+        assert fp.read_run(old).identical(run)
+        assert [p.name for p in there.iterdir()] == ["old.nc"]
+
+
+def test_a_link_to_nothing_or_to_itself_is_refused(tmp_path):
+    run = fp.solve(case(store="metrics"))
+    (tmp_path / "dangling").symlink_to(tmp_path / "none.nc")
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    (tmp_path / "folder").symlink_to(tmp_path)
+    for name, words in (("dangling", "which does not exist"), ("loop", "a link to")):
+        with pytest.raises(InvalidInput, match=words):
+            fp.write(run, tmp_path / name)
+    with pytest.raises(InvalidInput, match="this is a directory"):
+        fp.write(run, tmp_path / "folder")
+    assert replaceable(tmp_path / "folder" / "a.nc") == tmp_path.resolve() / "a.nc"
+
+
+@pytest.mark.parametrize(
+    "name", ["ü" * 120 + ".nc", "a" * 252 + ".nc", "no_suffix", "a." + "b" * 250]
+)
+def test_names_as_long_as_they_may_be(tmp_path, name):
+    run = fp.solve(case(store="metrics"))
+    fp.write(run, tmp_path / name)
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+    assert fp.read_run(tmp_path / name).identical(run)
+
+
+_FULL_DISK = (
+    "import sys, warnings, fracparticles as fp\n"
+    "from fracparticles.cli import main\n"
+    "{limit}\n"
+    "sys.exit(main(sys.argv[1:]))"
+)
+_ARGUMENTS = (
+    "solve --scheme KPSE --beta 0.5 --half-width 100 --spacing 0.01 --integrator exponential -o"
+)
+
+
+def full_disk(folder: Path, limit: str = "") -> None:
+    """Run the command line where the disk does not take the file: one line, status 1, the old file as it was."""
+    old = folder / "run.nc"
+    old.write_text("old")
+    done = subprocess.run(
+        [sys.executable, "-c", _FULL_DISK.format(limit=limit), *_ARGUMENTS.split(), str(old)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1, done.stderr
+    assert done.stdout == ""
+    assert done.stderr.startswith(f"error: cannot write '{old}' (")
+    assert done.stderr.count("\n") == 1
+    assert old.read_text() == "old"
+    assert [p.name for p in folder.iterdir()] == ["run.nc"]
+
+
+def test_a_file_larger_than_it_may_be_is_one_line(tmp_path):
+    full_disk(
+        tmp_path, "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (50000, 50000))"
+    )
+
+
+def test_a_full_disk_is_one_line(tmp_path):
+    mounted = os.geteuid() == 0 and subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", str(tmp_path)],
+        capture_output=True,
+        check=False,
+    )
+    if not mounted or mounted.returncode:
+        pytest.skip("a small disk cannot be mounted")
+    try:
+        full_disk(tmp_path)
+    finally:
+        subprocess.run(["umount", str(tmp_path)], check=True)
 
 
 def test_runs_combine_into_a_cube(tmp_path):
@@ -280,7 +503,7 @@ def test_a_file_of_something_else(tmp_path):
 def test_strengths_on_another_lattice(run_file):
     for changes in ({"spacing": 0.125}, {"half_width": 11.0}):
         with pytest.raises(InvalidInput, match=r"u on the .* points of case\.positions"):
-            read_strengths(run_file, case(**changes))
+            read_strengths(run_file, case(t_initial=1.5, t_final=2.0, **changes))
 
 
 def test_strengths_that_are_not_finite(tmp_path):

@@ -142,7 +142,7 @@ def test_strengths_of_another_lattice_are_refused():
 def test_one_pass_of_nonsense_is_an_error(evaluation):
     common = {"scheme": "GPSE", "beta": 0.5, "truncation": 10.0, "spacing": 0.4, "dt": 1.0}
     case = fp.Case(**common, exterior="open", evaluation=evaluation)
-    with pytest.raises(NonFiniteSolution, match=r"GPSE .* not finite after the one pass"):
+    with pytest.raises(InvalidInput, match=r"initial = 'not finite at x = -"):
         fp.prepare(case).solve(np.full(case.shape, np.inf))
 
 

@@ -115,3 +115,14 @@ def test_refused(arguments, field):
     with pytest.raises(InvalidInput) as refused:
         stability_limit(*arguments)
     assert refused.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("scheme", "beta", "order", "overlap"),
+    [("KPSE", 0.999999, 12, 1.0), ("DPSE", 0.5, 4, 0.5), ("KPSE", 1.0 - 1e-12, 4, 0.3)],
+)
+def test_the_limit_is_zero_where_the_symbol_is_positive(scheme, beta, order, overlap):
+    """Whether a kernel of high order at a small overlap amplifies a wave is seen from the symbol on a fine grid."""
+    theta = np.linspace(0.01, np.pi, 2000)
+    assert SCHEMES[scheme].symbol(theta, 1.0 + beta, order, overlap).max() > 0.0
+    assert stability_limit(scheme, beta, order, overlap) == 0.0

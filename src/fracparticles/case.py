@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 from functools import cached_property
+from hashlib import sha256
 from math import ceil
 from typing import Any, Literal
+from urllib.parse import quote
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -21,6 +23,7 @@ from fracparticles.stability import stability_limit, symbol_range
 __all__ = ["FUNDAMENTAL", "Case"]
 
 _STEP_SLACK = 1e-9  # a time span of n (1 + 1e-9) steps still takes n steps
+_LONGEST_NAME = 240  # bytes; file systems take 255, suffix included
 
 SchemeName = Literal["DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM", "FD", "PSE29", "RIESZ"]
 
@@ -94,7 +97,7 @@ class Case(BaseModel):
     remesh_above: float | None = Field(default=None, gt=1.0, le=100.0)
     """DVM remeshes when two neighbours are further apart than this many h; 1.5 if left out."""
     threshold: float | None = Field(default=None, ge=0.0, lt=1.0)
-    """DVM leaves out, when it remeshes, particles weaker than this share of the strongest; nil if left out."""
+    """DVM leaves out, when it remeshes, particles weaker than this share of the strongest; zero if left out."""
     store: Literal["field", "profile", "metrics"] = "field"
     """What a data set keeps: u everywhere; u for |x| <= 5 R_alpha (dim = 1), or along an axis and a diagonal; or
     scalars only."""
@@ -308,29 +311,48 @@ class Case(BaseModel):
 
     @property
     def path(self) -> str:
-        """A relative file name that shows every parameter: equal cases, equal paths."""
-        width = f"C{self.truncation:g}" if self.truncation is not None else f"D{self.half_width:g}"
-        step = self.method if self.dt is None else f"{self.method}_dt{self.dt:.6g}"
+        """A relative file name that shows every parameter: equal cases, equal paths, and only they.
+
+        Numbers are as short as they can be; the name of a file is percent-encoded; a name too long for a file system
+        ends in a digest of the whole.
+        """
+        if self.truncation is not None:
+            width = f"C{_digits(self.truncation)}"
+        else:
+            assert self.half_width is not None
+            width = f"D{_digits(self.half_width)}"
+        step = self.method if self.dt is None else f"{self.method}_dt{_digits(self.dt)}"
         parts = [
-            f"{width}_h{self.spacing:.7g}",
-            *([] if self.overlap is None else [f"s{self.overlap:g}"]),
+            f"{width}_h{_digits(self.spacing, 7)}",
+            *([] if self.overlap is None else [f"s{_digits(self.overlap)}"]),
             step,
-            f"t{self.t_initial:g}-{self.t_final:g}",
-            *([] if self.diffusivity == 1.0 else [f"diffusivity{self.diffusivity:g}"]),
-            *([] if self.initial == FUNDAMENTAL else [f"from-{_slug(self.initial)}"]),
+            f"t{_digits(self.t_initial)}-{_digits(self.t_final)}",
+            *([] if self.diffusivity == 1.0 else [f"diffusivity{_digits(self.diffusivity)}"]),
+            *([] if self.initial == FUNDAMENTAL else [f"from-{_encoded(self.initial)}"]),
             *([] if self.evaluation is None or self._series_by_default else [self.evaluation]),
             *([] if self.summation == "fft" else [self.summation]),
             *([] if self.kernel_family is None else [self.kernel_family]),
-            *([] if self.kernel_table is None else [f"table{self.kernel_table:g}"]),
-            *([] if self.remeshing is None else [_slug(self.remeshing)]),
-            *([] if self.remesh_above is None else [f"above{self.remesh_above:g}"]),
-            *([] if self.threshold is None else [f"threshold{self.threshold:g}"]),
+            *([] if self.kernel_table is None else [f"table{_digits(self.kernel_table)}"]),
+            *([] if self.remeshing is None else [self.remeshing.replace("'", "-")]),
+            *([] if self.remesh_above is None else [f"above{_digits(self.remesh_above)}"]),
+            *([] if self.threshold is None else [f"threshold{_digits(self.threshold)}"]),
             self.exterior + ("" if self.far_terms is None else str(self.far_terms)),
             self.store,
         ]
+        name = "_".join(parts)
+        if len(name) > _LONGEST_NAME:  # no other part begins like the digest
+            digest = sha256(name.encode()).hexdigest()
+            name = f"{name[: _LONGEST_NAME - len(digest) - 8]}_sha256-{digest}"
         kind = f"{self.scheme}-{self.order}" + ("" if self.dim == 1 else f"-{self.dim}d")
-        return f"{kind}/beta{self.beta:g}/{'_'.join(parts)}.nc"
+        return f"{kind}/beta{_digits(self.beta)}/{name}.nc"
 
 
-def _slug(text: str) -> str:
-    return "".join(c if c.isalnum() else "-" for c in text)
+def _digits(number: float, digits: int = 6) -> str:
+    """The number in so many digits if these say it, or else in as many as do; 0 has no sign."""
+    short = f"{number + 0.0:.{digits}g}"
+    return short if float(short) == number else repr(float(number))
+
+
+def _encoded(text: str) -> str:
+    """The text for a part of a file name: no two texts have the same."""
+    return quote(text.encode("utf-8", "surrogatepass"), safe="").replace("_", "%5F")

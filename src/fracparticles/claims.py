@@ -35,6 +35,7 @@ from pydantic import (
 )
 
 from fracparticles.errors import FracparticlesError
+from fracparticles.files import write_text
 
 __all__ = [
     "PRINTED_NUMBER",
@@ -48,7 +49,6 @@ __all__ = [
     "read_findings",
     "refuse_repeats",
     "write_findings",
-    "write_text",
 ]
 
 PRINTED_NUMBER = r"^-?[0-9]+(\.[0-9]+)?(e-?[0-9]{1,3})?$"
@@ -280,15 +280,3 @@ def refuse_repeats(ids: Iterable[str], complaint: str) -> None:
     """Raise LedgerError, with the complaint and the names, if some come twice."""
     if repeated := sorted(name for name, count in Counter(ids).items() if count > 1):
         raise LedgerError(f"{complaint}: {', '.join(repeated)}")
-
-
-def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write a text file under a temporary name and rename it when whole."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_text(text, encoding="utf-8", newline="\n")
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)

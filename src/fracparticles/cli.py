@@ -18,9 +18,9 @@ from cyclopts import App, CycloptsError, Parameter
 from fracparticles import __version__
 from fracparticles.errors import (
     FracparticlesError,
+    FracparticlesWarning,
     InvalidInput,
     NonFiniteSolution,
-    StabilityWarning,
 )
 
 __all__ = ["app", "main", "number_or_text"]
@@ -68,15 +68,15 @@ def show(file: str) -> None:
         for scalar in scalars
         if scalar.ndim == 0
     ]
-    rows += [(name, run.attrs[name], "") for name in ("initial_data", "source")]
+    rows += [(name, str(run.attrs.get(name, "")), "") for name in ("initial_data", "source")]
     for name in ("u", "u_axis", "u_diagonal"):
         if name in run:
             size = " x ".join(map(str, run[name].shape))
             extent = f"{size} values, x = {run.x.values[0]:.9g} .. {run.x.values[-1]:.9g}"
-            rows.append((name, extent, run[name].attrs["long_name"]))
+            rows.append((name, extent, run[name].attrs.get("long_name", "")))
     first = max(len(name) for name, _, _ in rows)
     second = max(len(value) for _, value, meaning in rows if meaning)
-    print(run.attrs["title"])
+    print(run.attrs.get("title", file))
     for name, value, meaning in rows:
         print(f"  {name:{first}}  {value:{second}}  {meaning}".rstrip())
 
@@ -95,7 +95,8 @@ def limit(
 ) -> None:
     """Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.
 
-    Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a, Eq. (56).
+    Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a, Eq. (56). A single step of GPSE, over the
+    whole time, has no limit.
 
     Parameters
     ----------
@@ -131,13 +132,19 @@ def limit(
         h = positive_real("spacing", number_or_text(spacing))
         lines.append(f"dt = {a * h ** (1.0 + float(beta)) / rate:.6g}")
     print("\n".join(lines))
+    if scheme == "GPSE":
+        _note(
+            "this binds steps that are repeated; a single step of GPSE, over the whole time, has no limit"
+        )
+    if a == 0.0:
+        _note("no step is stable, some wave grows: take a larger overlap or a lower order")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status."""
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
-        warnings.simplefilter("always", StabilityWarning)
+        warnings.simplefilter("always", FracparticlesWarning)
         try:
             app(
                 arguments,
@@ -171,6 +178,10 @@ def _fail(error: object, status: int) -> int:
     message = " ".join(str(error).split()) or type(error).__name__
     print(f"error: {message}", file=sys.stderr)
     return status
+
+
+def _note(text: str) -> None:
+    print(f"note: {text}", file=sys.stderr)
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

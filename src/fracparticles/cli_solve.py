@@ -12,6 +12,7 @@ from fracparticles.case import Case
 from fracparticles.cli import number_or_text
 from fracparticles.complaints import choices_of, takes_numbers
 from fracparticles.errors import InvalidInput
+from fracparticles.files import replaceable
 
 __all__ = ["solve"]
 
@@ -74,10 +75,8 @@ def _writable(output: str | None) -> Path:
     """Return the path of the output if it can be written, before any work is done."""
     if output is None:
         raise InvalidInput("output", None, "the path of the file to write", "Give -o run.nc.")
-    path = Path(output)
-    folder = path.parent
-    if path.is_dir():
-        raise InvalidInput("output", output, "a file, and this is a directory", "Add a file name.")
+    target = replaceable(output, "output")
+    folder = target.parent
     if not folder.is_dir():
         raise InvalidInput(
             "output", output, "a file in a directory that exists", f"Make {str(folder)!r} first."
@@ -86,4 +85,4 @@ def _writable(output: str | None) -> Path:
         raise InvalidInput(
             "output", output, "a file in a directory that can be written", "Choose another one."
         )
-    return path
+    return Path(output)

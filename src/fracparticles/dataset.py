@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
+import shutil
 import subprocess
-import tempfile
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,8 @@ import numpy as np
 from fracparticles import __version__
 from fracparticles.case import FUNDAMENTAL, Case
 from fracparticles.errors import InvalidInput
+from fracparticles.files import replacing
+from fracparticles.initial import case_of_run
 from fracparticles.special.stable import mean_radius
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from fracparticles.schemes.dvm import ParticleRun
     from fracparticles.solver import Solution
 
-__all__ = ["read_benchmark", "read_run", "read_strengths", "to_dataset", "write"]
+__all__ = ["load", "read_benchmark", "read_run", "source", "to_dataset", "write"]
 
 REFERENCE = (
     "Lucchesi, Allouch, Le Maitre, Mustapha, Knio (2020), Particle simulation of space-fractional diffusion "
@@ -41,7 +43,7 @@ _LONG_NAMES = {
     "particle_spacing": "particle spacing h realised",
     "overlap": "overlap epsilon / h realised",
     "dt": "time step realised, 0 for the exponential",
-    "diffusivity": "diffusivity",
+    "diffusivity": "diffusivity D",
     "t_initial": "initial time",
     "t_final": "final time",
     "integrator": "time integrator",
@@ -75,8 +77,12 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         _mass(u, volume) if solution.particles is None else float(solution.particles.strength.sum())
     )
     data: dict[str, tuple] = {
-        "mass_initial": ((), _mass(solution.u0, volume), _describe("total strength at t_initial")),
-        "mass_final": ((), total, _describe("total strength at t_final")),
+        "mass_initial": (
+            (),
+            _mass(solution.u0, volume),
+            _describe("total mass, the sum of V u, at t_initial"),
+        ),
+        "mass_final": ((), total, _describe("total mass, the sum of V u, at t_final")),
         "operator_applications": (
             (),
             np.int64(solution.operator_applications),
@@ -89,6 +95,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
             relative_l1_error(case, u),
             _describe("relative L1 error, Eqs. (48), (59)"),
         )
+    for name, (value, meaning) in (getattr(solution, "estimates", None) or {}).items():
+        data[name] = ((), float(value), _describe(meaning))
     coordinates: dict[str, tuple] = {
         name: ((), value, _describe(_LONG_NAMES[name])) for name, value in _parameters(case).items()
     }
@@ -102,14 +110,15 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         coordinates,
         attrs={
             "Conventions": "CF-1.11, ACDD-1.3",
-            "title": f"{case.scheme} of order {case.order} for u_t = -(-Laplacian)^(alpha/2) u, alpha = {case.alpha:g}",
+            "title": f"{case.scheme} of order {case.order} for u_t = -D (-Laplacian)^(alpha/2) u, "
+            f"alpha = {case.alpha:g}, D = {case.diffusivity:g}",
             "summary": "Final particle strengths of one run and its parameters.",
             "keywords": "fractional diffusion, particle method, particle strength exchange",
-            "source": f"fracparticles {__version__}{_commit()}",
+            "source": source(),
             "history": "fracparticles.solve(case)",
             "references": REFERENCE,
             "initial_data": solution.initial,
-            "case": case.to_json(),
+            "case": case_of_run(case, solution.initial).to_json(),
         },
     )
 
@@ -124,18 +133,19 @@ def _fields(solution: Solution) -> tuple[dict[str, tuple], dict[str, tuple]]:
     if case.store == "profile" and case.dim > 1:
         middle: tuple[Any, ...] = (slice(None), *(case.n,) * (case.dim - 1))
         return {
-            "u_axis": (("x",), u[middle], _describe("u at t_final for y = 0")),
+            "u_axis": (("x",), u[middle], _describe("particle strength u at t_final for y = 0")),
             "u_diagonal": (
                 ("x",),
                 np.einsum("i" * case.dim + "->i", u),
-                _describe("u at t_final for y = x"),
+                _describe("particle strength u at t_final for y = x"),
             ),
         }, {"x": (("x",), x, _describe("particle position"))}
     if case.store == "profile":
         kept = np.abs(x) <= 5.0 * mean_radius(case.alpha) * (1.0 + 1e-12)
         x, u = x[kept], u[kept]
     coordinates = {axis: ((axis,), x, _describe("particle position")) for axis in axes}
-    what = "field" if case.scheme == "DVM" else "particle strength"
+    # DVM's particles leave the lattice; there is the field that they make.
+    what = "field u" if case.scheme == "DVM" else "particle strength u"
     return {"u": (axes, u, _describe(f"{what} at t_final"))}, coordinates
 
 
@@ -163,11 +173,11 @@ def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
         ),
         "eliminated_strength": (
             history.eliminated_strength,
-            "total strength of the particles left out",
+            "total mass of the particles left out",
         ),
         "lost_strength": (
             history.lost_strength,
-            "total strength that remeshing put beyond the lattice",
+            "total mass that remeshing put beyond the lattice",
         ),
         "final_particles": (np.int64(run.x.size), "number of particles at t_final"),
     }
@@ -180,7 +190,7 @@ def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
     data["particle_strength"] = (
         ("particle",),
         run.strength,
-        _describe("strength U = V u at t_final"),
+        _describe("mass of a particle, V u, at t_final"),
     )
     if history.remeshings:
         dimension = ("event",)  # not "remeshing", which is a parameter
@@ -203,21 +213,65 @@ def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
 
 
 def write(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a data set under a temporary name and rename it when it is whole."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(
-        prefix=f".{path.stem[:40]}-", suffix=".nc", dir=path.parent
-    )
-    os.close(handle)
+    """Write a data set under a temporary name and rename it when it is whole.
+
+    Raises
+    ------
+    InvalidInput
+        If `path` is there and not a regular file, or the data set holds what NetCDF cannot hold.
+    OSError
+        If the file cannot be written: a folder without permission, a full disk.
+    """
+    import xarray as xr
+
+    if not isinstance(dataset, xr.Dataset):
+        raise InvalidInput("dataset", type(dataset).__name__, "a Dataset", "Give what solve gives.")
+    with replacing(path) as temporary:
+        try:
+            _to_netcdf(dataset, temporary)
+        except Exception as error:  # the libraries raise many kinds
+            _refuse_what_does_not_fit(dataset, temporary)
+            reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+            free = shutil.disk_usage(temporary.parent).free
+            raise OSError(f"cannot write {str(path)!r} ({reason}); {free} bytes are free") from None
+
+
+def _to_netcdf(dataset: xr.Dataset, path: Path) -> None:
     encoding = {name: {"_FillValue": None} for name in dataset.variables}
-    try:
-        dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    dataset.to_netcdf(path, engine="netcdf4", encoding=encoding)
+
+
+def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:
+    """Name the attribute or the variable that NetCDF cannot hold, if that is why a data set could not be written."""
+    import xarray as xr
+
+    def refuse_unless_written(part: xr.Dataset, what: str, value: object) -> None:
+        try:
+            _to_netcdf(part, path)
+        except (TypeError, ValueError, AttributeError, LookupError, OverflowError) as error:
+            reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+            raise InvalidInput(
+                what,
+                value,
+                f"what a NetCDF file can hold ({reason})",
+                "Leave it out, or make text of it.",
+            ) from None
+        except Exception:  # that of the disk
+            return
+
+    holders = [("attribute", dataset.attrs)]
+    holders += [
+        (f"attribute of {name},", variable.attrs) for name, variable in dataset.variables.items()
+    ]
+    for what, attributes in holders:
+        for name, value in attributes.items():
+            refuse_unless_written(xr.Dataset(attrs={name: value}), f"{what} {name!r}", value)
+    for name, variable in dataset.variables.items():
+        bare = variable.copy(deep=False)
+        bare.attrs = {}
+        refuse_unless_written(
+            xr.Dataset({name: bare}), f"variable {name!r}", f"{variable.dtype} {variable.shape}"
+        )
 
 
 def read_run(path: str | Path) -> xr.Dataset:
@@ -228,7 +282,7 @@ def read_run(path: str | Path) -> xr.Dataset:
     InvalidInput
         If the file is missing, not NetCDF, damaged, or not a run of this package.
     """
-    dataset = _load(Path(path))
+    dataset = load(Path(path))
     if "case" not in dataset.attrs or "mass_final" not in dataset:
         raise InvalidInput(
             "file",
@@ -247,53 +301,31 @@ def read_benchmark(path: str | Path) -> pd.DataFrame:
     InvalidInput
         If there is no readable NetCDF file.
     """
-    data = _load(Path(path))
+    data = load(Path(path))
     frame = data.to_dataframe().reset_index(drop=True)
     frame.attrs = dict(data.attrs)
     return frame
 
 
-def read_strengths(path: Path, case: Case) -> np.ndarray:
-    """Read initial strengths u(x) from a NetCDF file whose x are those of the case.
+def load(path: Path, names: Sequence[str] | None = None) -> xr.Dataset:
+    """Read a NetCDF file, or some variables of it: no other is decoded. Units of time are left as they are.
 
     Raises
     ------
     InvalidInput
-        If the file cannot be read, holds no u(x), or lies on another lattice.
+        If there is no readable NetCDF file.
     """
-    dataset = _load(path)
-    axes = ("x", "y", "z")[: case.dim]
-    if "u" not in dataset or dataset["u"].dims != axes or not set(axes) <= set(dataset.coords):
-        raise InvalidInput(
-            "initial",
-            str(path),
-            f"a NetCDF file with u({', '.join(axes)}) and the coordinates {', '.join(axes)}",
-            "Store these.",
-        )
-    u, lattice = dataset["u"].values, [dataset[axis].values for axis in axes]
-    if any(array.dtype.kind not in "iuf" for array in (u, *lattice)):
-        raise InvalidInput("initial", str(path), "real numbers as x and u", "Store numbers.")
-    u = u.astype(float)
-    h = case.particle_spacing
-    if u.shape != case.shape or any(np.abs(x - case.x).max() > 1e-9 * h for x in lattice):
-        x = lattice[0]
-        raise InvalidInput(
-            "initial",
-            str(path),
-            f"u on the {case.particles} points of case.positions, h = {h:.9g} and |x| <= {case.domain:.9g}",
-            f"The file has {u.size} points with |x| <= {np.abs(x).max(initial=0.0):.9g}: set half_width and "
-            "spacing to match, or interpolate the data onto case.positions.",
-        )
-    if not np.isfinite(u).all():
-        raise InvalidInput("initial", str(path), "finite strengths", "Mend the data.")
-    return u
-
-
-def _load(path: Path) -> xr.Dataset:
     import xarray as xr
 
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise InvalidInput("file", str(path), "a regular file", "Copy the data into one.")
     try:
-        return xr.load_dataset(path, engine="netcdf4")
+        with xr.open_dataset(path, engine="netcdf4", decode_cf=False) as raw:
+            wanted = raw
+            if names is not None:
+                wanted = raw[[name for name in names if name in raw.variables]]
+                wanted = wanted.drop_vars([name for name in wanted.coords if name not in names])
+            return xr.decode_cf(wanted, decode_times=False).load()
     except FileNotFoundError:
         raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
     except Exception as error:  # the library raises many kinds for damaged files
@@ -340,15 +372,16 @@ def _describe(long_name: str) -> dict[str, str]:
 
 
 @lru_cache(maxsize=1)
-def _commit() -> str:
-    """The commit of a source checkout, in brackets; nothing for an installed package."""
+def source() -> str:
+    """Return name and version of the package, and the commit of a source checkout in brackets."""
     root = Path(__file__).resolve().parents[2]
+    plain = f"fracparticles {__version__}"
     if not (root / ".git").exists():
-        return ""
+        return plain
     done = subprocess.run(
         ["git", "-C", str(root), "rev-parse", "--short=12", "HEAD"],
         capture_output=True,
         text=True,
         check=False,
     )
-    return f" ({done.stdout.strip()})" if done.returncode == 0 else ""
+    return f"{plain} ({done.stdout.strip()})" if done.returncode == 0 else plain

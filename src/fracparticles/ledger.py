@@ -16,8 +16,8 @@ from fracparticles.claims import (
     Status,
     judge,
     refuse_repeats,
-    write_text,
 )
+from fracparticles.files import write_text
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -5,10 +5,15 @@ No estimate knows the exact solution. Each looks at one assumption of the scheme
 resolution
     s theta, s = epsilon / h, with the wavenumber of the initial data from sin(theta / 2) = |delta u| / (2 |u|), delta
     the difference of neighbours, |.| the 2-norm. A kernel of order r damps a wave like (s theta / 2)^r.
+wave_error
+    The greatest |p(A dt)^n - exp(-T D |k|^alpha)|, from the symbol of A, over some waves that the data hold: of their
+    wavenumber, a half, and a quarter of it, and the one that decays to 1/e. It sees an overlap too small, a first
+    order, a coarse time step.
 growth
     max |u(t_f)| / max |u(t_i)|, at most 1 for the equation.
 outside_share
-    The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles.
+    The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles; on a
+    truncated lattice at least what of a point mass leaves it during the run: ends that absorb leave nothing there.
 tail_misfit
     How far the powers that continue u in an open exterior are from strengths that they were not made to meet.
 far_field_error
@@ -33,7 +38,8 @@ import numpy as np
 from fracparticles.errors import AccuracyWarning
 from fracparticles.exterior import continuation
 from fracparticles.exterior_box import box_continuation
-from fracparticles.schemes import METHODS
+from fracparticles.integrators import STEP_POLYNOMIALS
+from fracparticles.schemes import METHODS, SCHEMES
 from fracparticles.special.stable import central_mass
 
 if TYPE_CHECKING:
@@ -46,6 +52,7 @@ Estimates = dict[str, tuple[float, str]]
 # Above these a warning is given.
 _RESOLUTION = 1.0  # an error of a quarter in the operator, at order II
 _GROWTH = 1.1
+_WAVE = 0.05
 _OUTSIDE = 0.05  # of the mass
 _FAR_FIELD = 5e-5
 _ROUND_OFF = 1e-6
@@ -86,13 +93,19 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
         -_ULPS * 2.0**-52 * low,
         "what the round-off of the operator may add up to",
     )
+    found["wave_error"] = (
+        wave_error(case, u0),
+        "error in the amplitude of waves that the data hold",
+    )
     outside = max(outside_share(case, u0), outside_share(case, u))
+    if case.exterior == "truncated":
+        outside = max(outside, _beyond(case, case.domain))
     found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
     if case.exterior == "open":
         misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
         found["tail_misfit"] = (misfit, "relative misfit of the powers that continue u")
         found["far_field_error"] = (
-            misfit * outside * _entering(case),
+            misfit * outside * _beyond(case, 0.5 * case.domain),
             "estimated relative error of the far field",
         )
     return found
@@ -121,6 +134,12 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
             f"smoothing length {smoothing:.3g} do not resolve. Take spacing <= "
             f"{0.25 * h / value['resolution']:.2g} and see whether the result changes, or wider data."
         )
+    if value.get("wave_error", 0.0) > _WAVE:
+        complaints.append(
+            f"waves of the length that the initial data hold come out wrong by {value['wave_error']:.2g} of their "
+            f"amplitude. Take a smaller spacing, a larger overlap than {case.epsilon_over_h:.3g}, a smaller time step, "
+            "or another scheme."
+        )
     if value["growth"] > _GROWTH:
         place = np.unravel_index(int(np.abs(u).argmax()), u.shape)
         where = ", ".join(f"{case.x[k]:.4g}" for k in place)
@@ -133,8 +152,8 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
         could_open = case.exterior != "open" and "open" in METHODS[case.scheme].EXTERIORS
         remedy = "take a wider lattice" + (" or exterior='open'" if could_open else "")
         complaints.append(
-            f"the solution does not fit on |x| <= {case.domain:.4g}: by its values at the ends about "
-            f"{value['outside_share']:.2g} of it lies beyond. To solve on the whole space, {remedy}."
+            f"the solution does not fit on |x| <= {case.domain:.4g}: about {value['outside_share']:.2g} of it lies "
+            f"beyond, or has left. To solve on the whole space, {remedy}."
         )
     if value.get("far_field_error", 0.0) > _FAR_FIELD:
         complaints.append(
@@ -195,10 +214,31 @@ def tail_misfit(case: Case, u: np.ndarray) -> float:
     return _ratio(np.abs(continued - given).sum(), np.abs(given).sum())
 
 
-def _entering(case: Case) -> float:
-    """int_{|x| > L/2} of the fundamental solution for the time of the run."""
+def wave_error(case: Case, u: np.ndarray) -> float:
+    """Return the greatest error in the amplitude of some waves that u holds, along an axis; see the module."""
+    scheme = SCHEMES[case.scheme]
+    tau = case.setting.rate * (case.t_final - case.t_initial)
+    theta = wavenumber(u) * np.array([1.0, 0.5, 0.25])
+    theta = np.unique(np.append(theta, min(theta[0], tau ** (-1.0 / case.alpha))))
+    family = {} if case.kernel_family is None else {"family": case.kernel_family}
+    along, dim = theta, {}
+    if case.dim > 1:
+        along, dim = theta[:, None] * np.eye(case.dim)[0], {"dim": case.dim}
+    symbol = scheme.symbol(along, case.alpha, case.order, case.epsilon_over_h, **dim, **family)
+    with np.errstate(over="ignore"):
+        if case.steps:
+            z = symbol * tau / case.steps
+            sign, exponent = STEP_POLYNOMIALS[case.method].log_power(z, case.steps)
+            amplitude = sign * np.exp(exponent)
+        else:
+            amplitude = np.exp(tau * symbol)
+    return float(np.abs(amplitude - np.exp(-tau * theta**case.alpha)).max())
+
+
+def _beyond(case: Case, radius: float) -> float:
+    """int_{|x| > radius} of the fundamental solution for the time of the run."""
     time = case.diffusivity * (case.t_final - case.t_initial)
-    return 1.0 - float(central_mass(0.5 * case.domain, time, case.alpha, case.dim))
+    return 1.0 - float(central_mass(radius, time, case.alpha, case.dim))
 
 
 def _ratio(part: float, whole: float) -> float:

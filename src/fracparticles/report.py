@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 import jinja2
 import markdown
 
-from fracparticles.claims import Status, write_text
+from fracparticles.claims import Status
 from fracparticles.errors import FracparticlesError
+from fracparticles.files import write_text
 from fracparticles.ledger import ledger_markdown, ours_text, read_ledger, summary_line
 
 if TYPE_CHECKING:

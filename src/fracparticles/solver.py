@@ -100,10 +100,10 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
     ----------
     case : Case
         The run.
-    initial : array, callable or path, optional
-        Initial strengths of shape `case.shape`, a function of `case.positions` (of x; of x and y; of x, y and z),
-        or a NetCDF file that holds u on just these. Without it the run starts from what `case.initial` says, by
-        default the fundamental solution at `case.t_initial`.
+    initial : array, labelled data, callable or path, optional
+        Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
+        function of `case.positions` (of x; of x and y; of x, y and z); or a NetCDF file that holds u. Without it the
+        run starts from what `case.initial` says, by default the fundamental solution at `case.t_initial`.
 
     Returns
     -------
@@ -116,6 +116,14 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
         If the initial data do not fit the case.
     NonFiniteSolution
         If the run blows up.
+
+    Warns
+    -----
+    StabilityWarning
+        If some wave grows.
+    AccuracyWarning
+        If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
+        have no time, and t_initial was not given.
     """
     from fracparticles.dataset import to_dataset
 
@@ -264,9 +272,11 @@ class Prepared:
         """Return what `solve` does, and how often the operator was applied."""
         if not isinstance(self.advance, Flow):
             return self.solve(u0), self.operator_applications
+        u0 = bare_strengths(u0, self.shape)
         try:
             u, applications = self.advance.run(u0.reshape(-1))
         except NonFiniteSolution as error:
+            refuse_non_finite(u0, self.case.x)
             raise _named(self.case, error) from None
         return u.reshape(u0.shape), applications
 

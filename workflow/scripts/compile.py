@@ -60,5 +60,5 @@ def sph() -> None:
 
 for source in map(Path, snakemake.input.code):
     for cached in (source.parent / "__pycache__").glob(f"{source.stem}.*.nb[ic]"):
-        cached.unlink()
+        cached.unlink(missing_ok=True)
 globals()[snakemake.wildcards.area]()

@@ -185,8 +185,7 @@ def timings_dataset(
     """
     import xarray as xr
 
-    from fracparticles import __version__
-    from fracparticles.dataset import _commit
+    from fracparticles.dataset import source
 
     def values(name: str) -> np.ndarray:
         given = [row.get(name) for row in rows]
@@ -207,7 +206,7 @@ def timings_dataset(
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": title,
             "summary": "Wall times on one machine, one core; see the long names.",
-            "source": f"fracparticles {__version__}{_commit()}",
+            "source": source(),
             **machine(),
             **facts,
         },

@@ -13,6 +13,8 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
 
+from fracparticles.files import replacing
+
 __all__ = ["COLOURS", "MARKERS", "axes_row", "legend_below", "note_below", "save", "slope_triangle"]
 
 mpl.use("Agg")
@@ -98,7 +100,6 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
 def save(figure: Figure, stem: str | Path) -> None:
     """Write <stem>.svg and <stem>.png, each under a temporary name first."""
     stem = Path(stem)
-    stem.parent.mkdir(parents=True, exist_ok=True)
     for ax in figure.axes:
         _plain_powers(ax.xaxis)
         _plain_powers(ax.yaxis)
@@ -108,9 +109,8 @@ def save(figure: Figure, stem: str | Path) -> None:
         layout.execute(figure)
         figure.set_layout_engine("none")
     for suffix, options in ((".svg", {"metadata": {"Date": None}}), (".png", {"dpi": 160})):
-        temporary = stem.with_name(f".{stem.name}{suffix}")
-        figure.savefig(temporary, format=suffix[1:], **options)
-        temporary.replace(stem.with_suffix(suffix))
+        with replacing(stem.with_suffix(suffix)) as temporary:
+            figure.savefig(temporary, format=suffix[1:], **options)
 
 
 def _plain_powers(axis: Axis) -> None:

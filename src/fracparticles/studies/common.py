@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from fracparticles.claims import Claim, Finding, judge, write_text
+from fracparticles.claims import Claim, Finding, judge
 from fracparticles.errors import FracparticlesError
+from fracparticles.files import write_text
 
 if TYPE_CHECKING:
     import xarray as xr
