@@ -227,3 +227,54 @@ def test_threads_may_share_a_case_made_ready(given):
     with ThreadPoolExecutor(8) as pool:
         together = list(pool.map(ready.solve, data))
     assert all(np.array_equal(a, b) for a, b in zip(one_by_one, together, strict=True))
+
+
+# --- what the symbol says, and a table ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"scheme": "DPSE", "beta": 0.63, "overlap": 0.41, "half_width": 5.2, "spacing": 0.027},
+        {"scheme": "KPSE", "beta": 0.935, "order": 8, "overlap": 0.31, "half_width": 44.0, "spacing": 0.089},
+        {"scheme": "FD", "beta": 1e-5, "half_width": 13.0, "spacing": 0.024},
+        {"scheme": "KPSE", "half_width": 20.0, "spacing": 0.1, "integrator": "euler", "dt": 0.5, "overlap": 10.0},
+    ],
+)  # fmt: skip
+def test_waves_that_come_out_wrong_are_named(given):
+    with pytest.warns(AccuracyWarning, match="come out wrong by"):
+        run = compute(case_of(t_final=1.0, **given), bump)
+    exact = compute(
+        case_of(beta=run.case.beta, half_width=60.0, spacing=0.1, order=12, t_final=1.0, exterior="open"), bump
+    )  # fmt: skip
+    ours = np.interp([0.0, 0.5, 1.0], run.x, run.u)
+    assert np.abs(ours - np.interp([0.0, 0.5, 1.0], exact.x, exact.u)).max() > 0.005
+
+
+def test_ends_that_absorb_hide_nothing():
+    """What has left the lattice leaves no strength at its ends: the share is that of a point mass."""
+    case = case_of(
+        scheme="FD", beta=0.88, half_width=1.0, spacing=0.005, diffusivity=50.0, t_final=0.1
+    )
+    with pytest.warns(AccuracyWarning, match="does not fit on"):
+        compute(case, lambda x: bump(20.0 * x))
+
+
+@pytest.mark.parametrize("step", [0.38, 0.1, 1e-3])
+def test_a_table_too_coarse_is_named(step):
+    given = {
+        "scheme": "GPSE",
+        "beta": 0.96,
+        "half_width": 20.0,
+        "spacing": 0.05,
+    }
+    case = case_of(**given, t_final=1.0, kernel_table=step)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run = compute(case, bump)
+    exact = compute(case_of(**given, t_final=1.0), bump)
+    error = np.abs(run.u - exact.u).sum() / np.abs(exact.u).sum()
+    estimate = run.estimates["table_error"][0]
+    assert error <= 2.0 * estimate
+    assert any("interpolated in a table" in str(one.message) for one in caught) == (estimate > 0.05)
+    assert error < 0.05 or caught

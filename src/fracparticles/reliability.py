@@ -11,6 +11,8 @@ wave_error
     order, a coarse time step.
 growth
     max |u(t_f)| / max |u(t_i)|, at most 1 for the equation.
+table_error
+    T |(A - A') u| / |u|, A' with interpolated kernels, A with exact ones, |.| the 1-norm.
 outside_share
     The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles; on a
     truncated lattice at least what of a point mass leaves it during the run: ends that absorb leave nothing there.
@@ -31,6 +33,7 @@ They cost a few passes over the strengths.
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -97,6 +100,11 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
         wave_error(case, u0),
         "error in the amplitude of waves that the data hold",
     )
+    if case.kernel_table is not None:
+        found["table_error"] = (
+            max(table_error(case, u0), table_error(case, u)),
+            "error of the interpolated kernels over the run",
+        )
     outside = max(outside_share(case, u0), outside_share(case, u))
     if case.exterior == "truncated":
         outside = max(outside, _beyond(case, case.domain))
@@ -137,8 +145,13 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
     if value.get("wave_error", 0.0) > _WAVE:
         complaints.append(
             f"waves of the length that the initial data hold come out wrong by {value['wave_error']:.2g} of their "
-            f"amplitude. Take a smaller spacing, a larger overlap than {case.epsilon_over_h:.3g}, a smaller time step, "
-            "or another scheme."
+            f"amplitude. Take a smaller spacing, an overlap of about 2 (now {case.epsilon_over_h:.3g}), a smaller "
+            "time step, or another scheme."
+        )
+    if value.get("table_error", 0.0) > _WAVE:
+        complaints.append(
+            f"the kernels interpolated in a table of step {case.kernel_table:.3g} leave a relative error of up to "
+            f"{value['table_error']:.2g} over this run. Take a smaller kernel_table, or leave it out."
         )
     if value["growth"] > _GROWTH:
         place = np.unravel_index(int(np.abs(u).argmax()), u.shape)
@@ -185,6 +198,17 @@ def wavenumber(u: np.ndarray) -> float:
     slopes = [np.diff(u, axis=axis) for axis in range(u.ndim)]
     half_sine = max(float(np.sqrt(np.sum(slope * slope))) for slope in slopes) / (2.0 * norm)
     return 2.0 * float(np.arcsin(min(half_sine, 1.0)))
+
+
+def table_error(case: Case, u: np.ndarray) -> float:
+    """Return what the interpolation of the kernels may make of u over the run; see the module."""
+    scheme, setting = SCHEMES[case.scheme], case.setting
+    rates = [
+        scheme.operator(replace(setting, kernel_table=step)).apply(u.reshape(-1))
+        for step in (None, case.kernel_table)
+    ]
+    span = case.t_final - case.t_initial
+    return span * _ratio(np.abs(rates[1] - rates[0]).sum(), np.abs(u).sum())
 
 
 def outside_share(case: Case, u: np.ndarray) -> float:
