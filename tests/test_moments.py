@@ -321,13 +321,14 @@ def test_a_uniform_density_is_steady_and_squares_decay(seed):
 def test_the_exchange_is_the_sum_over_pairs(dim):
     x, v, q = any_particles(7, dim=dim)
     epsilon, d = 0.3, 0.7
+    kernel = construct_laplacian(2, dim)
     expected = np.zeros_like(q)
     for i in range(len(q)):
         for p in range(len(q)):
             z = np.linalg.norm(x[i] - x[p]) / epsilon
-            eta = GAUSSIAN_20(z) / epsilon**dim
+            eta = kernel(z) / epsilon**dim
             expected[i] += d / epsilon**2 * (q[p] * v[i] - q[i] * v[p]) * eta
-    exchange = StrengthExchange(x, v, epsilon, GAUSSIAN_20, d)
+    exchange = StrengthExchange(x, v, epsilon, kernel, d)
     np.testing.assert_allclose(exchange.apply(q), expected, atol=1e-13 * np.abs(expected).max())
     out = np.arange(len(q), dtype=float)
     exchange.update(q, 2.0, -1.0, 0.5, out)

@@ -35,11 +35,11 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import binom, gamma, gammaincc, gammainccinv, poch, rgamma
 
+from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
 from fracparticles.special.arguments import dimension, elementwise, fractional_order, real_array
@@ -104,7 +104,7 @@ def _table(c: float, b: float, m: int) -> _Table:
     )
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _evaluate(x: FloatArray, table: _Table, out: FloatArray) -> None:
     for i in range(x.size):
         if x[i] < _FAR:

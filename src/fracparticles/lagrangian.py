@@ -8,7 +8,7 @@ by the field, v = Q / u, both of them sums over the particles (`sums.scattered`)
 Rules
 - Order does not matter. Particles that coincide are two strengths in one place: they stay together, since the
   velocity has one value there. Particles that overtake one another do so because dt is too large for the velocity
-  gradient; the sums and remeshing remain what they are, and the history counts the steps after which it was so.
+  gradient; the sums and remeshing remain what they are, and the history counts the steps that changed the order.
 - Particles whose strength is at most `threshold` of the largest are left out at the start and after every
   remeshing, at threshold 0 those of no strength (or one that underflowed); the history keeps the total left out.
 - A remeshing may be given ends: what it puts beyond them is left out too, and the history keeps that total apart.
@@ -21,12 +21,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
 from fracparticles.remeshing import REMESHINGS, eliminate, remesh
-from fracparticles.special.arguments import positive_integer, positive_real, real_array
+from fracparticles.special.arguments import (
+    MOST_STEPS,
+    choice,
+    finite_real,
+    function,
+    instance,
+    operand,
+    pair,
+    positions,
+    positive_integer,
+    real_between,
+    scale,
+    vector,
+)
 
 __all__ = ["FieldNotPositive", "History", "Remeshing", "advance", "quotient_velocity"]
 
@@ -60,17 +74,16 @@ class Remeshing:
     ends: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        if self.name not in REMESHINGS:
-            raise InvalidInput(
-                "remeshing", self.name, f"one of {', '.join(REMESHINGS)}", "Choose one of these."
-            )
-        positive_real("spacing", self.spacing)
-        if not positive_real("remesh_above", self.above) > 1.0:
-            raise InvalidInput(
-                "remesh_above", self.above, "a number above 1", "Give 1.5, for example."
-            )
-        if self.ends is not None and not self.ends[0] < self.ends[1]:
-            raise InvalidInput("ends", self.ends, "two increasing numbers", "Mend their order.")
+        choice("remeshing", self.name, REMESHINGS)
+        object.__setattr__(self, "spacing", scale("spacing", self.spacing))
+        object.__setattr__(self, "above", real_between("remesh_above", self.above, 1.0))
+        if self.above == 1.0:
+            raise InvalidInput("remesh_above", self.above, "a number above 1", "Give 1.5.")
+        if self.ends is not None:
+            ends = tuple(finite_real("ends", end) for end in pair("ends", self.ends))
+            if not ends[0] < ends[1]:
+                raise InvalidInput("ends", self.ends, "two increasing numbers", "Mend their order.")
+            object.__setattr__(self, "ends", ends)
 
 
 @dataclass
@@ -90,7 +103,7 @@ class History:
     lost_strength : float
         Total strength of what remeshing put beyond its ends.
     overtaking_steps : int
-        Steps after which the particles were no longer in the order in which the step before had left them.
+        Steps that changed the order of the particles: two that were in different places changed sides.
     largest_spacing : float
         The largest spacing after any step.
     velocity_evaluations : int
@@ -115,9 +128,7 @@ class History:
         return len(self.remeshing_times)
 
 
-def quotient_velocity(
-    flux: np.ndarray, u: np.ndarray, x: np.ndarray, accuracy: float = 0.0
-) -> np.ndarray:
+def quotient_velocity(flux: Any, u: Any, x: Any, accuracy: float = 0.0) -> np.ndarray:
     """Return v = Q / u at the particles, Eq. (44).
 
     Parameters
@@ -129,11 +140,19 @@ def quotient_velocity(
 
     Raises
     ------
+    InvalidInput
+        If the arrays do not fit together.
     FieldNotPositive
         Unless u has one sign and is larger than its error at all particles; names the worst place.
     NonFiniteSolution
         If the velocity is not finite.
     """
+    u = operand("u", u, np.shape(u) if isinstance(u, np.ndarray) else vector("u", u).shape)
+    if u.ndim != 1 or not u.size:
+        raise InvalidInput(
+            "u", f"array of shape {u.shape}", "a field at the particles", "Give one."
+        )
+    flux, x = operand("flux", flux, u.shape), operand("x", x, u.shape)
     top = int(np.argmax(np.abs(u)))
     signed = np.copysign(1.0, u[top]) * u
     worst = int(np.argmin(signed))
@@ -143,7 +162,7 @@ def quotient_velocity(
             f"x = {x[top]:.6g}: a velocity Q / u needs a field of one sign, larger than "
             f"{accuracy:.0e} of its peak. Leave out weak particles by a larger threshold, or mend the data."
         )
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         velocity = flux / u
     if not np.isfinite(velocity).all():
         where = x[~np.isfinite(velocity)][0]
@@ -152,8 +171,8 @@ def quotient_velocity(
 
 
 def advance(
-    x: np.ndarray,
-    strength: np.ndarray,
+    x: Any,
+    strength: Any,
     velocity: Velocity,
     *,
     dt: float,
@@ -193,20 +212,31 @@ def advance(
     NonFiniteSolution
         If the run cannot go on; `FieldNotPositive` if that is for the field. Both with the step and the time.
     """
-    x, strength = _particles(x, strength)
-    dt, steps = positive_real("dt", dt), positive_integer("steps", steps)
+    x = positions("x", x).copy()
+    strength = vector("strength", strength, x.size).copy()
+    dt, steps, start = (
+        scale("dt", dt),
+        positive_integer("steps", steps, most=MOST_STEPS),
+        finite_real("start", start),
+    )
+    function("velocity", velocity)
+    if remeshing is not None:
+        instance("remeshing", remeshing, Remeshing)
+    if observe is not None:
+        function("observe", observe)
     history = History(total_initial=float(strength.sum()))
     x, strength = _keep(x, strength, threshold, history)
     history.particles.append(x.size)
+    order = None if (x[1:] >= x[:-1]).all() else np.argsort(x, kind="stable")
     if observe is not None:
         observe(start, x, strength)
     for n in range(1, steps + 1):
         time = start + n * dt
         try:
-            halfway = x + 0.5 * dt * velocity(x, strength)
-            moved = x + dt * velocity(halfway, strength)
+            halfway = _moved(x, 0.5 * dt, velocity(x, strength))
+            moved = _moved(x, dt, velocity(halfway, strength))
             _require_finite(moved, x)
-            spacing, where = _largest_gap(moved, history)
+            spacing, where, order = _largest_gap(x, moved, order, history)
             if remeshing is not None and spacing > remeshing.above * remeshing.spacing:
                 history.remeshing_times.append(time)
                 history.spacings_before.append(spacing)
@@ -214,7 +244,10 @@ def advance(
                 moved, strength = _redistribute(moved, strength, remeshing, history)
                 moved, strength = _keep(moved, strength, threshold, history)
                 history.particles.append(moved.size)
+                order = None
         except FracparticlesError as error:
+            if isinstance(error, InvalidInput) and error.field == "velocity":
+                raise  # it is not made for particles
             kind = FieldNotPositive if isinstance(error, FieldNotPositive) else NonFiniteSolution
             raise kind(
                 f"step {n} of {steps}, from t = {time - dt:.6g} to {time:.6g}: {error}"
@@ -225,24 +258,6 @@ def advance(
     history.velocity_evaluations = 2 * steps
     history.total_final = float(strength.sum())
     return x, strength, history
-
-
-def _particles(x: np.ndarray, strength: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    x, strength = np.array(real_array("x", x)), np.array(real_array("strength", strength))
-    if x.ndim != 1 or x.shape != strength.shape:
-        raise InvalidInput(
-            "strength",
-            f"array of shape {strength.shape}",
-            f"one strength for each of the positions, of shape {x.shape}",
-            "Give two arrays of one dimension and the same length.",
-        )
-    for name, values in (("x", x), ("strength", strength)):
-        if not np.isfinite(values).all():
-            index = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise InvalidInput(
-                name, f"{values[index]} at index {index}", "finite numbers", "Mend the data."
-            )
-    return x, strength
 
 
 def _keep(
@@ -272,16 +287,31 @@ def _require_finite(moved: np.ndarray, x: np.ndarray) -> None:
         raise NonFiniteSolution(f"the particle from x = {x[~finite][0]:.6g} went to infinity")
 
 
-def _largest_gap(x: np.ndarray, history: History) -> tuple[float, float]:
-    """Return the largest distance between neighbours and the middle of that gap."""
-    if x.size < 2:
-        return 0.0, float(x[0])
-    gap = np.diff(x)
+def _moved(x: np.ndarray, time: float, velocity: Any) -> np.ndarray:
+    v = operand("velocity", velocity, x.shape)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return x + time * v
+
+
+def _largest_gap(
+    x: np.ndarray, moved: np.ndarray, order: np.ndarray | None, history: History
+) -> tuple[float, float, np.ndarray | None]:
+    """Return the largest distance between neighbours, the middle of that gap, and the order after the step.
+
+    `order` sorts x, the positions before; it is None where they are in order as they are.
+    """
+    if moved.size < 2:
+        return 0.0, float(moved[0]), None
+    now = moved if order is None else moved[order]
+    gap = np.diff(now)
     if gap.min() < 0.0:
-        history.overtaking_steps += 1
-        x = np.sort(x)
-        gap = np.diff(x)
+        # Particles that were in one place had no order.
+        now = moved[np.lexsort((moved, x))]
+        history.overtaking_steps += int(np.diff(now).min() < 0.0)
+        order = np.argsort(moved, kind="stable")
+        now = moved[order]
+        gap = np.diff(now)
     widest = int(np.argmax(gap))
     largest = float(gap[widest])
     history.largest_spacing = max(history.largest_spacing, largest)
-    return largest, float(0.5 * (x[widest] + x[widest + 1]))
+    return largest, float(0.5 * (now[widest] + now[widest + 1])), order

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from threading import Lock
 from typing import Protocol
 
-import numba as nb
 import numpy as np
 
+from fracparticles._compiled import njit
 from fracparticles.sums import BandedConvolution
 
 __all__ = [
@@ -241,13 +241,13 @@ class FluxDivergenceOperator(LatticeOperator):
         _combine(y.reshape(-1), u, a, b, c, v)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _add_diagonal(y, diagonal, u, a, b, c, v):
     for i in range(v.size):
         v[i] = a * (y[i] + diagonal[i] * u[i]) + b * u[i] + c * v[i]
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _add_far_field(depth, right, left, u, y):
     for k in range(depth.size):
         last, first = u[u.size - 1 - depth[k]], u[depth[k]]
@@ -256,19 +256,19 @@ def _add_far_field(depth, right, left, u, y):
             y[i] += last * from_right[i] + first * from_left[i]
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _combine(y, u, a, b, c, v):
     for i in range(v.size):
         v[i] = a * y[i] + b * u[i] + c * v[i]
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _add_product(diagonal, q, y):
     for i in range(y.size):
         y[i] += diagonal[i] * q[i]
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _add_modes(amplitudes, sums, y):
     for k in range(amplitudes.size):
         amplitude, mode = amplitudes[k], sums[k]

@@ -19,17 +19,23 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln, xlog1py, xlogy
 
+from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.special.arguments import (
+    MOST,
     fractional_order,
+    positions,
     positive_integer,
-    positive_real,
     real_array,
+    scale,
+    within,
+)
+from fracparticles.special.arguments import (
+    generator as random_generator,
 )
 from fracparticles.special.stable import tail_mass
 
@@ -74,7 +80,7 @@ def stable_variates(alpha: float, size: int, generator: np.random.Generator) -> 
     InvalidInput
         If an argument is outside its range.
     """
-    return walk(np.zeros(positive_integer("size", size)), alpha, 1.0, generator)
+    return walk(np.zeros(positive_integer("size", size, most=MOST)), alpha, 1.0, generator)
 
 
 def walk(
@@ -113,17 +119,11 @@ def walk(
     InvalidInput
         If an argument is outside its range, or (D dt)^(1/alpha) is beyond 1e-100 .. 1e100.
     """
-    position = _positions(x).copy()
+    position = positions("x", x).copy()
     alpha = fractional_order(alpha)
-    time, diffusivity = positive_real("time", time), positive_real("diffusivity", diffusivity)
+    time, diffusivity = scale("time", time), scale("diffusivity", diffusivity)
     steps = positive_integer("steps", steps)
-    if not isinstance(generator, np.random.Generator):
-        raise InvalidInput(
-            "generator",
-            generator,
-            "a numpy.random.Generator",
-            "Make one with numpy.random.default_rng(seed).",
-        )
+    generator = random_generator("generator", generator)
     # The logarithm of the scale, which itself may overflow.
     logarithm = (math.log(time) - math.log(steps) + math.log(diffusivity)) / alpha
     if not math.log(_SCALES[0]) <= logarithm <= math.log(_SCALES[1]):
@@ -143,7 +143,7 @@ def walk(
     return position
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _add_increments(x, scale, alpha, uniform, exponential):
     power = (alpha - 1.0) / alpha
     for i in range(x.size):
@@ -180,18 +180,20 @@ def cell_counts(x: Any, half_width: float, cells: int, ensembles: int = 1) -> ND
     InvalidInput
         If an argument is outside its range.
     """
-    x, half_width = _positions(x), positive_real("half_width", half_width)
+    x, half_width = positions("x", x), scale("half_width", half_width)
     cells, ensembles = positive_integer("cells", cells), positive_integer("ensembles", ensembles)
     if ensembles > x.size:
         raise InvalidInput(
             "ensembles", ensembles, f"at most the {x.size} walkers", "Take fewer ensembles."
         )
+    if cells * ensembles > MOST:
+        raise InvalidInput("cells", cells, f"at most {MOST} of all ensembles", "Take fewer.")
     counts = np.zeros((ensembles, cells), dtype=np.int64)
     _count(x, half_width, 0.5 * cells / half_width, counts)
     return counts
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _count(x, half_width, cells_per_length, counts):
     ensembles, cells = counts.shape
     size = x.size // ensembles
@@ -254,7 +256,7 @@ def kolmogorov_smirnov(x: Any, t: float, alpha: float) -> float:
     InvalidInput
         If an argument is outside its range.
     """
-    exact = distribution(np.sort(_positions(x)), t, alpha)
+    exact = distribution(np.sort(positions("x", x)), t, alpha)
     steps = np.arange(exact.size + 1) / exact.size
     return float(max((steps[1:] - exact).max(), (exact - steps[:-1]).max()))
 
@@ -283,8 +285,7 @@ def expected_deviation(masses: Any, walkers: int) -> FloatArray:
         If a mass is not within [0, 1], or `walkers` is outside its range.
     """
     p, n = real_array("masses", masses), positive_integer("walkers", walkers)
-    if ((p < 0.0) | (p > 1.0)).any():
-        raise InvalidInput("masses", masses, "numbers from 0 to 1", "Give probabilities.")
+    within("masses", p, 0.0, 1.0)
     if n > _MOST_WALKERS:
         raise InvalidInput(
             "walkers", n, f"at most {_MOST_WALKERS:g}", "Use the square root of 2 p (1 - p)/(pi n)."
@@ -293,14 +294,3 @@ def expected_deviation(masses: Any, walkers: int) -> FloatArray:
     logarithm = gammaln(n + 1.0) - gammaln(m + 1.0) - gammaln(n - m + 1.0)
     logarithm += xlogy(m, p) + xlog1py(n - m + 1.0, -p)
     return 2.0 * m / n * np.exp(logarithm)
-
-
-def _positions(x: Any) -> FloatArray:
-    x = real_array("x", x)
-    if x.ndim != 1 or x.size == 0:
-        raise InvalidInput(
-            "x", f"an array of shape {x.shape}", "one position a walker", "Give a list of numbers."
-        )
-    if np.isinf(x).any():
-        raise InvalidInput("x", x, "finite numbers", "Remove the infinite entries.")
-    return x

@@ -18,12 +18,22 @@ Both turn negative between one and two spacings: remeshed strengths can have eit
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-import numba as nb
 import numpy as np
 
+from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import elementwise, positive_real, real_array
+from fracparticles.special.arguments import (
+    choice,
+    elementwise,
+    finite_result,
+    positions,
+    real_array,
+    real_between,
+    scale,
+    vector,
+)
 
 __all__ = ["REMESHINGS", "Elimination", "eliminate", "interpolation_function", "remesh"]
 
@@ -52,18 +62,18 @@ class Elimination:
     eliminated: float
 
 
-def interpolation_function(name: str, r: np.ndarray) -> np.ndarray:
+def interpolation_function(name: str, r: Any) -> np.ndarray:
     """Return W(r) at signed distances r, in spacings.
 
     Raises
     ------
     InvalidInput
-        If there is no interpolation function of that name.
+        If there is no interpolation function of that name, or r is not real.
     """
     return np.asarray(elementwise(_weights, real_array("r", r), _index(name)))
 
 
-def eliminate(x: np.ndarray, strength: np.ndarray, threshold: float) -> Elimination:
+def eliminate(x: Any, strength: Any, threshold: float) -> Elimination:
     """Leave out the particles with |U_i| <= threshold max_j |U_j|.
 
     With threshold 0 those of no strength at all, which also means that it underflowed.
@@ -71,19 +81,20 @@ def eliminate(x: np.ndarray, strength: np.ndarray, threshold: float) -> Eliminat
     Raises
     ------
     InvalidInput
-        If the threshold is not in [0, 1), or no particle has any strength.
+        If the arrays do not fit together or are not finite, the threshold is not in [0, 1), or no particle has any
+        strength.
     """
-    if not 0.0 <= threshold < 1.0:
-        raise InvalidInput(
-            "threshold", threshold, "a number from 0 to below 1", "Give a small fraction of 1."
-        )
+    x = positions("x", x, least=0)
+    strength = vector("strength", strength, x.size, least=0)
+    if real_between("threshold", threshold, 0.0, 1.0) == 1.0:
+        raise InvalidInput("threshold", threshold, "a number below 1", "Give a small fraction.")
     size = np.abs(strength)
     largest = size.max(initial=0.0)
     if not largest > 0.0:
         raise InvalidInput(
             "strength",
             "no particle with a strength",
-            "at least one strength that is not nil",
+            "at least one strength other than zero",
             "Check the initial data, and whether they underflow.",
         )
     kept = size > threshold * largest
@@ -93,12 +104,10 @@ def eliminate(x: np.ndarray, strength: np.ndarray, threshold: float) -> Eliminat
     return Elimination(x[kept], strength[kept], int(np.count_nonzero(gone)), float(gone.sum()))
 
 
-def remesh(
-    x: np.ndarray, strength: np.ndarray, spacing: float, name: str
-) -> tuple[np.ndarray, np.ndarray]:
+def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return positions and strengths on the lattice x_p = p h, as far as the particles reach.
 
-    From one lattice point before the first particle's cell to one after the last's, strengths of nil included.
+    From one lattice point before the first particle's cell to one after the last's, strengths of zero included.
 
     Parameters
     ----------
@@ -112,9 +121,12 @@ def remesh(
     Raises
     ------
     InvalidInput
-        If there is no such function, or a particle lies so far out that the lattice would not fit into memory.
+        If there is no such function, the arrays are empty, not finite or do not fit together, or a particle lies so far
+        out that the lattice would not fit into memory.
     """
-    which, spacing = _index(name), positive_real("spacing", spacing)
+    which, spacing = _index(name), scale("spacing", spacing)
+    x = positions("x", x)
+    strength = vector("strength", strength, x.size)
     cell = x / spacing
     low, high = cell.min(), cell.max()
     if not (abs(low) < _FARTHEST and abs(high) < _FARTHEST and high - low < _MOST_POINTS):
@@ -127,16 +139,14 @@ def remesh(
     first = int(np.floor(low)) - 1
     total = np.zeros(int(np.floor(high)) + 3 - first)
     _distribute(cell, strength, first, which, total)
-    return np.arange(first, first + total.size) * spacing, total
+    return np.arange(first, first + total.size) * spacing, finite_result("strength", total)
 
 
 def _index(name: str) -> int:
-    if name not in REMESHINGS:
-        raise InvalidInput("remeshing", name, f"one of {', '.join(REMESHINGS)}", "Choose one.")
-    return REMESHINGS.index(name)
+    return REMESHINGS.index(choice("remeshing", name, REMESHINGS))
 
 
-@nb.njit(cache=True, nogil=True, inline="always")
+@njit(inline="always")
 def _weight(r, which):
     if r >= 2.0:
         return 0.0
@@ -149,13 +159,13 @@ def _weight(r, which):
     return (1.0 - r) * (2.0 - r) * (3.0 - r) / 6.0
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _weights(r, which, out):
     for i in range(r.size):
         out[i] = _weight(abs(r[i]), which)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _distribute(cell, strength, first, which, total):
     for j in range(cell.size):
         left = np.floor(cell[j])

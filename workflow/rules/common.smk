@@ -70,7 +70,7 @@ def benchmark_sources(benchmark):
 
 def compiled_areas(scene):
     """The marks of the areas of whose compiled modules a scene's study uses any."""
-    compiled = {module for module in study_sources(scene) if "njit" in Path(module).read_text()}
+    compiled = {module for module in study_sources(scene) if "@njit(" in Path(module).read_text()}
     return [
         RESULTS / f"runs/.compiled_{area}" for area, code in AREAS.items() if compiled & set(code)
     ]

@@ -20,10 +20,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numba as nb
 import numpy as np
 from scipy.fft import dct
 
+from fracparticles._compiled import njit
 from fracparticles.errors import FracparticlesError, NonFiniteSolution
 from fracparticles.integrators.polynomial import StepPolynomial
 from fracparticles.integrators.stepping import all_finite
@@ -215,7 +215,7 @@ def _size(u: np.ndarray) -> float:
     return float(max(u.max(), -u.min()))
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _add_terms(total, c_even, even, c_odd, odd):
     # Two at a time: half the traffic of the sum.
     for i in range(total.size):

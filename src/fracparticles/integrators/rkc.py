@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.special.arguments import positive_integer, positive_real
+from fracparticles.special.arguments import MOST_STEPS, positive_integer, positive_real
 
 __all__ = ["ChebyshevStep", "stages_for"]
 
@@ -100,7 +100,7 @@ class ChebyshevStep:
         NonFiniteSolution
             If y is no longer finite, or f says so; of the kind that f raised, with the step and the time.
         """
-        dt, steps = positive_real("dt", dt), positive_integer("steps", steps)
+        dt, steps = positive_real("dt", dt), positive_integer("steps", steps, most=MOST_STEPS)
         y = np.array(y, dtype=float)
         if observe is not None:
             observe(start, y)

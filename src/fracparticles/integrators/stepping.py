@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import numba as nb
 import numpy as np
 
+from fracparticles._compiled import njit
 from fracparticles.errors import NonFiniteSolution
 from fracparticles.integrators.polynomial import StepPolynomial
 from fracparticles.operators import Operator
@@ -81,7 +81,7 @@ def step(
     return u
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def all_finite(u):
     """Return whether no element is nan or infinite; in a tenth of the time of np.isfinite(u).all() for short arrays."""
     for i in range(u.size):  # noqa: SIM110 (numba compiles loops)

@@ -13,11 +13,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import positive_real
+from fracparticles.special.arguments import (
+    SIZES,
+    check_fields,
+    finite_array,
+    finite_result,
+    places,
+    real_between,
+    scale,
+    within,
+)
 
 __all__ = ["Soliton", "kdv"]
 
@@ -34,29 +44,42 @@ class Soliton:
     Attributes
     ----------
     c, background : float
-        c > 0 and b >= 0.
+        c > 0 and b >= 0: markers need f > 0.
+
+    Raises
+    ------
+    InvalidInput
+        If a value is outside its range. So do the methods; they take any shape.
     """
 
     c: float
     background: float = 0.0
 
     def __post_init__(self) -> None:
-        positive_real("c", self.c)
-        if not self.background >= 0.0:
-            raise InvalidInput(
-                "background", self.background, "0 or more", "Markers need f > 0: raise it."
-            )
+        check_fields(self, c=scale, background=partial(real_between, low=0.0, high=SIZES[1]))
 
     @property
     def speed(self) -> float:
         """c + 6 b."""
         return self.c + 6.0 * self.background
 
-    def value(self, x: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def value(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return f(x, t)."""
-        z = 0.5 * math.sqrt(self.c) * (np.asarray(x, dtype=float) - self.speed * t)
-        return self.background + 0.5 * self.c / np.cosh(z) ** 2
+        x = places("x", x)
+        t = real_between("t", t, -SIZES[1], SIZES[1])
+        z = 0.5 * math.sqrt(self.c) * (x - self.speed * t)
+        with np.errstate(over="ignore"):  # f - b is zero there
+            return self.background + 0.5 * self.c / np.cosh(z) ** 2
 
-    def velocity(self, f: np.ndarray) -> np.ndarray:
-        """Return the exact V where the solution is f."""
-        return self.speed - self.background * (self.c + 3.0 * self.background) / f
+    def velocity(self, f: Any) -> np.ndarray:
+        """Return the exact V where the solution is f, which is above zero."""
+        f = finite_array("f", f)
+        if self.background == 0.0:
+            return self.speed - 0.0 * within("f", f, 0.0)
+        with np.errstate(over="ignore"):
+            part = (
+                self.background
+                * (self.c + 3.0 * self.background)
+                / within("f", f, 0.0, inside=True)
+            )
+        return finite_result("f", self.speed - part)

@@ -14,7 +14,18 @@ import numpy as np
 
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.profiles import Profile
-from fracparticles.special.arguments import positive_integer
+from fracparticles.special.arguments import (
+    MOST,
+    SIZES,
+    pair,
+    positive_integer,
+    real_between,
+    sampled,
+    scale,
+)
+from fracparticles.special.arguments import (
+    generator as random_generator,
+)
 
 __all__ = ["equal_weight", "random", "uniform"]
 
@@ -29,14 +40,14 @@ def uniform(
     Raises
     ------
     InvalidInput
-        If the ends do not increase or the count is not a positive whole number.
+        If the ends do not increase, the count is not a positive whole number, or f is no function of arrays.
     """
-    low, high = ends
+    low, high = (real_between("ends", end, -SIZES[1], SIZES[1]) for end in pair("ends", ends))
     if not low < high:
         raise InvalidInput("ends", ends, "two increasing numbers", "Mend their order.")
-    h = (high - low) / positive_integer("count", count)
+    h = (high - low) / positive_integer("count", count, most=MOST)
     x = low + h * (np.arange(count) + 0.5)
-    return x, h * f(x)
+    return x, h * sampled("f", f, x)
 
 
 def equal_weight(profile: Profile, count: int) -> Loading:
@@ -45,11 +56,13 @@ def equal_weight(profile: Profile, count: int) -> Loading:
     Raises
     ------
     InvalidInput
-        If the count is not a positive whole number.
+        If the count is not a positive whole number, or the profile none.
     """
-    count = positive_integer("count", count)
-    part = profile.total / count
-    return profile.quantile(part * (np.arange(count) + 0.5)), np.full(count, part)
+    count = positive_integer("count", count, most=MOST)
+    part = _total(profile) / count
+    return sampled("profile", profile.quantile, part * (np.arange(count) + 0.5)), np.full(
+        count, part
+    )
 
 
 def random(profile: Profile, count: int, generator: np.random.Generator) -> Loading:
@@ -58,9 +71,16 @@ def random(profile: Profile, count: int, generator: np.random.Generator) -> Load
     Raises
     ------
     InvalidInput
-        If the count is not a positive whole number.
+        If the count is not a positive whole number, the profile none, or the generator none of numpy's.
     """
-    count = positive_integer("count", count)
-    xi = np.sort(generator.random(count))
+    count = positive_integer("count", count, most=MOST)
+    total = _total(profile)
+    xi = np.sort(random_generator("generator", generator).random(count))
     inside = np.clip(xi, np.finfo(float).tiny, None)  # random() may give 0, never 1
-    return profile.quantile(profile.total * inside), np.full(count, profile.total / count)
+    return sampled("profile", profile.quantile, total * inside), np.full(count, total / count)
+
+
+def _total(profile: Profile) -> float:
+    if not callable(getattr(profile, "quantile", None)):
+        raise InvalidInput("profile", profile, "a profile, with total and quantile", "Make one.")
+    return scale("profile.total", getattr(profile, "total", None))

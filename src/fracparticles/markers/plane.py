@@ -18,16 +18,36 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
-from scipy.special import erf
+from scipy.special import erf, erfc
 
+from fracparticles.errors import InvalidInput
 from fracparticles.markers.shapes import Shape
-from fracparticles.special.arguments import positive_integer, positive_real
+from fracparticles.special.arguments import (
+    MOST,
+    check_fields,
+    finite_array,
+    instance,
+    pair,
+    places,
+    positions,
+    positive_integer,
+    real_between,
+    sampled,
+    scale,
+    vector,
+    within,
+)
 
 __all__ = ["TwoBlobs", "decoupled", "reconstruct", "sequential", "weighted"]
 
 Loading = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+_TAIL = 1e-10  # a part: erf keeps six digits of it
+_MOST_TERMS = 2**27  # of markers and points along one axis
 
 
 @dataclass(frozen=True)
@@ -37,44 +57,73 @@ class TwoBlobs:
     Attributes
     ----------
     a : float
-        0 or more.
+        From 0 to 1000.
+
+    Raises
+    ------
+    InvalidInput
+        If a is anything else. So do the methods, of values outside their range or shapes that do not fit.
     """
 
     a: float
+
+    def __post_init__(self) -> None:
+        check_fields(self, a=partial(real_between, low=0.0, high=1000.0))
 
     @property
     def total(self) -> float:
         """sigma = 2 pi."""
         return 2.0 * math.pi
 
-    def value(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def value(self, x: Any, y: Any) -> np.ndarray:
         """Return f(x, y)."""
-        a = self.a
+        (x, y), a = _together(x=places("x", x), y=places("y", y)), self.a
         return np.exp(-((x - a) ** 2) - (y - a) ** 2) + np.exp(-((x + a) ** 2) - (y + a) ** 2)
 
-    def marginal(self, x: np.ndarray) -> np.ndarray:
+    def marginal(self, x: Any) -> np.ndarray:
         """Return <f>_y(x), which is <f>_x too."""
+        x = places("x", x)
         return math.sqrt(math.pi) * (np.exp(-((x - self.a) ** 2)) + np.exp(-((x + self.a) ** 2)))
 
-    def product(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    def product(self, x: Any, y: Any) -> np.ndarray:
         """Return <f>_y(x) <f>_x(y) / sigma."""
+        _together(x=places("x", x), y=places("y", y))
         return self.marginal(x) * self.marginal(y) / self.total
 
-    def quantile(self, xi: np.ndarray, right: np.ndarray | float = 0.5) -> np.ndarray:
-        """Return x below which the part xi lies, of blobs with the parts `right` and 1 - `right`, by bisection."""
-        xi, right = np.broadcast_arrays(np.asarray(xi, dtype=float), right)
-        low = np.full(xi.shape, -self.a - 7.0)  # erfc(7) is 4e-23
-        high = -low
-        for _ in range(60):
-            x = 0.5 * (low + high)
-            part = right * (1.0 + erf(x - self.a)) + (1.0 - right) * (1.0 + erf(x + self.a))
-            below = 0.5 * part < xi
-            low, high = np.where(below, x, low), np.where(below, high, x)
-        return 0.5 * (low + high)
+    def quantile(self, xi: Any, right: Any = 0.5) -> np.ndarray:
+        """Return x below which the part 0 < xi < 1 lies, of blobs with the parts `right` and 1 - `right`.
 
-    def right(self, x: np.ndarray) -> np.ndarray:
+        By bisection, to round-off in xi or, for small xi and 1 - xi, in these.
+        """
+        xi = within("xi", finite_array("xi", xi), 0.0, 1.0, inside=True)
+        right = within("right", finite_array("right", right), 0.0, 1.0)
+        xi, right = _together(xi=xi, right=right)
+
+        def part(x: np.ndarray) -> np.ndarray:
+            both = right * (1.0 + erf(x - self.a)) + (1.0 - right) * (1.0 + erf(x + self.a))
+            return 0.5 * both
+
+        x = _bisected(lambda x: part(x) < xi, xi.shape, self.a + 7.0)  # erfc(7) is 4e-23
+        low, high = xi < _TAIL, xi > 1.0 - _TAIL
+        if (low | high).any():
+            # What lies to the left, or to the right, without the 1 in which it would drown.
+            end, sign = np.where(low, xi, 1.0 - xi), np.where(low, -1.0, 1.0)
+
+            def outside(x: np.ndarray) -> np.ndarray:
+                return 0.5 * (
+                    right * erfc(sign * (x - self.a)) + (1.0 - right) * erfc(sign * (x + self.a))
+                )
+
+            far = _bisected(
+                lambda x: np.where(low, outside(x) < end, outside(x) > end), xi.shape, self.a + 28.0
+            )
+            x = np.where(low | high, far, x)
+        return x
+
+    def right(self, x: Any) -> np.ndarray:
         """Return the part that the blob at (a, a) has of what lies at x."""
-        return 1.0 / (1.0 + np.exp(-4.0 * self.a * x))
+        with np.errstate(over="ignore"):  # the part is zero then
+            return 1.0 / (1.0 + np.exp(-4.0 * self.a * places("x", x)))
 
 
 def decoupled(
@@ -85,37 +134,84 @@ def decoupled(
     Raises
     ------
     InvalidInput
-        If a count is not a positive whole number, or the total not a positive number.
+        If a count is not a positive whole number, the total not a positive number, or the quantile no function of
+        arrays.
     """
-    x, y = (quantile(_midpoints(n)) for n in counts)
+    total = scale("total", total)
+    x, y = (sampled("quantile", quantile, part) for part in _midpoints(counts))
     x, y = (part.ravel() for part in np.meshgrid(x, y, indexing="ij"))
-    return x, y, np.full(x.size, positive_real("total", total) / x.size)
+    return x, y, np.full(x.size, total / x.size)
 
 
 def weighted(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
-    """Return the same places with the weights that make the density f."""
+    """Return the same places with the weights that make the density f.
+
+    Raises
+    ------
+    InvalidInput
+        If a count is not a positive whole number, or the density of another kind. So does `sequential`.
+    """
+    density = instance("density", density, TwoBlobs)
     x, y, w = decoupled(density.quantile, density.total, counts)
     return x, y, w * density.value(x, y) / density.product(x, y)
 
 
 def sequential(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
     """Return markers of equal weight with x by its marginal, and y given x."""
-    x = density.quantile(_midpoints(counts[0]))[:, None]
-    y = density.quantile(_midpoints(counts[1]), density.right(x))
+    along_x, along_y = _midpoints(counts)
+    x = instance("density", density, TwoBlobs).quantile(along_x)[:, None]
+    y = density.quantile(along_y, density.right(x))
     x = np.broadcast_to(x, y.shape).ravel()
     return x, y.ravel(), np.full(x.size, density.total / x.size)
 
 
-def reconstruct(
-    shape: Shape, epsilon: float, markers: Loading, x: np.ndarray, y: np.ndarray
-) -> np.ndarray:
-    """Return F = sum_j W_j S_eps(x - x_j) S_eps(y - y_j) on the grid, shape (x, y)."""
-    xj, yj, w = markers
-    epsilon = positive_real("epsilon", epsilon)
+def reconstruct(shape: Shape, epsilon: float, markers: Loading, x: Any, y: Any) -> np.ndarray:
+    """Return F = sum_j W_j S_eps(x - x_j) S_eps(y - y_j) on the grid, shape (x, y).
+
+    Raises
+    ------
+    InvalidInput
+        If the arrays are not finite or do not fit together, are too long for memory, or the shape or epsilon does not
+        do.
+    """
+    instance("shape", shape, Shape)
+    if not isinstance(markers, tuple | list) or len(markers) != 3:
+        raise InvalidInput("markers", markers, "x, y and W of the markers", "Give three arrays.")
+    xj = positions("markers", markers[0])
+    yj, w = (vector("markers", part, xj.size) for part in markers[1:])
+    x, y, epsilon = positions("x", x), positions("y", y), scale("epsilon", epsilon)
+    if (x.size + y.size) * xj.size > _MOST_TERMS:
+        raise InvalidInput("x", f"{x.size} points", "fewer for so many markers", "Do it in parts.")
     along_x = shape((x[:, None] - xj) / epsilon) * w
     along_y = shape((y[:, None] - yj) / epsilon)
     return along_x @ along_y.T / epsilon**2
 
 
-def _midpoints(count: int) -> np.ndarray:
-    return (np.arange(positive_integer("count", count)) + 0.5) / count
+def _midpoints(counts: tuple[int, int]) -> list[np.ndarray]:
+    numbers = [positive_integer("counts", n, most=MOST) for n in pair("counts", counts)]
+    if numbers[0] * numbers[1] > MOST:
+        raise InvalidInput("counts", counts, f"at most {MOST} markers", "Take fewer.")
+    return [(np.arange(n) + 0.5) / n for n in numbers]
+
+
+def _together(**arrays: np.ndarray) -> list[np.ndarray]:
+    try:
+        return list(np.broadcast_arrays(*arrays.values()))
+    except ValueError as error:
+        name, array = next(iter(arrays.items()))
+        raise InvalidInput(
+            name, f"array of shape {array.shape}", "shapes that fit together", "Mend the shapes."
+        ) from error
+
+
+def _bisected(
+    too_low: Callable[[np.ndarray], Any], shape: tuple[int, ...], reach: float
+) -> np.ndarray:
+    """The x between -reach and reach where `too_low` turns false."""
+    low = np.full(shape, -reach)
+    high = -low
+    for _ in range(60):
+        x = 0.5 * (low + high)
+        below = too_low(x)
+        low, high = np.where(below, x, low), np.where(below, high, x)
+    return 0.5 * (low + high)

@@ -7,21 +7,42 @@ quantile(g, t) with g constant, at any time.
 - `Square`: f_0 = 1 for |x| <= 1 (12);  f = (erf((x+1) / 2 sqrt(t)) - erf((x-1) / 2 sqrt(t))) / 2.
 - `Gaussian`: f_0 = exp(-x^2) (25);  f = exp(-x^2 / (1 + 4 t)) / sqrt(1 + 4 t).
 - `Ramp`: f = x exp(-x^2) on [0, x_0], for the loading of Figs. 1-4; it has no t.
+
+Every x, g is an array of any shape, t a number of zero or more. A quantile is within round-off of the one of g, for any
+0 < g < total. The differences in f of `Square` cancel for large t and in the far tail: for s = 2 sqrt(t) > 20 they are
+integrals over the square by a Gauss rule, and the tail is
+
+    int_-inf^x f dx' = s/2 (i(-(x + 1) / s) - i((1 - x) / s)),     i(u) = exp(-u^2) (1/sqrt(pi) - u erfcx(u)).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
-from scipy.special import erf, erfinv
+from scipy.special import erf, erfc, erfcinv, erfcx, erfinv
 
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import positive_real, real_array
+from fracparticles.special.arguments import (
+    SIZES,
+    finite_array,
+    finite_result,
+    places,
+    real_between,
+    scale,
+    within,
+)
 
-__all__ = ["Gaussian", "Profile", "Ramp", "Square"]
+__all__ = ["Gaussian", "Profile", "Ramp", "Square", "inside"]
+
+_WIDE = 20.0  # s, against the square's half-width of 1
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(
+    12
+)  # exact for exp((x - y)^2 / s^2) with y / s below 1/20
+_FAR = 5.0  # erfc(5) = 2e-12: as far the difference of two erf keeps four digits
+_TAIL = 1e-10  # of the total: the plain formulae keep six digits of it
+_ERFINV = 1e-4  # of the total: the same for erfinv, with twelve digits
 
 
 class Profile(Protocol):
@@ -31,7 +52,7 @@ class Profile(Protocol):
     def total(self) -> float:
         """The integral of f, sigma."""
 
-    def quantile(self, g: np.ndarray) -> np.ndarray:
+    def quantile(self, g: Any) -> np.ndarray:
         """Return x with int_-inf^x f dx' = g at the start, 0 < g < total."""
 
 
@@ -39,71 +60,111 @@ class Profile(Protocol):
 class Square:
     """The square profile (12)."""
 
-    total: float = 2.0
+    total = 2.0  # no field: a square of another total is another profile
 
-    def value(self, x: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def value(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return f(x, t)."""
-        x = np.asarray(x, dtype=float)
+        x, t = places("x", x), _time(t)
         if t == 0.0:
             return np.where(np.abs(x) <= 1.0, 1.0, 0.0)
-        s = 2.0 * math.sqrt(positive_real("t", t))
-        return 0.5 * (erf((x + 1.0) / s) - erf((x - 1.0) / s))
+        s = 2.0 * math.sqrt(t)
+        if s > _WIDE:
+            return _over_square(lambda z: np.exp(-z * z), x, s) * 2.0 / (s * math.sqrt(math.pi))
+        near, far = (np.abs(x) - 1.0) / s, (np.abs(x) + 1.0) / s
+        middle = 0.5 * (erf((x + 1.0) / s) - erf((x - 1.0) / s))
+        return np.where(near > _FAR, 0.5 * (erfc(near) - erfc(far)), middle)
 
-    def slope(self, x: np.ndarray, t: float) -> np.ndarray:
+    def slope(self, x: Any, t: float) -> np.ndarray:
         """Return f_x(x, t) for t > 0."""
-        x, s = np.asarray(x, dtype=float), 2.0 * math.sqrt(positive_real("t", t))
+        x, s = places("x", x), 2.0 * math.sqrt(scale("t", t))
+        if s > _WIDE:
+            slope = _over_square(lambda z: -2.0 * z * np.exp(-z * z), x, s)
+            return slope * 2.0 / (s * s * math.sqrt(math.pi))
         return (np.exp(-(((x + 1.0) / s) ** 2)) - np.exp(-(((x - 1.0) / s) ** 2))) / (
             s * math.sqrt(math.pi)
         )
 
-    def cumulative(self, x: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def cumulative(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return int_-inf^x f dx'."""
-        x = np.asarray(x, dtype=float)
-        if t == 0.0:
-            return np.clip(x + 1.0, 0.0, 2.0)
-        s = 2.0 * math.sqrt(positive_real("t", t))
+        x, t = places("x", x), _time(t)
+        return np.clip(x + 1.0, 0.0, 2.0) if t == 0.0 else self._cumulative(x, 2.0 * math.sqrt(t))
+
+    def _cumulative(self, x: np.ndarray, s: float) -> np.ndarray:
+        if s > _WIDE:
+            return _over_square(lambda z: erfc(-z), x, s)
+        x = np.clip(x, -1.0 - 30.0 * s, 1.0 + 30.0 * s)  # f is zero beyond
 
         def antiderivative(y: np.ndarray) -> np.ndarray:  # of erf(y / s)
             return y * erf(y / s) + s / math.sqrt(math.pi) * np.exp(-((y / s) ** 2))
 
         return 1.0 + 0.5 * (antiderivative(x + 1.0) - antiderivative(x - 1.0))
 
-    def quantile(self, g: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def quantile(self, g: Any, t: float = 0.0) -> np.ndarray:
         """Return x with cumulative(x, t) = g, by bisection; accurate to round-off in g."""
-        g = _inside(g, self.total)
+        g, t = inside(g, self.total), _time(t)
         if t == 0.0:
             return g - 1.0
         # The half with x <= 0, where no digits are lost, gives the other by symmetry.
-        mirrored = np.minimum(g, 2.0 - g)
-        low = np.full_like(mirrored, -(1.0 + 16.0 * math.sqrt(t)))
-        high = np.zeros_like(mirrored)
-        for _ in range(64):
-            middle = 0.5 * (low + high)
-            left = self.cumulative(middle, t) < mirrored
-            low, high = np.where(left, middle, low), np.where(left, high, middle)
-        return np.where(g <= 1.0, 1.0, -1.0) * 0.5 * (low + high)
+        mirrored, s = np.minimum(g, 2.0 - g), 2.0 * math.sqrt(t)
+        x = _bisected(lambda x: self._cumulative(x, s), mirrored, -(1.0 + 16.0 * math.sqrt(t)))
+        if (mirrored < _TAIL).any():
+            far = _bisected(lambda x: self._tail(x, s), mirrored, -(1.0 + 27.5 * s))
+            x = np.where(mirrored < _TAIL, far, x)
+        return np.where(g <= 1.0, 1.0, -1.0) * x
+
+    def _tail(self, x: np.ndarray, s: float) -> np.ndarray:
+        """`_cumulative`, for x < -1 to a relative error of round-off."""
+        if s > _WIDE:
+            return self._cumulative(x, s)
+        near, far = (np.maximum(-(x + y) / s, 0.0) for y in (1.0, -1.0))
+
+        def integral(u: np.ndarray) -> np.ndarray:
+            return np.exp(-u * u) * (1.0 / math.sqrt(math.pi) - u * erfcx(u))
+
+        outside = 0.5 * s * (integral(near) - integral(far))
+        return np.where(x < -1.0, outside, self._cumulative(x, s))
+
+
+def _over_square(function: Any, x: np.ndarray, s: float) -> np.ndarray:
+    """Half the integral of function((x - y) / s) over -1 < y < 1."""
+    return np.asarray(0.5 * function((x[..., None] - _NODES) / s) @ _WEIGHTS)
+
+
+def _bisected(function: Any, wanted: np.ndarray, low: float) -> np.ndarray:
+    """The x from `low` to 0 where a rising function takes the values wanted."""
+    lows, highs = np.full_like(wanted, low), np.zeros_like(wanted)
+    for _ in range(64):
+        middle = 0.5 * (lows + highs)
+        left = function(middle) < wanted
+        lows, highs = np.where(left, middle, lows), np.where(left, highs, middle)
+    return 0.5 * (lows + highs)
 
 
 @dataclass(frozen=True)
 class Gaussian:
     """The Gaussian exp(-x^2), (25)."""
 
-    total: float = math.sqrt(math.pi)
+    total = math.sqrt(math.pi)
 
-    def value(self, x: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def value(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return f(x, t)."""
-        width = 1.0 + 4.0 * t
-        return np.exp(-np.square(np.asarray(x, dtype=float)) / width) / math.sqrt(width)
+        width = 1.0 + 4.0 * _time(t)
+        return np.exp(-np.square(places("x", x)) / width) / math.sqrt(width)
 
-    def cumulative(self, x: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def cumulative(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return int_-inf^x f dx'."""
-        scaled = np.asarray(x, dtype=float) / math.sqrt(1.0 + 4.0 * t)
-        return 0.5 * self.total * (1.0 + erf(scaled))
+        scaled = places("x", x) / math.sqrt(1.0 + 4.0 * _time(t))
+        return 0.5 * self.total * np.where(scaled < -4.0, erfc(-scaled), 1.0 + erf(scaled))
 
-    def quantile(self, g: np.ndarray, t: float = 0.0) -> np.ndarray:
+    def quantile(self, g: Any, t: float = 0.0) -> np.ndarray:
         """Return x with cumulative(x, t) = g."""
-        g = _inside(g, self.total)
-        return math.sqrt(1.0 + 4.0 * t) * erfinv(2.0 * g / self.total - 1.0)
+        g = inside(g, self.total)
+        # erfinv is blind to how far its argument is from -1 and 1.
+        end = np.minimum(g, self.total - g) / self.total
+        tail = np.where(2.0 * g < self.total, -1.0, 1.0) * erfcinv(2.0 * end)
+        with np.errstate(divide="ignore"):
+            z = np.where(end < _ERFINV, tail, erfinv(2.0 * g / self.total - 1.0))
+        return finite_result("g", math.sqrt(1.0 + 4.0 * _time(t)) * z)
 
 
 @dataclass(frozen=True)
@@ -114,35 +175,43 @@ class Ramp:
     ----------
     end : float
         x_0.
+
+    Raises
+    ------
+    InvalidInput
+        If it is not positive.
     """
 
     end: float
 
     def __post_init__(self) -> None:
-        positive_real("x_0", self.end)
+        object.__setattr__(self, "end", scale("x_0", self.end))
 
     @property
     def total(self) -> float:
         """The integral of f, sigma."""
         return -0.5 * math.expm1(-(self.end**2))
 
-    def value(self, x: np.ndarray) -> np.ndarray:
+    def value(self, x: Any) -> np.ndarray:
         """Return f(x)."""
-        x = np.asarray(x, dtype=float)
+        x = places("x", x)
         return np.where((x >= 0.0) & (x <= self.end), x * np.exp(-x * x), 0.0)
 
-    def quantile(self, g: np.ndarray) -> np.ndarray:
+    def quantile(self, g: Any) -> np.ndarray:
         """Return x with int_0^x f dx' = g: with g = sigma (j - 1/2) / N this is (11)."""
-        return np.sqrt(-np.log1p(-2.0 * _inside(g, self.total)))
+        return np.minimum(np.sqrt(-np.log1p(-2.0 * inside(g, self.total))), self.end)
 
 
-def _inside(g: np.ndarray, total: float) -> np.ndarray:
-    g = real_array("g", g)
-    if not ((g > 0.0) & (g < total)).all():
-        raise InvalidInput(
-            "g",
-            g,
-            f"parts of the total, 0 < g < {total:g}",
-            "A marker needs something on each side.",
-        )
-    return g
+def inside(g: Any, total: float) -> np.ndarray:
+    """Return parts of the total, 0 < g < total, as an array: a marker needs something on each side.
+
+    Raises
+    ------
+    InvalidInput
+        If one is not inside.
+    """
+    return within("g", finite_array("g", g), 0.0, total, inside=True)
+
+
+def _time(t: float) -> float:
+    return real_between("t", t, 0.0, SIZES[1])

@@ -1,6 +1,6 @@
 r"""Shape functions S1 to S8, Eqs. (9), (13)-(15); S_eps(x) = S(x / eps) / eps.
 
-Every one is c P(|x|) exp(-g x^2), g = 0 or 1, with a polynomial P; S1 to S7 are nil for |x| > 1:
+Every one is c P(|x|) exp(-g x^2), g = 0 or 1, with a polynomial P; S1 to S7 are zero for |x| > 1:
 
     S1 = 1/2                            S5 = mu (1 - |x|) exp(-x^2)
     S2 = 1 - |x|                        S6 = beta (1 - x^2)^2 exp(-x^2)
@@ -26,12 +26,15 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import real_array
+from fracparticles.special.arguments import choice, finite_array, real_array, whole_number, within
 from fracparticles.sums.scattered import ScatteredKernel
 
 __all__ = ["SHAPES", "Shape", "shape_function"]
 
 _REACH = 6.5  # exp(-x^2) is 4e-19 there
+_HIGHEST = 24  # derivative
+_FASTEST = 1e4  # k of a transform: it takes k / 2 nodes
+_MOST_TERMS = 2**26
 _J = math.sqrt(math.pi) * math.erf(1.0)
 _1_E = math.exp(-1.0)
 _SQRT_PI = math.sqrt(math.pi)
@@ -52,7 +55,7 @@ class Shape:
     gaussian : bool
         Whether exp(-x^2) is a factor.
     finite : bool
-        Whether S is nil for |x| > 1.
+        Whether S is zero for |x| > 1.
     smoothness : int or None
         How many derivatives are bounded functions; None: all. The transform falls like k^-(smoothness + 1).
     """
@@ -69,12 +72,12 @@ class Shape:
 
     @property
     def reach(self) -> float:
-        """Where S is nil, or below round-off: |x| > reach."""
+        """Where S is zero, or below round-off: |x| > reach."""
         return 1.0 if self.finite else _REACH
 
     @property
     def moment_order(self) -> int:
-        """The lowest k > 0 with int S x^k dx not nil: 2 if S >= 0, 4 for S8."""
+        """The lowest k > 0 with int S x^k dx not zero: 2 if S >= 0, 4 for S8."""
         return 2 if self.finite else 4
 
     def as_printed(self) -> Shape:
@@ -89,10 +92,10 @@ class Shape:
         Raises
         ------
         InvalidInput
-            If x is not real, or the derivative is not a bounded function.
+            If x is not real, or the derivative is not a bounded function, or above the 24th.
         """
         x = real_array("x", x)
-        r = np.abs(x)
+        r = np.minimum(np.abs(x), 2.0 * self.reach)
         value = self._factor(derivative)(r)
         if self.gaussian:
             value = value * np.exp(-r * r)
@@ -130,22 +133,28 @@ class Shape:
         Raises
         ------
         InvalidInput
-            If k is not real and finite.
+            If k, a wavenumber, is not real, finite and, but for S8, at most 1e4 in size; or if there are too many k
+            for memory.
         """
-        k = real_array("k", k)
-        if not np.isfinite(k).all():
-            raise InvalidInput("k", "an infinite wavenumber", "finite wavenumbers", "Mend it.")
+        k = finite_array("k, a wavenumber,", k)
         if not self.finite:
+            k = np.clip(k, -_FASTEST, _FASTEST)  # zero beyond
             q = 0.25 * k * k
             return self.constant * _SQRT_PI * (1.0 + q) * np.exp(-q)
+        within("k", k, -_FASTEST, _FASTEST)
         nodes = 24 + math.ceil(0.5 * float(np.abs(k).max(initial=0.0)))
+        if k.size * nodes > _MOST_TERMS:
+            raise InvalidInput(
+                "k", f"{k.size} wavenumbers", "fewer of this size", "Do it in parts."
+            )
         x, w = np.polynomial.legendre.leggauss(nodes)
         x, w = 0.5 * (1.0 + x), 0.5 * w
         return np.asarray(2.0 * np.cos(k[..., None] * x) @ (w * self(x)))
 
     def _factor(self, derivative: int) -> Polynomial:
         """Return c P_m with S^(m) = c P_m(|x|) exp(-g x^2) (times sgn x): P_(m+1) = P_m' - 2 g r P_m."""
-        if derivative < 0 or (self.smoothness is not None and derivative > self.smoothness):
+        derivative = whole_number("derivative", derivative, most=_HIGHEST)
+        if self.smoothness is not None and derivative > self.smoothness:
             raise InvalidInput(
                 "derivative",
                 derivative,
@@ -198,6 +207,4 @@ def shape_function(name: str) -> Shape:
     InvalidInput
         If there is none.
     """
-    if name not in SHAPES:
-        raise InvalidInput("shape", name, f"one of {', '.join(SHAPES)}", "Choose one of these.")
-    return SHAPES[name]
+    return SHAPES[choice("shape", name, tuple(SHAPES))]

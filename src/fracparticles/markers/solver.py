@@ -10,18 +10,30 @@ marker ends with `FieldNotPositive`, which says when and where.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
 from fracparticles.lagrangian import History, Observer, advance, quotient_velocity
 from fracparticles.markers.shapes import Shape
-from fracparticles.special.arguments import positive_real
+from fracparticles.markers.stability import extremes
+from fracparticles.special.arguments import (
+    function,
+    instance,
+    positions,
+    scale,
+    vector,
+    whole_number,
+)
 from fracparticles.sums.scattered import NeighbourSum
 
-__all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run"]
+__all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run", "warn_of_step"]
+
+_FAR_BEYOND = 3.0  # times the linear limit. Up to there the error of a run grows, but the markers stay together
 
 # flux(x, fields), shape (N,): fields[m] is the m-th derivative of F at x.
 Flux = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -50,7 +62,8 @@ class MarkerVelocity:
     Raises
     ------
     InvalidInput
-        If the shape function does not have these derivatives, or epsilon or the period does not do.
+        If the shape function does not have these derivatives, the flux is no function, or epsilon or the period does
+        not do.
     """
 
     def __init__(
@@ -61,30 +74,47 @@ class MarkerVelocity:
         derivatives: int = 1,
         period: float | None = None,
     ) -> None:
-        self.shape, self.epsilon = shape, positive_real("epsilon", epsilon)
-        self.flux, self.period = flux, period
+        self.shape, self.epsilon = instance("shape", shape, Shape), scale("epsilon", epsilon)
+        self.flux = function("flux", flux)
+        self.period = None if period is None else scale("period", period)
+        derivatives = whole_number("derivatives", derivatives)
         self._reach = shape.reach * self.epsilon
-        if period is not None and not 2.0 * self._reach < positive_real("period", period):
+        if self.period is not None and not 2.0 * self._reach < self.period:
             raise InvalidInput(
                 "period", period, f"a length above {2.0 * self._reach:g}", "Take a longer period."
             )
         kernels = [shape.kernel(m) for m in range(derivatives + 1)]
         self._sums = NeighbourSum(kernels, self.epsilon)
-        self._scale = self.epsilon ** -np.arange(derivatives + 1.0)[:, None]
+        with np.errstate(over="ignore"):
+            self._scale = self.epsilon ** -np.arange(derivatives + 1.0)[:, None]
+        if not np.isfinite(self._scale / self.epsilon).all():
+            raise InvalidInput(
+                "epsilon", epsilon, "one whose powers do not overflow", "Change the units."
+            )
 
-    def fields(self, x: np.ndarray, weights: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
-        """Return F and its derivatives, shape (derivatives + 1, M), at z or at the markers themselves."""
+    def fields(self, x: Any, weights: Any, z: Any = None) -> np.ndarray:
+        """Return F and its derivatives, shape (derivatives + 1, M), at z or at the markers themselves.
+
+        Raises
+        ------
+        InvalidInput
+            If the arrays do not fit together or are not finite.
+        """
         if self.period is not None:
-            z = x if z is None else z
+            x = positions("x", x)
+            weights = vector("weights", weights, x.size)
+            z = x if z is None else positions("z", z, least=0)
             x, weights = self._continued(x, weights)
             z = np.mod(z, self.period)
         return self._scale * self._sums(x, weights, z)
 
-    def __call__(self, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    def __call__(self, x: Any, weights: Any) -> np.ndarray:
         """Return V at the markers.
 
         Raises
         ------
+        InvalidInput
+            As `fields`; or if there are no markers.
         FieldNotPositive
             If F vanishes or changes sign at a marker.
         """
@@ -118,14 +148,14 @@ class MarkerRun:
     history: History
     velocity: MarkerVelocity
 
-    def field(self, z: np.ndarray | None = None) -> np.ndarray:
+    def field(self, z: Any = None) -> np.ndarray:
         """Return F on a fixed grid z, or on the moving grid of the markers."""
         return self.velocity.fields(self.x, self.weights, z)[0]
 
 
 def run(
-    x: np.ndarray,
-    weights: np.ndarray,
+    x: Any,
+    weights: Any,
     velocity: MarkerVelocity,
     *,
     dt: float,
@@ -143,8 +173,64 @@ def run(
         If F vanishes or changes sign at a marker; says when and where.
     NonFiniteSolution
         If the run cannot go on for another reason.
+
+    Warns
+    -----
+    StabilityWarning
+        If dt is so large that the markers lose one another: see `warn_of_step`, and a half step that takes most of
+        them farther from all others than the shape function reaches. F at such a marker is its own only.
     """
+    instance("velocity", velocity, MarkerVelocity)
+    x = positions("x", x)
+    weights, dt = vector("weights", weights, x.size), scale("dt", dt)
+    warn_of_step(velocity, dt)
+    _warn_of_tearing(x, weights, velocity, dt)
     x, weights, history = advance(
         x, weights, velocity, dt=dt, steps=steps, start=start, observe=observe
     )
     return MarkerRun(x, weights, history, velocity)
+
+
+def warn_of_step(velocity: MarkerVelocity, dt: float, interval: float = 2.0) -> None:
+    """Warn if dt is more than three times the limit of the linear theory of `diffusion`, see `stability`.
+
+    `interval` is the length of the stability interval of the time integration, 2 for the midpoint rule.
+
+    Warns
+    -----
+    StabilityWarning
+    """
+    unit = 0.5 * interval * velocity.epsilon**2
+    if velocity.flux is not diffusion or dt <= unit:  # the limit is a third of it at least
+        return
+    limit = extremes(velocity.shape).eta * unit
+    if dt > _FAR_BEYOND * limit:
+        warnings.warn(
+            f"dt = {dt:g} is {dt / limit:.3g} times the limit of stability, eta eps^2 = {limit:.3g}: the markers "
+            "are not those of the equation. Take a smaller dt, or a larger epsilon.",
+            StabilityWarning,
+            stacklevel=3,
+        )
+
+
+def _warn_of_tearing(x: np.ndarray, weights: np.ndarray, velocity: Any, dt: float) -> None:
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            halfway = x + 0.5 * dt * velocity(x, weights)
+    except FracparticlesError:
+        return  # the run will say so, with the step
+    reach = velocity.shape.reach * velocity.epsilon
+    alone = _alone(halfway, reach)
+    if alone > 0.5 * x.size >= _alone(x, reach):
+        warnings.warn(
+            f"dt = {dt:g}: half a step takes {alone} of {x.size} markers out of the reach {reach:.3g} of all others, "
+            "where they stand still or move at random. Take a smaller dt, or a larger epsilon.",
+            StabilityWarning,
+            stacklevel=3,
+        )
+
+
+def _alone(x: np.ndarray, reach: float) -> int:
+    """How many markers have no other within reach."""
+    gap = np.concatenate([[np.inf], np.diff(np.sort(x)), [np.inf]])
+    return int(np.count_nonzero((gap[1:] > reach) & (gap[:-1] > reach)))

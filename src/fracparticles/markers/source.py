@@ -19,22 +19,48 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.special import erf
+from scipy.special import erf, erfc
 
+from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.integrators.rkc import ChebyshevStep
 from fracparticles.lagrangian import quotient_velocity
 from fracparticles.markers.profiles import Gaussian
-from fracparticles.markers.solver import Flux, MarkerVelocity
+from fracparticles.markers.solver import Flux, MarkerVelocity, warn_of_step
+from fracparticles.special.arguments import (
+    MOST_STEPS,
+    SIZES,
+    check_fields,
+    finite_real,
+    function,
+    instance,
+    operand,
+    places,
+    positions,
+    positive_integer,
+    real_between,
+    scale,
+    vector,
+)
 
 __all__ = ["GaussianSource", "advance_weights", "source_flux"]
+
+_FAR = 10.0  # |x|: beyond, what cancels in the solution is taken out by hand
 
 Function = Callable[[np.ndarray], np.ndarray]
 
 
 def source_flux(cumulative: Function) -> Flux:
-    """Return the paper's flux V F = -F_x - S^(x)."""
+    """Return the paper's flux V F = -F_x - S^(x).
+
+    Raises
+    ------
+    InvalidInput
+        If S^ is no function.
+    """
+    cumulative = function("cumulative", cumulative)
 
     def flux(x: np.ndarray, fields: np.ndarray) -> np.ndarray:
         return -fields[1] - cumulative(x)
@@ -43,8 +69,8 @@ def source_flux(cumulative: Function) -> Flux:
 
 
 def advance_weights(
-    x: np.ndarray,
-    weights: np.ndarray,
+    x: Any,
+    weights: Any,
     velocity: MarkerVelocity,
     source: Function,
     *,
@@ -57,18 +83,40 @@ def advance_weights(
     Raises
     ------
     InvalidInput
-        If dt, steps or stages does not do.
+        If an argument cannot be worked with.
     FieldNotPositive
         If F is not positive at a marker; says when and where.
+    NonFiniteSolution
+        If a weight changes its sign, which no weight of the equation does; says when and where.
+
+    Warns
+    -----
+    StabilityWarning
+        If dt is far too large for these stages: see `solver.warn_of_step`.
     """
+    instance("velocity", velocity, MarkerVelocity)
+    x, source = positions("x", x), function("source", source)
+    weights, dt = vector("weights", weights, x.size), scale("dt", dt)
+    steps = positive_integer("steps", steps, most=MOST_STEPS)
+    step = ChebyshevStep(stages)
+    warn_of_step(velocity, dt, step.stability_interval)
+    sign = np.sign(weights)
 
     def rate(state: np.ndarray) -> np.ndarray:
         x, w = state
         fields = velocity.fields(x, w)
         v = quotient_velocity(velocity.flux(x, fields), fields[0], x)
-        return np.stack([v, w * source(x) / fields[0]])
+        return np.stack([v, w * operand("source", source(x), x.shape) / fields[0]])
 
-    state = ChebyshevStep(stages).advance(rate, np.stack([x, weights]), dt=dt, steps=steps)
+    def observe(t: float, state: np.ndarray) -> None:
+        turned = np.sign(state[1]) != sign
+        if turned.any():
+            raise NonFiniteSolution(
+                f"t = {t:.6g}: the weight of the marker at x = {state[0][turned][0]:.6g} changes its sign, "
+                "which dW/dt = W Q / F never does. Take a smaller dt."
+            )
+
+    state = step.advance(rate, np.stack([x, weights]), dt=dt, steps=steps, observe=observe)
     return state[0], state[1]
 
 
@@ -81,28 +129,38 @@ class GaussianSource:
     q : float
     derivative : int
         0 or 2. A source of derivative 2 has no total.
+
+    Raises
+    ------
+    InvalidInput
+        If q is not finite, or the derivative another. So do the methods, of x and t outside their range.
     """
 
     q: float
     derivative: int = 0
+
+    def __post_init__(self) -> None:
+        check_fields(self, q=finite_real, derivative=_zero_or_two)
 
     @property
     def total(self) -> float:
         """int Q dx."""
         return self.q * math.sqrt(math.pi) if self.derivative == 0 else 0.0
 
-    def rate(self, x: np.ndarray) -> np.ndarray:
+    def rate(self, x: Any) -> np.ndarray:
         """Q(x)."""
+        x = places("x", x)
         factor = 1.0 if self.derivative == 0 else 4.0 * x * x - 2.0
         return self.q * factor * np.exp(-x * x)
 
-    def cumulative(self, x: np.ndarray) -> np.ndarray:
+    def cumulative(self, x: Any) -> np.ndarray:
         """S^(x)."""
+        x = places("x", x)
         if self.derivative == 0:
             return 0.5 * self.total * (1.0 + erf(x))
         return -2.0 * self.q * x * np.exp(-x * x)
 
-    def solution(self, x: np.ndarray, t: float) -> np.ndarray:
+    def solution(self, x: Any, t: float) -> np.ndarray:
         r"""f(x, t), from g(x, 0) = exp(-x^2) with the solution g(x, t) of the equation without a source.
 
         Derivative 2: f = g(x, t) + q (g(x, t) - g(x, 0)), as int_0^t g_xx ds = g(x, t) - g(x, 0). Derivative 0:
@@ -110,13 +168,22 @@ class GaussianSource:
 
             2 int_0^t g ds = [sqrt(w) exp(-x^2 / w) + sqrt(pi) |x| erf(|x| / sqrt(w))] - [the same at w = 1].
         """
-        x = np.asarray(x, dtype=float)
+        x, t = places("x", x), real_between("t", t, 0.0, SIZES[1])
         g, g0 = Gaussian().value(x, t), Gaussian().value(x, 0.0)
         if self.derivative == 2:
             return g + self.q * (g - g0)
 
         def antiderivative(w: float) -> np.ndarray:
             r = math.sqrt(w)
-            return r * np.exp(-x * x / w) + math.sqrt(math.pi) * np.abs(x) * erf(np.abs(x) / r)
+            z = np.abs(x) / r
+            # Far out the two brackets share sqrt(pi) |x|, which leaves no digit of their difference.
+            part = np.where(np.abs(x) > _FAR, -erfc(z), erf(z))
+            return r * np.exp(-x * x / w) + math.sqrt(math.pi) * np.abs(x) * part
 
         return g + 0.5 * self.q * (antiderivative(1.0 + 4.0 * t) - antiderivative(1.0))
+
+
+def _zero_or_two(field: str, value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value not in (0, 2):
+        raise InvalidInput(field, value, "0 or 2", "Give q exp(-x^2) or its second derivative.")
+    return int(value)

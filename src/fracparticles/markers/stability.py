@@ -16,24 +16,35 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from fracparticles.errors import InvalidInput
 from fracparticles.markers.shapes import Shape
-from fracparticles.special.arguments import positive_real
+from fracparticles.special.arguments import finite_array, instance, real_between
 
 __all__ = ["Extremes", "extremes", "lattice_rate", "rate"]
 
+_LARGEST = 1e100
+_MOST_TERMS = 2**26
 _MIDPOINT_LIMIT = 2.0  # |1 + z + z^2/2| <= 1 for real z in [-2, 0]
 
 
-def rate(shape: Shape, k: np.ndarray) -> np.ndarray:
-    """Return eps^2 sigma = -k^2 S^(k) at k = eps q, for many markers per eps."""
-    k = np.asarray(k, dtype=float)
-    return -k * k * shape.transform(k)
+def rate(shape: Shape, k: Any) -> np.ndarray:
+    """Return eps^2 sigma = -k^2 S^(k) at k = eps q, for many markers per eps.
+
+    Raises
+    ------
+    InvalidInput
+        If it is no shape function, or k is not finite or too large for its transform.
+    """
+    transform = instance("shape", shape, Shape).transform(k)
+    k = np.clip(finite_array("k", k), -_LARGEST, _LARGEST)
+    return -k * k * transform
 
 
-def lattice_rate(shape: Shape, k: np.ndarray, spacing: float) -> np.ndarray:
+def lattice_rate(shape: Shape, k: Any, spacing: float) -> np.ndarray:
     """Return eps^2 sigma at k = eps q for markers `spacing` = h / eps apart.
 
     Where S'' jumps, at |x| = eps, a marker counts half: its neighbour is inside as often as outside.
@@ -41,10 +52,13 @@ def lattice_rate(shape: Shape, k: np.ndarray, spacing: float) -> np.ndarray:
     Raises
     ------
     InvalidInput
-        If the shape function has no second derivative, or the spacing is not positive.
+        If the shape function has no second derivative, k is not finite, or the spacing is below 1e-6 or so small that
+        the k and the neighbours together are too many.
     """
-    h = positive_real("spacing", spacing)
-    k = np.asarray(k, dtype=float)
+    shape = instance("shape", shape, Shape)
+    h, k = real_between("spacing", spacing, 1e-6, 1e6), finite_array("k", k)
+    if k.size * shape.reach / h > _MOST_TERMS:
+        raise InvalidInput("spacing", h, f"at most {_MOST_TERMS} terms", "Give fewer k.")
     m = np.arange(1, math.floor(shape.reach / h * (1.0 + 1e-12)) + 1)
     curvature, value = shape(m * h, 2), shape(m * h)
     curvature = np.where(np.isclose(m * h, shape.reach), 0.5, 1.0) * curvature
@@ -59,7 +73,7 @@ class Extremes:
     Attributes
     ----------
     growth, k_growth : float
-        The largest eps^2 sigma and its k; nil for a shape function without growth.
+        The largest eps^2 sigma and its k; zero for a shape function without growth.
     first_zero : float
         Where S^ first turns negative; infinite if it does not.
     decay, k_decay : float
@@ -84,7 +98,14 @@ class Extremes:
 
 
 def extremes(shape: Shape, largest: float = 30.0) -> Extremes:
-    """Return the extremes of the rate over 0 < k < `largest`, each refined by a parabola through three points."""
+    """Return the extremes of the rate over 0 < k < `largest`, each refined by a parabola through three points.
+
+    Raises
+    ------
+    InvalidInput
+        If it is no shape function, or `largest` not from 1 to 2000.
+    """
+    shape, largest = instance("shape", shape, Shape), real_between("largest", largest, 1.0, 2000.0)
     k = np.linspace(0.0, largest, 6001)[1:]
     sigma, transform = rate(shape, k), shape.transform(k)
     # Round-off makes the transform of S8 vanish far out; only what is clearly negative counts.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -9,22 +10,48 @@ from numpy.typing import ArrayLike, NDArray
 
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.moments import nodes_and_weights
-from fracparticles.pse.shapes import Kernel
+from fracparticles.pse.shapes import Kernel, kernel_of
+from fracparticles.special.arguments import (
+    finite_array,
+    finite_result,
+    positions,
+    real_between,
+    sampled,
+    scale,
+    vector,
+    whole_number,
+)
 
 __all__ = ["derivative", "lattice", "reconstruct", "regularised"]
 
 FloatArray = NDArray[np.float64]
 
+_MOST_PARTICLES = 2**26
+_FARTHEST = 2.0**31  # lattice points from the origin
+_MOST_PAIRS = 2**25  # of points and particles
+_HIGHEST = 24  # order of a derivative
+
 
 def lattice(low: float, high: float, h: float) -> FloatArray:
-    """Return the particles i h from the last below `low` to the first above `high`."""
+    """Return the particles i h from the last below `low` to the first above `high`.
+
+    Raises
+    ------
+    InvalidInput
+        If h is not positive, `high` is below `low`, or it takes too many particles.
+    """
+    h = scale("h", h)
+    low = real_between("low", low, -_FARTHEST * h, _FARTHEST * h)
+    high = real_between("high", high, low, _FARTHEST * h)
+    if not (high - low) / h < _MOST_PARTICLES:
+        raise InvalidInput("h", h, f"at most {_MOST_PARTICLES} particles", "Take a larger h.")
     return h * np.arange(np.floor(low / h), np.ceil(high / h) + 1.0)
 
 
 def reconstruct(
     x: ArrayLike,
-    particles: FloatArray,
-    values: FloatArray,
+    particles: ArrayLike,
+    values: ArrayLike,
     volumes: ArrayLike,
     epsilon: float,
     kernel: Kernel,
@@ -35,27 +62,35 @@ def reconstruct(
     ----------
     x : array_like, shape (M,)
         Where.
-    particles, values : array, shape (N,)
-        x_p and f(x_p).
+    particles, values : array_like, shape (N,)
+        x_p and f(x_p), real or complex.
     volumes : array_like, shape (N,) or ()
         V_p.
     epsilon : float
         Kernel radius, positive.
     kernel : Kernel
-        eta.
+        eta, of one dimension.
 
     Returns
     -------
     array, shape (M,)
+
+    Raises
+    ------
+    InvalidInput
+        If the arrays do not fit together or are not finite, or epsilon or the kernel does not do.
     """
-    return _matrix(x, particles, volumes, epsilon, kernel) @ values
+    weights = _matrix(x, particles, volumes, epsilon, kernel)
+    values = vector("values", values, weights.shape[1], complex_too=True)
+    with np.errstate(all="ignore"):
+        return finite_result("values", weights @ values)
 
 
 def derivative(
     x: ArrayLike,
     at: ArrayLike,
-    particles: FloatArray,
-    values: FloatArray,
+    particles: ArrayLike,
+    values: ArrayLike,
     volumes: ArrayLike,
     epsilon: float,
     kernel: Kernel,
@@ -68,17 +103,26 @@ def derivative(
     x, at : array_like, shape (M,)
         The points, and f there.
     order : int
-        beta.
+        beta, at most 24.
     particles, values, volumes, epsilon, kernel
         As in `reconstruct`.
 
     Returns
     -------
     array, shape (M,)
+
+    Raises
+    ------
+    InvalidInput
+        As `reconstruct`; or if the order is not a whole number from 1 to 24.
     """
+    divisor = _power(epsilon, whole_number("order", order, least=1, most=_HIGHEST))
     weights = _matrix(x, particles, volumes, epsilon, kernel)
-    differences = np.asarray(values) - np.asarray(at, dtype=float)[:, None]
-    return (weights * differences).sum(axis=1) / epsilon**order
+    values = vector("values", values, weights.shape[1], complex_too=True)
+    at = vector("at", at, weights.shape[0], least=0, complex_too=True)
+    with np.errstate(all="ignore"):
+        differences = values - at[:, None]
+        return finite_result("values", (weights * differences).sum(axis=1) / divisor)
 
 
 def regularised(
@@ -95,20 +139,55 @@ def regularised(
     Returns
     -------
     array, shape (M,)
+
+    Raises
+    ------
+    InvalidInput
+        As `derivative`; or if f does not take arrays, or is not finite.
     """
-    x = np.asarray(x, dtype=float)
+    divisor = _power(epsilon, whole_number("order", order, most=_HIGHEST))
+    x = positions("x", x, least=0)
     z, w = nodes_and_weights(kernel)
-    shifted = f(x[:, None] - epsilon * z)
-    if order > 0:
-        shifted = shifted - f(x)[:, None]
-    return shifted @ (w * kernel(z)) / epsilon**order
+    _check_pairs(x.size, z.size)
+    shifted = sampled("f", f, x[:, None] - epsilon * z)
+    with np.errstate(all="ignore"):
+        if order > 0:
+            shifted = shifted - sampled("f", f, x)[:, None]
+        return finite_result("f", shifted @ (w * kernel(z)) / divisor)
 
 
 def _matrix(
-    x: ArrayLike, particles: FloatArray, volumes: ArrayLike, epsilon: float, kernel: Kernel
+    x: ArrayLike, particles: ArrayLike, volumes: ArrayLike, epsilon: float, kernel: Kernel
 ) -> FloatArray:
     """V_p eta_eps(x - x_p), shape (M, N)."""
-    if not (np.isfinite(epsilon) and epsilon > 0.0):
-        raise InvalidInput("epsilon", epsilon, "positive and finite", "Give the kernel radius.")
-    z = (np.asarray(x, dtype=float)[:, None] - particles) / epsilon
-    return kernel(z) * (np.asarray(volumes, dtype=float) / epsilon)
+    epsilon, kernel = scale("epsilon", epsilon), kernel_of(1, kernel)
+    x, particles = positions("x", x, least=0), positions("particles", particles)
+    volumes = finite_array("volumes", volumes)
+    if volumes.ndim:
+        volumes = vector("volumes", volumes, particles.size)
+    _check_pairs(x.size, particles.size)
+    z = (x[:, None] - particles) / epsilon
+    with np.errstate(over="ignore"):
+        return kernel(z) * finite_result("volumes", volumes / epsilon)
+
+
+def _check_pairs(points: int, particles: int) -> None:
+    if points * particles > _MOST_PAIRS:
+        raise InvalidInput(
+            "x",
+            f"{points} points for {particles} particles",
+            f"at most {_MOST_PAIRS} pairs",
+            "Do it in parts.",
+        )
+
+
+def _power(epsilon: float, order: int) -> float:
+    epsilon = scale("epsilon", epsilon)
+    if abs(order * math.log10(epsilon)) > 300.0:
+        raise InvalidInput(
+            "epsilon",
+            epsilon,
+            f"a number whose power {order} does not overflow",
+            "Change the units.",
+        )
+    return float(epsilon**order)

@@ -11,13 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import factorial
+from numbers import Rational
 from typing import Any
 
 import numpy as np
 
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.moments import gaussian_moment, lattice_moment
-from fracparticles.pse.shapes import GaussianKernel, Stencil
+from fracparticles.pse.shapes import GaussianKernel, Stencil, kernel_of
+from fracparticles.special.arguments import dimension, instance, real_between, whole_number
 
 __all__ = [
     "construct",
@@ -29,6 +31,10 @@ __all__ = [
 ]
 
 _MOST = 24  # beta + r: the values of the kernel lose about a digit for every three
+_OVERLAPS = (
+    0.25,
+    1000.0,
+)  # below, a kernel is 1e7 times as large between the particles as at the next of them
 _WORST = 1e10  # condition number: beyond it the conditions are met to less than six digits
 
 
@@ -40,8 +46,8 @@ def required_moments(derivative: int, accuracy: int) -> dict[int, int]:
     InvalidInput
         Unless beta >= 0 and r >= 1 are whole numbers with beta + r <= 24.
     """
-    _check("derivative", derivative, 0)
-    _check("accuracy", accuracy, 1)
+    derivative = whole_number("derivative", derivative)
+    accuracy = whole_number("accuracy", accuracy, least=1)
     if derivative + accuracy > _MOST:
         raise InvalidInput(
             "accuracy",
@@ -65,7 +71,7 @@ def construct(derivative: int, accuracy: int, overlap: float | None = None) -> G
         beta and r; an odd r gives r + 1 by symmetry.
     overlap : float, optional
         Meet the conditions on the lattice with this eps / h, (28), instead of over the line: then the sum over
-        that lattice has no quadrature error in them, however few particles a kernel holds.
+        that lattice has no quadrature error in them, however few particles a kernel holds. From 0.25 to 1000.
 
     Returns
     -------
@@ -77,12 +83,14 @@ def construct(derivative: int, accuracy: int, overlap: float | None = None) -> G
     InvalidInput
         As `required_moments`; or if the lattice has too few points within the kernel for the conditions.
     """
+    conditions = required_moments(derivative, accuracy)
     parity = derivative % 2
-    conditions = _of_parity(required_moments(derivative, accuracy), parity)
+    conditions = _of_parity(conditions, parity)
     powers = range(parity, parity + 2 * len(conditions), 2)
     if overlap is None:
         coefficients, condition = _solve(conditions, lambda k, j: gaussian_moment(k + powers[j]))
         return GaussianKernel(coefficients, parity, 1, condition)
+    overlap = real_between("overlap", overlap, *_OVERLAPS)
     matrix = np.array(
         [[_lattice_moment_of_power(k + power, overlap) for power in powers] for k in conditions]
     )
@@ -113,8 +121,7 @@ def construct_laplacian(accuracy: int, dim: int) -> GaussianKernel:
     InvalidInput
         As `required_moments`; or unless d is 1, 2 or 3.
     """
-    if dim not in (1, 2, 3):
-        raise InvalidInput("dim", dim, "1, 2 or 3", "Choose one of these.")
+    dim = dimension(dim)
     conditions = _of_parity(required_moments(2, accuracy), 0)
     conditions[2] *= dim
     coefficients, condition = _solve(conditions, lambda k, j: gaussian_moment(k + 2 * j, dim))
@@ -131,10 +138,11 @@ def construct_stencil(derivative: int, accuracy: int) -> Stencil:
     InvalidInput
         As `required_moments`; or for beta = 0, where (9) at a particle is f itself.
     """
+    conditions = required_moments(derivative, accuracy)
     if derivative == 0:
         raise InvalidInput("derivative", 0, "1 or more", "The function itself needs no stencil.")
     parity = derivative % 2
-    conditions = _of_parity(required_moments(derivative, accuracy), parity)
+    conditions = _of_parity(conditions, parity)
     # The unknowns are eta(1), ..., eta(n); eta(-i) = (-1)^beta eta(i) doubles each.
     right, condition = _solve(conditions, lambda k, j: Fraction(2 * (j + 1) ** k))
     left = [(-1) ** derivative * v for v in reversed(right)]
@@ -145,7 +153,16 @@ def taylor_constant(kernel: GaussianKernel, derivative: int, accuracy: int) -> F
     """Return the constant of the first term that (17) leaves over, C eps^r f^(beta+r): (-1)^k M_k / k!, k = beta + r.
 
     For an even r, in one dimension. |C| is C_1 of Sec. 2.2, with the norm of f^(beta+r), not f^(r).
+
+    Raises
+    ------
+    InvalidInput
+        As `required_moments`; or if r is odd, or the kernel none of one dimension.
     """
+    required_moments(derivative, accuracy)
+    kernel_of(1, instance("kernel", kernel, GaussianKernel))
+    if accuracy % 2:
+        raise InvalidInput("accuracy", accuracy, "an even number", "An odd r gives r + 1.")
     k = derivative + accuracy
     terms = (
         c * gaussian_moment(k + kernel.parity + 2 * j) for j, c in enumerate(kernel.coefficients)
@@ -156,10 +173,23 @@ def taylor_constant(kernel: GaussianKernel, derivative: int, accuracy: int) -> F
 def solve_exactly(
     matrix: Sequence[Sequence[Fraction]], right: Sequence[Fraction]
 ) -> list[Fraction]:
-    """Solve a square linear system by Gauss elimination in fractions."""
-    rows = [[*row, value] for row, value in zip(matrix, right, strict=True)]
-    for i in range(len(rows)):
-        pivot = next(r for r in range(i, len(rows)) if rows[r][i])
+    """Solve a square linear system by Gauss elimination in fractions.
+
+    Raises
+    ------
+    InvalidInput
+        If it is not square, not of whole numbers and fractions, or singular.
+    """
+    n = len(_listed("right", right))
+    if len(_listed("matrix", matrix)) != n or any(len(_listed("matrix", r)) != n for r in matrix):
+        raise InvalidInput("matrix", matrix, f"{n} rows of {n} numbers", "Make it square.")
+    if not all(isinstance(v, Rational) for row in (*matrix, right) for v in row):
+        raise InvalidInput("matrix", matrix, "whole numbers and fractions", "Convert them.")
+    rows = [[*map(Fraction, row), Fraction(v)] for row, v in zip(matrix, right, strict=True)]
+    for i in range(n):
+        pivot = next((r for r in range(i, n) if rows[r][i]), None)
+        if pivot is None:
+            raise InvalidInput("matrix", matrix, "a regular matrix", "Check the equations.")
         rows[i], rows[pivot] = rows[pivot], rows[i]
         rows[i] = [value / rows[i][i] for value in rows[i]]
         for r in range(len(rows)):
@@ -188,6 +218,5 @@ def _lattice_moment_of_power(power: int, overlap: float) -> float:
     return float(lattice_moment(monomial, 0, overlap))
 
 
-def _check(name: str, value: Any, least: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise InvalidInput(name, value, f"a whole number from {least} on", "Give such a number.")
+def _listed(field: str, value: Any) -> Any:
+    return instance(field, value, (list, tuple), "a list")

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
 from fracparticles.errors import InvalidInput
-from fracparticles.pse.shapes import Kernel
+from fracparticles.pse.shapes import Kernel, kernel_of
+from fracparticles.special.arguments import (
+    finite_array,
+    finite_result,
+    operand,
+    places,
+    positions,
+    scale,
+    within,
+)
 
 __all__ = ["StrengthExchange", "cell_volumes"]
 
 FloatArray = NDArray[np.float64]
+
+_MOST_PAIRS = 2**25  # of neighbours, each twice in the matrix
 
 
 class StrengthExchange:
@@ -24,15 +37,15 @@ class StrengthExchange:
     Parameters
     ----------
     x : array_like, shape (N,) or (N, d)
-        Positions, different from each other.
+        Positions, d = 1, 2 or 3.
     volumes : array_like, shape (N,) or ()
         V_i, positive.
     epsilon : float
         Kernel radius, positive.
     kernel : Kernel
-        eta; in one dimension a function of the signed distance, in more of the distance.
+        eta, of d dimensions; in one a function of the signed distance, in more of the distance.
     diffusivity : float
-        D.
+        D, positive.
 
     Attributes
     ----------
@@ -44,10 +57,9 @@ class StrengthExchange:
     Raises
     ------
     InvalidInput
-        If a volume or the radius is not positive and finite, or a position not finite.
+        If a volume, the radius or the diffusivity is not positive and finite, a position not finite, the kernel of
+        another dimension, or the particles have more neighbours than memory holds.
     """
-
-    least_excess: float = 0.0
 
     def __init__(
         self,
@@ -57,41 +69,73 @@ class StrengthExchange:
         kernel: Kernel,
         diffusivity: float = 1.0,
     ) -> None:
-        points = np.asarray(x, dtype=float)
+        points = places("x", x)
         points = points[:, None] if points.ndim == 1 else points
+        if points.ndim != 2 or not points.size or points.shape[1] > 3:
+            raise InvalidInput(
+                "x",
+                f"array of shape {points.shape}",
+                "shape (N,) or (N, d), d = 1, 2 or 3",
+                "Mend it.",
+            )
         self.size, dim = points.shape
-        v = np.broadcast_to(np.asarray(volumes, dtype=float), self.size)
-        for name, value in (("volumes", v), ("epsilon", epsilon)):
-            if not (np.isfinite(value) & (np.asarray(value) > 0.0)).all():
-                raise InvalidInput(name, value, "positive and finite", "Check the particles.")
-        if not np.isfinite(points).all():
-            raise InvalidInput("x", x, "finite", "Check the particles.")
-        pairs = cKDTree(points).query_pairs(kernel.reach * epsilon, output_type="ndarray")
+        kernel = kernel_of(dim, kernel)
+        v = finite_array("volumes", volumes, (self.size,))
+        v = within("volumes", v, 0.0, inside=True)
+        epsilon, diffusivity = scale("epsilon", epsilon), scale("diffusivity", diffusivity)
+        if abs((2 + dim) * math.log10(epsilon)) > 300.0:
+            raise InvalidInput(
+                "epsilon", epsilon, "a number whose power does not overflow", "Change the units."
+            )
+        tree, near = cKDTree(points), kernel.reach * epsilon
+        if self.size**2 > _MOST_PAIRS and tree.count_neighbors(tree, near) > 2 * _MOST_PAIRS:
+            raise InvalidInput(
+                "epsilon",
+                epsilon,
+                f"one with at most {_MOST_PAIRS} pairs of neighbours",
+                "Take a smaller one.",
+            )
+        pairs = tree.query_pairs(near, output_type="ndarray")
         i, p = np.concatenate([pairs, pairs[:, ::-1]]).T
         apart = (points[i] - points[p]) / epsilon
         z = apart[:, 0] if dim == 1 else np.sqrt((apart**2).sum(axis=1))
-        eta = diffusivity / epsilon ** (2 + dim) * kernel(z)
-        gain = csr_array((v[i] * eta, (i, p)), shape=(self.size, self.size))
-        loss = np.bincount(i, v[p] * eta, self.size)
-        self.matrix = (gain - diags_array(loss)).tocsr()
-        self.rate = float(abs(self.matrix).sum(axis=0).max())
+        with np.errstate(over="ignore", invalid="ignore"):
+            eta = diffusivity / epsilon ** (2 + dim) * kernel(z)
+            gain = csr_array((v[i] * eta, (i, p)), shape=(self.size, self.size))
+            loss = np.bincount(i, v[p] * eta, self.size)
+            self.matrix = (gain - diags_array(loss)).tocsr()
+            self.rate = float(finite_result("volumes", abs(self.matrix).sum(axis=0).max()))
 
     def apply(self, u: FloatArray) -> FloatArray:
-        """Return A Q."""
-        return np.asarray(self.matrix @ u)
+        """Return A Q, for an array of shape (N,).
+
+        Raises
+        ------
+        InvalidInput
+            If it has another shape. So does `update`.
+        """
+        return np.asarray(self.matrix @ operand("u", u, (self.size,), complex_too=True))
 
     def update(self, u: FloatArray, a: float, b: float, c: float, v: FloatArray) -> None:
         """Write a (A Q) + b Q + c v into v."""
+        operand("u", u, (self.size,), complex_too=True)
+        operand("v", v, (self.size,), complex_too=True)
         v *= c
         v += b * u
         v += a * (self.matrix @ u)
 
 
-def cell_volumes(x: FloatArray) -> FloatArray:
+def cell_volumes(x: ArrayLike) -> FloatArray:
     """V_j = x_(j+1/2) - x_(j-1/2) of sorted particles, the half points in the middle (below (10)).
 
     At the ends a cell is as wide outside as inside.
+
+    Raises
+    ------
+    InvalidInput
+        If there are less than two particles, two in one place, or they are not in rising order.
     """
+    x = positions("x", x, least=2, rising=True)
     middle = 0.5 * (x[1:] + x[:-1])
     edges = np.concatenate([[2.0 * x[0] - middle[0]], middle, [2.0 * x[-1] - middle[-1]]])
     return np.diff(edges)

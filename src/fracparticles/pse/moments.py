@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
@@ -9,7 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fracparticles.errors import InvalidInput
-from fracparticles.pse.shapes import Kernel
+from fracparticles.pse.shapes import Kernel, kernel_of
+from fracparticles.special.arguments import (
+    dimension,
+    finite_array,
+    finite_real,
+    finite_result,
+    whole_number,
+    within,
+)
 
 __all__ = [
     "absolute_moment",
@@ -21,18 +30,31 @@ __all__ = [
 
 FloatArray = NDArray[np.float64]
 _BEYOND = 4.0
+_HIGHEST = 60  # z^60 exp(-z^2) is below 1e-16 of its maximum beyond the reach and `_BEYOND`
+_SCANNED = 4096  # points between which a kernel changes its sign once at most
+_MOST_POINTS = 2**26  # of lattices
 
 # On pieces of length 1, exact for the splines; for exp(-z^2) times a polynomial of degree 30 at round-off.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
-def nodes_and_weights(kernel: Kernel) -> tuple[FloatArray, FloatArray]:
+def nodes_and_weights(
+    kernel: Kernel, breaks: Sequence[float] = ()
+) -> tuple[FloatArray, FloatArray]:
     """Return nodes and weights of a Gauss rule, piece by piece, on [-reach, reach] and a little more.
 
-    Beyond its reach a Gaussian is below round-off, but z^k times it is not.
+    Beyond its reach a Gaussian is below round-off, but z^k times it is not. The integrand may have more `breaks` than
+    the kernel has.
+
+    Raises
+    ------
+    InvalidInput
+        If it is no kernel of one dimension.
     """
+    kernel = kernel_of(1, kernel)
     inside = [-kernel.reach, *kernel.breaks, kernel.reach]
     ends = [inside[0] - _BEYOND, *inside, inside[-1] + _BEYOND]
+    ends = sorted({*ends, *breaks}) if len(breaks) else ends
     edges = np.concatenate(
         [np.linspace(a, b, int(np.ceil(b - a)) + 1)[:-1] for a, b in pairwise(ends)] + [ends[-1:]]
     )
@@ -42,15 +64,43 @@ def nodes_and_weights(kernel: Kernel) -> tuple[FloatArray, FloatArray]:
 
 
 def moment(kernel: Kernel, k: int) -> float:
-    """M_k = int z^k eta(z) dz  (16), by a Gauss rule on each piece of the kernel."""
+    """M_k = int z^k eta(z) dz  (16), k <= 60, by a Gauss rule on each piece of the kernel.
+
+    Raises
+    ------
+    InvalidInput
+        If k is no whole number from 0 to 60, or the kernel none of one dimension, known everywhere.
+    """
+    k = whole_number("k", k, most=_HIGHEST)
     z, w = nodes_and_weights(kernel)
     return float(w @ (z**k * kernel(z)))
 
 
 def absolute_moment(kernel: Kernel, k: int) -> float:
-    """int |z^k eta(z)| dz: what an error of M_k is to be held against."""
-    z, w = nodes_and_weights(kernel)
+    """int |z^k eta(z)| dz, k <= 60: what an error of M_k is to be held against.
+
+    Raises
+    ------
+    InvalidInput
+        As `moment`.
+    """
+    k = whole_number("k", k, most=_HIGHEST)
+    z, w = nodes_and_weights(kernel, _sign_changes(kernel_of(1, kernel)))
     return float(w @ np.abs(z**k * kernel(z)))
+
+
+def _sign_changes(kernel: Kernel) -> list[float]:
+    """Zero, where z changes its sign, and where eta does: |z^k eta| is smooth between them."""
+    z = np.linspace(-kernel.reach, kernel.reach, _SCANNED)
+    sign = np.sign(kernel(z))
+    z, sign = z[sign != 0.0], sign[sign != 0.0]
+    i = np.flatnonzero(sign[1:] != sign[:-1])
+    low, high, left = z[i], z[i + 1], sign[i]
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        before = np.sign(kernel(middle)) == left
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return [0.0, *low.tolist()]
 
 
 def lattice_moment(
@@ -63,11 +113,11 @@ def lattice_moment(
     kernel : Kernel
         eta.
     k : int
-        Order of the moment.
+        Order of the moment, at most 60.
     overlap : array_like
         s = eps / h, positive; s = 1 is (28).
     offset : float
-        Distance of the point from the lattice, in h.
+        Distance of the point from the lattice, in h; whole numbers more or less change nothing.
 
     Returns
     -------
@@ -76,18 +126,35 @@ def lattice_moment(
     Raises
     ------
     InvalidInput
-        If an overlap is not positive and finite.
+        As `moment`; or if an overlap is not positive, or holds too many particles.
     """
-    s = np.asarray(overlap, dtype=float)
-    if not (np.isfinite(s) & (s > 0.0)).all():
-        raise InvalidInput("overlap", overlap, "positive and finite", "Give eps / h.")
-    n = int(np.ceil((kernel.reach + _BEYOND) * s.max(initial=0.0))) + 1
-    z = (np.arange(-n, n + 1) + offset) / s[..., None]
-    return (z**k * kernel(z)).sum(axis=-1) / s
+    kernel, k = kernel_of(1, kernel), whole_number("k", k, most=_HIGHEST)
+    s = within("overlap", finite_array("overlap", overlap), 0.0, inside=True)
+    offset = finite_real("offset", offset)
+    if abs(offset) > 1.0:
+        offset -= round(offset)
+    reached = (kernel.reach + _BEYOND) * s.max(initial=0.0)
+    if not 2.0 * reached * max(s.size, 1) < _MOST_POINTS:
+        raise InvalidInput(
+            "overlap", overlap, f"at most {_MOST_POINTS} points of lattices", "Take smaller ones."
+        )
+    n = int(np.ceil(reached)) + 1
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        z = (np.arange(-n, n + 1) + offset) / s[..., None]
+        # Far beyond the reach z^k may overflow where eta is 0.
+        eta = kernel(z)
+        return finite_result("overlap", (np.where(eta == 0.0, 0.0, z) ** k * eta).sum(axis=-1) / s)
 
 
 def gaussian_moment(k: int, dim: int = 1) -> Fraction:
-    """int |z|^k pi^(-d/2) exp(-z^2) dz = (d/2) (d/2 + 1) ... (d/2 + k/2 - 1) for even k; 0 for odd k, as of z^k."""
+    """int |z|^k pi^(-d/2) exp(-z^2) dz = (d/2) (d/2 + 1) ... (d/2 + k/2 - 1) for even k; 0 for odd k, as of z^k.
+
+    Raises
+    ------
+    InvalidInput
+        If k is no whole number from 0 to 1000, or the dimension not 1, 2 or 3.
+    """
+    k, dim = whole_number("k", k, most=1000), dimension(dim)
     if k % 2:
         return Fraction(0)
     product = Fraction(1)

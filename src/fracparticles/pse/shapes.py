@@ -1,19 +1,31 @@
 """Kernels eta(z) of unit radius; eta_eps(x) = eta(x / eps) / eps^d (7).
 
-A kernel is a function of z (of the distance |z| in d > 1) that says how far it reaches and where its pieces meet.
+A kernel is a function of z (of the distance |z| in d > 1) that says how far it reaches and where its pieces meet. One
+of more dimensions than the line has a `dim`. Sums and integrals take no kernel of another dimension than theirs.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import comb, factorial, pi
-from typing import Protocol
+from numbers import Rational
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fracparticles.errors import InvalidInput
+from fracparticles.special.arguments import (
+    check_fields,
+    dimension,
+    finite_array,
+    finite_real,
+    real_array,
+    real_between,
+    whole_number,
+)
 
 __all__ = [
     "GAUSSIAN_20",
@@ -23,9 +35,15 @@ __all__ = [
     "SplineKernel",
     "Stencil",
     "Tent",
+    "kernel_of",
 ]
 
 FloatArray = NDArray[np.float64]
+
+_NOTHING = 1e3  # exp(-z^2) is 0 from 28 on; no power of z overflows up to here
+_WIDEST = 1e4  # reach of a kernel
+_POWERS = 12  # the degree up to which the truncated powers of a spline lose no digit
+_BLOCK = 2**12  # points of a spline at a time
 
 
 class Kernel(Protocol):
@@ -33,7 +51,7 @@ class Kernel(Protocol):
 
     @property
     def reach(self) -> float:
-        """Where eta is nil, or below round-off: |z| > reach."""
+        """Where eta is zero, or below round-off: |z| > reach."""
 
     @property
     def breaks(self) -> tuple[float, ...]:
@@ -41,6 +59,29 @@ class Kernel(Protocol):
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
+
+
+def kernel_of(dim: int, kernel: Any) -> Kernel:
+    """Return a kernel of that many dimensions.
+
+    Raises
+    ------
+    InvalidInput
+        If it is no kernel, or one of another dimension.
+    """
+    if not (callable(kernel) and hasattr(kernel, "reach") and hasattr(kernel, "breaks")):
+        raise InvalidInput("kernel", kernel, "a kernel, with a reach and breaks", "Make one first.")
+    dim, of_kernel = dimension(dim), getattr(kernel, "dim", 1)
+    if of_kernel != dim:
+        raise InvalidInput(
+            "kernel",
+            kernel,
+            f"a kernel of {dim} dimensions, not of {of_kernel}",
+            f"construct_laplacian(accuracy, {dim}) gives one for the Laplacian.",
+        )
+    real_between("kernel.reach", kernel.reach, 0.0, _WIDEST)
+    result: Kernel = kernel
+    return result
 
 
 @dataclass(frozen=True)
@@ -57,13 +98,31 @@ class GaussianKernel:
         d; a radial kernel if d > 1.
     condition : float
         Condition number of the moment conditions that gave c_j.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no coefficient other than zero, or a value is outside its range.
     """
 
     coefficients: tuple[Fraction | float, ...]
     parity: int = 0
     dim: int = 1
     condition: float = 1.0
-    breaks: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_fields(
+            self,
+            coefficients=_coefficients,
+            parity=partial(whole_number, most=1),
+            dim=lambda _, dim: dimension(dim),
+            condition=finite_real,
+        )
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None: it is smooth."""
+        return ()
 
     @property
     def reach(self) -> float:
@@ -77,7 +136,7 @@ class GaussianKernel:
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
-        z = np.asarray(z, dtype=float)
+        z = np.clip(real_array("z", z), -_NOTHING, _NOTHING)
         square = z * z
         total = np.zeros_like(z)
         for c in reversed(self.coefficients):
@@ -85,16 +144,35 @@ class GaussianKernel:
         return z**self.parity * total * np.exp(-square) / pi ** (0.5 * self.dim)
 
 
+def _coefficients(field: str, value: Any) -> tuple[Fraction | float, ...]:
+    if isinstance(value, tuple | list) and all(
+        isinstance(c, Rational) and not isinstance(c, bool) for c in value
+    ):
+        exact = tuple(value)
+    else:
+        exact = tuple(np.atleast_1d(finite_array(field, value)).ravel().tolist())
+    if not any(exact):
+        raise InvalidInput(field, value, "numbers that are not all zero", "Give at least one.")
+    return exact
+
+
 @dataclass(frozen=True)
 class Tent:
     """eta(z) = 2 (1 - |z| / 2) for |z| <= 2, else 0  (27)."""
 
-    reach: float = 2.0
-    breaks: tuple[float, ...] = (0.0,)
+    @property
+    def reach(self) -> float:
+        """Half of the support."""
+        return 2.0
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """The top."""
+        return (0.0,)
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
-        return np.maximum(2.0 * (1.0 - 0.5 * np.abs(np.asarray(z, dtype=float))), 0.0)
+        return np.maximum(2.0 * (1.0 - 0.5 * np.abs(real_array("z", z))), 0.0)
 
 
 @dataclass(frozen=True)
@@ -104,17 +182,20 @@ class SplineKernel:
     B_q(z) = 1/q! sum_k (-1)^k binom(q+1, k) (z + (q+1)/2 - k)_+^q has unit mass, the second moment (q+1)/12 and
     the transform (sin(k/2) / (k/2))^(q+1): the quadrature error is of the order m = q + 1.
 
+    The powers have both signs, and cancel for a large q. There it is, with positive terms only and u = z + (q+1)/2,
+
+        q B_q(u) = u B_(q-1)(u) + (q + 1 - u) B_(q-1)(u - 1)     (de Boor).
+
     Raises
     ------
     InvalidInput
-        Unless q is a whole number from 1 on.
+        Unless q is a whole number from 1 to 300.
     """
 
     degree: int
 
     def __post_init__(self) -> None:
-        if isinstance(self.degree, bool) or not isinstance(self.degree, int) or self.degree < 1:
-            raise InvalidInput("degree", self.degree, "a whole number from 1 on", "1 is the tent.")
+        check_fields(self, degree=partial(whole_number, least=1, most=300))
 
     @property
     def reach(self) -> float:
@@ -130,11 +211,25 @@ class SplineKernel:
         """Return eta(z), in the shape of z."""
         q = self.degree
         # From the nearer end: fewer terms, no cancellation in the tail.
-        left = self.reach - np.abs(np.asarray(z, dtype=float))
+        left = self.reach - np.abs(real_array("z", z))
+        if q > _POWERS:
+            flat = left.ravel()
+            blocks = [_spline(q, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
+            return 24.0 / (q + 1) * np.concatenate([*blocks, []]).reshape(left.shape)
         total = np.zeros_like(left)
         for k in range(q + 1):
             total += (-1) ** k * comb(q + 1, k) * np.maximum(left - k, 0.0) ** q
         return 24.0 / (q + 1) / factorial(q) * total
+
+
+def _spline(degree: int, u: FloatArray) -> FloatArray:
+    """B_q at u = z + (q+1)/2, from the values of B_0 at u, u - 1, ..., u - q."""
+    u = u - np.arange(degree + 1.0)[:, None]
+    b = np.where((u >= 0.0) & (u < 1.0), 1.0, 0.0)
+    u[~np.isfinite(u)] = 0.0  # B_0 is 0 there, and stays so
+    for q in range(1, degree + 1):
+        b = (u[: len(b) - 1] * b[:-1] + (q + 1.0 - u[: len(b) - 1]) * b[1:]) / q
+    return b[0]
 
 
 @dataclass(frozen=True)
@@ -144,14 +239,28 @@ class Stencil:
     Attributes
     ----------
     values : tuple of Fraction
-        eta(-n), ..., eta(n); eta(0) is free, since f(x_p) - f(x_i) is nil there, and set to 0.
+        eta(-n), ..., eta(n); eta(0) is free, since f(x_p) - f(x_i) is zero there, and set to 0.
     condition : float
         Condition number of the moment conditions that gave the values.
+
+    Raises
+    ------
+    InvalidInput
+        If there is an even number of values, or they are not finite.
     """
 
     values: tuple[Fraction, ...]
     condition: float = 1.0
-    breaks: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_fields(self, values=_coefficients, condition=finite_real)
+        if len(self.values) % 2 == 0:
+            raise InvalidInput("values", self.values, "an odd number of them", "Give eta(0) too.")
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None: there is nothing between the points."""
+        return ()
 
     @property
     def reach(self) -> float:
@@ -159,11 +268,25 @@ class Stencil:
         return 0.5 * (len(self.values) - 1)
 
     def __call__(self, z: ArrayLike) -> FloatArray:
-        """Return eta at the lattice point next to z, in the shape of z."""
-        i = np.rint(np.asarray(z, dtype=float)).astype(int)
+        """Return eta at the lattice points z, in the shape of z.
+
+        Raises
+        ------
+        InvalidInput
+            If a z within the reach is no lattice point, to a millionth.
+        """
         n = len(self.values) // 2
+        z = np.clip(real_array("z", z), -n - 1.0, n + 1.0)
+        i = np.rint(z)
+        if (np.abs(z - i) > 1e-6).any():
+            raise InvalidInput(
+                "z",
+                float(np.extract(np.abs(z - i) > 1e-6, z)[0]),
+                "only points of the lattice, with eps = h: a stencil has no values between them",
+                "Take a kernel that has, from `construct`.",
+            )
         table = np.array([0.0, *map(float, self.values), 0.0])
-        return table[np.clip(i, -n - 1, n + 1) + n + 1]
+        return table[i.astype(int) + n + 1]
 
 
 GAUSSIAN_20 = GaussianKernel((Fraction(4),))  # 4 / sqrt(pi) exp(-z^2)  (20)

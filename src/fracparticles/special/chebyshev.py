@@ -8,10 +8,11 @@ at least like 8^-k; powers of t are then as accurate as Chebyshev polynomials, a
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
+
+from fracparticles._compiled import njit
 
 __all__ = ["DEGREE", "evaluate", "fit", "horner", "sample_points"]
 
@@ -36,7 +37,7 @@ def fit(samples: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray((samples @ _TO_CHEBYSHEV.T) @ _TO_POWERS.T)
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@njit(inline="always")
 def horner(pieces_x: float, coefficients: NDArray[np.float64]) -> float:
     """Evaluate at pieces_x = x / width, which must lie below the number of pieces."""
     piece = int(pieces_x)
@@ -47,7 +48,7 @@ def horner(pieces_x: float, coefficients: NDArray[np.float64]) -> float:
     return value
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def evaluate(
     pieces_x: NDArray[np.float64], coefficients: NDArray[np.float64]
 ) -> NDArray[np.float64]:

@@ -37,9 +37,10 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from fracparticles._compiled import njit
 
 __all__ = ["density_and_tail"]
 
@@ -69,7 +70,7 @@ _UNIT_NODES, _UNIT_WEIGHTS = _finite_rule(0.07, 3.2)
 _HALF_NODES, _HALF_WEIGHTS = _infinite_rule(0.08, -3.6, 3.8)
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@njit(inline="always")
 def _polynomials(z, n):  # real on piece 1, complex on piece 2
     """p_n(z), q_n(z)."""
     if n == 1:
@@ -79,7 +80,7 @@ def _polynomials(z, n):  # real on piece 1, complex on piece 2
     return z * (1.0 + z), 1.0 + z * (1.0 + z / 3.0)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _integrate(
     x: FloatArray,
     alpha: float,

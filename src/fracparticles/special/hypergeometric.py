@@ -17,11 +17,11 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gamma, poch, rgamma
 
+from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
 from fracparticles.special.arguments import elementwise, real_array
@@ -44,7 +44,7 @@ class _Table(NamedTuple):
     far_order_four: NDArray[np.float64]
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _series(c: float, b: float, z: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     """exp(-z) sum_k (c)_k / (b)_k z^k / k!."""
     for i in range(z.size):
@@ -59,7 +59,7 @@ def _series(c: float, b: float, z: NDArray[np.float64], out: NDArray[np.float64]
         out[i] = np.exp(-z[i]) * total
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@njit(inline="always")
 def _far(z: float, table: _Table, series: NDArray[np.float64]) -> float:
     power = 1.0
     total = series[0]
@@ -72,20 +72,20 @@ def _far(z: float, table: _Table, series: NDArray[np.float64]) -> float:
     return table.prefactor * z**-table.a * total
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@njit(inline="always")
 def _value(z: float, table: _Table) -> float:
     if z < _FAR:
         return chebyshev.horner(z / _WIDTH, table.near)
     return _far(z, table, table.far)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _evaluate(z: NDArray[np.float64], table: _Table, out: NDArray[np.float64]) -> None:
     for i in range(z.size):
         out[i] = _value(z[i], table)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _evaluate_order_four(z: NDArray[np.float64], table: _Table, out: NDArray[np.float64]) -> None:
     weight = 2.0**-table.a
     for i in range(z.size):

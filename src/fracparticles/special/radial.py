@@ -22,11 +22,11 @@ import math
 from functools import lru_cache
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gamma
 
+from fracparticles._compiled import njit
 from fracparticles.special import chebyshev
 from fracparticles.special.contour import density_and_tail
 
@@ -127,7 +127,7 @@ def _pieces_before_far(alpha: float, n: int, first: float, bound: FloatArray) ->
 # --- evaluation -----------------------------------------------------------------------------------
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@njit(inline="always")
 def _far_sum(power: float, coefficients: FloatArray, bound: FloatArray) -> float:
     """sum_m coefficients[m] power^m, power = r^-alpha, until the terms no longer count."""
     total = coefficients[0]
@@ -140,7 +140,7 @@ def _far_sum(power: float, coefficients: FloatArray, bound: FloatArray) -> float
     return power * total
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def density(x: FloatArray, table: RadialTable, out: FloatArray) -> None:
     """Phi_n(|x|), for one-dimensional arrays."""
     pieces = table.density.shape[0]
@@ -155,7 +155,7 @@ def density(x: FloatArray, table: RadialTable, out: FloatArray) -> None:
             out[i] = value
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def mass(r: FloatArray, table: RadialTable, inside: bool, out: FloatArray) -> None:
     """Mass inside or outside the ball of radius r >= 0, for one-dimensional arrays."""
     pieces = table.mass.shape[0]
@@ -176,7 +176,7 @@ def mass(r: FloatArray, table: RadialTable, inside: bool, out: FloatArray) -> No
 # --- tables ---------------------------------------------------------------------------------------
 
 
-@numba.njit(cache=True, nogil=True)
+@njit()
 def _integrate_over_the_axis(
     r: FloatArray, above: RadialTable, densities: FloatArray, tails: FloatArray
 ) -> None:

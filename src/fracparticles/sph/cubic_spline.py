@@ -16,10 +16,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numba as nb
 import numpy as np
 
-from fracparticles.special.arguments import elementwise, positive_real, real_array
+from fracparticles._compiled import njit
+from fracparticles.special.arguments import elementwise, real_array, scale
 
 __all__ = ["SUPPORT", "spline", "spline_gradient", "spline_integral"]
 
@@ -32,7 +32,7 @@ def spline(x: Any, h: float) -> np.ndarray | float:
     Raises
     ------
     InvalidInput
-        If `x` is not real or `h` not positive. So do the other two.
+        If `x` is not real or `h` not from 1e-100 to 1e100. So do the other two.
     """
     return _evaluate(_w_all, x, h)
 
@@ -47,7 +47,7 @@ def spline_integral(x: Any, h: float) -> np.ndarray | float:
     return _evaluate(_iw_all, x, h)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def w(q):
     """h W at x = h q."""
     z = abs(q)
@@ -58,7 +58,7 @@ def w(q):
     return 0.0
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def dw(q):
     """h^2 dW/dx at x = h q."""
     z = abs(q)
@@ -71,7 +71,7 @@ def dw(q):
     return slope if q >= 0.0 else -slope
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def iw(q):
     """W~ at x = h q."""
     z = abs(q)
@@ -85,22 +85,22 @@ def iw(q):
 
 
 def _evaluate(function: Callable[..., None], x: Any, h: float) -> np.ndarray | float:
-    return elementwise(function, real_array("x", x), positive_real("h", h))
+    return elementwise(function, real_array("x", x), scale("h", h))
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _w_all(x, h, out):
     for i in range(x.size):
         out[i] = w(x[i] / h) / h
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _dw_all(x, h, out):
     for i in range(x.size):
         out[i] = dw(x[i] / h) / (h * h)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _iw_all(x, h, out):
     for i in range(x.size):
         out[i] = iw(x[i] / h)

@@ -7,13 +7,28 @@ r"""SPH derivatives: sums over the particles within 2 h.
 V_j = m_j / rho_j. Equation (19) prints L_i^{-1} for what is L_i: the gradient of f(x) = x is then 1 and not L_i^2.
 Equation (37), Brookshaw's, has eta = 0.0001 (1/h)^2 in print, far larger than a distance and of another dimension;
 the paper's digits come with eta = 0.0001 h^2.
+
+A point within 2 h of the last particle lacks a part of its sums: see the virtual particles of `particles`.
 """
 
 from __future__ import annotations
 
-import numba as nb
+from typing import Any
+
 import numpy as np
 
+from fracparticles._compiled import njit
+from fracparticles.errors import InvalidInput
+from fracparticles.special.arguments import (
+    finite_array,
+    finite_result,
+    flag,
+    positions,
+    real_between,
+    scale,
+    vector,
+    within,
+)
 from fracparticles.sph.cubic_spline import SUPPORT, dw
 
 __all__ = ["BROOKSHAW_ETA", "correction", "gradient", "second_derivative"]
@@ -21,29 +36,29 @@ __all__ = ["BROOKSHAW_ETA", "correction", "gradient", "second_derivative"]
 BROOKSHAW_ETA = 1.0e-4  # eta / h^2
 
 
-def correction(z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float) -> np.ndarray:
-    """L_i of (19) at the points z, shape (M,), from the particles x, shape (N,). One dimension: a number each."""
-    out = np.empty(z.size)
-    _correction(z, x, volumes, h, *_neighbours(z, x, h), out)
-    return out
+def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
+    """L_i of (19) at the points z, shape (M,), from the particles x, shape (N,). One dimension: a number each.
+
+    Raises
+    ------
+    InvalidInput
+        As `gradient`.
+    """
+    z, x, volumes, h = _particles(z, x, volumes, h)
+    return finite_result("volumes", _correction_at(z, x, volumes, h))
 
 
-def gradient(
-    z: np.ndarray,
-    x: np.ndarray,
-    volumes: np.ndarray,
-    f: np.ndarray,
-    h: float,
-    corrected: bool = True,
-) -> np.ndarray:
+def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = True) -> np.ndarray:
     """<grad f> (16) at the points z, with the kernel gradient of (18) or, uncorrected, that of (22).
 
     Parameters
     ----------
-    z : ndarray, shape (M,)
-        Where.
-    x, volumes, f : ndarray, shape (N,)
-        Positions in rising order, volumes and values of the particles; f real or complex.
+    z : array_like, shape (M,)
+        Where; may be empty.
+    x, f : array_like, shape (N,)
+        Positions in rising order and values of the particles; f real or complex.
+    volumes : array_like, shape (N,) or ()
+        V_j, positive.
     h : float
         Smoothing length.
     corrected : bool
@@ -51,31 +66,80 @@ def gradient(
 
     Returns
     -------
-    ndarray, shape (M,), of the type of f
+    ndarray, shape (M,), complex if f is, else real
+
+    Raises
+    ------
+    InvalidInput
+        If the arrays do not fit together or are not finite, the particles are not in rising order, a volume or h is
+        not positive, or, corrected, no particle lies within 2 h of a point.
     """
+    z, x, volumes, h = _particles(z, x, volumes, h)
+    f = vector("f", f, x.size, complex_too=True)
     out = np.empty(z.size, dtype=f.dtype)
-    _gradient(z, x, volumes * f, h, *_neighbours(z, x, h), out)
-    return out / correction(z, x, volumes, h) if corrected else out
+    with np.errstate(all="ignore"):
+        _gradient(z, x, volumes * f, h, *_neighbours(z, x, h), out)
+    return _divided(out, z, x, volumes, h, corrected)
 
 
 def second_derivative(
-    z: np.ndarray,
-    f_z: np.ndarray,
-    x: np.ndarray,
-    volumes: np.ndarray,
-    f: np.ndarray,
+    z: Any,
+    f_z: Any,
+    x: Any,
+    volumes: Any,
+    f: Any,
     h: float,
     eta: float | None = None,
     corrected: bool = True,
 ) -> np.ndarray:
     """<grad^2 f> (37) at the points z, where f has the values f_z. Other parameters as in `gradient`.
 
-    `eta` is that of the formula, by default 0.0001 h^2.
+    `eta` is that of the formula, zero or more, by default 0.0001 h^2.
+
+    Raises
+    ------
+    InvalidInput
+        As `gradient`.
     """
+    z, x, volumes, h = _particles(z, x, volumes, h)
+    f = vector("f", f, x.size, complex_too=True)
+    f_z = vector("f_z", f_z, z.size, least=0, complex_too=True)
+    f, f_z = (a.astype(np.result_type(f, f_z), copy=False) for a in (f, f_z))
+    eta = BROOKSHAW_ETA * h * h if eta is None else real_between("eta", eta, 0.0)
     out = np.empty(z.size, dtype=f.dtype)
-    eta = BROOKSHAW_ETA * h * h if eta is None else eta
     _brookshaw(z, f_z, x, volumes, f, h, eta, *_neighbours(z, x, h), out)
-    return out / correction(z, x, volumes, h) if corrected else out
+    return _divided(out, z, x, volumes, h, corrected)
+
+
+def _particles(
+    z: Any, x: Any, volumes: Any, h: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    z, x = positions("z", z, least=0), positions("x", x, rising=True, equal=True)
+    volumes = within("volumes", finite_array("volumes", volumes, x.shape), 0.0, inside=True)
+    return z, x, np.ascontiguousarray(volumes), scale("h", h)
+
+
+def _divided(
+    sums: np.ndarray, z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float, corrected: bool
+) -> np.ndarray:
+    if flag("corrected", corrected):
+        factor = _correction_at(z, x, volumes, h)
+        if not (factor > 0.0).all():
+            raise InvalidInput(
+                "z",
+                float(z[~(factor > 0.0)][0]),
+                "only points with a particle nearer than 2 h, besides one that they coincide with",
+                "Take a larger h, or leave the point out.",
+            )
+        with np.errstate(all="ignore"):
+            sums = sums / factor
+    return finite_result("f", sums)
+
+
+def _correction_at(z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float) -> np.ndarray:
+    out = np.empty(z.size)
+    _correction(z, x, volumes, h, *_neighbours(z, x, h), out)
+    return out
 
 
 def _neighbours(z: np.ndarray, x: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
@@ -83,7 +147,7 @@ def _neighbours(z: np.ndarray, x: np.ndarray, h: float) -> tuple[np.ndarray, np.
     return np.searchsorted(x, z - SUPPORT * h), np.searchsorted(x, z + SUPPORT * h)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _correction(z, x, volumes, h, first, end, out):
     for i in range(z.size):
         total = 0.0
@@ -93,7 +157,7 @@ def _correction(z, x, volumes, h, first, end, out):
         out[i] = total / (h * h)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _gradient(z, x, strengths, h, first, end, out):
     for i in range(z.size):
         total = 0.0 * strengths[0]
@@ -102,12 +166,12 @@ def _gradient(z, x, strengths, h, first, end, out):
         out[i] = total / (h * h)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _brookshaw(z, f_z, x, volumes, f, h, eta, first, end, out):
     for i in range(z.size):
         total = 0.0 * f[0]
         for j in range(first[i], end[i]):
             d = z[i] - x[j]
-            if d != 0.0:  # the particle itself has no share
+            if d * d > 0.0:  # the particle itself has no share
                 total -= 2.0 * volumes[j] * (f[j] - f_z[i]) * d * dw(d / h) / (d * d + eta * eta)
         out[i] = total / (h * h)

@@ -15,26 +15,40 @@ size, which the paper's norms count.
 Three ways to place the volumes, `METHODS`: `standard` is (17) with the whole volume s of each particle, `halved`
 our repair of it, s/2 for the two particles at the ends, of whose volume only a half lies in the domain; `modified`
 is (20).
+
+All three take the integrand to be zero beyond b. J^p f then has a kink at b, and what differentiates it, as (35) does,
+is wrong there by something like (h/(b-a))^p, which hardly falls with h for a small p. A fourth way, `completed`, has
+s/2 at a and goes on beyond b, with f continued by the straight line through its last two values.
 """
 
 from __future__ import annotations
 
 from math import cos, pi, sin
+from typing import Any
 
-import numba as nb
 import numpy as np
 
-from fracparticles.errors import InvalidInput
+from fracparticles._compiled import njit
+from fracparticles.special.arguments import (
+    choice,
+    finite_array,
+    finite_result,
+    instance,
+    positions,
+    scale,
+    vector,
+)
 from fracparticles.sph.cubic_spline import iw
 from fracparticles.sph.particles import ParticleLine
 
-__all__ = ["METHODS", "power_integral", "power_sum"]
+__all__ = ["COMPLETED", "METHODS", "power_integral", "power_sum"]
 
 METHODS = ("standard", "halved", "modified")
+COMPLETED = "completed"
 
 
 def power_integral(
-    line: ParticleLine, f: np.ndarray, z: np.ndarray, power: np.ndarray, method: str = "standard"
+    line: ParticleLine, f: Any, z: Any, power: Any, method: str = "standard"
 ) -> np.ndarray:
     """J^p f at the points z, shape (M,), complex.
 
@@ -42,39 +56,59 @@ def power_integral(
     ----------
     line : ParticleLine
         The particles.
-    f : ndarray, shape (N,)
+    f : array_like, shape (N,)
         The integrand on the real particles, real or complex.
-    z, power : ndarray, shape (M,)
-        Where, and p there. A particle at z itself has no share where p < 0: its term is infinite.
-    method : {"standard", "halved", "modified"}
+    z : array_like, shape (M,)
+        Where; for `completed` no farther beyond b than the virtual particles.
+    power : array_like, shape (M,) or ()
+        p there. A particle at z itself has no share where p < 0: its term is infinite.
+    method : {"standard", "halved", "modified", "completed"}
         How the volumes are placed.
 
     Raises
     ------
     InvalidInput
-        If there is no such method.
+        If there is no such method, or the arrays do not fit together or are not finite.
     """
-    if method not in METHODS:
-        raise InvalidInput("method", method, f"one of {', '.join(METHODS)}", "Choose one.")
+    line = instance("line", line, ParticleLine)
+    f = vector("f", f, line.count, complex_too=True)
+    choice("method", method, (*METHODS, COMPLETED))
+    x = line.x
     if method == "modified":
-        strengths = line.spacing * 0.5 * (f[:-1] + f[1:])
-        return power_sum(z, line.midpoints, strengths, power, line.smoothing)
-    strengths = line.spacing * f
-    if method == "halved":
-        strengths[[0, -1]] *= 0.5
-    return power_sum(z, line.x, strengths, power, line.smoothing)
+        x, strengths = line.midpoints, line.spacing * 0.5 * (f[:-1] + f[1:])
+    elif method == COMPLETED:
+        # Twice the margin: a virtual particle sees as far beyond itself as a real one. Positions are rounded like
+        # those of `line.x_all`, lest a particle lie a little before itself.
+        x = line.a + line.spacing * np.arange(line.count + 2 * line.margin)
+        beyond = np.arange(1, 2 * line.margin + 1)
+        strengths = line.spacing * np.append(f, f[-1] + (f[-1] - f[-2]) * beyond)
+        strengths[0] *= 0.5
+    else:
+        strengths = line.spacing * f
+        if method == "halved":
+            strengths[[0, -1]] *= 0.5
+    return power_sum(z, x, strengths, power, line.smoothing)
 
 
-def power_sum(
-    z: np.ndarray, x: np.ndarray, strengths: np.ndarray, power: np.ndarray, h: float
-) -> np.ndarray:
-    """sum_j q_j (z_i - x_j)^{p_i} W~(z_i - x_j), complex, for any particles x and strengths q, shape (N,)."""
+def power_sum(z: Any, x: Any, strengths: Any, power: Any, h: float) -> np.ndarray:
+    """sum_j q_j (z_i - x_j)^{p_i} W~(z_i - x_j), complex, for any particles x and strengths q, shape (N,).
+
+    The points z have the shape (M,), the powers (M,) or ().
+
+    Raises
+    ------
+    InvalidInput
+        If the arrays do not fit together or are not finite, or the powers overflow.
+    """
+    z, x, h = positions("z", z, least=0), positions("x", x), scale("h", h)
+    strengths = vector("strengths", strengths, x.size, complex_too=True)
+    power = np.ascontiguousarray(finite_array("power", power, z.shape))
     out = np.empty(z.size, dtype=complex)
-    _power_sum(z, x, strengths, np.broadcast_to(power, z.shape).astype(float), h, out)
-    return out
+    _power_sum(z, x, strengths, power, h, out)
+    return finite_result("power", out)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _power_sum(z, x, strengths, power, h, out):
     for i in range(z.size):
         p = power[i]

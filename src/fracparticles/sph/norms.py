@@ -9,16 +9,41 @@ digits have the absolute ones.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+
+from fracparticles.errors import InvalidInput
+from fracparticles.special.arguments import vector
 
 __all__ = ["r2_score", "relative_l2"]
 
 
-def relative_l2(exact: np.ndarray, ours: np.ndarray) -> float:
-    """(39)."""
-    return float(np.linalg.norm(exact - ours) / np.linalg.norm(exact))
+def relative_l2(exact: Any, ours: Any) -> float:
+    """(39), for two arrays of shape (N,), real or complex.
+
+    Raises
+    ------
+    InvalidInput
+        If they are not finite or do not fit together, or the exact values have no size to compare with.
+    """
+    exact, ours = _values(exact, ours)
+    return float(np.linalg.norm(exact - ours) / _size(exact, np.linalg.norm(exact)))
 
 
-def r2_score(exact: np.ndarray, ours: np.ndarray) -> float:
-    """(40)."""
-    return float(1.0 - np.sum(np.abs(exact - ours) ** 2) / np.sum((exact - exact.mean()) ** 2))
+def r2_score(exact: Any, ours: Any) -> float:
+    """(40), as `relative_l2`; the exact values must not be all the same."""
+    exact, ours = _values(exact, ours)
+    spread = np.sum((exact - exact.mean()) ** 2)
+    return float(1.0 - np.sum(np.abs(exact - ours) ** 2) / _size(exact, spread))
+
+
+def _values(exact: Any, ours: Any) -> tuple[np.ndarray, np.ndarray]:
+    exact = vector("exact", exact)
+    return exact, vector("ours", ours, exact.size, complex_too=True)
+
+
+def _size(exact: np.ndarray, size: Any) -> Any:
+    if not 0.0 < size < np.inf:
+        raise InvalidInput("exact", exact, "values with a size to compare with", "Change them.")
+    return size

@@ -14,8 +14,13 @@ converges at z = iy like exp(-sqrt(8 k y)) after k terms.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.special import gamma
+
+from fracparticles.errors import InvalidInput
+from fracparticles.special.arguments import finite_array, within
 
 __all__ = ["one_f_two"]
 
@@ -24,12 +29,24 @@ _SERIES = 26  # 4^(2k) / (2k)! is below 1e-36 at k = 26
 _FRACTION = 60  # exp(-sqrt(8 * 60 * 4)) = 1e-19
 
 
-def one_f_two(b: float | np.ndarray, y: float | np.ndarray) -> np.ndarray:
-    """1F2[1; b/2, (b+1)/2; -y^2/4] for b > 0 and y >= 0, of the broadcast shape.
+def one_f_two(b: Any, y: Any) -> np.ndarray:
+    """1F2[1; b/2, (b+1)/2; -y^2/4] for 0 < b <= 3 and 0 <= y <= 1e100, of the broadcast shape.
 
     The error is about 1e-14 of 1 or, if larger, of the amplitude Gamma(b) y^(1-b) of the oscillation.
+
+    Raises
+    ------
+    InvalidInput
+        If b or y is outside its range, or their shapes do not fit together.
     """
-    b, y = np.broadcast_arrays(np.asarray(b, dtype=float), np.asarray(y, dtype=float))
+    b = within("b", within("b", finite_array("b", b), 0.0, inside=True), 0.0, 3.0)
+    y = within("y", finite_array("y", y), 0.0, 1e100)
+    try:
+        b, y = np.broadcast_arrays(b, y)
+    except ValueError as error:
+        raise InvalidInput(
+            "y", f"array of shape {y.shape}", f"a shape that fits {b.shape}", "Mend the shapes."
+        ) from error
     near = y <= _NEAR
     out = np.empty(b.shape)
     out[near] = _series(b[near], y[near])

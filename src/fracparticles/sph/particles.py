@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil
+from typing import Any
 
 import numpy as np
 
 from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import positive_real
+from fracparticles.special.arguments import (
+    MOST,
+    SIZES,
+    check_fields,
+    finite_array,
+    real_between,
+    whole_number,
+)
 from fracparticles.sph.cubic_spline import SUPPORT
 
 __all__ = ["ParticleLine"]
+
+_FINEST = 1e-8  # of the farthest position: the spacing is then the same everywhere to eight digits
+_WIDEST = 1000.0
 
 
 @dataclass(frozen=True)
@@ -26,7 +37,7 @@ class ParticleLine:
     count : int
         N, at least 3.
     smoothing_ratio : float
-        h / s; the paper has 1.1. Above 1/2, or a particle would see no other.
+        h / s; the paper has 1.1. Above 1/2, or a particle would see no other; at most 1000.
 
     Raises
     ------
@@ -40,14 +51,22 @@ class ParticleLine:
     smoothing_ratio: float = 1.1
 
     def __post_init__(self) -> None:
-        if not (np.isfinite([self.a, self.b]).all() and self.a < self.b):
+        place = partial(real_between, low=-SIZES[1], high=SIZES[1])
+        check_fields(self, a=place, b=place, count=partial(whole_number, least=3, most=MOST))
+        if not self.a < self.b:
             raise InvalidInput("b", self.b, "a finite number above a", "Give a < b.")
-        if not (isinstance(self.count, int | np.integer) and self.count >= 3):
-            raise InvalidInput("count", self.count, "a whole number from 3 on", "Give more.")
-        if positive_real("smoothing_ratio", self.smoothing_ratio) <= 1.0 / SUPPORT:
+        # Positions are rounded to the last digit of the farthest.
+        if not self.spacing >= max(_FINEST * max(abs(self.a), abs(self.b)), SIZES[0]):
             raise InvalidInput(
-                "smoothing_ratio", self.smoothing_ratio, "a number above 1/2", "The paper has 1.1."
+                "count",
+                self.count,
+                f"particles that are more than {_FINEST:g} of their distance from zero apart",
+                "Take fewer, or move the origin.",
             )
+        ratio = real_between("smoothing_ratio", self.smoothing_ratio, 0.0, _WIDEST)
+        if ratio <= 1.0 / SUPPORT:
+            raise InvalidInput("smoothing_ratio", ratio, "a number above 1/2", "The paper has 1.1.")
+        object.__setattr__(self, "smoothing_ratio", ratio)
 
     @property
     def spacing(self) -> float:
@@ -84,19 +103,19 @@ class ParticleLine:
         """Positions of the auxiliary particles (20), (x_j + x_{j+1}) / 2, shape (N - 1,)."""
         return 0.5 * (self.x[:-1] + self.x[1:])
 
-    def field(self, name: str, values: object) -> np.ndarray:
+    def field(self, name: str, values: Any) -> np.ndarray:
         """Return a field on all particles, virtual ones included, as a float array.
 
         Raises
         ------
         InvalidInput
-            If it has another shape, or is not finite.
+            If it has another shape, or is not real and finite.
         """
-        array = np.asarray(values, dtype=float)
-        if array.shape != self.x_all.shape or not np.isfinite(array).all():
+        array = finite_array(name, values)
+        if array.shape != self.x_all.shape:
             raise InvalidInput(
                 name,
-                values,
+                f"array of shape {array.shape}",
                 f"finite numbers on all {self.x_all.size} particles, the virtual ones included",
                 "Evaluate the function at ParticleLine.x_all.",
             )

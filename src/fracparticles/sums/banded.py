@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import numba as nb
 import numpy as np
 
+from fracparticles._compiled import njit
 from fracparticles.kernels import family_of
 
 __all__ = ["BandedConvolution"]
@@ -26,7 +26,7 @@ class BandedConvolution:
     Parameters
     ----------
     weights : array, shape (M + 1,)
-        w_m for m = 0 .. M; those at the end that are nil against the largest are left out.
+        w_m for m = 0 .. M; those at the end that vanish against the largest are left out.
     parity : {1, -1}
         Whether w is even or odd.
     """
@@ -34,14 +34,14 @@ class BandedConvolution:
     def __init__(self, weights: np.ndarray, parity: int) -> None:
         significant = np.flatnonzero(np.abs(weights) > _NIL * np.abs(weights).max())
         half_band = int(significant[-1]) if significant.size else 0
-        # One nil weight more if M is odd: the sum takes two at a time.
+        # One zero weight more if M is odd: the sum takes two at a time.
         self._weights = np.zeros(half_band + half_band % 2 + 1)
         self._weights[: half_band + 1] = weights[: half_band + 1]
         self._parity = float(parity)
 
     @staticmethod
     def reach(overlap: float, order: int, family: str | None = None) -> int:
-        """Return the half band M beyond which a Gaussian kernel of this order and overlap is nil."""
+        """Return the half band M beyond which a Gaussian kernel of this order and overlap is zero."""
         return int(np.ceil(_REACH[family_of(order, family)][order] * overlap))
 
     def __call__(self, v: np.ndarray, out: np.ndarray) -> np.ndarray:
@@ -71,7 +71,7 @@ class BandedConvolution:
         _update(q, self._weights, self._parity, diagonal, u, a, b, c, v)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _sums(v, weights, parity, out):
     skip = (v.size - out.size) // 2
     window = np.empty(_BLOCK + 2 * (weights.size - 1))
@@ -80,7 +80,7 @@ def _sums(v, weights, parity, out):
         _sum_block(v, weights, parity, start + skip, window, total)
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _sums_along(v, weights, parity, out):
     if v.shape[2] == 1:
         for line in range(v.shape[0]):
@@ -105,7 +105,7 @@ def _sums_along(v, weights, parity, out):
                         row += weights[m] * parity * lines[right]
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _update(q, weights, parity, diagonal, u, a, b, c, v):
     skip = (q.size - v.size) // 2
     window = np.empty(_BLOCK + 2 * (weights.size - 1))
@@ -124,13 +124,13 @@ def _update(q, weights, parity, diagonal, u, a, b, c, v):
             new[i] = a * (y[i] + d[i] * middle[i]) + b * given[i] + c * new[i]
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _sum_block(v, weights, parity, start, window, out):
     """out_i = w_0 v_j + sum_m w_m (v_{j-m} + parity v_{j+m}), j = start + i."""
     rows, half = out.size, weights.size - 1
     first = start - half
     low, high = max(first, 0), min(start + rows + half, v.size)
-    # v around the block, nil where there is no v.
+    # v around the block, zero where there is no v.
     window[: low - first] = 0.0
     window[low - first : high - first] = v[low:high]
     window[high - first :] = 0.0

@@ -17,6 +17,7 @@ import numpy as np
 import pyfftw
 from scipy.fft import dct, dst
 
+from fracparticles._compiled import njit
 from fracparticles.sums.fourier import transform_length
 
 __all__ = ["BOX_SUMMATIONS", "BoxConvolution", "NaiveBoxConvolution"]
@@ -150,7 +151,7 @@ def _symbol(weights: np.ndarray, odd: int | None, length: int) -> np.ndarray:
     """Return the transform of w over L^n for wave numbers 0 .. L/2, by cosine and sine transforms.
 
     Real for an even w; for an odd one i times it is the transform. The weights of the offsets that the transform
-    has and the sums do not need are nil.
+    has and the sums do not need are zero.
     """
     half = length // 2 + 1
     w = np.zeros((half,) * weights.ndim)
@@ -184,7 +185,7 @@ def _axis_of_three(odd: int | None, dim: int) -> int:
     return -1 if odd is None else odd + 3 - dim
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _multiply(block, symbol, odd, out):
     """out = block times the symbol at the wave number folded into 0 .. L/2; `odd` is an axis, or outside 0 .. 2."""
     planes, rows, columns = block.shape
@@ -227,7 +228,7 @@ class NaiveBoxConvolution:
         return self._out
 
 
-@nb.njit(cache=True, nogil=True, parallel=True)
+@njit(parallel=True)
 def _sum_over_pairs(u, weights, odd, flat, shift, out):
     planes, rows, columns = out.shape
     for line in nb.prange(planes * rows):

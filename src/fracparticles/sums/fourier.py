@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import numba as nb
 import numpy as np
 import pyfftw
 from scipy.fft import irfft, next_fast_len, rfft
+
+from fracparticles._compiled import njit
 
 __all__ = ["FourierConvolution", "shares_memory", "transform_length"]
 
@@ -120,13 +121,13 @@ def valid_convolution(u: np.ndarray, w: np.ndarray) -> np.ndarray:
     return irfft(rfft(u, length) * rfft(w, length), length)[..., u.shape[-1] - 1 : w.size]
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _multiply_real(spectrum, symbol):
     for k in range(spectrum.size):
         spectrum[k] = complex(spectrum[k].real * symbol[k], spectrum[k].imag * symbol[k])
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _multiply_imaginary(spectrum, symbol):
     for k in range(spectrum.size):
         spectrum[k] = complex(-spectrum[k].imag * symbol[k], spectrum[k].real * symbol[k])

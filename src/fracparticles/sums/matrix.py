@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import numba as nb
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+
+from fracparticles._compiled import njit
 
 __all__ = ["MatrixConvolution"]
 
@@ -26,6 +27,6 @@ class MatrixConvolution:
 
 
 # Compiled, since numpy's own call would warn of overflows, which the solver reports itself.
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _product(matrix, u, y):
     np.dot(matrix, u, y)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numba as nb
 import numpy as np
 
+from fracparticles._compiled import njit
+
 __all__ = ["NaiveConvolution"]
 
 
@@ -23,7 +25,7 @@ class NaiveConvolution:
         return self._out
 
 
-@nb.njit(cache=True, nogil=True, parallel=True)
+@njit(parallel=True)
 def _sum_over_pairs(u, weights, parity, pad, out):
     for row in nb.prange(out.size):
         i = row - pad

@@ -4,7 +4,7 @@ r"""Sums over particles that lie anywhere on the line, not on a lattice:
 
 for one or several kernels K with the same sources x_j, strengths q_j and points z_i. There are three ways:
 
-- `NonuniformFourierSum`, O(N log N), for kernels whose Fourier transform is nil beyond a few / eps, as it is for
+- `NonuniformFourierSum`, O(N log N), for kernels whose Fourier transform is zero beyond a few / eps, as it is for
   every kernel that is a convolution with a Gaussian. The kernel is cut off smoothly beyond the largest distance
   within the set and continued periodically; then
 
@@ -13,28 +13,39 @@ for one or several kernels K with the same sources x_j, strengths q_j and points
   with the Fourier coefficients c_k of the kernel is the free-space sum, to round-off. Both sums are non-uniform
   fast Fourier transforms (Barnett, Magland & af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479). Two real
   kernels take one complex transform, as K_1 + i K_2.
-- `NeighbourSum`, O(N times neighbours), for kernels that are nil, to round-off, beyond a distance. Where the sum
+- `NeighbourSum`, O(N times neighbours), for kernels that are zero, to round-off, beyond a distance. Where the sum
   is small it stays accurate relative to its own terms, not only to the maximum.
 - `NaiveScatteredSum`: the papers' own double loop over all pairs, the oracle of the other two.
 
-The same sequence of calls gives the same bytes.
+The same sequence of calls gives the same bytes. Threads may share a sum; one of transforms lets them in one by one.
 """
 
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
-import numba as nb
 import numpy as np
 from scipy.fft import next_fast_len
 from scipy.special import erfc
 
+from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels import KERNELS, kernel
-from fracparticles.special.arguments import positive_real
+from fracparticles.special.arguments import (
+    SIZES,
+    choice,
+    function,
+    instance,
+    positions,
+    real_between,
+    scale,
+    vector,
+    whole_number,
+)
 
 __all__ = [
     "NaiveScatteredSum",
@@ -57,6 +68,7 @@ _MARGIN = (
     1.125  # how much wider than the set the box is made, so that it is not made anew at every step
 )
 _MOST_MODES = 2**24  # about 1 GiB of buffers
+_LARGEST = float(np.finfo(float).max)
 _PAIRS = 2**14  # pairs evaluated together: they stay in the second-level cache
 
 
@@ -69,14 +81,26 @@ class ScatteredKernel:
     profile : callable
         K(r) for an array of signed distances.
     bandwidth : float
-        Wavenumber beyond which the transform is nil, to round-off; infinite if there is none.
+        Wavenumber beyond which the transform is zero, to round-off; infinite if there is none.
     reach : float
-        Distance beyond which the kernel is nil, to round-off; infinite if there is none.
+        Distance beyond which the kernel is zero, to round-off; infinite if there is none.
+
+    Raises
+    ------
+    InvalidInput
+        If the profile is no function, or one of the others not positive.
     """
 
     profile: Callable[[np.ndarray], np.ndarray]
     bandwidth: float = math.inf
     reach: float = math.inf
+
+    def __post_init__(self) -> None:
+        function("profile", self.profile)
+        for name in ("bandwidth", "reach"):
+            value = getattr(self, name)
+            if not (isinstance(value, float) and value == math.inf):
+                object.__setattr__(self, name, real_between(name, value, 0.0, inside=True))
 
 
 def smooth_kernel(name: str, alpha: float, order: int = 2) -> ScatteredKernel:
@@ -87,6 +111,8 @@ def smooth_kernel(name: str, alpha: float, order: int = 2) -> ScatteredKernel:
     InvalidInput
         If the kernel, its order or alpha does not exist, or the kernel is E.
     """
+    choice("name", name, tuple(KERNELS))
+    order = whole_number("order", order, least=1)
 
     def profile(r: np.ndarray) -> np.ndarray:
         return np.asarray(kernel(name, r, alpha, order=order))
@@ -132,14 +158,11 @@ def scattered_sum(
         If there is no such summation, or epsilon is not a positive number, or "fft" is asked for a kernel
         that has neither a finite reach nor a finite bandwidth.
     """
-    epsilon = positive_real("epsilon", epsilon)
-    if summation == "naive":
+    if choice("summation", summation, ("fft", "naive")) == "naive":
         return NaiveScatteredSum(kernels, epsilon)
-    if summation == "fft":
-        if all(math.isfinite(k.reach) for k in kernels):
-            return NeighbourSum(kernels, epsilon)
-        return NonuniformFourierSum(kernels, epsilon)
-    raise InvalidInput("summation", summation, "one of fft, naive", "Choose one of these names.")
+    if all(math.isfinite(k.reach) for k in _kernels(kernels)):
+        return NeighbourSum(kernels, epsilon)
+    return NonuniformFourierSum(kernels, epsilon)
 
 
 class NonuniformFourierSum:
@@ -158,7 +181,8 @@ class NonuniformFourierSum:
     accuracy = 1e-11
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        for k in kernels:
+        self._kernels, self._epsilon = _kernels(kernels), scale("epsilon", epsilon)
+        for k in self._kernels:
             if not math.isfinite(k.bandwidth):
                 raise InvalidInput(
                     "bandwidth",
@@ -166,9 +190,9 @@ class NonuniformFourierSum:
                     "a finite number for a Fourier sum",
                     "Take summation='naive', or give the kernel its reach.",
                 )
-        self._kernels, self._epsilon = list(kernels), epsilon
-        self._band = max(k.bandwidth for k in kernels) / epsilon
+        self._band = max(k.bandwidth for k in self._kernels) / self._epsilon
         self._low, self._high = math.inf, -math.inf
+        self._in_use = threading.Lock()  # box and plans belong to one call at a time
 
     def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
         """Return y, shape (kernels, M), as a new array.
@@ -184,8 +208,20 @@ class NonuniformFourierSum:
         if z is not None:
             low, high = z.min(initial=low), z.max(initial=high)
         out = np.zeros((len(self._kernels), points.size))
-        if not (x.size and points.size):
-            return out
+        if x.size and points.size:
+            with self._in_use:
+                self._transform(x, q, z, low, high, out)
+        return out
+
+    def _transform(
+        self,
+        x: np.ndarray,
+        q: np.ndarray,
+        z: np.ndarray | None,
+        low: float,
+        high: float,
+        out: np.ndarray,
+    ) -> None:
         if not (self._low <= low and high <= self._high):
             self._make_box(min(low, self._low), max(high, self._high))
         angle = (x - self._centre) * self._wavenumber
@@ -197,7 +233,6 @@ class NonuniformFourierSum:
             out[row] = pair.real
             if row + 1 < len(out):
                 out[row + 1] = pair.imag
-        return out
 
     def _make_box(self, low: float, high: float) -> None:
         """Fourier coefficients of the kernels and plans for a set within [low, high], and a little more."""
@@ -239,7 +274,7 @@ class _PairSum:
     accuracy = 0.0
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        self._kernels, self._epsilon = list(kernels), epsilon
+        self._kernels, self._epsilon = _kernels(kernels), scale("epsilon", epsilon)
 
     def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
         """Return y, shape (kernels, M), as a new array.
@@ -292,7 +327,7 @@ class NeighbourSum(_PairSum):
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
         super().__init__(kernels, epsilon)
-        self._reach = max(k.reach for k in kernels) * epsilon
+        self._reach = max(k.reach for k in self._kernels) * self._epsilon
         if not math.isfinite(self._reach):
             raise InvalidInput(
                 "reach", math.inf, "a finite number for a sum over neighbours", "Take another sum."
@@ -305,30 +340,34 @@ class NeighbourSum(_PairSum):
         return x, q, first, np.searchsorted(x, z + self._reach, side="right")
 
 
-def _checked(
-    x: np.ndarray, q: np.ndarray, z: np.ndarray | None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-    x, q = np.ascontiguousarray(x, dtype=float), np.ascontiguousarray(q, dtype=float)
-    if x.ndim != 1 or q.shape != x.shape:
-        raise InvalidInput(
-            "q",
-            f"array of shape {q.shape}",
-            f"one strength for each of the positions, of shape {x.shape}",
-            "Give two arrays of one dimension and the same length.",
-        )
-    z = None if z is None else np.ascontiguousarray(z, dtype=float)
-    if z is not None and z.ndim != 1:
-        raise InvalidInput("z", f"array of shape {z.shape}", "one dimension", "Flatten the points.")
-    for name, values in (("x", x), ("q", q), ("z", z)):
-        if values is not None and not np.isfinite(values).all():
-            index = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise InvalidInput(
-                name, f"{values[index]} at index {index}", "finite numbers", "Mend the data."
-            )
-    return x, q, z
+def _kernels(kernels: Any) -> list[ScatteredKernel]:
+    listed: Any = instance("kernels", kernels, (list, tuple), "a list of kernels")
+    if not listed:
+        raise InvalidInput("kernels", kernels, "one kernel or more", "Give a list of kernels.")
+    return [instance("kernels", k, ScatteredKernel) for k in listed]
 
 
-@nb.njit(cache=True, nogil=True)
+def _checked(x: Any, q: Any, z: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    x = x if _in_range(x, SIZES[1]) else positions("x", x, least=0)
+    if not (_in_range(q, _LARGEST) and q.shape == x.shape):
+        q = vector("q", q, x.size, least=0)
+    if z is not None:
+        z = z if _in_range(z, SIZES[1]) else positions("z", z, least=0)
+        z = np.ascontiguousarray(z)
+    return np.ascontiguousarray(x), np.ascontiguousarray(q), z
+
+
+def _in_range(values: Any, largest: float) -> bool:
+    """Whether it is an array of numbers of one dimension that are no larger; a nan is not."""
+    return (
+        type(values) is np.ndarray
+        and values.dtype == np.float64
+        and values.ndim == 1
+        and (not values.size or bool(-largest <= values.min() and values.max() <= largest))
+    )
+
+
+@njit()
 def _distances(x, z, first, last, epsilon, out):
     pair = 0
     for i in range(z.size):
@@ -337,7 +376,7 @@ def _distances(x, z, first, last, epsilon, out):
             pair += 1
 
 
-@nb.njit(cache=True, nogil=True)
+@njit()
 def _add_up(values, q, first, last, out):
     pair = 0
     for i in range(out.size):
