@@ -42,8 +42,9 @@ def matrix_run(case: Case, u0: np.ndarray, time: float) -> np.ndarray:
 # --- what conserves ends at its mean, whatever the time --------------------------------------------------------------
 
 
-@pytest.mark.parametrize("time", [1e4, 3e5, 1e6, 1e8])
-@pytest.mark.parametrize("order", [2, 4, 12])
+@pytest.mark.parametrize(
+    ("order", "time"), [(2, 1e4), (2, 3e5), (2, 1e6), (2, 1e8), (4, 1e6), (12, 1e4), (12, 1e6)]
+)
 def test_a_conservative_scheme_ends_at_the_mean(order, time):
     case = stiff(scheme="KPSE", order=order, t_final=time)
     u = prepare(case).solve(bump(case.x))
@@ -264,7 +265,8 @@ def test_dd_at_a_small_overlap_says_that_a_constant_decays():
 
 
 @st.composite
-def cases(draw) -> Case:
+def cases(draw, one_sum: bool = False) -> Case:
+    """Cases that are valid; `one_sum`: or done by one lattice sum, which uses the far field once, so not in pieces."""
     scheme = draw(st.sampled_from(["DD", "FPSE", "KPSE", "GPSE", "DPSE", "FD"]))
     dim = draw(st.sampled_from([1, 1, 1, 2, 2, 3])) if len(SCHEMES[scheme].DIMS) > 1 else 1
     orders = SCHEMES[scheme].ORDERS if dim == 1 else SCHEMES[scheme].BOX_ORDERS
@@ -289,7 +291,9 @@ def cases(draw) -> Case:
     if scheme != "FD":
         fields["overlap"] = overlap
     if draw(st.booleans()):
-        return Case(**fields, integrator="exponential", t_final=widest)
+        can = one_sum and dim == 1 and exterior == "open"
+        evaluation = draw(st.sampled_from(["series", "convolution"])) if can else "series"
+        return Case(**fields, integrator="exponential", t_final=widest, evaluation=evaluation)
     integrator = draw(st.sampled_from(["euler", "rk2", "rk4"]))
     probe = Case(**fields, integrator=integrator, dt=1.0, t_final=widest)
     dt = min(0.9 * probe.largest_stable_step, 0.5 * widest)
@@ -336,7 +340,7 @@ def test_one_run_is_two_runs_of_half_the_time(case):
 
 
 @settings(max_examples=25, deadline=None, derandomize=True)
-@given(case=cases(), factor=st.sampled_from([1e-200, 2.0, -3.0, 1e200]))
+@given(case=cases(one_sum=True), factor=st.sampled_from([1e-200, 2.0, -3.0, 1e200]))
 def test_a_run_is_linear_and_mirrors(case, factor):
     u0 = data(case)
     u = run(case, u0)
@@ -351,7 +355,9 @@ def test_a_run_is_linear_and_mirrors(case, factor):
 
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(
-    case=cases(), length=st.sampled_from([1e-6, 0.3, 1e4]), time=st.sampled_from([1e-3, 7.0, 1e5])
+    case=cases(one_sum=True),
+    length=st.sampled_from([1e-6, 0.3, 1e4]),
+    time=st.sampled_from([1e-3, 7.0, 1e5]),
 )
 def test_a_run_does_not_depend_on_the_units(case, length, time):
     """x -> length x, t -> time t, D -> D length^alpha / time."""
