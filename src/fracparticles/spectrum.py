@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -19,12 +20,11 @@ _ROOM = 1e-6
 _ROOM_OF_A_TABLE = 1e-2  # interpolated kernels have eigenvalues of their own
 # Where the eigenvalues are not proved to be real and in the interval, T_k of the operator may grow like exp(g k). The
 # coefficients of a series of degree K fall like exp(-74 (k / K)^2), so that its terms grow by exp((g K)^2 / 300) at
-# most. Measured (tests/test_spectrum.py): on the line with exact kernels, but for FPSE from order 6, g < 0.001 and
+# most. Measured (tests/test_stiff.py): on the line with exact kernels, but for FPSE from order 6, g < 0.001 and
 # K = 10000, else g < 0.1 and K = 400.
 _LARGEST_DEGREE = {"line": 10_000, "other": 400}
-_SURROGATE = (
-    150  # half the intervals of a lattice whose dense eigenvalues take some ten milliseconds
-)
+# Half the intervals of a small lattice: some reaches of the kernels, of which eigenvalues take milliseconds.
+_FEW_OVERLAPS, _FEW = 24, 150
 
 
 def spectral_interval(case: Case, operator: LatticeOperator) -> tuple[float, float]:
@@ -121,6 +121,11 @@ def _greatest_eigenvalue(operator: LatticeOperator, of_the_symbol: float) -> flo
 
 
 def _greatest_of_a_small_lattice(setting: Setting) -> float:
-    small = replace(setting, n=min(setting.n, _SURROGATE), spacing=1.0, diffusivity=1.0)
-    matrix = dense_matrix(SCHEMES["FPSE"].operator(small))
+    few = min(setting.n, _FEW, int(np.ceil(_FEW_OVERLAPS * setting.overlap)))
+    return _greatest_of_fpse(replace(setting, n=few, spacing=1.0, diffusivity=1.0))
+
+
+@lru_cache(maxsize=64)
+def _greatest_of_fpse(setting: Setting) -> float:
+    matrix = dense_matrix(SCHEMES["FPSE"].operator(setting))
     return float(np.linalg.eigvals(matrix).real.max())
