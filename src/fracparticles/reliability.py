@@ -242,7 +242,8 @@ def wave_error(case: Case, u: np.ndarray) -> float:
     """Return the greatest error in the amplitude of some waves that u holds, along an axis; see the module."""
     scheme = SCHEMES[case.scheme]
     tau = case.setting.rate * (case.t_final - case.t_initial)
-    theta = wavenumber(u) * np.array([1.0, 0.5, 0.25])
+    # The wavenumber of data that vary along every axis alike.
+    theta = np.sqrt(case.dim) * wavenumber(u) * np.array([1.0, 0.5, 0.25])
     theta = np.unique(np.append(theta, min(theta[0], tau ** (-1.0 / case.alpha))))
     family = {} if case.kernel_family is None else {"family": case.kernel_family}
     along, dim = theta, {}
