@@ -11,7 +11,12 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from fracparticles.case import Case
-from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
+from fracparticles.errors import (
+    AccuracyWarning,
+    FracparticlesError,
+    InvalidInput,
+    StabilityWarning,
+)
 from fracparticles.integrators import STEP_POLYNOMIALS, exponential_flow, power_flow
 from fracparticles.operators import ConvolutionOperator
 from fracparticles.schemes import SCHEMES
@@ -215,6 +220,14 @@ def test_pieces_are_one_flow():
         u, applications = flow.run(u0)
         assert np.abs(u - exact).max() <= 1e-12
         assert applications == flow.operator_applications
+
+
+def test_digits_that_no_piece_keeps_end_the_run(monkeypatch):
+    """Pieces are not cut for ever: the run ends with an error, and says why."""
+    monkeypatch.setattr("fracparticles.integrators.pieces._MOST_APPLICATIONS", 300)
+    flow = exponential_flow(diagonal([-1.0, -0.3]), 1000.0, -1.0, 0.0)
+    with pytest.raises(FracparticlesError, match="loses its digits"):
+        flow.run(np.ones(2))
 
 
 def test_what_would_take_too_long_is_refused_before_it_starts():

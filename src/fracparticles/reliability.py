@@ -102,7 +102,7 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
     )
     if case.kernel_table is not None:
         found["table_error"] = (
-            max(table_error(case, u0), table_error(case, u)),
+            table_error(case, u0, u),
             "error of the interpolated kernels over the run",
         )
     outside = max(outside_share(case, u0), outside_share(case, u))
@@ -200,15 +200,17 @@ def wavenumber(u: np.ndarray) -> float:
     return 2.0 * float(np.arcsin(min(half_sine, 1.0)))
 
 
-def table_error(case: Case, u: np.ndarray) -> float:
-    """Return what the interpolation of the kernels may make of u over the run; see the module."""
+def table_error(case: Case, *strengths: np.ndarray) -> float:
+    """Return the most that the interpolation of the kernels may make of the strengths over the run; see the module."""
     scheme, setting = SCHEMES[case.scheme], case.setting
-    rates = [
-        scheme.operator(replace(setting, kernel_table=step)).apply(u.reshape(-1))
-        for step in (None, case.kernel_table)
-    ]
+    exact, table = (
+        scheme.operator(replace(setting, kernel_table=step)) for step in (None, case.kernel_table)
+    )
+    flat = [u.reshape(-1) for u in strengths]
     span = case.t_final - case.t_initial
-    return span * _ratio(np.abs(rates[1] - rates[0]).sum(), np.abs(u).sum())
+    return span * max(
+        _ratio(np.abs(table.apply(u) - exact.apply(u)).sum(), np.abs(u).sum()) for u in flat
+    )
 
 
 def outside_share(case: Case, u: np.ndarray) -> float:

@@ -23,7 +23,7 @@ from fracparticles.operators import Operator
 __all__ = ["Flow", "exponential_flow", "power_flow"]
 
 _UNITS = 2**30  # of the exponential: a power of two, so that every piece has an exact length
-_MOST_APPLICATIONS = 1e8  # an hour for a hundred particles
+_MOST_APPLICATIONS = 3e7  # ten minutes for a hundred particles
 
 
 class Flow:
@@ -48,7 +48,7 @@ class Flow:
     Raises
     ------
     FracparticlesError
-        If it would take more than 1e8 applications.
+        If it would take more than 3e7 applications.
     """
 
     def __init__(
@@ -85,15 +85,29 @@ class Flow:
         return self.run(u)[0]
 
     def run(self, u: np.ndarray) -> tuple[np.ndarray, int]:
-        """Return f(A) u and how often A was applied, what was thrown away included."""
+        """Return f(A) u and how often A was applied, what was thrown away included.
+
+        Raises
+        ------
+        NonFiniteSolution
+            If a particle strength is not finite.
+        FracparticlesError
+            If the digits cannot be kept within 3e7 applications.
+        """
         left, piece, applications = self._units, self._piece, 0
         while left:
             series = self._series(min(piece, left))
             applications += series.degree
             try:
                 u = series(self.operator, u)
-            except LostDigits:
+            except LostDigits as error:
                 piece = -(-min(piece, left) // 2)
+                if piece == 1 or applications > _MOST_APPLICATIONS:
+                    raise FracparticlesError(
+                        f"the time integration loses its digits ({error}) and would take more than "
+                        f"{_MOST_APPLICATIONS:.0e} applications of the operator in shorter pieces. Take a larger "
+                        "spacing or a shorter time span."
+                    ) from None
             else:
                 left -= min(piece, left)
         return u, applications
