@@ -11,7 +11,7 @@ from hypothesis import settings
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-from fracparticles.kernels import PAPER_ORDERS  # noqa: E402
+from fracparticles.kernels.families import PAPER_ORDERS  # noqa: E402
 from fracparticles.schemes import SCHEMES  # noqa: E402
 
 settings.register_profile("fracparticles", deadline=None, derandomize=True)

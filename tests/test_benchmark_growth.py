@@ -9,13 +9,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fracparticles.benchmarks.cost_growth import cost_growth as measure_growth
-from fracparticles.benchmarks.scattered import scattered
-from fracparticles.dataset import read_benchmark, write
-from fracparticles.figures.cost_growth import cost_growth as draw
-from fracparticles.figures.style import save
-from fracparticles.studies.cost_growth import cost_growth, exponent, extrapolate
-from fracparticles.sums import NonuniformFourierSum
+from fracparticles.moving.scattered import NonuniformFourierSum
+from fracparticles.run.dataset import read_benchmark, write
+from fracstudy.benchmarks.cost_growth import cost_growth as measure_growth
+from fracstudy.benchmarks.scattered import scattered
+from fracstudy.figures.cost_growth import cost_growth as draw
+from fracstudy.studies.cost_growth import cost_growth, exponent, extrapolate
+from fracstudy.style import save
 
 KINDS = {
     "line": ["KPSE-12-open", "FPSE-4-truncated"],
@@ -116,7 +116,7 @@ def test_memory_is_proportional_to_the_particles(kind, squares, cubes):
 def test_the_threads_are_those_of_the_process_that_measures(memory, monkeypatch):
     """The one that collects has as many as it likes, here seven."""
     mine = {"threads_numba": 7, "threads_blas": 7}
-    monkeypatch.setattr("fracparticles.benchmarks.clock.threads", lambda: mine)
+    monkeypatch.setattr("fracstudy.benchmarks.clock.threads", lambda: mine)
     if not memory:  # then it is the one that measures
         mine |= {"threads_numba": 1, "threads_blas": 1}
     kinds, limits = {"square": ["KPSE-2-truncated"]}, {**LIMITS, "naive_particles": 0}

@@ -10,10 +10,16 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 import fracparticles as fp
-from fracparticles.benchmarks import BENCHMARKS, benchmark, clock
-from fracparticles.benchmarks.problem import Problem
-from fracparticles.benchmarks.reference import reference, transform_pairs
-from fracparticles.benchmarks.sweeps import (
+from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.lattice.fourier import transform_length
+from fracparticles.moving.random_walk import cell_masses
+from fracparticles.run.dataset import read_benchmark, write
+from fracparticles.run.solver import compute, relative_l1_error
+from fracparticles.schemes.stability import _symbol_range, stability_limit
+from fracstudy.benchmarks import BENCHMARKS, benchmark, clock
+from fracstudy.benchmarks.problem import Problem
+from fracstudy.benchmarks.reference import reference, transform_pairs
+from fracstudy.benchmarks.sweeps import (
     graded_trials,
     lent_exterior_trials,
     matrix_trials,
@@ -27,14 +33,8 @@ from fracparticles.benchmarks.sweeps import (
     tied_step_trials,
     walk_trials,
 )
-from fracparticles.benchmarks.trial import Contender, Trial, run_trials
-from fracparticles.dataset import read_benchmark, write
-from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.peers import PEERS
-from fracparticles.random_walk import cell_masses
-from fracparticles.solver import compute, relative_l1_error
-from fracparticles.stability import _symbol_range, stability_limit
-from fracparticles.sums.fourier import transform_length
+from fracstudy.benchmarks.trial import Contender, Trial, run_trials
+from fracstudy.peers import PEERS
 
 LINE, PLANE = Problem(0.5), Problem(0.5, dim=2)
 GRID = {"spacings": [0.4], "truncations": [5.0], "most": 1000}

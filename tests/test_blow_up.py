@@ -8,7 +8,7 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import NonFiniteSolution
-from fracparticles.solver import compute
+from fracparticles.run.solver import compute
 
 WAYS = {
     "stepping": {"dt": 10.0, "evaluation": "stepping"},

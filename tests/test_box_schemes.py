@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.case import Case
 from fracparticles.errors import InvalidInput
-from fracparticles.exterior_box import box_far_field
-from fracparticles.kernel_tables import tabulated
-from fracparticles.kernels import PAPER_ORDERS, kernel
+from fracparticles.kernels.families import PAPER_ORDERS, kernel
+from fracparticles.kernels.tabulated import tabulated
+from fracparticles.lattice.exterior_box import box_far_field
+from fracparticles.run.case import Case
+from fracparticles.run.solver import compute
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.solver import compute
+from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
+from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.special import green
-from fracparticles.spectrum import dense_matrix, spectral_interval
-from fracparticles.stability import stability_limit, symbol_range
 
 BOXED = [
     (name, order)

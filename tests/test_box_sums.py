@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.sums import BandedConvolution, BoxConvolution, NaiveBoxConvolution
+from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.box import BoxConvolution, NaiveBoxConvolution
 
 EPS = np.finfo(float).eps
 

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fracparticles.case import Case
-from fracparticles.complaints import choices_of, takes_numbers
 from fracparticles.errors import InvalidInput
+from fracparticles.run.case import Case
+from fracparticles.run.complaints import choices_of, takes_numbers
 from fracparticles.special import mean_radius
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "truncation": 4.0, "spacing": 0.1, "dt": 0.001}

@@ -14,7 +14,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracparticles.claims import (
+from fracstudy.claims import (
     Claim,
     Finding,
     LedgerError,
@@ -26,7 +26,7 @@ from fracparticles.claims import (
     write_findings,
     write_text,
 )
-from fracparticles.ledger import (
+from fracstudy.ledger import (
     COLUMNS,
     ledger,
     ledger_markdown,

@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 import fracparticles as fp
-from fracparticles.case import Case
-from fracparticles.cli import main, number_or_text
+from fracparticles.run.case import Case
+from fracparticles.run.cli import main, number_or_text
 
 
 def words_of(text: str) -> list[str]:
@@ -175,7 +175,7 @@ def test_missing_flags(cli):
 
 
 def test_outputs_that_cannot_be_written_are_refused_before_any_work(cli, tmp_path, monkeypatch):
-    monkeypatch.setattr("fracparticles.solver.compute", lambda *_: pytest.fail("work was done"))
+    monkeypatch.setattr("fracparticles.run.solver.compute", lambda *_: pytest.fail("work was done"))
     given = (*SMALL, "--dt", 0.05, "-o")
     assert refused(cli("solve", *given, "none/run.nc"), "none/run.nc", "a directory that exists")
     assert refused(cli("solve", *given, tmp_path), "this is a directory")
@@ -369,7 +369,7 @@ def test_failures_in_one_line(cli, monkeypatch, error, status, line):
     def fail(*_):
         raise error
 
-    monkeypatch.setattr("fracparticles.solver.compute", fail)
+    monkeypatch.setattr("fracparticles.run.solver.compute", fail)
     assert cli("solve", *SMALL, "--dt", 0.05, "-o", "run.nc") == (status, "", line)
 
 

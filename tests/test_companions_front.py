@@ -13,7 +13,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from fracparticles import lagrangian, random_walk, remeshing
 from fracparticles.errors import InvalidInput
 from fracparticles.markers import (
     burgers,
@@ -28,6 +27,7 @@ from fracparticles.markers import (
     stability,
 )
 from fracparticles.markers import shapes as marker_shapes
+from fracparticles.moving import lagrangian, random_walk, remeshing, scattered
 from fracparticles.pse import approximation, construction, exchange, moments
 from fracparticles.pse import shapes as kernels
 from fracparticles.sph import (
@@ -40,7 +40,6 @@ from fracparticles.sph import (
     operators,
 )
 from fracparticles.sph.particles import ParticleLine
-from fracparticles.sums import scattered
 
 MODULES = {
     "lagrangian": lagrangian,

@@ -17,7 +17,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution, StabilityWarning
-from fracparticles.lagrangian import advance, quotient_velocity
 from fracparticles.markers import (
     SHAPES,
     Gaussian,
@@ -34,6 +33,10 @@ from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
 from fracparticles.markers.plane import TwoBlobs
 from fracparticles.markers.source import GaussianSource, advance_weights
+from fracparticles.moving.lagrangian import advance, quotient_velocity
+from fracparticles.moving.random_walk import stable_variates
+from fracparticles.moving.remeshing import eliminate, remesh
+from fracparticles.moving.scattered import NonuniformFourierSum, ScatteredKernel
 from fracparticles.pse import (
     GAUSSIAN_20,
     TENT_27,
@@ -51,13 +54,10 @@ from fracparticles.pse import (
     reconstruct,
 )
 from fracparticles.pse.moments import absolute_moment
-from fracparticles.random_walk import stable_variates
-from fracparticles.remeshing import eliminate, remesh
 from fracparticles.sph import ParticleLine, rl_derivative
 from fracparticles.sph.closed_forms import FUNCTIONS, Exponential, ShiftedPower
 from fracparticles.sph.derivatives import gradient, second_derivative
 from fracparticles.sph.integrals import power_integral, power_sum
-from fracparticles.sums.scattered import NonuniformFourierSum, ScatteredKernel
 
 EPS = float(np.finfo(float).eps)
 

@@ -15,11 +15,11 @@ import pytest
 import xarray as xr
 
 import fracparticles as fp
-from fracparticles.case import Case
 from fracparticles.errors import InvalidInput
 from fracparticles.files import replaceable
-from fracparticles.initial import read_strengths
-from fracparticles.solver import compute
+from fracparticles.run.case import Case
+from fracparticles.run.initial import read_strengths
+from fracparticles.run.solver import compute
 from fracparticles.special import mean_radius
 
 GIVEN = {

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.kernels import kernel_transform
-from fracparticles.lagrangian import FieldNotPositive, Remeshing, advance, quotient_velocity
-from fracparticles.schemes import dd, dvm
+from fracparticles.kernels.families import kernel_transform
+from fracparticles.moving import dvm
+from fracparticles.moving.lagrangian import FieldNotPositive, Remeshing, advance, quotient_velocity
+from fracparticles.schemes import dd
 from fracparticles.special.stable import green, mean_radius
 
 START = 0.5

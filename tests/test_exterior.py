@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.case import Case
 from fracparticles.errors import InvalidInput
-from fracparticles.exterior import _expansion, far_field, tabulated_far_field
+from fracparticles.lattice.exterior import _expansion, far_field, tabulated_far_field
+from fracparticles.run.case import Case
+from fracparticles.run.solver import compute, relative_l1_error
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.solver import compute, relative_l1_error
-from fracparticles.spectrum import dense_matrix
-from fracparticles.stability import symbol_range
+from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.stability import symbol_range
 
 LONG = 2_000_000
 

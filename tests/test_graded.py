@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fracparticles as fp
-from fracparticles.benchmarks.problem import Problem
 from fracparticles.errors import InvalidInput
-from fracparticles.graded import graded_particles, green_step
-from fracparticles.solver import prepare
+from fracparticles.graded.particles import graded_particles, green_step
+from fracparticles.run.solver import prepare
+from fracstudy.benchmarks.problem import Problem
 
 
 def error(beta, count, reach, scale, form):

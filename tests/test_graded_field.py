@@ -12,16 +12,16 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 import fracparticles as fp
-from fracparticles.benchmarks.problem import Problem
 from fracparticles.errors import InvalidInput
-from fracparticles.graded import graded_particles, green_step
-from fracparticles.graded_field import (
+from fracparticles.graded.field import (
     _against_sincs,
     _mapped_distance,
     _panels_around,
     _panels_around_zero,
     green_step_of_field,
 )
+from fracparticles.graded.particles import graded_particles, green_step
+from fracstudy.benchmarks.problem import Problem
 
 
 def error(beta, count, reach, scale):
@@ -60,7 +60,7 @@ def test_more_nodes_change_nothing(monkeypatch):
     """Fine particles, whose sincs oscillate within a panel."""
     settings = 161, 2000.0, 0.5, 1.1, 1.0
     matrix = green_step_of_field(*settings)
-    monkeypatch.setattr("fracparticles.graded_field._NODES", 40)
+    monkeypatch.setattr("fracparticles.graded.field._NODES", 40)
     room = 4.0 * np.finfo(float).eps * 2000.0
     assert np.abs(matrix - green_step_of_field(*settings)).max() < room
 

@@ -16,9 +16,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import fracparticles as fp
-from fracparticles.case import Case
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.initial import initial_strengths, read_strengths
+from fracparticles.run.case import Case
+from fracparticles.run.initial import initial_strengths, read_strengths
 
 GIVEN = {
     "scheme": "KPSE",

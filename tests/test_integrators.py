@@ -14,12 +14,12 @@ from scipy.special import ive
 from test_spectrum import case_of
 
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
-from fracparticles.integrators import STEP_POLYNOMIALS, ChebyshevSeries, exponential, power, step
-from fracparticles.operators import ConvolutionOperator
+from fracparticles.lattice.operators import ConvolutionOperator
+from fracparticles.run.solver import prepare
 from fracparticles.schemes import SCHEMES, Setting, dpse
-from fracparticles.solver import prepare
+from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special import green
-from fracparticles.spectrum import dense_matrix
+from fracparticles.time import STEP_POLYNOMIALS, ChebyshevSeries, exponential, power, step
 
 INTEGRATORS = ["euler", "rk2", "rk4"]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.special import j0, j1
 
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels import KERNELS, PAPER_ORDERS, kernel, kernel_transform
+from fracparticles.kernels.families import KERNELS, PAPER_ORDERS, kernel, kernel_transform
 from fracparticles.special import reduced_green
 
 ALPHAS = (1.01, 1.1, 1.5, 1.9, 1.99)

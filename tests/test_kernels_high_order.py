@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import j0, j1, poch
 
-from fracparticles import kernels
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels_high_order import (
+from fracparticles.kernels import families as kernels
+from fracparticles.kernels.high_order import (
     NAMES,
     ORDERS,
     kernel,

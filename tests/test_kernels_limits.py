@@ -11,10 +11,10 @@ from scipy.linalg import expm
 
 import fracparticles as fp
 from fracparticles.errors import InvalidInput
-from fracparticles.kernel_tables import tabulated
-from fracparticles.kernels import kernel, kernel_transform
+from fracparticles.kernels.families import kernel, kernel_transform
+from fracparticles.kernels.tabulated import tabulated
 from fracparticles.schemes import Setting, dpse, fd, riesz
-from fracparticles.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import dense_matrix
 
 EPS = np.finfo(float).eps
 LIMITS = (1e-12, 1e-6, 1.0 - 1e-6, 1.0 - 1e-12)

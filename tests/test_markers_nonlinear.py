@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.integrators.rkc import ChebyshevStep, stages_for
-from fracparticles.lagrangian import FieldNotPositive
 from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, run, uniform
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
 from fracparticles.markers.stability import extremes
+from fracparticles.moving.lagrangian import FieldNotPositive
+from fracparticles.time.rkc import ChebyshevStep, stages_for
 
 PROBLEM = NonlinearDiffusion()
 

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
-from fracparticles.lagrangian import FieldNotPositive
 from fracparticles.markers import (
     SHAPES,
     Gaussian,
@@ -22,6 +21,7 @@ from fracparticles.markers import (
     uniform,
 )
 from fracparticles.markers.stability import extremes, lattice_rate, rate
+from fracparticles.moving.lagrangian import FieldNotPositive
 
 
 def loop(shape, epsilon, x, w, z, m):

@@ -11,13 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
-from fracparticles.lagrangian import FieldNotPositive
 from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, equal_weight, run, uniform
 from fracparticles.markers.burgers import PointSource, burgers
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.source import GaussianSource, advance_weights, source_flux
-from fracparticles.studies.marker_velocities import kdv_residual
+from fracparticles.moving.lagrangian import FieldNotPositive
+from fracstudy.studies.marker_velocities import kdv_residual
 
 # --- Burgers --------------------------------------------------------------------------------------
 

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from fracparticles.errors import InvalidInput
-from fracparticles.integrators import STEP_POLYNOMIALS, step
 from fracparticles.pse import (
     GAUSSIAN_20,
     TENT_27,
@@ -34,6 +33,7 @@ from fracparticles.pse import (
 )
 from fracparticles.pse.construction import solve_exactly, taylor_constant
 from fracparticles.pse.moments import absolute_moment
+from fracparticles.time import STEP_POLYNOMIALS, step
 
 EPS = float(np.finfo(float).eps)
 DERIVATIVES, ACCURACIES = st.integers(0, 6), st.integers(1, 8)

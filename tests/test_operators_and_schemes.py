@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels import FAMILIES, kernel
+from fracparticles.kernels.families import FAMILIES, kernel
 from fracparticles.schemes import SCHEMES, Setting, dpse, fd, fpse, kpse, riesz, scheme
+from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special import green
-from fracparticles.spectrum import dense_matrix
 
 N = 24  # half the number of intervals where the matrix is looked at
 H, S, DIFFUSIVITY = 0.25, 2.0, 1.7

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from fracparticles.case import Case
-from fracparticles.plan import Scene, batches, expand
+from fracparticles.run.case import Case
+from fracstudy.plan import Scene, batches, expand
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "dt": 1e-4}
 DVM = {**GIVEN, "scheme": "DVM", "dt": 1e-3}

@@ -10,9 +10,13 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, expm_multiply
 
 from fracparticles.errors import InvalidInput
-from fracparticles.exterior import tabulated_far_field, tail_constant
-from fracparticles.kernels import kernel
-from fracparticles.peers import (
+from fracparticles.kernels.families import kernel
+from fracparticles.lattice.exterior import tabulated_far_field, tail_constant
+from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.special import central_mass, green, mean_radius
+from fracparticles.time.propagator import propagator_weights
+from fracstudy.inputs import observed_order
+from fracstudy.peers import (
     PEERS,
     duo_wyk_zhang,
     fractional_centred,
@@ -21,11 +25,7 @@ from fracparticles.peers import (
     peer,
     sinc_lattice,
 )
-from fracparticles.peers.lattice import _spectral_interval
-from fracparticles.propagator import propagator_weights
-from fracparticles.special import central_mass, green, mean_radius
-from fracparticles.spectrum import dense_matrix
-from fracparticles.studies.common import observed_order
+from fracstudy.peers.lattice import _spectral_interval
 
 ALPHAS = [1.1, 1.5, 1.9]
 LATTICE = {p.NAME: p for p in (huang_oberman, duo_wyk_zhang, fractional_centred, sinc_lattice)}

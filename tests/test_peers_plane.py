@@ -10,9 +10,9 @@ from scipy.integrate import quad
 from scipy.special import factorial, gamma, poch
 
 from fracparticles.errors import InvalidInput
-from fracparticles.peers.plane import PLANE_PEERS, plane_weights, prepare_plane
 from fracparticles.special import green
-from fracparticles.studies.common import observed_order
+from fracstudy.inputs import observed_order
+from fracstudy.peers.plane import PLANE_PEERS, plane_weights, prepare_plane
 
 ALPHAS = [1.1, 1.5, 1.9]
 SQUARES = {

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fracparticles import plan
 from fracparticles.errors import InvalidInput
-from fracparticles.studies import OWN_PARAMETERS, STUDIES
+from fracstudy import plan
+from fracstudy.studies import OWN_PARAMETERS, STUDIES
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = {

@@ -9,9 +9,9 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
-from fracparticles.exterior import tail_constant
-from fracparticles.propagator import propagator, propagator_weights
-from fracparticles.solver import compute, initial_strengths, prepare
+from fracparticles.lattice.exterior import tail_constant
+from fracparticles.run.solver import compute, initial_strengths, prepare
+from fracparticles.time.propagator import propagator, propagator_weights
 
 WIDE = {"beta": 0.5, "truncation": 20.0, "exterior": "open", "integrator": "exponential"}
 KINDS = [("DD", 2), ("DD", 12), ("FPSE", 4), ("FPSE", 8), ("KPSE", 2), ("KPSE", 4), ("KPSE", 12)]

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import kolmogorov
 
 from fracparticles.errors import InvalidInput
-from fracparticles.random_walk import (
+from fracparticles.moving.random_walk import (
     cell_counts,
     cell_masses,
     distribution,

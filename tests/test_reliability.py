@@ -10,10 +10,10 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.propagator import propagator
-from fracparticles.reliability import estimates, wavenumber
-from fracparticles.solver import compute, relative_l1_error
+from fracparticles.run.reliability import estimates, wavenumber
+from fracparticles.run.solver import compute, relative_l1_error
 from fracparticles.special.stable import central_mass, green
+from fracparticles.time.propagator import propagator
 
 
 def bump(*x):
@@ -114,7 +114,7 @@ def test_tabulated_kernels_give_the_exponential_of_their_own_matrix():
     from scipy.linalg import expm
 
     from fracparticles.schemes import SCHEMES
-    from fracparticles.spectrum import dense_matrix
+    from fracparticles.schemes.spectrum import dense_matrix
 
     case = case_of(
         scheme="FPSE", order=4, beta=0.81628, spacing=0.0021, half_width=1.0776, overlap=0.74966, kernel_table=0.1,

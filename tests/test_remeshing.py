@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
-from fracparticles.remeshing import REMESHINGS, eliminate, interpolation_function, remesh
+from fracparticles.moving.remeshing import REMESHINGS, eliminate, interpolation_function, remesh
 
 MOMENTS = {"M4'": 3, "Lambda3": 4}  # how many, from m = 0
 

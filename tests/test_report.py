@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from fracparticles.claims import Claim, Finding
-from fracparticles.ledger import ledger, write_ledger
-from fracparticles.report import ReportError, SceneEntry, build
+from fracstudy.claims import Claim, Finding
+from fracstudy.ledger import ledger, write_ledger
+from fracstudy.report import ReportError, SceneEntry, build
 
 REPORT = Path(__file__).parents[1] / "report"
 TEMPLATES = REPORT / "template"

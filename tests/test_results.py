@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fracparticles.claims import Status, read_claims
-from fracparticles.ledger import read_ledger, summary_line
-from fracparticles.plan import read_config
+from fracstudy.claims import Status, read_claims
+from fracstudy.ledger import read_ledger, summary_line
+from fracstudy.plan import read_config
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels import kernel
-from fracparticles.sums import (
+from fracparticles.kernels.families import kernel
+from fracparticles.moving.scattered import (
     NaiveScatteredSum,
     NeighbourSum,
     NonuniformFourierSum,

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from fracparticles.case import Case
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels import family_of, kernel, kernel_transform
+from fracparticles.kernels.families import family_of, kernel, kernel_transform
+from fracparticles.run.case import Case
+from fracparticles.run.solver import compute, prepare, relative_l1_error, solve
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.base import lattice_transform
-from fracparticles.solver import compute, prepare, relative_l1_error, solve
+from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
+from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.special.stable import central_mass
-from fracparticles.spectrum import dense_matrix, spectral_interval
-from fracparticles.stability import stability_limit, symbol_range
 
 EPS = np.finfo(float).eps
 HIGH = ("DD", "FPSE", "KPSE")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import fracparticles as fp
-from fracparticles.case import Case
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
-from fracparticles.solver import compute, initial_strengths, relative_l1_error
+from fracparticles.run.case import Case
+from fracparticles.run.solver import compute, initial_strengths, relative_l1_error
 from fracparticles.special import central_mass, green, mean_radius
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "half_width": 10.0, "spacing": 0.25}

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.case import Case
 from fracparticles.errors import FracparticlesError
-from fracparticles.operators import ConvolutionOperator
+from fracparticles.lattice.operators import ConvolutionOperator
+from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.spectrum import dense_matrix, power_iteration, spectral_interval
-from fracparticles.stability import symbol_range
+from fracparticles.schemes.spectrum import dense_matrix, power_iteration, spectral_interval
+from fracparticles.schemes.stability import symbol_range
 
 OVERLAPS = {"GPSE": (1.65, 2.0, 2.9), "FD": (2.0,)}
 # FPSE of order IV with overlap 2.9 has a defective eigenvalue near nil: round-off eps splits it by sqrt(eps).

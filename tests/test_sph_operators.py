@@ -12,13 +12,7 @@ from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
 from fracparticles.sph import ParticleLine, caputo_derivative, rl_derivative, rl_integral
-from fracparticles.sph.closed_forms import (
-    FUNCTIONS,
-    Cosine,
-    Exponential,
-    ShiftedPower,
-    Sine,
-)
+from fracparticles.sph.closed_forms import FUNCTIONS, Cosine, Exponential, ShiftedPower, Sine
 from fracparticles.sph.norms import relative_l2
 from fracparticles.sph.one_f_two import one_f_two
 from fracparticles.sph.operators import singular_integral

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 import fracparticles as fp
 from fracparticles.errors import InvalidInput
-from fracparticles.integrators import STEP_POLYNOMIALS
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.spectrum import dense_matrix
-from fracparticles.stability import closed_form_limit, stability_limit, symbol_range
+from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.stability import closed_form_limit, stability_limit, symbol_range
+from fracparticles.time import STEP_POLYNOMIALS
 
 # epsilon / h = 2, order II: the infinite lattice, to the digits given.
 KNOWN = {

@@ -10,18 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from fracparticles.case import Case
-from fracparticles.errors import (
-    AccuracyWarning,
-    FracparticlesError,
-    InvalidInput,
-    StabilityWarning,
-)
-from fracparticles.integrators import STEP_POLYNOMIALS, exponential_flow, power_flow
-from fracparticles.operators import ConvolutionOperator
+from fracparticles.errors import AccuracyWarning, FracparticlesError, InvalidInput, StabilityWarning
+from fracparticles.lattice.operators import ConvolutionOperator
+from fracparticles.run.case import Case
+from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES
-from fracparticles.solver import compute, prepare
-from fracparticles.spectrum import dense_matrix, largest_degree
+from fracparticles.schemes.spectrum import dense_matrix, largest_degree
+from fracparticles.time import STEP_POLYNOMIALS, exponential_flow, power_flow
 
 EPS = np.finfo(float).eps
 
@@ -224,7 +219,7 @@ def test_pieces_are_one_flow():
 
 def test_digits_that_no_piece_keeps_end_the_run(monkeypatch):
     """Pieces are not cut for ever: the run ends with an error, and says why."""
-    monkeypatch.setattr("fracparticles.integrators.pieces._MOST_APPLICATIONS", 300)
+    monkeypatch.setattr("fracparticles.time.pieces._MOST_APPLICATIONS", 300)
     flow = exponential_flow(diagonal([-1.0, -0.3]), 1000.0, -1.0, 0.0)
     with pytest.raises(FracparticlesError, match="loses its digits"):
         flow.run(np.ones(2))

@@ -7,15 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracparticles.sums import (
-    SUMMATIONS,
-    BandedConvolution,
-    FourierConvolution,
-    MatrixConvolution,
-    NaiveConvolution,
-    fast_convolution,
-)
-from fracparticles.sums.fourier import transform_length
+from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.fourier import FourierConvolution, transform_length
+from fracparticles.lattice.matrix import MatrixConvolution
+from fracparticles.lattice.naive import NaiveConvolution
+from fracparticles.lattice.sums import SUMMATIONS, fast_convolution
 
 
 def direct(weights, parity, u, pad=0):

@@ -70,7 +70,7 @@ def test_a_misspelt_key_is_refused_before_any_work(project):
 
 
 def test_every_scene_has_its_table_findings_and_figure(finished):
-    from fracparticles import plan
+    from fracstudy import plan
 
     results = finished / "results-smoke"
     study = plan.read_config(_merged(finished))
@@ -95,7 +95,7 @@ def test_nothing_is_left_to_do_and_nothing_half_written(finished):
 
 
 def test_editing_a_plot_reruns_the_plot_and_no_solver(finished):
-    touch(finished / "src/fracparticles/figures/errors.py")
+    touch(finished / "src/fracstudy/figures/errors.py")
     jobs = planned(finished, "figures", *SMOKE)
     assert "rule figure:" in jobs
     assert "rule solve_" not in jobs
@@ -104,7 +104,7 @@ def test_editing_a_plot_reruns_the_plot_and_no_solver(finished):
 
 
 def test_editing_a_solver_reruns_its_runs(finished):
-    touch(finished / "src/fracparticles/integrators/chebyshev.py")
+    touch(finished / "src/fracparticles/time/chebyshev.py")
     jobs = planned(finished, "lucchesi_figure_4a", *SMOKE)
     assert "rule solve_smoke_1:" in jobs
     assert "rule study:" in jobs
@@ -113,7 +113,7 @@ def test_editing_a_solver_reruns_its_runs(finished):
 
 def test_a_killed_workflow_carries_on(finished):
     """Killed outright in the middle of its runs: no file under a final name is damaged, the next call ends the work."""
-    from fracparticles.dataset import read_run
+    from fracparticles.run.dataset import read_run
 
     runs = finished / "results-killed/runs"
     call = ["lucchesi_figure_4a", *SMOKE, "--config", "results_dir=results-killed"]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.dataset import write
-from fracparticles.figures import figure
-from fracparticles.plan import expand
+from fracparticles.run.dataset import write
+from fracparticles.run.solver import solve
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.solver import solve
-from fracparticles.spectrum import dense_matrix
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.conservation import weight_sum
+from fracparticles.schemes.spectrum import dense_matrix
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.conservation import weight_sum
 
 
 @pytest.mark.parametrize("scheme", ["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD"])

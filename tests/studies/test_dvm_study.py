@@ -6,18 +6,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fracparticles.case import Case
-from fracparticles.dataset import read_run, write
 from fracparticles.errors import FracparticlesError
-from fracparticles.figures import figure
-from fracparticles.plan import expand
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import read_run, write
+from fracparticles.run.solver import solve
 from fracparticles.schemes import dd
-from fracparticles.solver import solve
-from fracparticles.stability import stability_limit
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.dvm import lattice_strengths, spread
-from fracparticles.studies.dvm_domain import truncation_effect
-from fracparticles.studies.dvm_stability import displacement_growth, gpse_factors, worst_wave
+from fracparticles.schemes.stability import stability_limit
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.dvm import lattice_strengths, spread
+from fracstudy.studies.dvm_domain import truncation_effect
+from fracstudy.studies.dvm_stability import displacement_growth, gpse_factors, worst_wave
 
 REMESHINGS = ["M4'", "Lambda3", "none"]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from fracparticles.figures import figure
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.extreme import UNEXPECTED
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.extreme import UNEXPECTED
 
 PARAMETERS = {
     "beta": 0.5,

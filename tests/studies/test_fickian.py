@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import fracparticles as fp
-from fracparticles.figures import figure
-from fracparticles.kernels import kernel
-from fracparticles.plan import expand
-from fracparticles.studies import Inputs
-from fracparticles.studies.fickian import (
+from fracparticles.kernels.families import kernel
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs
+from fracstudy.studies.fickian import (
     decade_moments,
     fickian_error,
     fickian_limit,

@@ -12,11 +12,11 @@ import pytest
 from matplotlib.figure import Figure
 from scipy.integrate import quad
 
-from fracparticles.figures import figure
 from fracparticles.special import mean_radius as closed_form
 from fracparticles.special import reduced_green
-from fracparticles.studies import Inputs
-from fracparticles.studies.fundamental import (
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs
+from fracstudy.studies.fundamental import (
     expansions,
     fundamental_solution,
     inner_moment,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from fracparticles.figures import figure
-from fracparticles.studies import Inputs
-from fracparticles.studies.kernels import kernels, tail_exponent
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs
+from fracstudy.studies.kernels import kernels, tail_exponent
 
 PARAMETERS = {"beta": [0.1, 0.5, 0.9], "points": 401}
 

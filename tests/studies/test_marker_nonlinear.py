@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.figures import figure
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.marker_nonlinear import Setting, evolve
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.marker_nonlinear import Setting, evolve
 
 NONLINEAR = {
     "problem": {"d0": 10.0, "alpha": 4.0, "x0": 0.5},

@@ -7,22 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fracparticles.claims import Status, judge, read_claims
-from fracparticles.figures import figure
-from fracparticles.lagrangian import FieldNotPositive
 from fracparticles.markers import SHAPES, Square
 from fracparticles.markers.stability import rate
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.marker_claims import quadrature_exponent, smoothing_exponent
-from fracparticles.studies.marker_growth import largest_step, measured_rate
-from fracparticles.studies.marker_runs import (
-    cluster_centres,
-    delay,
-    emptiness,
-    load,
-    spectrum,
-    trace,
-)
+from fracparticles.moving.lagrangian import FieldNotPositive
+from fracstudy.claims import Status, judge, read_claims
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.marker_claims import quadrature_exponent, smoothing_exponent
+from fracstudy.studies.marker_growth import largest_step, measured_rate
+from fracstudy.studies.marker_runs import cluster_centres, delay, emptiness, load, spectrum, trace
 
 CLAIMS = {
     claim.id: claim

@@ -5,14 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.schemes import SCHEMES, Setting, dvm
-from fracparticles.studies import Inputs
-from fracparticles.studies.methods import (
-    PAIR_SUMS,
-    consistency_order,
-    diffusion_velocity,
-    methods,
-)
+from fracparticles.moving import dvm
+from fracparticles.schemes import SCHEMES, Setting
+from fracstudy.studies import Inputs
+from fracstudy.studies.methods import PAIR_SUMS, consistency_order, diffusion_velocity, methods
 
 PARAMETERS = {"beta": [0.5], "particles": 11, "spacing": 0.3}
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from fracparticles.dataset import write
-from fracparticles.figures import figure
-from fracparticles.plan import expand
-from fracparticles.solver import solve
-from fracparticles.studies import Inputs, study
+from fracparticles.run.dataset import write
+from fracparticles.run.solver import solve
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
 
 
 @pytest.fixture(scope="module")

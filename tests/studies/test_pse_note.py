@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fracparticles.claims import read_claims
-from fracparticles.figures import figure
 from fracparticles.pse import GAUSSIAN_20, StrengthExchange, moment, regularised
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.pse_note import wave
-from fracparticles.studies.pse_note_conservation import Skewed, heat, heat_second, particles
+from fracstudy.claims import read_claims
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.pse_note import wave
+from fracstudy.studies.pse_note_conservation import Skewed, heat, heat_second, particles
 
 PRINTED = Path(__file__).resolve().parents[2] / "report/printed/particle_note.yaml"
 SCENES = {

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import fracparticles as fp
-from fracparticles.figures import figure
-from fracparticles.plan import expand
-from fracparticles.random_walk import cell_masses, expected_deviation
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.random_walk import few_walkers_beyond, walkers_to_equal
+from fracparticles.moving.random_walk import cell_masses, expected_deviation
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.random_walk import few_walkers_beyond, walkers_to_equal
 
 PARAMETERS = {
     "beta": 0.5,

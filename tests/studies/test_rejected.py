@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fracparticles.dataset import write
-from fracparticles.figures import figure
-from fracparticles.kernels import kernel
-from fracparticles.plan import expand
+from fracparticles.kernels.families import kernel
+from fracparticles.run.dataset import write
+from fracparticles.run.solver import solve
 from fracparticles.schemes import riesz
-from fracparticles.solver import solve
 from fracparticles.special.stable import green, green_flux
-from fracparticles.studies import Inputs, study
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
 
 
 def inputs(folder, scene, items, blocks, parameters):

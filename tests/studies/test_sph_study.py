@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fracparticles.claims import Status, judge, read_claims
-from fracparticles.figures import figure
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.sph import OPERATORS, order_at
-from fracparticles.studies.sph_closed_forms import defining_integral
-from fracparticles.studies.sph_readings import CASES
-from fracparticles.studies.sph_spline import kernel_sums
-from fracparticles.studies.sph_sums import Reading, approximate
+from fracstudy.claims import Status, judge, read_claims
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.sph import OPERATORS, order_at
+from fracstudy.studies.sph_closed_forms import defining_integral
+from fracstudy.studies.sph_readings import CASES
+from fracstudy.studies.sph_spline import kernel_sums
+from fracstudy.studies.sph_sums import Reading, approximate
 
 CLAIMS = {
     claim.id: claim

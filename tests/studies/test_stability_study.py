@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from fracparticles.figures import figure
-from fracparticles.studies import Inputs
-from fracparticles.studies.stability import spectrum, stability, truncated_print
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs
+from fracstudy.studies.stability import spectrum, stability, truncated_print
 
 PARAMETERS = {
     "beta": [0.1, 0.5, 0.9],

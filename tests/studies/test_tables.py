@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracparticles.studies.common import write_table
+from fracstudy.inputs import write_table
 
 
 def cells(line: str) -> list[str]:

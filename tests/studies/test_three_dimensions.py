@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.case import Case
-from fracparticles.dataset import write
-from fracparticles.figures import figure
-from fracparticles.plan import expand
+from fracparticles.lattice.fourier import transform_length
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import write
+from fracparticles.run.solver import solve
 from fracparticles.schemes import SCHEMES
-from fracparticles.solver import solve
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.three_dimensions import bytes_kept, operations
-from fracparticles.sums.fourier import transform_length
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.three_dimensions import bytes_kept, operations
 
 
 @pytest.fixture(scope="module")

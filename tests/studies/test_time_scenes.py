@@ -8,18 +8,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fracparticles.benchmarks import time_integration as integration_benchmark
-from fracparticles.benchmarks.time_integration import time_integration as run_integrations
-from fracparticles.benchmarks.time_spent import time_spent as take_apart
-from fracparticles.figures.style import save
-from fracparticles.figures.time_integration import time_integration as draw_integrations
-from fracparticles.figures.time_spent import time_spent as draw_parts
-from fracparticles.integrators import STEP_POLYNOMIALS
-from fracparticles.integrators.rkc import stages_for
-from fracparticles.operators import ConvolutionOperator
-from fracparticles.studies.time_integration import time_integration
-from fracparticles.studies.time_spent import PARTS, time_spent
-from fracparticles.sums import FourierConvolution
+from fracparticles.lattice.fourier import FourierConvolution
+from fracparticles.lattice.operators import ConvolutionOperator
+from fracparticles.time import STEP_POLYNOMIALS
+from fracparticles.time.rkc import stages_for
+from fracstudy.benchmarks import time_integration as integration_benchmark
+from fracstudy.benchmarks.time_integration import time_integration as run_integrations
+from fracstudy.benchmarks.time_spent import time_spent as take_apart
+from fracstudy.figures.time_integration import time_integration as draw_integrations
+from fracstudy.figures.time_spent import time_spent as draw_parts
+from fracstudy.studies.time_integration import time_integration
+from fracstudy.studies.time_spent import PARTS, time_spent
+from fracstudy.style import save
 
 NAMES = {"euler": "RK1", "rk2": "RK2", "rk4": "RK4"}
 CASES = {

@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fracparticles.case import Case
-from fracparticles.dataset import write
-from fracparticles.figures import figure
-from fracparticles.plan import expand
-from fracparticles.solver import compute, relative_l1_error, solve
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.common import observed_order
-from fracparticles.studies.self_convergence import self_convergence_order
-from fracparticles.studies.spacing import spacing
-from fracparticles.studies.truncation import exchange_truncation_error, truncation
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import write
+from fracparticles.run.solver import compute, relative_l1_error, solve
+from fracstudy.figures import figure
+from fracstudy.inputs import observed_order
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.self_convergence import self_convergence_order
+from fracstudy.studies.spacing import spacing
+from fracstudy.studies.truncation import exchange_truncation_error, truncation
 
 
 def computed(tmp_path, blocks):

@@ -8,28 +8,24 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fracparticles.case import Case
-from fracparticles.dataset import write
-from fracparticles.figures import figure
-from fracparticles.kernels import kernel
-from fracparticles.plan import expand
+from fracparticles.kernels.families import kernel
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import write
+from fracparticles.run.solver import compute, relative_l1_error, solve
 from fracparticles.schemes import SCHEMES
-from fracparticles.solver import compute, relative_l1_error, solve
 from fracparticles.special import green, green_flux, reduced_green
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.two_dimensional_errors import disk_error
-from fracparticles.studies.two_dimensional_green import (
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from fracstudy.studies.two_dimensional_errors import disk_error
+from fracstudy.studies.two_dimensional_green import (
     planar_asymptotic,
     planar_integral,
     planar_series,
 )
-from fracparticles.studies.two_dimensional_operators import flux_along_axis
-from fracparticles.studies.two_dimensional_tables import spurious_rate
-from fracparticles.studies.two_dimensions import (
-    reconstructed,
-    square_exchange_error,
-    square_tail_mass,
-)
+from fracstudy.studies.two_dimensional_operators import flux_along_axis
+from fracstudy.studies.two_dimensional_tables import spurious_rate
+from fracstudy.studies.two_dimensions import reconstructed, square_exchange_error, square_tail_mass
 
 ALPHA = 1.5
 # The half-width is 8.94; N = 17, 33, 65.

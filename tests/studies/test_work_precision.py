@@ -6,19 +6,19 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fracparticles.figures.style import save
-from fracparticles.figures.work_precision import time_to_accuracy as draw_bars
-from fracparticles.figures.work_precision import work_precision as draw_fronts
-from fracparticles.studies.common import Inputs
-from fracparticles.studies.run_times import reference_times, scattered_sums
-from fracparticles.studies.which_method import _off_the_front, run_time_goals, which_method
-from fracparticles.studies.work_precision import (
+from fracstudy.figures.work_precision import time_to_accuracy as draw_bars
+from fracstudy.figures.work_precision import work_precision as draw_fronts
+from fracstudy.inputs import Inputs
+from fracstudy.studies.run_times import reference_times, scattered_sums
+from fracstudy.studies.which_method import _off_the_front, run_time_goals, which_method
+from fracstudy.studies.work_precision import (
     best,
     front,
     time_to_accuracy,
     trials_of,
     work_precision,
 )
+from fracstudy.style import save
 
 NAN = float("nan")
 # family, variant, group, error, set-up, solve, extrapolated

@@ -8,12 +8,12 @@ from snakemake.exceptions import WorkflowError
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[name] = "1"
 
-from fracparticles import plan
-from fracparticles.benchmarks import BENCHMARKS
 from fracparticles.errors import InvalidInput
-from fracparticles.figures import FIGURES
-from fracparticles.sources import sources_of
-from fracparticles.studies import STUDIES
+from fracstudy import plan
+from fracstudy.benchmarks import BENCHMARKS
+from fracstudy.figures import FIGURES
+from fracstudy.sources import sources_of
+from fracstudy.studies import STUDIES
 
 try:
     STUDY = plan.read_config(config)
@@ -25,9 +25,11 @@ REPORT = Path(STUDY.report_dir)
 SCENES = STUDY.scenes
 CASES, BATCHES = plan.batches(SCENES, STUDY.smoke)
 
-PACKAGE = Path("src/fracparticles")
+SRC = Path("src")
+PACKAGE = SRC / "fracparticles"
+STUDY_PACKAGE = SRC / "fracstudy"
 # What a run depends on, and nothing else: editing a plot reruns no solver.
-CORE = sources_of(PACKAGE / "solver.py", PACKAGE)
+CORE = sources_of(PACKAGE / "run/solver.py", SRC)
 # The printed claims, by the letter that the inventory gives a document.
 PRINTED = {
     "L": "report/printed/lucchesi2020.yaml",
@@ -38,7 +40,7 @@ PRINTED = {
 # What is compiled together: the solver, and what only some scenes need.
 AREAS = {
     "core": CORE,
-    "random_walk": [str(PACKAGE / "random_walk.py")],
+    "random_walk": [str(PACKAGE / "moving/random_walk.py")],
     "sph": sorted(map(str, PACKAGE.glob("sph/*.py"))),
 }
 BENCHMARK_SCENES = [name for name, scene in SCENES.items() if scene.benchmarks]
@@ -59,13 +61,13 @@ def run_files(scene):
 
 def study_sources(scene):
     """The source files that a scene's study is made of; to read runs it does not take what makes them."""
-    study = PACKAGE / f"studies/{STUDIES[SCENES[scene].study]}.py"
-    return sources_of(study, PACKAGE, ends=[PACKAGE / "dataset.py"])
+    study = STUDY_PACKAGE / f"studies/{STUDIES[SCENES[scene].study]}.py"
+    return sources_of(study, SRC, ends=[PACKAGE / "run/dataset.py"])
 
 
 def benchmark_sources(benchmark):
     """The source files that a benchmark is made of."""
-    return sources_of(PACKAGE / f"benchmarks/{BENCHMARKS[benchmark]}.py", PACKAGE)
+    return sources_of(STUDY_PACKAGE / f"benchmarks/{BENCHMARKS[benchmark]}.py", SRC)
 
 
 def compiled_areas(scene):

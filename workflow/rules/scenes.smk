@@ -36,9 +36,9 @@ rule figure:
         series=RESULTS / "series/{scene}.csv",
         table=RESULTS / "tables/{scene}.csv",
         code=lambda wildcards: [
-            PACKAGE / "figures/style.py",
-            PACKAGE / "figures/fracparticles.mplstyle",
-            PACKAGE / f"figures/{FIGURES[SCENES[wildcards.scene].figure]}.py",
+            STUDY_PACKAGE / "style.py",
+            STUDY_PACKAGE / "fracstudy.mplstyle",
+            STUDY_PACKAGE / f"figures/{FIGURES[SCENES[wildcards.scene].figure]}.py",
         ],
     output:
         svg=report(RESULTS / "figures/{scene}.svg", category="Figures"),
@@ -56,7 +56,7 @@ rule ledger:
     input:
         findings=expand(RESULTS / "findings/{scene}.json", scene=SCENES),
         printed=list(PRINTED.values()),
-        code=[PACKAGE / "claims.py", PACKAGE / "ledger.py"],
+        code=[STUDY_PACKAGE / "claims.py", STUDY_PACKAGE / "ledger.py"],
     output:
         csv=report(LEDGER[0], category="Claims ledger"),
         md=LEDGER[1],
@@ -98,7 +98,7 @@ rule report:
             "report/template/report.html.j2",
             "report/template/style.css",
         ],
-        code=[PACKAGE / name for name in ("report.py", "claims.py", "ledger.py")],
+        code=[STUDY_PACKAGE / name for name in ("report.py", "claims.py", "ledger.py")],
     output:
         REPORT / "report.md",
         REPORT / "report.html",

@@ -3,8 +3,8 @@
 import sys
 from typing import Any
 
-from fracparticles.benchmarks import benchmark
-from fracparticles.dataset import write
+from fracparticles.run.dataset import write
+from fracstudy.benchmarks import benchmark
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

@@ -15,10 +15,10 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM1
 
 def core() -> None:
     """Every scheme, in one dimension, with few particles and with many, and in two; what only studies evaluate."""
-    from fracparticles.case import Case
-    from fracparticles.kernels import PAPER_ORDERS
+    from fracparticles.kernels.families import PAPER_ORDERS
+    from fracparticles.run.case import Case
+    from fracparticles.run.solver import solve
     from fracparticles.schemes import METHODS
-    from fracparticles.solver import solve
     from fracparticles.special import green_slope, tail_mass
 
     tail_mass(1.0, 1.0, 1.5)
@@ -40,7 +40,7 @@ def random_walk() -> None:
     """A few walkers."""
     import numpy as np
 
-    from fracparticles.random_walk import cell_counts, walk
+    from fracparticles.moving.random_walk import cell_counts, walk
 
     x = walk(np.zeros(10), 1.5, 1.0, np.random.default_rng(1), steps=2)
     cell_counts(x, 1.0, 4)

@@ -6,8 +6,8 @@ from typing import Any
 
 import pandas as pd
 
-from fracparticles.figures import figure
-from fracparticles.figures.style import save
+from fracstudy.figures import figure
+from fracstudy.style import save
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

@@ -3,8 +3,8 @@
 import sys
 from typing import Any
 
-from fracparticles.claims import read_claims, read_findings
-from fracparticles.ledger import ledger, write_ledger
+from fracstudy.claims import read_claims, read_findings
+from fracstudy.ledger import ledger, write_ledger
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from fracparticles.report import SceneEntry, build
+from fracstudy.report import SceneEntry, build
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

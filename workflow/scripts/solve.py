@@ -3,9 +3,9 @@
 import sys
 from typing import Any
 
-from fracparticles.case import Case
-from fracparticles.dataset import write
-from fracparticles.solver import solve
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import write
+from fracparticles.run.solver import solve
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

@@ -6,10 +6,10 @@ from typing import Any
 
 import pandas as pd
 
-from fracparticles.claims import read_claims, write_findings
-from fracparticles.dataset import read_benchmark
-from fracparticles.studies import Inputs, study
-from fracparticles.studies.common import excuse, write_table
+from fracparticles.run.dataset import read_benchmark
+from fracstudy.claims import read_claims, write_findings
+from fracstudy.inputs import excuse, write_table
+from fracstudy.studies import Inputs, study
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

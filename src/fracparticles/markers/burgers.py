@@ -26,12 +26,7 @@ from scipy.special import erfc, erfcinv, erfcx, ndtri_exp
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.profiles import inside
 from fracparticles.markers.solver import Flux
-from fracparticles.special.arguments import (
-    check_fields,
-    finite_result,
-    places,
-    scale,
-)
+from fracparticles.special.arguments import check_fields, finite_result, places, scale
 
 __all__ = ["PointSource", "burgers"]
 

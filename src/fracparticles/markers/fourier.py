@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.lagrangian import quotient_velocity
 from fracparticles.markers.shapes import SHAPES
 from fracparticles.markers.solver import Flux, MarkerVelocity, diffusion
-from fracparticles.sums.scattered import NonuniformFourierSum, ScatteredKernel
+from fracparticles.moving.lagrangian import quotient_velocity
+from fracparticles.moving.scattered import NonuniformFourierSum, ScatteredKernel
 
 __all__ = ["FourierMarkerVelocity"]
 

@@ -23,9 +23,7 @@ from fracparticles.special.arguments import (
     sampled,
     scale,
 )
-from fracparticles.special.arguments import (
-    generator as random_generator,
-)
+from fracparticles.special.arguments import generator as random_generator
 
 __all__ = ["equal_weight", "random", "uniform"]
 

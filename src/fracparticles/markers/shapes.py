@@ -26,8 +26,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from fracparticles.errors import InvalidInput
+from fracparticles.moving.scattered import ScatteredKernel
 from fracparticles.special.arguments import choice, finite_array, real_array, whole_number, within
-from fracparticles.sums.scattered import ScatteredKernel
 
 __all__ = ["SHAPES", "Shape", "shape_function"]
 

@@ -25,10 +25,9 @@ import numpy as np
 from scipy.special import erf, erfc
 
 from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.integrators.rkc import ChebyshevStep
-from fracparticles.lagrangian import quotient_velocity
 from fracparticles.markers.profiles import Gaussian
 from fracparticles.markers.solver import Flux, MarkerVelocity, warn_of_step
+from fracparticles.moving.lagrangian import quotient_velocity
 from fracparticles.special.arguments import (
     MOST_STEPS,
     SIZES,
@@ -44,6 +43,7 @@ from fracparticles.special.arguments import (
     scale,
     vector,
 )
+from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["GaussianSource", "advance_weights", "source_flux"]
 

@@ -9,13 +9,14 @@ from typing import Protocol
 
 import numpy as np
 
-from fracparticles.exterior import far_field
-from fracparticles.exterior_box import box_far_field
-from fracparticles.kernel_tables import KernelValues, tabulated
-from fracparticles.kernels import KERNELS, family_of, kernel, kernel_transform
-from fracparticles.kernels_high_order import wavenumber_reach
-from fracparticles.operators import ConvolutionOperator, LatticeOperator
-from fracparticles.sums import BOX_SUMMATIONS, SUMMATIONS
+from fracparticles.kernels.families import KERNELS, family_of, kernel, kernel_transform
+from fracparticles.kernels.high_order import wavenumber_reach
+from fracparticles.kernels.tabulated import KernelValues, tabulated
+from fracparticles.lattice.box import BOX_SUMMATIONS
+from fracparticles.lattice.exterior import far_field
+from fracparticles.lattice.exterior_box import box_far_field
+from fracparticles.lattice.operators import ConvolutionOperator, LatticeOperator
+from fracparticles.lattice.sums import SUMMATIONS
 
 __all__ = ["Method", "Scheme", "Setting", "lattice_transform", "one_pass_operator"]
 

@@ -14,10 +14,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.kernels import kernel
-from fracparticles.operators import LatticeOperator, TwoPassOperator
+from fracparticles.kernels.families import kernel
+from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.operators import LatticeOperator, TwoPassOperator
+from fracparticles.lattice.sums import SUMMATIONS
 from fracparticles.schemes.base import Setting, lattice_transform, present_sum
-from fracparticles.sums import SUMMATIONS, BandedConvolution
 
 NAME = "DPSE"
 TITLE = "Direct particle strength exchange"

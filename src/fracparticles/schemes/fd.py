@@ -17,7 +17,7 @@ from math import factorial, gamma
 import numpy as np
 from scipy.special import bernoulli, poch, zeta
 
-from fracparticles.operators import LatticeOperator
+from fracparticles.lattice.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, one_pass_operator
 
 NAME = "FD"

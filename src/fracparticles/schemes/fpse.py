@@ -14,13 +14,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.exterior import far_field
-from fracparticles.exterior_box import box_far_field
-from fracparticles.kernel_tables import KernelValues
-from fracparticles.kernels import kernel
-from fracparticles.operators import FluxDivergenceOperator, LatticeOperator, TwoPassOperator
+from fracparticles.kernels.families import kernel
+from fracparticles.kernels.tabulated import KernelValues
+from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.box import BOX_SUMMATIONS
+from fracparticles.lattice.exterior import far_field
+from fracparticles.lattice.exterior_box import box_far_field
+from fracparticles.lattice.operators import FluxDivergenceOperator, LatticeOperator, TwoPassOperator
+from fracparticles.lattice.sums import SUMMATIONS
 from fracparticles.schemes.base import Setting, lattice_transform, present_sum
-from fracparticles.sums import BOX_SUMMATIONS, SUMMATIONS, BandedConvolution
 
 NAME = "FPSE"
 TITLE = "Flux particle strength exchange"

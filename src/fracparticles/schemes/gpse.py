@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.kernel_tables import KernelValues
-from fracparticles.kernels import kernel
-from fracparticles.operators import LatticeOperator
+from fracparticles.kernels.families import kernel
+from fracparticles.kernels.tabulated import KernelValues
+from fracparticles.lattice.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
 
 NAME = "GPSE"

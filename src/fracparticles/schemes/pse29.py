@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.operators import LatticeOperator
+from fracparticles.lattice.operators import LatticeOperator
 from fracparticles.schemes import dd
 from fracparticles.schemes.base import Setting, one_pass_operator
 

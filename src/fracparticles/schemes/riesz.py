@@ -15,7 +15,7 @@ from math import gamma, pi, sqrt
 import numpy as np
 from scipy.special import kv
 
-from fracparticles.operators import LatticeOperator
+from fracparticles.lattice.operators import LatticeOperator
 from fracparticles.schemes.base import Setting, one_pass_operator
 
 NAME = "RIESZ"

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from fracparticles.special.hypergeometric import (
-    kummer,
-    kummer_order_four,
-    kummer_transformed,
-)
+from fracparticles.special.hypergeometric import kummer, kummer_order_four, kummer_transformed
 from fracparticles.special.stable import (
     central_mass,
     green,

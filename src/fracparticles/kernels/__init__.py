@@ -1,0 +1,1 @@
+"""The kernels of the schemes: by name and family, of high order, tabulated."""

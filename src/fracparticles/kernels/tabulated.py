@@ -1,0 +1,56 @@
+"""Kernels by linear interpolation in a table, as the paper evaluates F and G in two dimensions (Sec. 5).
+
+    K(r) ~ K(r_k) + (r - r_k) (K(r_{k+1}) - K(r_k)) / step,   r_k = k step <= r < r_{k+1}.
+
+The error is at most step^2 max|K''| / 8. The table is there to show what it does: the exact kernels are fast enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fracparticles.errors import InvalidInput
+from fracparticles.kernels.families import kernel
+
+__all__ = ["KernelValues", "tabulated"]
+
+_MOST_POINTS = 2**25  # of a table: 256 MB, and as much again to make it
+
+# kernel(name, r, alpha, dim=..., order=...)
+KernelValues = Callable[..., Any]
+
+
+def tabulated(step: float, family: str | None = None) -> KernelValues:
+    """Return a function with the parameters of `kernels.kernel` that interpolates in a table of this step.
+
+    Parameters
+    ----------
+    step : float
+        Step of the table, in units of the smoothing length.
+    family : str, optional
+        Family of the kernels, see `kernels.kernel`.
+
+    Raises
+    ------
+    InvalidInput
+        By the function, if the distances ask for a table of more than 2^25 points.
+    """
+
+    def values(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> np.ndarray:
+        size = np.abs(np.asarray(r, dtype=float))
+        largest = float(size.max(initial=0.0))
+        if not largest < _MOST_POINTS * step:
+            raise InvalidInput(
+                "kernel_table",
+                step,
+                f"at least {largest / _MOST_POINTS:.3g} for distances up to {largest:.4g} smoothing lengths",
+                "Take a larger step, or a narrower domain.",
+            )
+        points = step * np.arange(int(largest / step) + 2)
+        table = np.asarray(kernel(name, points, alpha, dim=dim, order=order, family=family))
+        return np.interp(size, points, table)
+
+    return values

@@ -1,0 +1,1 @@
+"""Sums and linear operators on a lattice, and what lies outside of it."""

@@ -1,0 +1,185 @@
+"""The far-field closure: the particles that a truncated lattice leaves out.
+
+Beyond the half-width D the solution falls like the fundamental solution, whose expansion (A.2) is in powers
+|x|^(-1-k alpha), k = 1, 2, ... Continue the lattice to infinity with the first terms of it,
+
+    u_j = sum_k a_k (n / |j|)^(1 + k alpha),   |j| > n,
+
+that meet the strengths at as many particles, n - p = n, 3 n / 4, n / 2 (and likewise on the left). A sum over
+particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p. With one term these are
+
+    right_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j},   left_i = parity * right_{-i},
+
+a rank-two update of the operator, computed once; each further term makes it two larger. Not in the papers, which
+truncate the lattice. A step of GPSE without the exterior lacks int_D E u dy ~ D^(-1-2 alpha); what each term leaves is
+smaller by another D^(-alpha).
+
+`far_field` takes w as a function of any real offset. `tabulated_far_field` takes a table of w_m, m = 0 .. M, beyond
+which w_m is a sum of powers b_l m^(-1-l alpha): with one, and one term of u, Huang & Oberman's far-field condition.
+The sum goes on to the offset M, and what is beyond is an integral. For one term of each and q = 1 + alpha,
+
+    right_i = sum''_{m <= M, i + m > n} w_m (n / (i + m))^q + b_1 int_M^inf (n / (i + y))^q y^(-1-alpha) dy,
+
+where '' halves the term m = M; the integral is n^q M^(-alpha-q) / (alpha + q) 2F1(q, alpha+q; alpha+q+1; -i/M).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.special import gamma, hyp2f1, roots_jacobi
+
+from fracparticles.lattice.fourier import valid_convolution
+from fracparticles.lattice.operators import FarField
+
+__all__ = ["continuation", "far_field", "tabulated_far_field", "tail_constant"]
+
+# Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
+# varies on the scale n and two terms leave a relative error of order n^-4.
+_NEAR = 4
+# Sums over j > 4 n are analytic in i / n in |i| <= 4 n and in n / j: these many nodes give round-off.
+_NODES = 24
+# Where the expansion meets the strengths: at n, 3 n / 4 and n / 2. Closer together, the fit would magnify round-off.
+# The last is where three terms are compared with a strength that they do not meet.
+_DEPTHS = (0.0, 0.25, 0.5, 0.625)
+
+
+def far_field(
+    weight: Callable[[np.ndarray], np.ndarray],
+    decay: float,
+    alpha: float,
+    n: int,
+    parity: int = 1,
+    pad: int = 0,
+    terms: int = 1,
+) -> FarField:
+    """Return the exterior sums for the lattice -n .. n, at i = -n-pad .. n+pad.
+
+    Parameters
+    ----------
+    weight : callable
+        w_m as a function of any real offset m, even or odd.
+    decay : float
+        w_m ~ |m|^(-decay) far away.
+    alpha : float
+        Fractional order.
+    n : int
+        Half the number of lattice intervals.
+    parity : {1, -1}
+        Whether w is even or odd.
+    pad : int
+        How many points beyond each end are wanted.
+    terms : {1, 2, 3}
+        Of the expansion that continues the solution.
+    """
+    i = np.arange(-n - pad, n + pad + 1)
+    depth, powers, fit = _expansion(n, alpha, terms)
+
+    j = np.arange(n + 1, _NEAR * n + 1)
+    offsets = np.arange(i[0] - j[-1], i[-1] - j[0] + 1)
+    sums = valid_convolution((n / j) ** powers[:, None], weight(offsets.astype(float)))
+
+    # The tail at Chebyshev points of i, and from there to every i by barycentric interpolation.
+    angle = (np.arange(_NODES) + 0.5) * (np.pi / _NODES)
+    nodes = (n + pad) * np.cos(angle)
+    for mode, power in zip(sums, powers, strict=True):
+        tail = _tails(weight, decay, power, n, nodes)
+        mode += np.polynomial.chebyshev.Chebyshev.fit(
+            nodes, tail, _NODES - 1, domain=[-(n + pad), n + pad]
+        )(i)
+    return _far_field_of(depth, fit.T @ sums, parity)
+
+
+def _tails(
+    weight: Callable[[np.ndarray], np.ndarray],
+    decay: float,
+    power: float,
+    n: int,
+    i: np.ndarray,
+) -> np.ndarray:
+    """Return sum_{j > 4 n} (n / j)^power w_{i-j} for each i.
+
+    Euler-Maclaurin from the midpoint X = 4 n + 1/2: sum f(j) = int_X^inf f + f'(X) / 24 - ...; the integral
+    by Gauss-Jacobi quadrature in v = X / j, where f(j) dj is v^(power+decay-2) times a smooth function.
+    """
+    start = _NEAR * n + 0.5
+    exponent = power + decay - 2.0
+    nodes, quadrature = roots_jacobi(_NODES, 0.0, exponent)
+    v = 0.5 * (1.0 + nodes)
+    ends = np.array([start - 0.5, start + 0.5])
+    w = weight(i[:, None] - np.concatenate([start / v, ends]))
+    smooth = w[:, :-2] * v**-decay
+    integral = start * (n / start) ** power * (smooth @ quadrature) / 2.0 ** (exponent + 1.0)
+    f = (n / ends) ** power * w[:, -2:]
+    return np.asarray(integral + (f[:, 1] - f[:, 0]) / 24.0)
+
+
+def tabulated_far_field(
+    w: np.ndarray, n: int, alpha: float, amplitudes: Sequence[float], terms: int = 1
+) -> FarField:
+    """Return the exterior sums for the lattice -n .. n at its own points, for an even w.
+
+    Parameters
+    ----------
+    w : array, shape (M + 1,)
+        w_m for m = 0 .. M, M > 2 n.
+    n : int
+        Half the number of lattice intervals.
+    alpha : float
+        Fractional order.
+    amplitudes : sequence of float
+        b_l of w_m ~ sum_l b_l m^(-1-l alpha), l = 1, 2, ...
+    terms : {1, 2, 3}
+        Of the expansion that continues the solution.
+    """
+    depth, powers, fit = _expansion(n, alpha, terms)
+    last = w.size - 1
+    i = np.arange(-n, n + 1)
+    k = np.arange(n + 1, n + last + 1)
+    present = np.zeros(2 * n + last)  # w_{i-k} for the offsets i - k = -2 n - M .. -1, nil beyond M
+    present[2 * n :] = w[:0:-1]
+    present[2 * n] *= 0.5
+    sums = valid_convolution((n / k) ** powers[:, None], present)
+    for mode, q in zip(sums, powers, strict=True):
+        for decay, b in zip(alpha * np.arange(1, len(amplitudes) + 1), amplitudes, strict=True):
+            beyond = hyp2f1(q, decay + q, decay + q + 1.0, -i / last)
+            mode += b * n**q * float(last) ** (-decay - q) / (decay + q) * beyond
+    return _far_field_of(depth, fit.T @ sums, parity=1)
+
+
+def continuation(
+    u: np.ndarray, n: int, alpha: float, terms: int = 1
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the expansion of the exterior where it was not made to meet u: the next depth inward, at either side.
+
+    Returns
+    -------
+    places : array of int, shape (2,)
+        Indices into u.
+    values : array, shape (2,)
+        What the expansion says there.
+    """
+    depth, powers, fit = _expansion(n, alpha, terms)
+    p = round(n * _DEPTHS[terms])
+    modes = (n / (n - p)) ** powers @ fit
+    return np.array([2 * n - p, p]), np.array([modes @ u[2 * n - depth], modes @ u[depth]])
+
+
+def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the depths p, the powers 1 + k alpha, and in row k how much a_k takes of each strength that is met."""
+    powers = 1.0 + alpha * np.arange(1, terms + 1)
+    depth = np.array([round(n * share) for share in _DEPTHS[:terms]])
+    return depth, powers, np.linalg.inv((n / (n - depth)[:, None]) ** powers)
+
+
+def _far_field_of(depth: np.ndarray, right: np.ndarray, parity: int) -> FarField:
+    return FarField(depth, right, np.ascontiguousarray(parity * right[:, ::-1]))
+
+
+def tail_constant(alpha: float) -> float:
+    """Return C of (-Laplacian)^(alpha/2) u(x) = C int (u(x) - u(y)) |x - y|^(-1-alpha) dy on the line.
+
+    C = 2^(alpha-1) alpha Gamma((1+alpha)/2) / (sqrt(pi) Gamma(1-alpha/2)) = Gamma(1+alpha) sin(pi alpha/2) / pi.
+    """
+    return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) / np.pi)

@@ -1,0 +1,1 @@
+"""Particles that move: sums over scattered particles, Lagrangian runs, DVM, remeshing, random walks."""

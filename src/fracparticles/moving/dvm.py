@@ -1,0 +1,167 @@
+r"""Diffusion velocity method (DVM), Eqs. (42)-(45):
+
+    dx_i/dt = v_i = Q(x_i) / u(x_i),     U_i = V_i u_i constant,
+    u(x) = sum_j U_j eta_eps(x - x_j),                                                  (45), eta of (8), (9)
+    Q(x) = -(D / eps^beta) sum_j U_j F_eps(x - x_j),                                    (19), F of (20), (21)
+
+the diffusion written as an advection by the flux per unit of the field. The particles carry their strengths along,
+so that the total is constant; the particles spread, and are redistributed onto the lattice when they are too far
+apart (`remeshing`). For the fundamental solution the velocity is exactly x / (alpha t).
+
+Stability: in a uniform field a displacement wave xi exp(i k x) of the particles changes at the rate
+-D |k|^alpha eta^(k eps) xi, aliases neglected, which is DD's symbol. So the midpoint rule is stable for
+D dt / h^alpha <= a with DD's a, although the strengths never change. At the ends of a truncated set, where the
+particles run into the void, the step is limited sooner, by what the remeshing of wide gaps makes of the field.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fracparticles.errors import InvalidInput
+from fracparticles.moving.lagrangian import History, Observer, Remeshing, advance, quotient_velocity
+from fracparticles.moving.scattered import scattered_sum, smooth_kernel
+from fracparticles.special.arguments import fractional_order, positive_real, real_array
+
+LATTICES = ("initial", "extended")
+
+
+class DiffusionVelocity:
+    """v(x_i) of Eq. (44).
+
+    Parameters
+    ----------
+    alpha : float
+        Fractional order, alpha = 1 + beta.
+    order : {2, 4}
+        Order of the kernels.
+    epsilon : float
+        Smoothing length.
+    diffusivity : float
+        D of Eq. (2).
+    summation : {"fft", "naive"}
+        See `sums.scattered`.
+    """
+
+    def __init__(
+        self,
+        alpha: float,
+        order: int,
+        epsilon: float,
+        diffusivity: float = 1.0,
+        summation: str = "fft",
+    ) -> None:
+        self.alpha, self.order = fractional_order(alpha), order
+        self.epsilon = positive_real("epsilon", epsilon)
+        self.diffusivity = positive_real("diffusivity", diffusivity)
+        kernels = [smooth_kernel(name, alpha, order) for name in ("eta", "F")]
+        self._sums = scattered_sum(summation, kernels, epsilon)
+
+    def field_and_flux(
+        self, x: np.ndarray, strength: np.ndarray, z: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return u, Eq. (45), and Q, Eq. (19), at the points z, or at the particles themselves."""
+        u, f = self._sums(x, strength, z)
+        return u, -(self.diffusivity / self.epsilon ** (self.alpha - 1.0)) * f
+
+    def __call__(self, x: np.ndarray, strength: np.ndarray) -> np.ndarray:
+        """Return v(x_i), Eq. (44).
+
+        Raises
+        ------
+        FieldNotPositive
+            If u vanishes or changes sign at a particle.
+        """
+        u, flux = self.field_and_flux(x, strength)
+        return quotient_velocity(flux, u, x, self._sums.accuracy)
+
+
+@dataclass(frozen=True)
+class ParticleRun:
+    """The particles at the end of a run.
+
+    Attributes
+    ----------
+    x, strength : array, shape (N,)
+        Positions and strengths U_i.
+    history : History
+    velocity : DiffusionVelocity
+    """
+
+    x: np.ndarray
+    strength: np.ndarray
+    history: History
+    velocity: DiffusionVelocity
+
+    def field(self, z: np.ndarray) -> np.ndarray:
+        """Return the field u(z) = sum_j U_j eta_eps(z - x_j), Eq. (7)."""
+        return self.velocity.field_and_flux(self.x, self.strength, z)[0]
+
+
+def run(
+    x: np.ndarray,
+    u: np.ndarray,
+    *,
+    spacing: float,
+    alpha: float,
+    dt: float,
+    steps: int,
+    order: int = 2,
+    overlap: float = 2.0,
+    diffusivity: float = 1.0,
+    start: float = 0.0,
+    remeshing: str = "M4'",
+    remesh_above: float = 1.5,
+    lattice: str = "initial",
+    threshold: float = 0.0,
+    summation: str = "fft",
+    observe: Observer | None = None,
+) -> ParticleRun:
+    """Advance the field u, given at particles of volume h, by `steps` midpoint steps.
+
+    Parameters
+    ----------
+    x, u : array, shape (N,)
+        Positions, and the field there: the strengths are U_i = h u_i.
+    spacing : float
+        h.
+    overlap : float
+        epsilon / h.
+    remeshing : {"M4'", "Lambda3", "none"}
+    lattice : {"initial", "extended"}
+        Whether remeshing keeps to the initial lattice, as the paper's does, so that what has left it is lost, or
+        goes on as far as the particles need, which conserves the total.
+    remesh_above, threshold, start, observe
+        See `lagrangian`.
+
+    Raises
+    ------
+    InvalidInput
+        If the arguments cannot be worked with.
+    NonFiniteSolution
+        If the run cannot go on.
+    """
+    spacing, overlap = positive_real("spacing", spacing), positive_real("overlap", overlap)
+    x = real_array("x", x)
+    if lattice not in LATTICES:
+        raise InvalidInput("lattice", lattice, f"one of {', '.join(LATTICES)}", "Choose one.")
+    if remeshing == "none":
+        redistribution = None
+    else:
+        ends = (float(x.min()), float(x.max())) if lattice == "initial" else None
+        redistribution = Remeshing(remeshing, spacing, remesh_above, ends)
+    velocity = DiffusionVelocity(alpha, order, overlap * spacing, diffusivity, summation)
+    x, strength, history = advance(
+        x,
+        spacing * real_array("u", u),
+        velocity,
+        dt=dt,
+        steps=steps,
+        start=start,
+        remeshing=redistribution,
+        threshold=threshold,
+        observe=observe,
+    )
+    return ParticleRun(x, strength, history, velocity)

@@ -1,0 +1,317 @@
+r"""Particles of constant strength, carried by a velocity that follows from all of them:
+
+    dx_i/dt = v(x_i),     U_i constant,                                                           (43)
+
+in steps of the midpoint rule. It serves every conservation law u_t + (v u)_x = 0 whose velocity is a flux divided
+by the field, v = Q / u, both of them sums over the particles (`sums.scattered`).
+
+Rules
+- Order does not matter. Particles that coincide are two strengths in one place: they stay together, since the
+  velocity has one value there. Particles that overtake one another do so because dt is too large for the velocity
+  gradient; the sums and remeshing remain what they are, and the history counts the steps that changed the order.
+- Particles whose strength is at most `threshold` of the largest are left out at the start and after every
+  remeshing, at threshold 0 those of no strength (or one that underflowed); the history keeps the total left out.
+- A remeshing may be given ends: what it puts beyond them is left out too, and the history keeps that total apart.
+- The field must have one sign at all particles, above the accuracy of the sums; else `FieldNotPositive`.
+- A velocity or a position that is not finite, or a particle so far out that the sums cannot hold it, is an error
+  too. All name the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
+from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh
+from fracparticles.special.arguments import (
+    MOST_STEPS,
+    choice,
+    finite_real,
+    function,
+    instance,
+    operand,
+    pair,
+    positions,
+    positive_integer,
+    real_between,
+    scale,
+    vector,
+)
+
+__all__ = ["FieldNotPositive", "History", "Remeshing", "advance", "quotient_velocity"]
+
+Velocity = Callable[[np.ndarray, np.ndarray], np.ndarray]
+Observer = Callable[[float, np.ndarray, np.ndarray], None]
+
+
+class FieldNotPositive(NonFiniteSolution):
+    """The field vanishes or changes sign at a particle, where a velocity Q / u has no meaning."""
+
+
+@dataclass(frozen=True)
+class Remeshing:
+    """When and how to redistribute the particles onto the lattice x_p = p h.
+
+    Attributes
+    ----------
+    name : {"M4'", "Lambda3"}
+        See `remeshing`.
+    spacing : float
+        Lattice spacing h.
+    above : float
+        Remesh after a step that leaves two neighbours farther apart than `above` h.
+    ends : tuple of two floats or None
+        The first and last lattice point kept; None: the lattice goes on as far as the particles need.
+    """
+
+    name: str
+    spacing: float
+    above: float = 1.5
+    ends: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        choice("remeshing", self.name, REMESHINGS)
+        object.__setattr__(self, "spacing", scale("spacing", self.spacing))
+        object.__setattr__(self, "above", real_between("remesh_above", self.above, 1.0))
+        if self.above == 1.0:
+            raise InvalidInput("remesh_above", self.above, "a number above 1", "Give 1.5.")
+        if self.ends is not None:
+            ends = tuple(finite_real("ends", end) for end in pair("ends", self.ends))
+            if not ends[0] < ends[1]:
+                raise InvalidInput("ends", self.ends, "two increasing numbers", "Mend their order.")
+            object.__setattr__(self, "ends", ends)
+
+
+@dataclass
+class History:
+    """What happened on the way.
+
+    Attributes
+    ----------
+    remeshing_times, spacings_before, spacings_where : list of float
+        For each remeshing the time, the largest spacing before it and the middle of that gap.
+    particles : list of int
+        The number of particles at the start and after each remeshing.
+    total_initial, total_final : float
+        Total strength given, and at the end.
+    eliminated_count, eliminated_strength
+        Particles left out because of the threshold, and their total strength.
+    lost_strength : float
+        Total strength of what remeshing put beyond its ends.
+    overtaking_steps : int
+        Steps that changed the order of the particles: two that were in different places changed sides.
+    largest_spacing : float
+        The largest spacing after any step.
+    velocity_evaluations : int
+    """
+
+    remeshing_times: list[float] = field(default_factory=list)
+    spacings_before: list[float] = field(default_factory=list)
+    spacings_where: list[float] = field(default_factory=list)
+    particles: list[int] = field(default_factory=list)
+    total_initial: float = 0.0
+    total_final: float = 0.0
+    eliminated_count: int = 0
+    eliminated_strength: float = 0.0
+    lost_strength: float = 0.0
+    overtaking_steps: int = 0
+    largest_spacing: float = 0.0
+    velocity_evaluations: int = 0
+
+    @property
+    def remeshings(self) -> int:
+        """How often the particles were redistributed."""
+        return len(self.remeshing_times)
+
+
+def quotient_velocity(flux: Any, u: Any, x: Any, accuracy: float = 0.0) -> np.ndarray:
+    """Return v = Q / u at the particles, Eq. (44).
+
+    Parameters
+    ----------
+    flux, u, x : array, shape (N,)
+        Q and u at the particles, and where they are.
+    accuracy : float
+        The error of u relative to its largest modulus.
+
+    Raises
+    ------
+    InvalidInput
+        If the arrays do not fit together.
+    FieldNotPositive
+        Unless u has one sign and is larger than its error at all particles; names the worst place.
+    NonFiniteSolution
+        If the velocity is not finite.
+    """
+    u = operand("u", u, np.shape(u) if isinstance(u, np.ndarray) else vector("u", u).shape)
+    if u.ndim != 1 or not u.size:
+        raise InvalidInput(
+            "u", f"array of shape {u.shape}", "a field at the particles", "Give one."
+        )
+    flux, x = operand("flux", flux, u.shape), operand("x", x, u.shape)
+    top = int(np.argmax(np.abs(u)))
+    signed = np.copysign(1.0, u[top]) * u
+    worst = int(np.argmin(signed))
+    if not signed[worst] > accuracy * signed[top]:
+        raise FieldNotPositive(
+            f"the field is {u[worst]:.3g} at the particle x = {x[worst]:.6g} and {u[top]:.3g} at its peak "
+            f"x = {x[top]:.6g}: a velocity Q / u needs a field of one sign, larger than "
+            f"{accuracy:.0e} of its peak. Leave out weak particles by a larger threshold, or mend the data."
+        )
+    with np.errstate(over="ignore", invalid="ignore"):
+        velocity = flux / u
+    if not np.isfinite(velocity).all():
+        where = x[~np.isfinite(velocity)][0]
+        raise NonFiniteSolution(f"the velocity Q / u is not finite at the particle x = {where:.6g}")
+    return velocity
+
+
+def advance(
+    x: Any,
+    strength: Any,
+    velocity: Velocity,
+    *,
+    dt: float,
+    steps: int,
+    start: float = 0.0,
+    remeshing: Remeshing | None = None,
+    threshold: float = 0.0,
+    observe: Observer | None = None,
+) -> tuple[np.ndarray, np.ndarray, History]:
+    """Advance the particles by `steps` midpoint steps: x* = x + dt/2 v(x), x <- x + dt v(x*).
+
+    Parameters
+    ----------
+    x, strength : array, shape (N,)
+        Positions and strengths U_i at time `start`.
+    velocity : callable
+        v(x, strength), shape (N,).
+    dt, steps : float, int
+    start : float
+        Time at the start, for the history, the observer and messages.
+    remeshing : Remeshing or None
+    threshold : float
+        See the rules of the module.
+    observe : callable, optional
+        observe(t, x, strength), called at the start and after every step (and its remeshing). It must not change
+        the arrays; x is a new array at every step.
+
+    Returns
+    -------
+    x, strength : array
+    history : History
+
+    Raises
+    ------
+    InvalidInput
+        If the arguments cannot be worked with.
+    NonFiniteSolution
+        If the run cannot go on; `FieldNotPositive` if that is for the field. Both with the step and the time.
+    """
+    x = positions("x", x).copy()
+    strength = vector("strength", strength, x.size).copy()
+    dt, steps, start = (
+        scale("dt", dt),
+        positive_integer("steps", steps, most=MOST_STEPS),
+        finite_real("start", start),
+    )
+    function("velocity", velocity)
+    if remeshing is not None:
+        instance("remeshing", remeshing, Remeshing)
+    if observe is not None:
+        function("observe", observe)
+    history = History(total_initial=float(strength.sum()))
+    x, strength = _keep(x, strength, threshold, history)
+    history.particles.append(x.size)
+    order = None if (x[1:] >= x[:-1]).all() else np.argsort(x, kind="stable")
+    if observe is not None:
+        observe(start, x, strength)
+    for n in range(1, steps + 1):
+        time = start + n * dt
+        try:
+            halfway = _moved(x, 0.5 * dt, velocity(x, strength))
+            moved = _moved(x, dt, velocity(halfway, strength))
+            _require_finite(moved, x)
+            spacing, where, order = _largest_gap(x, moved, order, history)
+            if remeshing is not None and spacing > remeshing.above * remeshing.spacing:
+                history.remeshing_times.append(time)
+                history.spacings_before.append(spacing)
+                history.spacings_where.append(where)
+                moved, strength = _redistribute(moved, strength, remeshing, history)
+                moved, strength = _keep(moved, strength, threshold, history)
+                history.particles.append(moved.size)
+                order = None
+        except FracparticlesError as error:
+            if isinstance(error, InvalidInput) and error.field == "velocity":
+                raise  # it is not made for particles
+            kind = FieldNotPositive if isinstance(error, FieldNotPositive) else NonFiniteSolution
+            raise kind(
+                f"step {n} of {steps}, from t = {time - dt:.6g} to {time:.6g}: {error}"
+            ) from error
+        x = moved
+        if observe is not None:
+            observe(time, x, strength)
+    history.velocity_evaluations = 2 * steps
+    history.total_final = float(strength.sum())
+    return x, strength, history
+
+
+def _keep(
+    x: np.ndarray, strength: np.ndarray, threshold: float, history: History
+) -> tuple[np.ndarray, np.ndarray]:
+    kept = eliminate(x, strength, threshold)
+    history.eliminated_count += kept.count
+    history.eliminated_strength += kept.eliminated
+    return kept.x, kept.strength
+
+
+def _redistribute(
+    x: np.ndarray, strength: np.ndarray, remeshing: Remeshing, history: History
+) -> tuple[np.ndarray, np.ndarray]:
+    x, strength = remesh(x, strength, remeshing.spacing, remeshing.name)
+    if remeshing.ends is None:
+        return x, strength
+    slack = 0.25 * remeshing.spacing  # the ends are lattice points, up to round-off
+    inside = (x > remeshing.ends[0] - slack) & (x < remeshing.ends[1] + slack)
+    history.lost_strength += float(strength[~inside].sum())
+    return x[inside], strength[inside]
+
+
+def _require_finite(moved: np.ndarray, x: np.ndarray) -> None:
+    finite = np.isfinite(moved)
+    if not finite.all():
+        raise NonFiniteSolution(f"the particle from x = {x[~finite][0]:.6g} went to infinity")
+
+
+def _moved(x: np.ndarray, time: float, velocity: Any) -> np.ndarray:
+    v = operand("velocity", velocity, x.shape)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return x + time * v
+
+
+def _largest_gap(
+    x: np.ndarray, moved: np.ndarray, order: np.ndarray | None, history: History
+) -> tuple[float, float, np.ndarray | None]:
+    """Return the largest distance between neighbours, the middle of that gap, and the order after the step.
+
+    `order` sorts x, the positions before; it is None where they are in order as they are.
+    """
+    if moved.size < 2:
+        return 0.0, float(moved[0]), None
+    now = moved if order is None else moved[order]
+    gap = np.diff(now)
+    if gap.min() < 0.0:
+        # Particles that were in one place had no order.
+        now = moved[np.lexsort((moved, x))]
+        history.overtaking_steps += int(np.diff(now).min() < 0.0)
+        order = np.argsort(moved, kind="stable")
+        now = moved[order]
+        gap = np.diff(now)
+    widest = int(np.argmax(gap))
+    largest = float(gap[widest])
+    history.largest_spacing = max(history.largest_spacing, largest)
+    return largest, float(0.5 * (now[widest] + now[widest + 1])), order

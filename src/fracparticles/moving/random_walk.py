@@ -1,0 +1,294 @@
+"""The random walk: Levy flights with exact increments, the contrast at the end of Sec. 4.1.
+
+A walker moves by independent symmetric stable increments,
+
+    X(t + dt) = X(t) + (D dt)^(1/alpha) S,        E exp(i k S) = exp(-|k|^alpha),
+
+S of density L_alpha^0. The sum of two increments over dt/2 has the law of one over dt, so that walkers which
+start at 0 have the density G(x, D t) of (36) exactly, for any number of steps: all the error is statistical.
+
+With V uniform on (-pi/2, pi/2) and W exponential of mean 1,
+
+    S = sin(alpha V) / cos(V)  (W cos(V) / cos((alpha - 1) V))^((alpha - 1)/alpha),
+
+Chambers, Mallows and Stuck (1976), J. Amer. Statist. Assoc. 71, 340-344, the symmetric case.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaln, xlog1py, xlogy
+
+from fracparticles._compiled import njit
+from fracparticles.errors import InvalidInput
+from fracparticles.special.arguments import (
+    MOST,
+    fractional_order,
+    positions,
+    positive_integer,
+    real_array,
+    scale,
+    within,
+)
+from fracparticles.special.arguments import generator as random_generator
+from fracparticles.special.stable import tail_mass
+
+__all__ = [
+    "cell_counts",
+    "cell_masses",
+    "distribution",
+    "expected_deviation",
+    "kolmogorov_smirnov",
+    "stable_variates",
+    "walk",
+]
+
+FloatArray = NDArray[np.float64]
+
+_CHUNK = 2**14  # walkers at a time: their random numbers stay in the cache
+_SCALES = 1e-100, 1e100  # of an increment; nothing made of them overflows
+_MOST_WALKERS = 10**9  # beyond, the logarithms in `expected_deviation` lose digits
+
+
+# --- the walk -------------------------------------------------------------------------------------
+
+
+def stable_variates(alpha: float, size: int, generator: np.random.Generator) -> FloatArray:
+    """Return independent S with the density L_alpha^0.
+
+    Parameters
+    ----------
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    size : int
+        How many.
+    generator : numpy.random.Generator
+        The source of random numbers.
+
+    Returns
+    -------
+    ndarray, shape (size,)
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    return walk(np.zeros(positive_integer("size", size, most=MOST)), alpha, 1.0, generator)
+
+
+def walk(
+    x: Any,
+    alpha: float,
+    time: float,
+    generator: np.random.Generator,
+    steps: int = 1,
+    diffusivity: float = 1.0,
+) -> FloatArray:
+    """Return where walkers at x are after `time`: x + sum over the steps of (D dt)^(1/alpha) S.
+
+    Walkers at 0 end with the density G(x, D time). The same generator state gives the same walk.
+
+    Parameters
+    ----------
+    x : array_like, shape (walkers,)
+        Positions to start from; left as they are.
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    time : float
+        Duration, in `steps` equal steps.
+    generator : numpy.random.Generator
+        The source of random numbers.
+    steps : int
+        Number of steps; the law of the end does not depend on it.
+    diffusivity : float
+        D of Eq. (2).
+
+    Returns
+    -------
+    ndarray, shape (walkers,)
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range, or (D dt)^(1/alpha) is beyond 1e-100 .. 1e100.
+    """
+    position = positions("x", x).copy()
+    alpha = fractional_order(alpha)
+    time, diffusivity = scale("time", time), scale("diffusivity", diffusivity)
+    steps = positive_integer("steps", steps)
+    generator = random_generator("generator", generator)
+    # The logarithm of the scale, which itself may overflow.
+    logarithm = (math.log(time) - math.log(steps) + math.log(diffusivity)) / alpha
+    if not math.log(_SCALES[0]) <= logarithm <= math.log(_SCALES[1]):
+        raise InvalidInput(
+            "time",
+            time,
+            f"a time with (D dt)^(1/alpha) between {_SCALES[0]:g} and {_SCALES[1]:g}",
+            "Change the units of length or time.",
+        )
+    for first in range(0, position.size, _CHUNK):
+        part = position[first : first + _CHUNK]
+        uniform, exponential = np.empty_like(part), np.empty_like(part)
+        for _ in range(steps):
+            generator.random(out=uniform)
+            generator.standard_exponential(out=exponential)
+            _add_increments(part, math.exp(logarithm), alpha, uniform, exponential)
+    return position
+
+
+@njit()
+def _add_increments(x, scale, alpha, uniform, exponential):
+    power = (alpha - 1.0) / alpha
+    for i in range(x.size):
+        # cos(v) > 0 for every double: at u = 0, -pi/2 in double precision, it is 6e-17.
+        v = math.pi * (uniform[i] - 0.5)
+        cosine = math.cos(v)
+        ratio = exponential[i] * cosine / math.cos((alpha - 1.0) * v)
+        x[i] += scale * math.sin(alpha * v) / cosine * ratio**power
+
+
+# --- the density of walkers, and the exact one ----------------------------------------------------
+
+
+def cell_counts(x: Any, half_width: float, cells: int, ensembles: int = 1) -> NDArray[np.int64]:
+    """Count the walkers in equal cells of [-half_width, half_width), for disjoint ensembles.
+
+    Parameters
+    ----------
+    x : array_like, shape (walkers,)
+        Positions; the ensembles are consecutive parts of equal size, a remainder is left out.
+    half_width : float
+        Half-width of the interval.
+    cells : int
+        Number of cells.
+    ensembles : int
+        Number of ensembles, at most that of walkers.
+
+    Returns
+    -------
+    ndarray of int, shape (ensembles, cells)
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    x, half_width = positions("x", x), scale("half_width", half_width)
+    cells, ensembles = positive_integer("cells", cells), positive_integer("ensembles", ensembles)
+    if ensembles > x.size:
+        raise InvalidInput(
+            "ensembles", ensembles, f"at most the {x.size} walkers", "Take fewer ensembles."
+        )
+    if cells * ensembles > MOST:
+        raise InvalidInput("cells", cells, f"at most {MOST} of all ensembles", "Take fewer.")
+    counts = np.zeros((ensembles, cells), dtype=np.int64)
+    _count(x, half_width, 0.5 * cells / half_width, counts)
+    return counts
+
+
+@njit()
+def _count(x, half_width, cells_per_length, counts):
+    ensembles, cells = counts.shape
+    size = x.size // ensembles
+    for e in range(ensembles):
+        for i in range(e * size, (e + 1) * size):
+            place = (x[i] + half_width) * cells_per_length
+            if 0.0 <= place < cells:
+                counts[e, int(place)] += 1
+
+
+def cell_masses(edges: Any, t: float, alpha: float) -> FloatArray:
+    """Return int G(x, t) dx over each cell, the probability p of a walker to be in it.
+
+    Parameters
+    ----------
+    edges : array_like, shape (cells + 1,)
+        The edges, rising; they may be infinite.
+    t : float
+        Time, t > 0.
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+
+    Returns
+    -------
+    ndarray, shape (cells,)
+
+    Raises
+    ------
+    InvalidInput
+        If the edges do not rise, or an argument is outside its range.
+    """
+    edges = real_array("edges", edges)
+    if edges.ndim != 1 or edges.size < 2 or not (edges[1:] > edges[:-1]).all():
+        raise InvalidInput("edges", edges, "two or more rising numbers", "Sort them.")
+    beyond = 0.5 * np.asarray(tail_mass(np.abs(edges), t, alpha))
+    left, right = beyond[:-1], beyond[1:]
+    # Differences of the tail on either side of 0: those of the distribution would cancel there.
+    one_sided = np.where(edges[:-1] >= 0.0, left - right, right - left)
+    return np.where((edges[:-1] < 0.0) & (edges[1:] > 0.0), 1.0 - left - right, one_sided)
+
+
+def distribution(x: Any, t: float, alpha: float) -> FloatArray:
+    """Return F(x, t), the integral of G from minus infinity to x.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    x = real_array("x", x)
+    beyond = 0.5 * np.asarray(tail_mass(np.abs(x), t, alpha))
+    return np.where(x < 0.0, beyond, 1.0 - beyond)
+
+
+def kolmogorov_smirnov(x: Any, t: float, alpha: float) -> float:
+    """Return max |F_n(x) - F(x, t)|, F_n the share of the n walkers to the left of x.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    exact = distribution(np.sort(positions("x", x)), t, alpha)
+    steps = np.arange(exact.size + 1) / exact.size
+    return float(max((steps[1:] - exact).max(), (exact - steps[:-1]).max()))
+
+
+def expected_deviation(masses: Any, walkers: int) -> FloatArray:
+    """Return E |N/n - p| for the number N of n independent walkers in a cell of mass p.
+
+    With m the whole part of n p, plus 1, it is 2 (m/n) (n over m) p^m (1 - p)^(n - m + 1) (de Moivre 1730),
+    for large n p the square root of 2 p (1 - p) / (pi n).
+
+    Parameters
+    ----------
+    masses : array_like
+        p, any shape.
+    walkers : int
+        n, at most 1e9.
+
+    Returns
+    -------
+    ndarray
+        Same shape as the masses.
+
+    Raises
+    ------
+    InvalidInput
+        If a mass is not within [0, 1], or `walkers` is outside its range.
+    """
+    p, n = real_array("masses", masses), positive_integer("walkers", walkers)
+    within("masses", p, 0.0, 1.0)
+    if n > _MOST_WALKERS:
+        raise InvalidInput(
+            "walkers", n, f"at most {_MOST_WALKERS:g}", "Use the square root of 2 p (1 - p)/(pi n)."
+        )
+    m = np.minimum(np.floor(n * p) + 1.0, n)  # p = 1 gives 0 either way
+    logarithm = gammaln(n + 1.0) - gammaln(m + 1.0) - gammaln(n - m + 1.0)
+    logarithm += xlogy(m, p) + xlog1py(n - m + 1.0, -p)
+    return 2.0 * m / n * np.exp(logarithm)

@@ -1,0 +1,348 @@
+"""Initial strengths: the fundamental solution, an array with labels or without, a callable, or a NetCDF file.
+
+Data that say where they are, by coordinates x, y, z, are taken by these: sorted, transposed and cast where that is
+safe, and refused where the points are not those of the case. Data that say what they are, a run of this package, must
+be a solution of the same equation at `t_initial`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import sys
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.special.arguments import real_array
+from fracparticles.special.stable import green
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+__all__ = [
+    "Initial",
+    "bare_strengths",
+    "case_of_run",
+    "initial_strengths",
+    "read_strengths",
+    "refuse_non_finite",
+]
+
+Initial: TypeAlias = "str | os.PathLike[str] | np.ndarray | xr.DataArray | xr.Dataset | pd.Series | Callable[..., Any]"
+
+_FLOAT64 = np.dtype(float)
+_AXES = ("x", "y", "z")
+_GIVEN = "given, sha256 "  # of a stored case whose data came with the call
+# What a run says of itself -> the field of the case that must be the same.
+_SAYS = {"beta": "beta", "diffusivity": "diffusivity", "dim": "dim", "t_final": "t_initial"}
+
+
+def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.ndarray, str]:
+    """Return the initial strengths on `case.positions` and one line on where they come from.
+
+    Parameters
+    ----------
+    case : Case
+    initial : array, DataArray, Dataset, Series, callable or path, optional
+        An array of shape `case.shape`; labelled data with u on the coordinates x (y, z) of the case, in any order; a
+        function of `case.positions`, of arrays or of single numbers, a constant included; a NetCDF file with u on
+        these coordinates. Without it, what `case.initial` says.
+
+    Raises
+    ------
+    InvalidInput
+        If the data do not fit the case: kind, shape, points, masked or non-finite values; if they are a run of another
+        equation or at another time; if the case was stored from other data.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the data have no time of their own and `t_initial` was not given.
+    """
+    source = case.initial if initial is None else initial
+    if isinstance(source, str) and source == FUNDAMENTAL:
+        case.refuse_point_mass()
+        x = case.x if case.dim == 1 else case.radius
+        u0 = np.asarray(green(x, case.diffusivity * case.t_initial, case.alpha, case.dim))
+        return u0, f"fundamental solution at t = {case.t_initial:g}"
+    if isinstance(source, str) and source.startswith(_GIVEN):
+        raise InvalidInput(
+            "initial",
+            source,
+            "'fundamental' or a file, unless the data come with the call: a stored case cannot hold them",
+            "Pass the data again: fp.solve(case, data).",
+        )
+    given: Any
+    if isinstance(source, str | os.PathLike):
+        given, what = _read(Path(source)), f"file {os.fspath(source)}"
+    elif callable(source):
+        given, what = _evaluated(source, case), "callable"
+    else:
+        given, what = source, "array"
+    u0, has_time = _on_lattice(case, given, what)
+    refuse_non_finite(u0, case.x)
+    digest = hashlib.sha256(u0.tobytes()).hexdigest()[:16]
+    if case.initial.startswith(_GIVEN) and case.initial != _GIVEN + digest:
+        raise InvalidInput(
+            "initial",
+            f"data of sha256 {digest}",
+            f"the data that the case was run from, of sha256 {case.initial.removeprefix(_GIVEN)}",
+            "Pass these, or make a case without initial.",
+        )
+    if not has_time and "t_initial" not in case.model_fields_set:
+        warnings.warn(
+            f"the initial data are your own and t_initial was not given: they are taken as those at t_initial = "
+            f"{case.t_initial:g}, so that the run spans t_final - t_initial = {case.t_final - case.t_initial:g}. "
+            "Give t_initial.",
+            AccuracyWarning,
+            stacklevel=4,
+        )
+    return u0, f"{what}, sha256 {digest}"
+
+
+def read_strengths(path: str | Path, case: Case) -> np.ndarray:
+    """Read initial strengths u from a NetCDF file whose points are those of the case, in any order.
+
+    Variables other than u, its coordinates and what a run says of itself are left alone.
+
+    Raises
+    ------
+    InvalidInput
+        If the file cannot be read, holds no u on x (y, z), lies on another lattice, holds values that are missing or
+        not finite, or is a run of another equation or time.
+    """
+    u0, _ = _on_lattice(case, _read(Path(path)), f"file {os.fspath(path)}")
+    refuse_non_finite(u0, case.x)
+    return u0
+
+
+def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """Return strengths of that shape as a float64 array; nothing is done to what is one.
+
+    Raises
+    ------
+    InvalidInput
+        If they are of another shape or kind, masked or labelled.
+    """
+    if type(u0) is np.ndarray and u0.dtype is _FLOAT64 and u0.shape == shape:  # a tenth of the rest
+        return u0
+    if type(u0) is not np.ndarray and _labels(u0) is not None:
+        raise InvalidInput(
+            "initial",
+            type(u0).__name__,
+            "a bare array, whose order is that of case.positions",
+            "Pass the labelled data to fp.solve, which takes them by their labels, or their values.",
+        )
+    u0 = _real(u0)
+    if u0.shape != shape:
+        raise InvalidInput(
+            "initial",
+            f"array of shape {u0.shape}",
+            f"an array of shape {shape}, one strength for each particle of the lattice",
+            "Evaluate the data on case.positions.",
+        )
+    return u0
+
+
+def refuse_non_finite(u0: np.ndarray, x: np.ndarray) -> None:
+    """Refuse strengths that are nan or infinite; x are the positions along one axis.
+
+    Raises
+    ------
+    InvalidInput
+        With the first place.
+    """
+    if np.isfinite(u0).all():
+        return
+    where = x[np.argwhere(~np.isfinite(u0))[0]]
+    raise InvalidInput(
+        "initial",
+        f"not finite at x = {', '.join(f'{part:g}' for part in where)}",
+        "finite strengths",
+        "Mend the data, or shift a singularity off the lattice.",
+    )
+
+
+def case_of_run(case: Case, origin: str) -> Case:
+    """Return the case with an `initial` that says where its run came from, as `initial_strengths` put it.
+
+    Data that came with the call are named by their digest: without them, or with others, that case is refused.
+    """
+    if origin.startswith(FUNDAMENTAL):
+        return case
+    what, _, digest = origin.rpartition(", sha256 ")
+    initial = what.removeprefix("file ") if what.startswith("file ") else _GIVEN + digest
+    if initial == FUNDAMENTAL or (initial.startswith(_GIVEN) and what.startswith("file ")):
+        initial = os.path.join(".", initial)  # a file of that name
+    return case if initial == case.initial else case.model_copy(update={"initial": initial})
+
+
+def _evaluated(function: Callable[..., Any], case: Case) -> Any:
+    """The values of the callable at the particles; one that takes single numbers only is asked for each."""
+    positions = case.positions
+    try:
+        values = function(*positions)
+    except Exception as error:
+        error.add_note(
+            "It was raised by the initial data, a callable, for the arrays case.positions."
+        )
+        if not isinstance(error, TypeError | ValueError):
+            raise
+        try:
+            points = np.broadcast_arrays(*positions)
+            each = zip(*(part.reshape(-1).tolist() for part in points), strict=True)
+            values = np.array([function(*point) for point in each]).reshape(case.shape)
+        except Exception as other:
+            error.add_note(f"For single numbers: {type(other).__name__}: {other}")
+            raise error from None
+    if _labels(values) is not None:
+        return values
+    values = _real(values)
+    # A constant, or one along an axis, which `case.positions` leave to broadcasting.
+    along = case.dim > 1 and values.ndim == case.dim
+    if values.ndim == 0 or (along and set(values.shape) <= {1, case.shape[0]}):
+        return np.broadcast_to(values, case.shape)
+    return values
+
+
+def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
+    """The strengths, a new array of `case.shape`, and whether the data say at which time they are."""
+    data = _labels(given)
+    if data is None:
+        return np.array(bare_strengths(given, case.shape)), False
+    name = what.removeprefix("file ") if what.startswith("file ") else type(given).__name__
+    told = _told(data)
+    _check_equation(case, told, name)
+    axes = _AXES[: case.dim]
+    wanted = f"u({', '.join(axes)}) and the coordinates {', '.join(axes)}"
+    if "u" not in data.variables:
+        raise InvalidInput(
+            "initial", name, wanted, f"It holds {', '.join(map(str, data.variables)) or 'nothing'}."
+        )
+    u = data["u"]
+    others = [dim for dim in u.dims if dim not in axes]
+    sizes = ", ".join(f"{dim}: {size}" for dim, size in u.sizes.items())
+    if not set(axes) <= set(u.dims) or any(u.sizes[dim] != 1 for dim in others):
+        raise InvalidInput(
+            "initial",
+            name,
+            f"{wanted}, and other dimensions of length one only",
+            f"The dimensions of u are ({sizes}): select one of the others, name the axes so.",
+        )
+    missing = [axis for axis in axes if axis not in data.variables]
+    if missing:
+        raise InvalidInput(
+            "initial", name, wanted, f"Store {', '.join(missing)}, which u does not have."
+        )
+    u = u.squeeze(others, drop=True).transpose(*axes)
+    strengths = u.values
+    for axis, label in enumerate(axes):
+        strengths = np.take(strengths, _order(case, data[label].values, label, name), axis)
+    return np.array(bare_strengths(strengths, case.shape)), "t_final" in told
+
+
+def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
+    """The indices that sort the points of an axis, which must be those of the case to the precision of their type."""
+    lattice, h = case.x, case.particle_spacing
+    allowed = (
+        f"u on the {case.particles} points of case.positions, {lattice.size} along {label}, h = {h:.9g} and "
+        f"|{label}| <= {case.domain:.9g}"
+    )
+    remedy = "Set half_width and spacing to match, or interpolate the data onto case.positions."
+    if x.dtype.kind not in "iuf" or x.ndim != 1 or not np.isfinite(x).all():
+        raise InvalidInput("initial", name, f"finite real numbers as {label}", "Store numbers.")
+    if x.size != lattice.size:
+        raise InvalidInput(
+            "initial", name, allowed, f"It has {x.size} points along {label}. {remedy}"
+        )
+    order = np.argsort(x, kind="stable")
+    deviation = np.abs(x[order].astype(np.float64) - lattice)
+    rounding = 0.0 if x.dtype.kind != "f" else float(np.finfo(x.dtype).eps) * case.domain
+    worst = int(deviation.argmax())
+    if deviation[worst] > max(1e-9 * h, rounding) or deviation[worst] >= 0.25 * h:
+        raise InvalidInput(
+            "initial",
+            name,
+            allowed,
+            f"Sorted, its points are up to {deviation[worst] / h:.3g} h off these: {label} = "
+            f"{float(x[order[worst]])!r} for {float(lattice[worst])!r}. {remedy}",
+        )
+    return order
+
+
+def _check_equation(case: Case, told: dict[str, float], name: str) -> None:
+    """A run goes on where another ended only if both solve the same equation."""
+    for said, field in _SAYS.items():
+        if said not in told or math.isclose(told[said], getattr(case, field), rel_tol=1e-9):
+            continue
+        raise InvalidInput(
+            "initial",
+            name,
+            f"data of {field} = {getattr(case, field):.9g}, as the case has it, and these are a run of {said} = "
+            f"{told[said]:.9g}",
+            f"Set {field} = {told[said]:.9g}. If the numbers alone are meant, pass a bare array, run.u.values.",
+        )
+
+
+def _told(data: xr.Dataset) -> dict[str, float]:
+    """What the data say of themselves by scalar variables, or else by the case that they were stored with."""
+    try:
+        stored = json.loads(data.attrs.get("case", "{}"))
+    except (TypeError, ValueError, RecursionError):
+        stored = {}
+    told = {} if not isinstance(stored, dict) else {name: stored.get(name) for name in _SAYS}
+    for name in _SAYS:
+        if name in data.variables and data.variables[name].size == 1:
+            told[name] = data.variables[name].values.item()
+    return {
+        name: float(value)
+        for name, value in told.items()
+        if isinstance(value, int | float) and math.isfinite(value)
+    }
+
+
+def _labels(given: Any) -> xr.Dataset | None:
+    """The data as a data set if they have labels; none for bare data. Nothing is imported that the data are not of."""
+    pandas = sys.modules.get("pandas")
+    if pandas is not None and isinstance(given, pandas.DataFrame):
+        raise InvalidInput(
+            "initial",
+            "DataFrame",
+            "an array, or a Series of u with x as its index",
+            "Take a column.",
+        )
+    if pandas is not None and isinstance(given, pandas.Series):
+        if isinstance(given.index, pandas.RangeIndex):  # counted, not labelled
+            return None
+        from xarray import DataArray
+
+        given = DataArray(given.to_numpy(), {"x": given.index.to_numpy()}, "x")
+    xarray = sys.modules.get("xarray")
+    if xarray is None:
+        return None
+    if isinstance(given, xarray.DataArray):
+        coordinates = {n: part.variable for n, part in given.coords.items() if n != "u"}
+        return xarray.Dataset({"u": given.variable}, coordinates)
+    return given if isinstance(given, xarray.Dataset) else None
+
+
+def _read(path: Path) -> xr.Dataset:
+    from fracparticles.run.dataset import load
+
+    return load(path, ("u", *_AXES, *_SAYS))
+
+
+def _real(values: Any) -> np.ndarray:
+    """The values as float64; those that are are not looked at, so that a later check says where one is not finite."""
+    if type(values) is np.ndarray and values.dtype == np.float64:
+        return values
+    return real_array("initial", values)

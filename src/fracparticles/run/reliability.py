@@ -1,0 +1,272 @@
+"""What the strengths of a run say of its accuracy: estimates for the data set, and warnings where they are not small.
+
+No estimate knows the exact solution. Each looks at one assumption of the schemes:
+
+resolution
+    s theta, s = epsilon / h, with the wavenumber of the initial data from sin(theta / 2) = |delta u| / (2 |u|), delta
+    the difference of neighbours, |.| the 2-norm. A kernel of order r damps a wave like (s theta / 2)^r.
+wave_error
+    The greatest |p(A dt)^n - exp(-T D |k|^alpha)|, from the symbol of A, over some waves that the data hold: of their
+    wavenumber, a half, and a quarter of it, and the one that decays to 1/e. It sees an overlap too small, a first
+    order, a coarse time step.
+growth
+    max |u(t_f)| / max |u(t_i)|, at most 1 for the equation.
+table_error
+    T |(A - A') u| / |u|, A' with interpolated kernels, A with exact ones, |.| the 1-norm.
+outside_share
+    The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles; on a
+    truncated lattice at least what of a point mass leaves it during the run: ends that absorb leave nothing there.
+tail_misfit
+    How far the powers that continue u in an open exterior are from strengths that they were not made to meet.
+far_field_error
+    tail_misfit x outside_share x the share that travels from the outside well into the lattice, int_{|x| > L/2} of the
+    fundamental solution for the time of the run.
+decay
+    T |A(0)|, the exponent by which a constant decays on the infinite lattice, where it should stay: the scheme DD at an
+    overlap too small.
+round_off
+    64 T |lambda| 2^-52: an application of A is exact to some 2^-53 |lambda|, and the recurrence of a series adds to it.
+
+They cost a few passes over the strengths.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fracparticles.errors import AccuracyWarning
+from fracparticles.lattice.exterior import continuation
+from fracparticles.lattice.exterior_box import box_continuation
+from fracparticles.schemes import METHODS, SCHEMES
+from fracparticles.special.stable import central_mass
+from fracparticles.time import STEP_POLYNOMIALS
+
+if TYPE_CHECKING:
+    from fracparticles.run.case import Case
+
+__all__ = ["Estimates", "estimates", "warn_if_doubtful"]
+
+Estimates = dict[str, tuple[float, str]]
+
+# Above these a warning is given.
+_RESOLUTION = 1.0  # an error of a quarter in the operator, at order II
+_GROWTH = 1.1
+_WAVE = 0.05
+_OUTSIDE = 0.05  # of the mass
+_FAR_FIELD = 5e-5
+_ROUND_OFF = 1e-6
+_ULPS = 64.0  # measured, of a Chebyshev series, with sums by transforms and with a matrix alike
+_DECAY = 0.01
+_SURFACE = {1: 2.0, 2: 2.0 * np.pi, 3: 4.0 * np.pi}  # of the unit sphere
+
+
+def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
+    """Return each estimate by name, with what it is in words.
+
+    Parameters
+    ----------
+    case : Case
+    u0, u : array, shape `case.shape`
+        Initial and final strengths.
+    """
+    smoothing = 1.0 if case.scheme in ("GPSE", "FD") else case.epsilon_over_h
+    found = {
+        "resolution": (
+            smoothing * wavenumber(u0),
+            "epsilon times the wavenumber of the initial data",
+        ),
+        "growth": (
+            _ratio(np.abs(u).max(), np.abs(u0).max()),
+            "greatest |u| over that at t_initial",
+        ),
+    }
+    if case.scheme == "DVM":  # its particles spread with the solution
+        return found
+    span = case.t_final - case.t_initial
+    low, high = (span * case.setting.rate * value for value in case.symbol_range)
+    found["decay"] = (
+        max(0.0, -high),
+        "exponent by which a constant decays on the infinite lattice",
+    )
+    found["round_off"] = (
+        -_ULPS * 2.0**-52 * low,
+        "what the round-off of the operator may add up to",
+    )
+    found["wave_error"] = (
+        wave_error(case, u0),
+        "error in the amplitude of waves that the data hold",
+    )
+    if case.kernel_table is not None:
+        found["table_error"] = (
+            table_error(case, u0, u),
+            "error of the interpolated kernels over the run",
+        )
+    outside = max(outside_share(case, u0), outside_share(case, u))
+    if case.exterior == "truncated":
+        outside = max(outside, _beyond(case, case.domain))
+    found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
+    if case.exterior == "open":
+        misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
+        found["tail_misfit"] = (misfit, "relative misfit of the powers that continue u")
+        found["far_field_error"] = (
+            misfit * outside * _beyond(case, 0.5 * case.domain),
+            "estimated relative error of the far field",
+        )
+    return found
+
+
+def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates) -> None:
+    """Warn where an estimate is not small, with the numbers and with what would do.
+
+    Warns
+    -----
+    AccuracyWarning
+        One for each estimate that is too large.
+    """
+    h, value = case.particle_spacing, {name: number for name, (number, _) in found.items()}
+    complaints = []
+    if not np.any(u0):
+        complaints.append(
+            f"the initial strengths are zero at all particles, |x| <= {case.domain:.6g}. "
+            "Move the data onto the lattice, or widen it."
+        )
+    if value["resolution"] > _RESOLUTION:
+        theta = wavenumber(u0)
+        smoothing = value["resolution"] / theta * h
+        complaints.append(
+            f"the initial data vary over the length {h / theta:.3g}, which particles of spacing h = {h:.3g} and "
+            f"smoothing length {smoothing:.3g} do not resolve. Take spacing <= "
+            f"{0.25 * h / value['resolution']:.2g} and see whether the result changes, or wider data."
+        )
+    if value.get("wave_error", 0.0) > _WAVE:
+        complaints.append(
+            f"waves of the length that the initial data hold come out wrong by {value['wave_error']:.2g} of their "
+            f"amplitude. Take a smaller spacing, an overlap of about 2 (now {case.epsilon_over_h:.3g}), a smaller "
+            "time step, or another scheme."
+        )
+    if value.get("table_error", 0.0) > _WAVE:
+        complaints.append(
+            f"the kernels interpolated in a table of step {case.kernel_table:.3g} leave a relative error of up to "
+            f"{value['table_error']:.2g} over this run. Take a smaller kernel_table, or leave it out."
+        )
+    if value["growth"] > _GROWTH:
+        place = np.unravel_index(int(np.abs(u).argmax()), u.shape)
+        where = ", ".join(f"{case.x[k]:.4g}" for k in place)
+        complaints.append(
+            f"the greatest |u| has grown by the factor {value['growth']:.4g}, which the equation does not allow; it is "
+            f"at x = {where} of |x| <= {case.domain:.4g}. At an end of the lattice it is a layer of the truncated "
+            "scheme: take a wider lattice. Elsewhere the scheme is unstable: take a larger overlap or a smaller step."
+        )
+    if value.get("outside_share", 0.0) > _OUTSIDE:
+        could_open = case.exterior != "open" and "open" in METHODS[case.scheme].EXTERIORS
+        remedy = "take a wider lattice" + (" or exterior='open'" if could_open else "")
+        complaints.append(
+            f"the solution does not fit on |x| <= {case.domain:.4g}: about {value['outside_share']:.2g} of it lies "
+            f"beyond, or has left. To solve on the whole space, {remedy}."
+        )
+    if value.get("far_field_error", 0.0) > _FAR_FIELD:
+        complaints.append(
+            f"the far field leaves a relative error of about {value['far_field_error']:.1g}: the powers that continue "
+            f"u beyond |x| = {case.domain:.4g} miss the strengths inside by {value['tail_misfit']:.1g}. "
+            "Take a wider lattice."
+        )
+    if value.get("decay", 0.0) > _DECAY:
+        complaints.append(
+            f"{case.scheme} of order {case.order} at overlap = {case.epsilon_over_h:.4g} makes every constant decay, "
+            f"by exp(-{value['decay']:.3g}) over this run. Take a larger overlap."
+        )
+    if value.get("round_off", 0.0) > _ROUND_OFF:
+        complaints.append(
+            f"the round-off of the operator may add up to {value['round_off']:.1g} over this run: T |lambda| = "
+            f"{value['round_off'] / _ULPS * 2.0**52:.2g}. Take a larger spacing or a shorter time."
+        )
+    for complaint in complaints:
+        warnings.warn(complaint, AccuracyWarning, stacklevel=4)
+
+
+def wavenumber(u: np.ndarray) -> float:
+    """Return theta = k h of sin(theta / 2) = |delta u| / (2 |u|), the greatest over the axes; 0 for u = 0."""
+    size = np.abs(u).max()
+    if size == 0.0:
+        return 0.0
+    u = u / size
+    norm = np.sqrt(np.sum(u * u))
+    slopes = [np.diff(u, axis=axis) for axis in range(u.ndim)]
+    half_sine = max(float(np.sqrt(np.sum(slope * slope))) for slope in slopes) / (2.0 * norm)
+    return 2.0 * float(np.arcsin(min(half_sine, 1.0)))
+
+
+def table_error(case: Case, *strengths: np.ndarray) -> float:
+    """Return the most that the interpolation of the kernels may make of the strengths over the run; see the module."""
+    scheme, setting = SCHEMES[case.scheme], case.setting
+    exact, table = (
+        scheme.operator(replace(setting, kernel_table=step)) for step in (None, case.kernel_table)
+    )
+    flat = [u.reshape(-1) for u in strengths]
+    span = case.t_final - case.t_initial
+    return span * max(
+        _ratio(np.abs(table.apply(u) - exact.apply(u)).sum(), np.abs(u).sum()) for u in flat
+    )
+
+
+def outside_share(case: Case, u: np.ndarray) -> float:
+    """Return the share of int |u| that lies beyond the lattice, if |u| goes on as c |x|^(-n-alpha)."""
+    lattice = np.abs(u)
+    if lattice.max() == 0.0:
+        return 0.0
+    dim, alpha, half = case.dim, case.alpha, case.domain
+    edges = [
+        (np.take(lattice, k, axis), np.take(case.radius, k, axis) / half)
+        for axis in range(dim)
+        for k in (0, -1)
+    ]
+    # c in units of L^(n+alpha), the mean over the boundary.
+    c = np.mean([np.mean(strength * radius ** (dim + alpha)) for strength, radius in edges])
+    beyond = c * _SURFACE[dim] * half**dim / alpha
+    return float(beyond / (beyond + case.particle_spacing**dim * lattice.sum()))
+
+
+def tail_misfit(case: Case, u: np.ndarray) -> float:
+    """Return sum |v - u| / sum |u| over particles at which the continuation v of u was not made to meet it."""
+    if case.dim == 1:
+        places, continued = continuation(u, case.n, case.alpha, case.far_terms or 1)
+    else:
+        places, continued = box_continuation(u, case.n, case.alpha)
+    given = u.reshape(-1)[places]
+    return _ratio(np.abs(continued - given).sum(), np.abs(given).sum())
+
+
+def wave_error(case: Case, u: np.ndarray) -> float:
+    """Return the greatest error in the amplitude of some waves that u holds, along an axis; see the module."""
+    scheme = SCHEMES[case.scheme]
+    tau = case.setting.rate * (case.t_final - case.t_initial)
+    # The wavenumber of data that vary along every axis alike.
+    theta = np.sqrt(case.dim) * wavenumber(u) * np.array([1.0, 0.5, 0.25])
+    theta = np.unique(np.append(theta, min(theta[0], tau ** (-1.0 / case.alpha))))
+    family = {} if case.kernel_family is None else {"family": case.kernel_family}
+    along, dim = theta, {}
+    if case.dim > 1:
+        along, dim = theta[:, None] * np.eye(case.dim)[0], {"dim": case.dim}
+    symbol = scheme.symbol(along, case.alpha, case.order, case.epsilon_over_h, **dim, **family)
+    with np.errstate(over="ignore"):
+        if case.steps:
+            z = symbol * tau / case.steps
+            sign, exponent = STEP_POLYNOMIALS[case.method].log_power(z, case.steps)
+            amplitude = sign * np.exp(exponent)
+        else:
+            amplitude = np.exp(tau * symbol)
+    return float(np.abs(amplitude - np.exp(-tau * theta**case.alpha)).max())
+
+
+def _beyond(case: Case, radius: float) -> float:
+    """int_{|x| > radius} of the fundamental solution for the time of the run."""
+    time = case.diffusivity * (case.t_final - case.t_initial)
+    return 1.0 - float(central_mass(radius, time, case.alpha, case.dim))
+
+
+def _ratio(part: float, whole: float) -> float:
+    return float(part / whole) if whole > 0.0 else 0.0

@@ -1,0 +1,399 @@
+"""Run a case: `prepare` and then `solve` on bare arrays, or `solve` to a data set at once."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fracparticles.errors import (
+    FracparticlesError,
+    InvalidInput,
+    NonFiniteSolution,
+    StabilityWarning,
+)
+from fracparticles.lattice.operators import LatticeOperator
+from fracparticles.moving import dvm
+from fracparticles.run.case import Case
+from fracparticles.run.initial import Initial, bare_strengths, initial_strengths, refuse_non_finite
+from fracparticles.run.reliability import Estimates, estimates, warn_if_doubtful
+from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.spectrum import largest_degree, spectral_interval
+from fracparticles.schemes.stability import grows
+from fracparticles.special.stable import central_mass, green
+from fracparticles.time import (
+    STEP_POLYNOMIALS,
+    Flow,
+    applied,
+    euler_step,
+    exponential_flow,
+    power_flow,
+    step,
+)
+from fracparticles.time.propagator import propagator
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fracparticles.moving.dvm import ParticleRun
+
+__all__ = [
+    "Prepared",
+    "Solution",
+    "advect",
+    "compute",
+    "initial_strengths",
+    "matrix_of",
+    "prepare",
+    "relative_l1_error",
+    "solve",
+]
+
+_LARGEST_MATRIX = 16384  # particles
+_NO_GROWTH = 1e-3  # over the run, as an exponent
+Advance = Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a run computes.
+
+    Attributes
+    ----------
+    case : Case
+    x : array, shape (N,)
+        Positions along an axis.
+    u0, u : array, shape (N,) * dim
+        Initial and final strengths on the lattice; for DVM the final field (7) there.
+    operator_applications : int
+        How often the operator was applied, or the velocity evaluated.
+    initial : str
+        Where the initial data came from.
+    particles : ParticleRun, optional
+        For DVM, the particles themselves and what happened to them.
+    estimates : dict
+        What the strengths say of the accuracy, see `reliability`.
+    """
+
+    case: Case
+    x: np.ndarray
+    u0: np.ndarray
+    u: np.ndarray
+    operator_applications: int
+    initial: str
+    particles: ParticleRun | None = None
+    estimates: Estimates = field(default_factory=dict)
+
+
+def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
+    """Run a case.
+
+    Parameters
+    ----------
+    case : Case
+        The run.
+    initial : array, labelled data, callable or path, optional
+        Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
+        function of `case.positions` (of x; of x and y; of x, y and z); or a NetCDF file that holds u. Without it the
+        run starts from what `case.initial` says, by default the fundamental solution at `case.t_initial`.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `dataset.to_dataset`.
+
+    Raises
+    ------
+    InvalidInput
+        If the initial data do not fit the case.
+    NonFiniteSolution
+        If the run blows up.
+
+    Warns
+    -----
+    StabilityWarning
+        If some wave grows.
+    AccuracyWarning
+        If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
+        have no time, and t_initial was not given.
+    """
+    from fracparticles.run.dataset import to_dataset
+
+    return to_dataset(compute(case, initial))
+
+
+def compute(case: Case, initial: Initial | None = None) -> Solution:
+    """Run a case and return its arrays: `solve` without the data set.
+
+    Warns
+    -----
+    StabilityWarning
+        If some wave grows.
+    AccuracyWarning
+        If the strengths say that they may be far from the solution, see `reliability`.
+    """
+    u0, origin = initial_strengths(case, initial)
+    particles = None
+    if case.scheme == "DVM":
+        warn_if_unstable(case)
+        particles = advect(case, u0)
+        u, applications = particles.field(case.x), particles.history.velocity_evaluations
+    else:
+        u, applications = prepare(case).run(u0)
+    found = estimates(case, u0, u)
+    warn_if_doubtful(case, u0, u, found)
+    return Solution(case, case.x, u0, u, applications, origin, particles, found)
+
+
+def advect(case: Case, u0: np.ndarray) -> ParticleRun:
+    """Run DVM, whose particles move, and return them.
+
+    Parameters
+    ----------
+    case : Case
+        Of scheme "DVM".
+    u0 : array, shape `case.shape`
+        Initial strengths.
+
+    Raises
+    ------
+    NonFiniteSolution
+        If the run blows up.
+    """
+    try:
+        return dvm.run(
+            case.x,
+            u0,
+            spacing=case.particle_spacing,
+            alpha=case.alpha,
+            order=case.order,
+            overlap=case.epsilon_over_h,
+            diffusivity=case.diffusivity,
+            start=case.t_initial,
+            dt=case.time_step,
+            steps=case.steps,
+            remeshing=case.remeshing or "M4'",
+            remesh_above=1.5 if case.remesh_above is None else case.remesh_above,
+            threshold=case.threshold or 0.0,
+            summation=case.summation,
+        )
+    except NonFiniteSolution as error:
+        raise _named(case, error) from None
+
+
+def warn_if_unstable(case: Case) -> None:
+    """Warn, with the numbers, if some wave grows: outside the stability interval, or where the symbol is positive.
+
+    A single step of GPSE, the whole run, cannot grow; whoever takes it for its speed does not pay for its limit.
+
+    Warns
+    -----
+    StabilityWarning
+    """
+    if case.scheme == "GPSE" and case.steps == 1:
+        return
+    low, high = case.symbol_range
+    exponent = (case.t_final - case.t_initial) * case.setting.rate * high
+    if grows(low, high):
+        if exponent > _NO_GROWTH:
+            warnings.warn(
+                f"{case.scheme} of order {case.order} amplifies some waves at overlap = {case.epsilon_over_h:.4g}, "
+                f"beta = {case.beta:g}, whatever the time step: by exp({exponent:.4g}) over this run. The run is "
+                "computed as it is. Take a larger overlap, or a lower order.",
+                StabilityWarning,
+                stacklevel=3,
+            )
+    elif case.time_step > case.largest_stable_step:
+        warnings.warn(
+            f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
+            f"{case.method}: at most {case.largest_stable_step:.6g} is stable. The run is computed as it is.",
+            StabilityWarning,
+            stacklevel=3,
+        )
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A case made ready: all that does not depend on the initial data.
+
+    For bare arrays, again and again: nothing is estimated on the way, as `solve` of the module does. `reliability`
+    takes the arrays, too. Threads may share it; they take turns at the operator.
+
+    Attributes
+    ----------
+    case : Case
+    operator : LatticeOperator
+        A; for the convolution in time the whole run.
+    operator_applications : int
+        How often a solve applies it, unless the data ask for more pieces (`integrators.pieces`).
+    advance : callable
+        From the strengths at `t_initial`, shape (N^dim,), to those at `t_final`.
+    shape : tuple of int
+        The lattice, (N,) * dim.
+    """
+
+    case: Case
+    operator: LatticeOperator
+    operator_applications: int
+    advance: Advance
+    shape: tuple[int, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "shape", self.case.shape)
+
+    def solve(self, u0: np.ndarray) -> np.ndarray:
+        """Return the strengths at `t_final` from those at `t_initial`, both of the shape of the lattice.
+
+        Raises
+        ------
+        InvalidInput
+            If the strengths are not of that shape, not real, masked, or not finite.
+        NonFiniteSolution
+            With the scheme, the step and the time.
+        """
+        u0 = bare_strengths(u0, self.shape)
+        try:
+            if u0.ndim == 1:
+                return self.advance(u0)
+            return self.advance(u0.reshape(-1)).reshape(u0.shape)
+        except NonFiniteSolution as error:
+            refuse_non_finite(u0, self.case.x)  # looked at only when it may have been the data
+            raise _named(self.case, error) from None
+
+    def run(self, u0: np.ndarray) -> tuple[np.ndarray, int]:
+        """Return what `solve` does, and how often the operator was applied."""
+        if not isinstance(self.advance, Flow):
+            return self.solve(u0), self.operator_applications
+        u0 = bare_strengths(u0, self.shape)
+        try:
+            u, applications = self.advance.run(u0.reshape(-1))
+        except NonFiniteSolution as error:
+            refuse_non_finite(u0, self.case.x)
+            raise _named(self.case, error) from None
+        return u.reshape(u0.shape), applications
+
+    def as_matrix(self) -> np.ndarray:
+        """Return the whole run as one matrix, shape (N^dim, N^dim): u(t_final) = M u(t_initial).
+
+        For many initial data on few particles: up to some hundred a product with M is faster than any sum by FFT. It
+        takes N^dim solves.
+        """
+        return matrix_of(self.solve, self.shape)
+
+
+def matrix_of(solve: Advance, shape: tuple[int, ...]) -> np.ndarray:
+    """Return a linear map of arrays of that shape as a matrix, column by column: what it makes of the unit vectors.
+
+    Raises
+    ------
+    InvalidInput
+        If the matrix would take more than 2 GiB.
+    """
+    size = int(np.prod(shape))
+    if size > _LARGEST_MATRIX:
+        raise InvalidInput(
+            "particles",
+            size,
+            f"at most {_LARGEST_MATRIX} for a matrix",
+            "Use solve for each of the data.",
+        )
+    columns = [solve(unit).reshape(-1) for unit in np.eye(size).reshape(-1, *shape)]
+    return np.ascontiguousarray(np.array(columns).T)
+
+
+def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
+    """Do what does not depend on the initial data: kernels, transforms, far field, time series.
+
+    Parameters
+    ----------
+    case : Case
+        The run; not of DVM, whose particles move.
+    operator : LatticeOperator, optional
+        The operator of the case, if it is there already.
+
+    Raises
+    ------
+    InvalidInput
+        For DVM.
+    NonFiniteSolution
+        If the time steps would overflow.
+    """
+    if case.scheme == "DVM":
+        raise InvalidInput(
+            "scheme",
+            case.scheme,
+            "a scheme whose particles stay on the lattice",
+            "Use solve: DVM's operator depends on the solution.",
+        )
+    if case.evaluation == "convolution":
+        operator = _lattice_sum(case)
+        return Prepared(case, operator, 1, partial(applied, operator))
+    if operator is None:
+        operator = SCHEMES[case.scheme].operator(case.setting)
+    warn_if_unstable(case)
+    if case.steps_taken:
+        polynomial, dt, steps = STEP_POLYNOMIALS[case.method], case.time_step, case.steps
+        applications = steps * polynomial.stages
+        if applications == 1:
+            return Prepared(case, operator, 1, partial(euler_step, operator, dt))
+        return Prepared(
+            case, operator, applications, partial(step, operator, polynomial, dt, steps)
+        )
+    low, high = spectral_interval(case, operator)
+    most = largest_degree(case, operator)
+    try:
+        if case.method == "exponential":
+            flow = exponential_flow(operator, case.t_final - case.t_initial, low, high, most)
+        else:
+            polynomial = STEP_POLYNOMIALS[case.method]
+            flow = power_flow(operator, polynomial, case.time_step, case.steps, low, high, most)
+    except NonFiniteSolution as error:
+        raise _named(case, error) from None
+    except FracparticlesError as error:
+        raise InvalidInput(
+            "t_final",
+            case.t_final,
+            f"a time that can be reached: {error}",
+            "Take a shorter run, or a larger spacing.",
+        ) from None
+    return Prepared(case, operator, flow.operator_applications, flow)
+
+
+def _lattice_sum(case: Case) -> LatticeOperator:
+    """Return the run on the infinite lattice as one lattice sum: exp(A t), or the steps of GPSE."""
+    setting = case.setting
+    family = {} if setting.family is None else {"family": setting.family}
+    scaled_time = (case.t_final - case.t_initial) * setting.rate
+
+    def amplification(theta: np.ndarray) -> np.ndarray:
+        symbol = SCHEMES[case.scheme].symbol(
+            theta, case.alpha, setting.order, setting.overlap, **family
+        )
+        if case.method == "exponential":
+            return np.exp(scaled_time * symbol)
+        return (1.0 + scaled_time / case.steps * symbol) ** case.steps
+
+    return propagator(
+        amplification, case.alpha, scaled_time, setting.n, setting.exterior, setting.far_terms
+    )
+
+
+def _named(case: Case, error: NonFiniteSolution) -> NonFiniteSolution:
+    return NonFiniteSolution(f"{case.scheme} (order {case.order}): {error}")
+
+
+def relative_l1_error(case: Case, u: np.ndarray) -> float:
+    """Return the error against the fundamental solution, Eqs. (48), (59), over |x| <= `case.error_radius`.
+
+    sum_i V_i |u_i - G(x_i, t_f)| / int |G(x, t_f)| dx, the integral in closed form.
+    """
+    radius = np.abs(case.x) if case.dim == 1 else case.radius
+    inside = radius <= case.error_radius * (1.0 + 1e-12)
+    time = case.diffusivity * case.t_final
+    exact = green(radius[inside], time, case.alpha, case.dim)
+    deviation = case.particle_spacing**case.dim * np.abs(u[inside] - exact).sum()
+    return float(deviation / central_mass(case.error_radius, time, case.alpha, case.dim))

@@ -1,0 +1,131 @@
+"""The spectrum of an operator on a bounded lattice: its interval, power iteration, dense eigenvalues."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from fracparticles.errors import FracparticlesError
+from fracparticles.lattice.operators import LatticeOperator, Operator
+from fracparticles.run.case import Case
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes.stability import grows
+
+__all__ = ["dense_matrix", "largest_degree", "power_iteration", "spectral_interval"]
+
+# Below the symbol the function of time is bounded, and a little room costs nothing; above zero it would grow.
+_ROOM = 1e-6
+_ROOM_OF_A_TABLE = 1e-2  # interpolated kernels have eigenvalues of their own
+# Where the eigenvalues are not proved to be real and in the interval, T_k of the operator may grow like exp(g k). The
+# coefficients of a series of degree K fall like exp(-74 (k / K)^2), so that its terms grow by exp((g K)^2 / 300) at
+# most. Measured (tests/test_stiff.py): on the line with exact kernels, but for FPSE from order 6, g < 0.001 and
+# K = 10000, else g < 0.1 and K = 400.
+_LARGEST_DEGREE = {"line": 10_000, "other": 400}
+# Half the intervals of a small lattice: some reaches of the kernels, of which eigenvalues take milliseconds.
+_FEW_OVERLAPS, _FEW = 24, 150
+
+
+def spectral_interval(case: Case, operator: LatticeOperator) -> tuple[float, float]:
+    """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
+
+    A truncated convolution (DD, FD) is a compression of the operator on the infinite lattice: its eigenvalues lie
+    in the range of the symbol. A truncated exchange is the compression plus a diagonal, the weights that lead out
+    of the lattice: positive weights only raise the eigenvalues, to zero at most, and where weights change sign (KPSE
+    of order IV from beta = 0.85, of higher orders) the lowest falls by no more than the least element of that
+    diagonal (Weyl). DPSE is the product of a negative and a positive symmetric matrix, so that its eigenvalues are
+    real. A dissipative scheme ends at zero, and not a little above: a series of exp(z t) grows with what is above.
+
+    The rest is not proved: that exchanges whose weights change sign stay below zero, and that the eigenvalues of DPSE,
+    FPSE and of the open exterior lie in the range of the symbol, and are real on the line, was found by computation
+    (tests/test_spectrum.py). `largest_degree` keeps the series short enough for the deviations that are known, and
+    the evaluation looks at the size of its terms. For truncated FPSE from order 6 on the greatest eigenvalue, up to
+    3e-4 of the range above zero, is that of a small lattice, on whose size it does not depend. Where
+    there are positive eigenvalues, for scheme (29) or an overlap too small for the order, the greatest is computed.
+    """
+    low, high = case.symbol_range
+    scheme, rate = SCHEMES[case.scheme], case.setting.rate
+    share = _ROOM if case.kernel_table is None else _ROOM_OF_A_TABLE
+    room = share * (max(high, 0.0) - low)
+    if not scheme.DISSIPATIVE or grows(low, high):
+        high = max(high, _greatest_eigenvalue(operator, rate * high) / rate) + room
+    elif case.scheme == "FPSE" and case.dim == 1 and case.order >= 6:
+        high = max(0.0, _greatest_of_a_small_lattice(case.setting))
+    else:
+        high = max(0.0, high)
+    if (
+        case.steps
+    ):  # the polynomial of a step grows below its interval: by exp(8) over the run at most
+        room = min(room, -low / case.steps)
+    return rate * (low - room) + operator.least_excess, rate * high
+
+
+def largest_degree(case: Case, operator: LatticeOperator) -> int | None:
+    """Return the largest degree of a Chebyshev series of A; None where its spectrum is proved to be in the interval."""
+    exact = case.kernel_table is None
+    if operator.symmetric and exact:
+        return None
+    on_the_line = case.dim == 1 and exact and not (case.scheme == "FPSE" and case.order >= 6)
+    return _LARGEST_DEGREE["line" if on_the_line else "other"]
+
+
+def power_iteration(
+    operator: Operator, tolerance: float = 1e-10, most: int = 20000, seed: int = 1
+) -> tuple[float, int]:
+    """Return the eigenvalue of A of the greatest modulus and the number of iterations (paper, Sec. 4.4).
+
+    v <- A v / |A v| with the Rayleigh quotient as the estimate, until it changes by less than `tolerance`,
+    relative, over ten iterations.
+
+    Raises
+    ------
+    FracparticlesError
+        If it does not converge within `most` iterations.
+    """
+    v = np.random.default_rng(seed).standard_normal(operator.size)
+    v /= np.linalg.norm(v)
+    w = np.zeros_like(v)
+    before = 0.0
+    for iteration in range(1, most + 1):
+        operator.update(v, 1.0, 0.0, 0.0, w)
+        estimate = float(v @ w)
+        v, w = w / np.linalg.norm(w), v
+        if iteration % 10 == 0:
+            if abs(estimate - before) <= tolerance * abs(estimate):
+                return estimate, iteration
+            before = estimate
+    raise FracparticlesError(f"power iteration: no convergence within {most} iterations")
+
+
+def dense_matrix(operator: Operator) -> np.ndarray:
+    """Return A as an N x N array, column by column; for small N."""
+    return np.array([operator.apply(column) for column in np.eye(operator.size)]).T
+
+
+def _greatest_eigenvalue(operator: LatticeOperator, of_the_symbol: float) -> float:
+    """The greatest real part, or an upper bound of it where the iteration does not converge."""
+    # 0.3 s, and hardly ever needed.
+    from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
+
+    matrix = LinearOperator((operator.size,) * 2, matvec=operator.apply, dtype=float)
+    start = np.ones(operator.size)
+    try:
+        if operator.symmetric:
+            value = eigsh(matrix, k=1, which="LA", v0=start, return_eigenvectors=False, tol=1e-6)
+        else:
+            value = eigs(matrix, k=1, which="LR", v0=start, return_eigenvectors=False, tol=1e-6)
+    except ArpackError:  # Weyl, for a symmetric operator
+        return max(of_the_symbol, 0.0) + operator.greatest_excess
+    return float(value[0].real)
+
+
+def _greatest_of_a_small_lattice(setting: Setting) -> float:
+    few = min(setting.n, _FEW, int(np.ceil(_FEW_OVERLAPS * setting.overlap)))
+    return _greatest_of_fpse(replace(setting, n=few, spacing=1.0, diffusivity=1.0))
+
+
+@lru_cache(maxsize=64)
+def _greatest_of_fpse(setting: Setting) -> float:
+    matrix = dense_matrix(SCHEMES["FPSE"].operator(setting))
+    return float(np.linalg.eigvals(matrix).real.max())

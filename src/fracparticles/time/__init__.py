@@ -1,0 +1,28 @@
+"""Time integration of du/dt = A u with a constant operator A.
+
+An explicit Runge-Kutta scheme multiplies the solution by its step polynomial p(A dt) (Eq. 52); n steps give
+p(A dt)^n u0. `stepping` does just that; `chebyshev` evaluates the same polynomial, or the exponential
+exp(A t), as one Chebyshev series on the interval that holds the spectrum of A, and `pieces` as several where one would
+lose digits.
+"""
+
+from __future__ import annotations
+
+from fracparticles.time.chebyshev import ChebyshevSeries, exponential, power
+from fracparticles.time.pieces import Flow, exponential_flow, power_flow
+from fracparticles.time.polynomial import STEP_POLYNOMIALS, StepPolynomial
+from fracparticles.time.stepping import applied, euler_step, step
+
+__all__ = [
+    "STEP_POLYNOMIALS",
+    "ChebyshevSeries",
+    "Flow",
+    "StepPolynomial",
+    "applied",
+    "euler_step",
+    "exponential",
+    "exponential_flow",
+    "power",
+    "power_flow",
+    "step",
+]

@@ -1,0 +1,222 @@
+"""Functions of an operator by one Chebyshev series: the whole time integration in a few hundred products.
+
+If the spectrum of A lies in [low, high] (or close to it),
+
+    f(A) u = sum_k c_k T_k(B) u,   B = (2 A - high - low) / (high - low),
+
+where c_k are the Chebyshev coefficients of f on the interval and T_k(B) u follows from the three-term
+recurrence T_{k+1} = 2 B T_k - T_{k-1}. For f = p(A dt)^n, n steps of a Runge-Kutta scheme, the sum is the same
+discrete solution as stepping gives, up to round-off; but p^n is so smooth on the interval that its
+coefficients fall below round-off after about sqrt(74 T |low| / 2) terms, whatever the number of steps.
+Tal-Ezer & Kosloff, J. Chem. Phys. 81 (1984) 3967, for the exponential.
+
+What is summed may be far larger than the sum: where the operator is not normal or its eigenvalues are not real, so that
+T_k(B) u grows with k, or where the solution decays by many decades. The evaluation looks at the size of its terms and
+raises `LostDigits`; `pieces` takes it from there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.fft import dct
+
+from fracparticles._compiled import njit
+from fracparticles.errors import FracparticlesError, NonFiniteSolution
+from fracparticles.lattice.operators import Operator
+from fracparticles.time.polynomial import StepPolynomial
+from fracparticles.time.stepping import all_finite
+
+__all__ = ["ChebyshevSeries", "LostDigits", "exponential", "power"]
+
+_ROUND_OFF = 2.0**-54
+_MET = 1e-6  # of the largest value: how close the series is to f at the ends
+_MOST_POINTS = 2**25
+_LARGEST_EXPONENT = np.log(np.finfo(float).max)
+
+_LOOK_EVERY = 32  # terms between two looks at their size
+_DIGITS_KEPT = 1e-10  # the share of the sum that the round-off of its terms may reach
+_SHORT = 64  # so few terms cannot cancel by much: a piece of this degree is taken as it is
+_UNDERFLOW = 1e-280  # below this the strengths have no full precision to lose
+
+
+class LostDigits(FracparticlesError):
+    """The terms of a series are so much larger than their sum that their round-off spoils it."""
+
+
+@dataclass(frozen=True)
+class ChebyshevSeries:
+    """f(z) = sum_k c_k T_k((2 z - high - low) / (high - low)).
+
+    Attributes
+    ----------
+    coefficients : array, shape (degree + 1,)
+        c_k; those at the end that vanish against the largest are left out.
+    low, high : float
+        The interval.
+    """
+
+    coefficients: np.ndarray
+    low: float
+    high: float
+
+    @classmethod
+    def of(
+        cls,
+        f: Callable[[np.ndarray], np.ndarray],
+        low: float,
+        high: float,
+        condition: Callable[[np.ndarray], np.ndarray] = np.ones_like,
+    ) -> ChebyshevSeries:
+        """Interpolate f at Chebyshev points.
+
+        There are enough of them when the last third of the coefficients is below the round-off in the values of
+        f, which is `condition(z)` ulp of f(z), and the sum meets f at the two ends: a layer there that is thinner
+        than the points are apart would be missed.
+
+        Raises
+        ------
+        FracparticlesError
+            If it takes more than 2^25 points.
+        """
+        ends = np.array([low, high])
+        at_ends = f(ends)
+        points = 32
+        while points <= _MOST_POINTS:
+            angle = (np.arange(points) + 0.5) * (np.pi / points)
+            # (1 + cos) / 2 = cos^2(angle / 2): the distance to `high` keeps its relative accuracy.
+            z = high - (high - low) * np.sin(0.5 * angle) ** 2
+            values = f(z)
+            coefficients = dct(values, type=2) / points
+            coefficients[0] /= 2.0
+            largest = max(np.abs(values).max(), np.abs(at_ends).max())
+            noise = _ROUND_OFF * max(
+                (np.abs(values) * condition(z)).max(), (np.abs(at_ends) * condition(ends)).max()
+            )
+            significant = np.flatnonzero(np.abs(coefficients) > noise)
+            degree = significant[-1] if significant.size else 0
+            sums = np.array(
+                [coefficients[::2].sum() - coefficients[1::2].sum(), coefficients.sum()]
+            )
+            met = bool((np.abs(sums - at_ends) <= _MET * largest).all())
+            if met and degree < 2 * points // 3:
+                return cls(coefficients[: degree + 1], low, high)
+            points *= 2
+        raise FracparticlesError(
+            f"the time integration from the spectrum in [{low:.3g}, {high:.3g}] takes a Chebyshev series of more than "
+            f"{_MOST_POINTS} terms"
+        )
+
+    @property
+    def degree(self) -> int:
+        """The number of operator applications that an evaluation takes."""
+        return self.coefficients.size - 1
+
+    def __call__(self, operator: Operator, u: np.ndarray) -> np.ndarray:
+        """Return f(A) u, shape (N,).
+
+        Raises
+        ------
+        LostDigits
+            If the round-off of the terms is more than 1e-10 of the sum, in the maximum norm.
+        NonFiniteSolution
+            If a particle strength is not finite.
+        """
+        c = self.coefficients
+        scale = 2.0 / (self.high - self.low)
+        shift = -(self.high + self.low) / (self.high - self.low)
+        even, odd = np.array(u, dtype=float), np.zeros(np.shape(u))  # T_k(B) u, k even and odd
+        if self.degree == 0:
+            return c[0] * even
+        largest = abs(c[0]) * _size(even)
+        operator.update(even, scale, shift, 0.0, odd)
+        total = np.zeros_like(even)
+        _add_terms(total, c[0], even, c[1], odd)
+        for k in range(2, self.degree, 2):
+            operator.update(odd, 2.0 * scale, 2.0 * shift, -1.0, even)
+            operator.update(even, 2.0 * scale, 2.0 * shift, -1.0, odd)
+            _add_terms(total, c[k], even, c[k + 1], odd)
+            if k % _LOOK_EVERY == 0:
+                largest = max(largest, abs(c[k]) * _size(even))
+        if self.degree % 2 == 0:
+            operator.update(odd, 2.0 * scale, 2.0 * shift, -1.0, even)
+            _add_terms(total, c[self.degree], even, 0.0, odd)
+        self._look_at(largest, total)
+        return total
+
+    def _look_at(self, largest: float, total: np.ndarray) -> None:
+        if not all_finite(total):
+            raise NonFiniteSolution(
+                "the particle strengths overflow: the time step lies far outside the stability interval. "
+                "Take a smaller dt or integrator='exponential'."
+            )
+        lost = _ROUND_OFF * np.sqrt(self.degree) * largest
+        if self.degree > _SHORT and largest > _UNDERFLOW and lost > _DIGITS_KEPT * _size(total):
+            raise LostDigits(
+                f"terms of {largest:.3g} in a Chebyshev series whose sum is {_size(total):.3g}"
+            )
+
+
+def power(
+    polynomial: StepPolynomial, dt: float, steps: int, low: float, high: float
+) -> ChebyshevSeries:
+    """Return the series of p(z dt)^steps on [low, high].
+
+    Raises
+    ------
+    NonFiniteSolution
+        If p(z dt)^steps overflows on the interval: then stepping overflows too, at the step named.
+    """
+
+    def amplification(z: np.ndarray) -> np.ndarray:
+        sign, exponent = polynomial.log_power(z * dt, steps)
+        growth = exponent.max() / steps
+        if growth * steps > _LARGEST_EXPONENT:
+            overflow = int(np.ceil(_LARGEST_EXPONENT / growth))
+            raise NonFiniteSolution(
+                f"{polynomial.name} with dt = {dt:.6g} amplifies the shortest wave by {np.exp(growth):.6g} a "
+                f"step and overflows near step {overflow} of {steps}, {overflow * dt:.6g} after the start: "
+                f"dt is outside the stability interval (limit {polynomial.stability_interval / -low:.6g}). "
+                "Take a smaller dt or integrator='exponential'."
+            )
+        return sign * np.exp(exponent)
+
+    def condition(z: np.ndarray) -> np.ndarray:
+        _, exponent = polynomial.log_power(z * dt, steps)
+        return 1.0 + np.abs(exponent) + polynomial.sensitivity(z * dt, steps)
+
+    series = ChebyshevSeries.of(amplification, low, high, condition)
+    # A polynomial of degree `steps * stages`: what comes after is round-off.
+    return replace(series, coefficients=series.coefficients[: steps * polynomial.stages + 1])
+
+
+def exponential(time: float, low: float, high: float) -> ChebyshevSeries:
+    """Return the series of exp(z time) on [low, high]: exact in time.
+
+    Raises
+    ------
+    NonFiniteSolution
+        If exp(z time) overflows on the interval.
+    """
+    growth = high * time
+    if growth > _LARGEST_EXPONENT:
+        raise NonFiniteSolution(
+            f"the operator has the eigenvalue {high:.6g} and amplifies its mode by exp({growth:.6g}) over the "
+            f"time {time:.6g}: the particle strengths overflow. Take a larger overlap, or a shorter time."
+        )
+    return ChebyshevSeries.of(
+        lambda z: np.exp(z * time), low, high, lambda z: 1.0 + np.abs(z * time)
+    )
+
+
+def _size(u: np.ndarray) -> float:
+    return float(max(u.max(), -u.min()))
+
+
+@njit()
+def _add_terms(total, c_even, even, c_odd, odd):
+    # Two at a time: half the traffic of the sum.
+    for i in range(total.size):
+        total[i] += c_even * even[i] + c_odd * odd[i]

@@ -1,0 +1,145 @@
+"""A function of an operator over a whole span, in as few pieces as keep their digits.
+
+f(A)^n = f(A)^{n_1} f(A)^{n_2} ...: a span of n units is done by one Chebyshev series, or by several in a row. One
+takes about sqrt(n) applications of A, m pieces take sqrt(m) times as many, so pieces are made only where one
+series loses digits (`chebyshev.LostDigits`): where its terms are far larger than their sum, because A is not normal, or
+because the solution decays by many decades. Each piece is exact to the round-off of its own terms.
+
+The unit is a step of a Runge-Kutta scheme; for the exponential, a 2^-30th of the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+from fracparticles.errors import FracparticlesError
+from fracparticles.lattice.operators import Operator
+from fracparticles.time.chebyshev import ChebyshevSeries, LostDigits, exponential, power
+from fracparticles.time.polynomial import StepPolynomial
+
+__all__ = ["Flow", "exponential_flow", "power_flow"]
+
+_UNITS = 2**30  # of the exponential: a power of two, so that every piece has an exact length
+_MOST_APPLICATIONS = 3e7  # ten minutes for a hundred particles
+
+
+class Flow:
+    """f(A) over a span of so many units.
+
+    Parameters
+    ----------
+    operator : Operator
+        A.
+    series_of : callable
+        From a number of units to the Chebyshev series of f over them.
+    units : int
+        The span.
+    largest_degree : int, optional
+        Of a piece: for an operator whose spectrum is not proved to lie where the series takes it to be.
+
+    Attributes
+    ----------
+    operator_applications : int
+        How often A is applied, unless pieces are cut further on the way.
+
+    Raises
+    ------
+    FracparticlesError
+        If it would take more than 3e7 applications.
+    """
+
+    def __init__(
+        self,
+        operator: Operator,
+        series_of: Callable[[int], ChebyshevSeries],
+        units: int,
+        largest_degree: int | None = None,
+    ) -> None:
+        self.operator, self._units = operator, units
+        self._series = lru_cache(maxsize=4)(series_of)
+        self._piece = units
+        while largest_degree is not None and self._piece > 1:
+            if self._series(self._piece).degree <= largest_degree:
+                break
+            self._piece = -(-self._piece // 2)
+        degree = self._series(self._piece).degree
+        whole, rest = divmod(units, self._piece)
+        self.operator_applications = whole * degree + (self._series(rest).degree if rest else 0)
+        if self.operator_applications > _MOST_APPLICATIONS:
+            raise FracparticlesError(
+                f"the time integration takes {self.operator_applications:.2g} applications of the operator, in pieces "
+                f"of {degree}, and {_MOST_APPLICATIONS:.0e} at most are done"
+            )
+
+    def __call__(self, u: np.ndarray) -> np.ndarray:
+        """Return f(A) u, shape (N,).
+
+        Raises
+        ------
+        NonFiniteSolution
+            If a particle strength is not finite.
+        """
+        return self.run(u)[0]
+
+    def run(self, u: np.ndarray) -> tuple[np.ndarray, int]:
+        """Return f(A) u and how often A was applied, what was thrown away included.
+
+        Raises
+        ------
+        NonFiniteSolution
+            If a particle strength is not finite.
+        FracparticlesError
+            If the digits cannot be kept within 3e7 applications.
+        """
+        left, piece, applications = self._units, self._piece, 0
+        while left:
+            series = self._series(min(piece, left))
+            applications += series.degree
+            try:
+                u = series(self.operator, u)
+            except LostDigits as error:
+                piece = -(-min(piece, left) // 2)
+                if piece == 1 or applications > _MOST_APPLICATIONS:
+                    raise FracparticlesError(
+                        f"the time integration loses its digits ({error}) and would take more than "
+                        f"{_MOST_APPLICATIONS:.0e} applications of the operator in shorter pieces. Take a larger "
+                        "spacing or a shorter time span."
+                    ) from None
+            else:
+                left -= min(piece, left)
+        return u, applications
+
+
+def exponential_flow(
+    operator: Operator,
+    time: float,
+    low: float,
+    high: float,
+    largest_degree: int | None = None,
+) -> Flow:
+    """Return exp(A time)."""
+
+    def series_of(units: int) -> ChebyshevSeries:
+        return exponential(time * (units / _UNITS), low, high)
+
+    return Flow(operator, series_of, _UNITS, largest_degree)
+
+
+def power_flow(
+    operator: Operator,
+    polynomial: StepPolynomial,
+    dt: float,
+    steps: int,
+    low: float,
+    high: float,
+    largest_degree: int | None = None,
+) -> Flow:
+    """Return p(A dt)^steps."""
+
+    def series_of(units: int) -> ChebyshevSeries:
+        return power(polynomial, dt, units, low, high)
+
+    return Flow(operator, series_of, steps, largest_degree)

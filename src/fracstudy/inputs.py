@@ -1,0 +1,180 @@
+"""What every study takes and gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.errors import FracparticlesError
+from fracparticles.files import write_text
+from fracstudy.claims import Claim, Finding, judge
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "ORDERS",
+    "Inputs",
+    "Result",
+    "excuse",
+    "observed_order",
+    "statement",
+    "value",
+    "write_table",
+]
+
+ORDERS = {2: "II", 4: "IV"}
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What a scene hands to its study.
+
+    Attributes
+    ----------
+    scene : str
+        Name of the scene.
+    items : sequence of str
+        The items of the documents that it judges.
+    parameters : mapping
+        The block `parameters` of the scene, and `printed`: the printed numbers of its items by claim.
+    runs : sequence of str
+        The run files of the scene, in the order of its configuration.
+    tables : mapping
+        Tables of other scenes that this one reads, by scene.
+    benchmarks : mapping
+        The data of benchmarks that it reads, one row a measurement, by benchmark; the machine is in `attrs`.
+    """
+
+    scene: str
+    items: Sequence[str] = ()
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    runs: Sequence[str] = ()
+    tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+    benchmarks: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+
+    @cached_property
+    def scalars(self) -> pd.DataFrame:
+        """One row a run: every scalar of its file, and the file itself as `run`."""
+        import netCDF4
+
+        rows = []
+        for path in self.runs:
+            with netCDF4.Dataset(path) as file:
+                row = {
+                    name: _plain(variable[...])
+                    for name, variable in file.variables.items()
+                    if variable.ndim == 0
+                }
+            rows.append({**row, "run": path})
+        return pd.DataFrame(rows)
+
+    def open(self, **selection: Any) -> xr.Dataset:
+        """Return the one run whose scalars have the values selected.
+
+        Raises
+        ------
+        FracparticlesError
+            If there is not exactly one.
+        """
+        from fracparticles.run.dataset import read_run
+
+        found = self.select(**selection)
+        if len(found) != 1:
+            raise FracparticlesError(
+                f"{self.scene}: {len(found)} runs with {selection}; the scene's configuration must hold one"
+            )
+        return read_run(found["run"].iloc[0])
+
+    def select(self, **selection: Any) -> pd.DataFrame:
+        """Return the rows of `scalars` with the values selected; numbers are compared to 6 digits."""
+        found = self.scalars
+        for name, wanted in selection.items():
+            column = found[name]
+            if isinstance(wanted, str):
+                found = found[column == wanted]
+            else:
+                found = found[np.isclose(column.astype(float), wanted, rtol=1e-6, atol=0.0)]
+        return found
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a study gives.
+
+    Attributes
+    ----------
+    table : DataFrame
+        The scene's table, as people read it.
+    findings : sequence of Finding
+        One for each claim that the scene judges.
+    series : DataFrame, optional
+        What the scene's figure draws, in long form: panel, series, x, y and what else the figure needs.
+    """
+
+    table: pd.DataFrame
+    findings: Sequence[Finding] = ()
+    series: pd.DataFrame | None = None
+
+
+def value(claim: str, ours: float, reason: str = "", runs: Iterable[str] = ()) -> Finding:
+    """Return our number for a printed one; `reason` says why it deviates if it does."""
+    return Finding(claim=claim, ours=float(ours), reason=reason, runs=tuple(runs))
+
+
+def statement(
+    claim: str, holds: bool | None, evidence: str, reason: str = "", runs: Iterable[str] = ()
+) -> Finding:
+    """Return our verdict on a statement; `reason` is kept only if the statement does not hold."""
+    verdict = None if holds is None else bool(holds)
+    return Finding(
+        claim=claim,
+        verdict=verdict,
+        evidence=evidence,
+        reason="" if verdict else reason,
+        runs=tuple(runs),
+    )
+
+
+def excuse(findings: Iterable[Finding], claims: Iterable[Claim]) -> list[Finding]:
+    """Give a reason to the findings of a smoke run that deviate for want of resolution."""
+    known = {claim.id: claim for claim in claims}
+    reason = "The grids of the smoke run are too coarse to judge this."
+    return [
+        finding.model_copy(update={"reason": reason})
+        if not finding.reason and judge(known[finding.claim], finding)[0].needs_reason
+        else finding
+        for finding in findings
+    ]
+
+
+def write_table(table: pd.DataFrame, csv: str, md: str | None = None) -> None:
+    """Write a table as CSV with full precision and, if asked, as Markdown with four digits, a | in it escaped."""
+    write_text(csv, table.to_csv(index=False, lineterminator="\n") if len(table.columns) else "\n")
+    if md is not None:
+        shown = table.map(_shown).astype(object).where(table.notna(), None)
+        shown = shown.rename(columns=_shown)
+        text = shown.to_markdown(index=False, floatfmt=".4g", missingval="")
+        write_text(md, f"{text}\n")
+
+
+def _shown(cell: Any) -> Any:
+    if isinstance(cell, str):
+        return cell.replace("|", r"\|")
+    return cell + 0.0 if isinstance(cell, float) else cell  # no -0
+
+
+def observed_order(h: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Return log(e_k / e_{k+1}) / log(h_k / h_{k+1}), the order between neighbouring levels."""
+    h, error = np.asarray(h, dtype=float), np.asarray(error, dtype=float)
+    return np.log(error[:-1] / error[1:]) / np.log(h[:-1] / h[1:])
+
+
+def _plain(value: Any) -> Any:
+    value = value.item() if hasattr(value, "item") else value
+    return value

@@ -1,0 +1,60 @@
+"""Which source files a module is made of, so that a change reruns just what it may change."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Iterable, Iterator
+from pathlib import Path
+
+__all__ = ["sources_of"]
+
+_PACKAGES = ("fracparticles", "fracstudy")
+
+
+def sources_of(path: Path, root: Path, ends: Collection[Path] = ()) -> list[str]:
+    """Return a module's file and those of all modules of our packages that it imports, directly or not.
+
+    Imports inside functions count. The __init__ of a package counts where names are imported from the package itself.
+
+    Parameters
+    ----------
+    path : Path
+        The module.
+    root : Path
+        The folder of the packages.
+    ends : collection of Path
+        Modules that count themselves, but not what they import.
+    """
+    found: set[Path] = set()
+    open_ends = [path]
+    while open_ends:
+        module = open_ends.pop()
+        if module not in found:
+            found.add(module)
+            open_ends += () if module in ends else _imports(module, root)
+    return sorted(str(module) for module in found)
+
+
+def _imports(module: Path, root: Path) -> Iterator[Path]:
+    for node in ast.walk(ast.parse(module.read_text("utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module is not None:
+            names = node.module.split(".")
+            if names[0] in _PACKAGES:
+                yield from _files(root.joinpath(*names), (alias.name for alias in node.names))
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                names = alias.name.split(".")
+                if names[0] in _PACKAGES:
+                    yield from _files(root.joinpath(*names), ())
+
+
+def _files(place: Path, names: Iterable[str]) -> Iterator[Path]:
+    """The file of a module; of a package its __init__, unless only modules are imported from it."""
+    if place.with_suffix(".py").exists():
+        yield place.with_suffix(".py")
+        return
+    names = list(names)
+    modules = [place / f"{name}.py" for name in names if (place / f"{name}.py").exists()]
+    yield from modules
+    if len(modules) < len(names) or not names:
+        yield place / "__init__.py"
