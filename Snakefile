@@ -7,8 +7,6 @@ min_version("9.0")
 configfile: "config/study.yaml"
 
 
-container: "docker://python:3.11"
-
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/runs.smk"

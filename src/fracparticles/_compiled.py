@@ -3,22 +3,34 @@
 Compiled functions are kept where numba keeps them: in the folder that NUMBA_CACHE_DIR names, in `__pycache__` beside
 the module, or in the cache folder of the user. Where none of these can be written, functions are compiled in each
 process. A cache that cannot be read, cut in half by a power cut say, is emptied and made again; one that cannot be
-written, on a full disk say, is left alone.
+written, on a full disk say, is left alone. numba compiles a function anew when its own file changes; here also when a
+file changes whose compiled functions it calls, since these are compiled into it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.registry import CPUDispatcher
 
 __all__ = ["njit"]
 
 
 class _Cache(FunctionCache):
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        stamps = sorted((file.stat().st_mtime, file.stat().st_size) for file in _files(function))
+        self._cache_file = IndexDataCacheFile(
+            cache_path=self._cache_path,
+            filename_base=self._impl.filename_base,
+            source_stamp=tuple(stamps),
+        )
+
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:
             return super().load_overload(sig, target_context)
@@ -30,6 +42,13 @@ class _Cache(FunctionCache):
     def save_overload(self, sig: Any, data: Any) -> None:
         with suppress(Exception):
             super().save_overload(sig, data)
+
+
+def _files(function: Callable[..., Any]) -> set[Path]:
+    """The files of a function and of the compiled functions that it calls, directly or not."""
+    called = [function.__globals__.get(name) for name in function.__code__.co_names]
+    inner = [_files(one.py_func) for one in called if isinstance(one, CPUDispatcher)]
+    return {Path(function.__code__.co_filename)}.union(*inner)
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -42,7 +42,9 @@ class Inputs:
     items : sequence of str
         The items of the documents that it judges.
     parameters : mapping
-        The block `parameters` of the scene, and `printed`: the printed numbers of its items by claim.
+        The block `parameters` of the scene.
+    printed : mapping
+        The printed numbers of its items by claim.
     runs : sequence of str
         The run files of the scene, in the order of its configuration.
     tables : mapping
@@ -54,6 +56,7 @@ class Inputs:
     scene: str
     items: Sequence[str] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    printed: Mapping[str, str] = field(default_factory=dict)
     runs: Sequence[str] = ()
     tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     benchmarks: Mapping[str, pd.DataFrame] = field(default_factory=dict)

@@ -8,7 +8,7 @@ prose in Markdown; where it wants a printed value or ours it asks the ledger:
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,54 +18,21 @@ import markdown
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
-from fracstudy.claims import Status
+from fracstudy.claims import Status, read_claims
+from fracstudy.config import Document
 from fracstudy.ledger import ledger_markdown, ours_text, read_ledger, summary_line
+from fracstudy.scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["ReportError", "SceneEntry", "build"]
+__all__ = ["ReportError", "build"]
 
 FIGURE_FORMATS = (".svg", ".png")
-# The documents by the letter that begins the ids of their claims.
-DOCUMENTS = {
-    "L": "Lucchesi et al. (2020)",
-    "M": "Lewandowski (2005), the marker method",
-    "S": "Ghorbani and Semperlotti, SPH",
-    "P": "Lecture note on particle strength exchange",
-}
 
 
 class ReportError(FracparticlesError, ValueError):
     """Something the report needs is missing; says what, and what makes it."""
-
-
-@dataclass(frozen=True)
-class SceneEntry:
-    """One section of the report.
-
-    Parameters
-    ----------
-    name : str
-        Name of the scene; its caption is ``<captions_dir>/<name>.md``.
-    items : sequence of str
-        Items of the documents whose claims the section shows: ``["L-T3", "L-C12"]``.
-    title : str
-        Heading of the section.
-    figures : sequence of str
-        Figures, each ``<results_dir>/figures/<figure>.svg``, ``.png`` or both.
-    tables : sequence of str
-        Tables, each ``<results_dir>/tables/<table>.md`` and ``.csv``.
-    timed : bool
-        Whether it shows run times: those sections come first.
-    """
-
-    name: str
-    items: Sequence[str]
-    title: str
-    figures: Sequence[str] = ()
-    tables: Sequence[str] = ()
-    timed: bool = False
 
 
 @dataclass(frozen=True)
@@ -88,7 +55,7 @@ class _Section:
     name: str
     title: str
     items: Sequence[str]
-    timed: bool
+    document: str
     caption: str
     figures: list[_Figure]
     tables: list[_Table]
@@ -97,7 +64,7 @@ class _Section:
 
 
 @dataclass(frozen=True)
-class _Document:
+class _Part:
     """A document, or what is our own: its sections, and what came of its claims."""
 
     title: str
@@ -107,9 +74,9 @@ class _Document:
 
 
 def build(
-    scenes: Sequence[SceneEntry],
+    scenes: Sequence[Scene],
+    documents: Mapping[str, Document],
     results_dir: str | os.PathLike[str],
-    captions_dir: str | os.PathLike[str],
     template_dir: str | os.PathLike[str],
     out_dir: str | os.PathLike[str],
 ) -> list[Path]:
@@ -117,12 +84,12 @@ def build(
 
     Parameters
     ----------
-    scenes : sequence of SceneEntry
+    scenes : sequence of Scene
         The sections, in order.
+    documents : mapping
+        The parts, in order: a document or studies of our own, by the name of its folder.
     results_dir : path
         Holds ``claims.csv``, ``tables/`` and ``figures/``.
-    captions_dir : path
-        Holds one ``<scene>.md`` a scene.
     template_dir : path
         Holds ``report.md.j2``, ``report.html.j2`` and ``style.css``.
     out_dir : path
@@ -140,19 +107,19 @@ def build(
         makes it), if a scene shows an item without claims, or if a caption asks for what is not
         there.
     """
-    results, captions, out = Path(results_dir), Path(captions_dir), Path(out_dir)
+    results, out = Path(results_dir), Path(out_dir)
     claims_csv = results / "claims.csv"
     _require(claims_csv, _target(claims_csv))
     df = read_ledger(claims_csv)
-    sections = [_section(scene, df, results, captions, out) for scene in scenes]
-    documents = _documents(sections, df)
+    sections = [_section(scene, df, results, out) for scene in scenes]
+    parts = _parts(documents, sections, df)
     templates = _templates(Path(template_dir))
     text = _render(
         templates["report.md.j2"],
         summary=summary_line(df),
         statuses=[(status.sign, str(status)) for status in Status],
-        documents=documents,
-        sections=[section for document in documents for section in document.sections],
+        documents=parts,
+        sections=[section for part in parts for section in part.sections],
         ledger=ledger_markdown(df),
         claims_csv=_link(claims_csv, out),
     )
@@ -169,29 +136,26 @@ def build(
     return paths
 
 
-def _documents(sections: Sequence[_Section], df: pd.DataFrame) -> list[_Document]:
-    found = []
-    for letter, title in DOCUMENTS.items():
-        rows = df[df["id"].str.startswith(letter)]
-        if len(rows):
+def _parts(
+    documents: Mapping[str, Document], sections: Sequence[_Section], df: pd.DataFrame
+) -> list[_Part]:
+    parts = []
+    for name, document in documents.items():
+        own = [section for section in sections if section.document == name]
+        if document.printed is None:
+            summary, exceptions = "", df[:0]
+        else:
+            rows = df[df["id"].isin([claim.id for claim in read_claims(document.printed)])]
+            summary = summary_line(rows)
             exceptions = rows[[Status(word).needs_reason for word in rows["status"]]]
-            own = [
-                section for section in sections if section.items and section.items[0][0] == letter
-            ]
-            text = ledger_markdown(exceptions) if len(exceptions) else ""
-            found.append(_Document(title, own, summary_line(rows), text))
-    timed = [section for section in sections if section.timed]
-    ours = [section for section in sections if not section.items and not section.timed]
-    groups = [
-        *([_Document("Error against run time", timed, "", "")] if timed else []),
-        *found,
-        *([_Document("Studies of our own", ours, "", "")] if ours else []),
-    ]
-    return groups
+        text = ledger_markdown(exceptions) if len(exceptions) else ""
+        if own or summary:
+            parts.append(_Part(document.title, own, summary, text))
+    return parts
 
 
 def _section(
-    scene: SceneEntry, df: pd.DataFrame, results: Path, captions: Path, out: Path
+    scene: Scene, df: pd.DataFrame, results: Path, out: Path
 ) -> _Section:
     if strangers := sorted(set(scene.items) - set(df["item"])):
         raise ReportError(f"scene {scene.name}: no claims for the item {', '.join(strangers)}")
@@ -200,16 +164,17 @@ def _section(
         name=scene.name,
         title=scene.title,
         items=scene.items,
-        timed=scene.timed,
-        caption=_caption(captions / f"{scene.name}.md", scene, df),
-        figures=[_figure(results / "figures" / name, scene, out) for name in scene.figures],
-        tables=[_table(results / "tables" / name, scene, out) for name in scene.tables],
+        document=scene.document,
+        caption=_caption(scene, df),
+        figures=[_figure(results / "figures" / scene.name, scene, out)] if scene.file("figure.py") else [],
+        tables=[_table(results / "tables" / scene.name, scene, out)],
         summary=summary_line(rows),
         claims=ledger_markdown(rows),
     )
 
 
-def _caption(path: Path, scene: SceneEntry, df: pd.DataFrame) -> str:
+def _caption(scene: Scene, df: pd.DataFrame) -> str:
+    path = scene.folder / "caption.md"
     _require(path, f"write it: it is the caption of the scene {scene.name}")
     environment = jinja2.Environment(undefined=jinja2.StrictUndefined, autoescape=False)
     by_id = df.set_index("id")
@@ -222,6 +187,7 @@ def _caption(path: Path, scene: SceneEntry, df: pd.DataFrame) -> str:
 
         return of
 
+    environment.globals["scene"] = scene
     environment.globals["printed"] = look_up(lambda row: row["printed"])
     environment.globals["ours"] = look_up(lambda row: ours_text(row["printed"], row["ours"]))
     try:
@@ -231,7 +197,7 @@ def _caption(path: Path, scene: SceneEntry, df: pd.DataFrame) -> str:
     return _render(template, source=path).strip()
 
 
-def _figure(stem: Path, scene: SceneEntry, out: Path) -> _Figure:
+def _figure(stem: Path, scene: Scene, out: Path) -> _Figure:
     files = [path for path in _candidates(stem, FIGURE_FORMATS) if path.is_file()]
     if not files:
         svg = _candidates(stem, FIGURE_FORMATS)[0]
@@ -240,7 +206,7 @@ def _figure(stem: Path, scene: SceneEntry, out: Path) -> _Figure:
     return _Figure(image=links[0][1], links=links)
 
 
-def _table(stem: Path, scene: SceneEntry, out: Path) -> _Table:
+def _table(stem: Path, scene: Scene, out: Path) -> _Table:
     text, csv = _candidates(stem, (".md", ".csv"))
     _require(text, _target(text, scene))
     _require(csv, _target(csv, scene))
@@ -253,7 +219,7 @@ def _candidates(stem: Path, suffixes: Sequence[str]) -> list[Path]:
     return [stem.with_name(stem.name + suffix) for suffix in suffixes]
 
 
-def _target(path: Path, scene: SceneEntry | None = None) -> str:
+def _target(path: Path, scene: Scene | None = None) -> str:
     of_scene = f" (scene {scene.name})" if scene else ""
     return f"make it with `snakemake -j2 {path.as_posix()}`{of_scene}"
 

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Iterable, Iterator
+from functools import cache
 from pathlib import Path
 
 __all__ = ["sources_of"]
 
-_PACKAGES = ("fracparticles", "fracstudy")
+# Our packages, and the folder of the project that holds each.
+_HOMES = {"fracparticles": "src", "fracstudy": "src", "scenes": "workflow"}
 
 
-def sources_of(path: Path, root: Path, ends: Collection[Path] = ()) -> list[str]:
+def sources_of(path: Path, root: Path = Path(), ends: Collection[Path] = ()) -> list[str]:
     """Return a module's file and those of all modules of our packages that it imports, directly or not.
 
-    Imports inside functions count. The __init__ of a package counts where names are imported from the package itself.
+    Imports inside functions count. Where names are imported from a package itself, all its modules count.
 
     Parameters
     ----------
     path : Path
         The module.
     root : Path
-        The folder of the packages.
+        The folder of the project.
     ends : collection of Path
         Modules that count themselves, but not what they import.
     """
@@ -35,21 +37,26 @@ def sources_of(path: Path, root: Path, ends: Collection[Path] = ()) -> list[str]
     return sorted(str(module) for module in found)
 
 
-def _imports(module: Path, root: Path) -> Iterator[Path]:
+@cache
+def _imports(module: Path, root: Path) -> tuple[Path, ...]:
+    return tuple(_imported(module, root))
+
+
+def _imported(module: Path, root: Path) -> Iterator[Path]:
     for node in ast.walk(ast.parse(module.read_text("utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module is not None:
             names = node.module.split(".")
-            if names[0] in _PACKAGES:
-                yield from _files(root.joinpath(*names), (alias.name for alias in node.names))
+            if names[0] in _HOMES:
+                yield from _files(root.joinpath(_HOMES[names[0]], *names), (alias.name for alias in node.names))
         elif isinstance(node, ast.Import):
             for alias in node.names:
                 names = alias.name.split(".")
-                if names[0] in _PACKAGES:
-                    yield from _files(root.joinpath(*names), ())
+                if names[0] in _HOMES:
+                    yield from _files(root.joinpath(_HOMES[names[0]], *names), ())
 
 
 def _files(place: Path, names: Iterable[str]) -> Iterator[Path]:
-    """The file of a module; of a package its __init__, unless only modules are imported from it."""
+    """The file of a module; of a package all its modules, unless only some are imported from it."""
     if place.with_suffix(".py").exists():
         yield place.with_suffix(".py")
         return
@@ -57,4 +64,4 @@ def _files(place: Path, names: Iterable[str]) -> Iterator[Path]:
     modules = [place / f"{name}.py" for name in names if (place / f"{name}.py").exists()]
     yield from modules
     if len(modules) < len(names) or not names:
-        yield place / "__init__.py"
+        yield from place.glob("*.py")  # what the package finds by path, too

@@ -5,6 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from scenes.beyond.dvm_particles.study import lattice_strengths, spread
+from scenes.lucchesi.dvm_domain import truncation_effect
+from scenes.lucchesi.dvm_stability.study import displacement_growth, gpse_factors, worst_wave
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.run.case import Case
@@ -12,12 +18,6 @@ from fracparticles.run.dataset import read_run, write
 from fracparticles.run.solver import solve
 from fracparticles.schemes import dd
 from fracparticles.schemes.stability import stability_limit
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from fracstudy.studies.dvm import lattice_strengths, spread
-from fracstudy.studies.dvm_domain import truncation_effect
-from fracstudy.studies.dvm_stability import displacement_growth, gpse_factors, worst_wave
 
 REMESHINGS = ["M4'", "Lambda3", "none"]
 

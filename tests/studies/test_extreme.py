@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-
 from fracstudy.figures import figure
 from fracstudy.studies import Inputs, study
-from fracstudy.studies.extreme import UNEXPECTED
+from scenes.beyond.stiff_extreme.study import UNEXPECTED
 
 PARAMETERS = {
     "beta": 0.5,

@@ -6,19 +6,19 @@ from math import gamma, log, pi, sqrt
 
 import numpy as np
 import pytest
-
-import fracparticles as fp
-from fracparticles.kernels.families import kernel
 from fracstudy.figures import figure
 from fracstudy.plan import expand
 from fracstudy.studies import Inputs
-from fracstudy.studies.fickian import (
+from scenes.lucchesi.fickian_limit.study import (
     decade_moments,
     fickian_error,
     fickian_limit,
     heat_kernel,
     kernel_distance,
 )
+
+import fracparticles as fp
+from fracparticles.kernels.families import kernel
 
 LATTICE = {"half_width": 15.0, "overlap": 2.0, "t_initial": 0.5, "t_final": 1.5}
 

@@ -9,14 +9,10 @@ from pathlib import Path
 import mpmath as mp
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure
-from scipy.integrate import quad
-
-from fracparticles.special import mean_radius as closed_form
-from fracparticles.special import reduced_green
 from fracstudy.figures import figure
 from fracstudy.studies import Inputs
-from fracstudy.studies.fundamental import (
+from matplotlib.figure import Figure
+from scenes.lucchesi.fundamental import (
     expansions,
     fundamental_solution,
     inner_moment,
@@ -24,6 +20,10 @@ from fracstudy.studies.fundamental import (
     outer_moment,
     split_radius,
 )
+from scipy.integrate import quad
+
+from fracparticles.special import mean_radius as closed_form
+from fracparticles.special import reduced_green
 
 REFERENCE = Path(__file__).parents[2] / "report/reference/stable_density.csv"
 

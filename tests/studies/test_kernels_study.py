@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-
 from fracstudy.figures import figure
 from fracstudy.studies import Inputs
-from fracstudy.studies.kernels import kernels, tail_exponent
+from scenes.lucchesi.lucchesi_figure_1.study import kernels, tail_exponent
 
 PARAMETERS = {"beta": [0.1, 0.5, 0.9], "points": 401}
 

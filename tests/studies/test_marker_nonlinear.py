@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from fracstudy.figures import figure
 from fracstudy.studies import Inputs, study
-from fracstudy.studies.marker_nonlinear import Setting, evolve
+from scenes.lewandowski.marker_nonlinear.study import Setting, evolve
 
 NONLINEAR = {
     "problem": {"d0": 10.0, "alpha": 4.0, "x0": 0.5},

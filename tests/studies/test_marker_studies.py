@@ -6,16 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs, study
+from scenes.lewandowski.marker_claims.study import quadrature_exponent, smoothing_exponent
+from scenes.lewandowski.marker_growth.study import largest_step, measured_rate
+from scenes.lewandowski.marker_runs import cluster_centres, delay, emptiness, load, spectrum, trace
 
 from fracparticles.markers import SHAPES, Square
 from fracparticles.markers.stability import rate
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracstudy.claims import Status, judge, read_claims
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs, study
-from fracstudy.studies.marker_claims import quadrature_exponent, smoothing_exponent
-from fracstudy.studies.marker_growth import largest_step, measured_rate
-from fracstudy.studies.marker_runs import cluster_centres, delay, emptiness, load, spectrum, trace
 
 CLAIMS = {
     claim.id: claim

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-import fracparticles as fp
-from fracparticles.moving.random_walk import cell_masses, expected_deviation
 from fracstudy.figures import figure
 from fracstudy.plan import expand
 from fracstudy.studies import Inputs, study
-from fracstudy.studies.random_walk import few_walkers_beyond, walkers_to_equal
+from scenes.lucchesi.random_walk.study import few_walkers_beyond, walkers_to_equal
+
+import fracparticles as fp
+from fracparticles.moving.random_walk import cell_masses, expected_deviation
 
 PARAMETERS = {
     "beta": 0.5,

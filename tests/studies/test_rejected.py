@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
 from scipy.integrate import quad
 
 from fracparticles.kernels.families import kernel
@@ -11,9 +14,6 @@ from fracparticles.run.dataset import write
 from fracparticles.run.solver import solve
 from fracparticles.schemes import riesz
 from fracparticles.special.stable import green, green_flux
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
 
 
 def inputs(folder, scene, items, blocks, parameters):

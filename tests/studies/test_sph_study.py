@@ -6,17 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fracstudy.figures import figure
+from fracstudy.studies import Inputs, study
+from scenes.ghorbani.sph_closed_forms.study import defining_integral
+from scenes.ghorbani.sph_operators.study import OPERATORS, order_at
+from scenes.ghorbani.sph_readings.study import CASES
+from scenes.ghorbani.sph_spline.study import kernel_sums
+from scenes.ghorbani.sph_sums import Reading, approximate
 
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
 from fracstudy.claims import Status, judge, read_claims
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs, study
-from fracstudy.studies.sph import OPERATORS, order_at
-from fracstudy.studies.sph_closed_forms import defining_integral
-from fracstudy.studies.sph_readings import CASES
-from fracstudy.studies.sph_spline import kernel_sums
-from fracstudy.studies.sph_sums import Reading, approximate
 
 CLAIMS = {
     claim.id: claim

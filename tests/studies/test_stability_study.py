@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
-
 from fracstudy.figures import figure
 from fracstudy.studies import Inputs
-from fracstudy.studies.stability import spectrum, stability, truncated_print
+from matplotlib.figure import Figure
+from scenes.lucchesi.lucchesi_table_3.study import spectrum, stability, truncated_print
 
 PARAMETERS = {
     "beta": [0.1, 0.5, 0.9],

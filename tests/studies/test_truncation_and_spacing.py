@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from scenes.lucchesi.lucchesi_table_2.study import self_convergence_order
+from scenes.lucchesi.spacing_shared import spacing
+from scenes.lucchesi.truncation_shared import exchange_truncation_error, truncation
 
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import write
 from fracparticles.run.solver import compute, relative_l1_error, solve
-from fracstudy.figures import figure
 from fracstudy.inputs import observed_order
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from fracstudy.studies.self_convergence import self_convergence_order
-from fracstudy.studies.spacing import spacing
-from fracstudy.studies.truncation import exchange_truncation_error, truncation
 
 
 def computed(tmp_path, blocks):

@@ -7,6 +7,22 @@ from math import pi
 import numpy as np
 import pandas as pd
 import pytest
+from fracstudy.figures import figure
+from fracstudy.plan import expand
+from fracstudy.studies import Inputs, study
+from scenes.beyond.solution_map_2d.study import (
+    reconstructed,
+    square_exchange_error,
+    square_tail_mass,
+)
+from scenes.lucchesi.lucchesi_2d_tables.study import spurious_rate
+from scenes.lucchesi.lucchesi_figure_6.study import (
+    planar_asymptotic,
+    planar_integral,
+    planar_series,
+)
+from scenes.lucchesi.lucchesi_figure_7.study import flux_along_axis
+from scenes.lucchesi.lucchesi_figure_9.study import disk_error
 
 from fracparticles.kernels.families import kernel
 from fracparticles.run.case import Case
@@ -14,18 +30,6 @@ from fracparticles.run.dataset import write
 from fracparticles.run.solver import compute, relative_l1_error, solve
 from fracparticles.schemes import SCHEMES
 from fracparticles.special import green, green_flux, reduced_green
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from fracstudy.studies.two_dimensional_errors import disk_error
-from fracstudy.studies.two_dimensional_green import (
-    planar_asymptotic,
-    planar_integral,
-    planar_series,
-)
-from fracstudy.studies.two_dimensional_operators import flux_along_axis
-from fracstudy.studies.two_dimensional_tables import spurious_rate
-from fracstudy.studies.two_dimensions import reconstructed, square_exchange_error, square_tail_mass
 
 ALPHA = 1.5
 # The half-width is 8.94; N = 17, 33, 65.

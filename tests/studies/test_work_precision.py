@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
-
-from fracstudy.figures.work_precision import time_to_accuracy as draw_bars
-from fracstudy.figures.work_precision import work_precision as draw_fronts
-from fracstudy.inputs import Inputs
-from fracstudy.studies.run_times import reference_times, scattered_sums
-from fracstudy.studies.which_method import _off_the_front, run_time_goals, which_method
-from fracstudy.studies.work_precision import (
+from scenes.run_times.run_times import reference_times, scattered_sums
+from scenes.run_times.which_method_shared import _off_the_front, run_time_goals, which_method
+from scenes.run_times.work_precision_figures import time_to_accuracy as draw_bars
+from scenes.run_times.work_precision_figures import work_precision as draw_fronts
+from scenes.run_times.work_precision_shared import (
     best,
     front,
     time_to_accuracy,
     trials_of,
     work_precision,
 )
+
+from fracstudy.inputs import Inputs
 from fracstudy.style import save
 
 NAN = float("nan")

@@ -3,22 +3,19 @@
 
 rule benchmark:
     input:
-        code=lambda wildcards: benchmark_sources(wildcards.benchmark),
-        compiled=[COMPILED, RESULTS / "runs/.compiled_random_walk"],
+        compiled=rules.compile.output,
     output:
-        RESULTS / "benchmarks/{benchmark}.nc",
+        RESULTS / "benchmarks/{scene}.nc",
     log:
-        RESULTS / "logs/benchmark_{benchmark}.log",
-    # More than there are, which Snakemake scales down to all: nothing else runs while the clock does.
-    threads: 1024
+        RESULTS / "logs/benchmark_{scene}.log",
+    threads: workflow.cores  # all: nothing else runs while the clock does
     params:
-        parameters=lambda wildcards: STUDY.benchmarks[wildcards.benchmark],
+        code=lambda wildcards: code(SCENES[wildcards.scene].file("benchmark.py")),
+        scene=lambda wildcards: SCENES[wildcards.scene].model_dump_json(exclude={"runs"}),
     script:
         "../scripts/benchmark.py"
 
 
 rule bench:
     input:
-        expand(RESULTS / "benchmarks/{benchmark}.nc", benchmark=STUDY.benchmarks),
-        expand(RESULTS / "tables/{scene}.csv", scene=BENCHMARK_SCENES),
-        [RESULTS / f"figures/{scene}.svg" for scene in BENCHMARK_SCENES if has_figure(scene)],
+        expand(RESULTS / "tables/{scene}.csv", scene=FROM_TIMES),

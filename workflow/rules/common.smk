@@ -1,87 +1,63 @@
 # The configuration, validated; where things are; what a change of the code makes stale.
+import fcntl
 import os
+from hashlib import sha256
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
 # One thread a job: the jobs run side by side.
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ[name] = "1"
 
 from fracparticles.errors import InvalidInput
-from fracstudy import plan
-from fracstudy.benchmarks import BENCHMARKS
-from fracstudy.figures import FIGURES
+from fracstudy.config import batches, read_config
 from fracstudy.sources import sources_of
-from fracstudy.studies import STUDIES
 
 try:
-    STUDY = plan.read_config(config)
+    STUDY, SCENES = read_config(config)
+    CASES, BATCHES = batches(SCENES)
 except InvalidInput as error:
     raise WorkflowError(f"configuration: {error}") from None
 
 RESULTS = Path(STUDY.results_dir)
 REPORT = Path(STUDY.report_dir)
-SCENES = STUDY.scenes
-CASES, BATCHES = plan.batches(SCENES, STUDY.smoke)
-
-SRC = Path("src")
-PACKAGE = SRC / "fracparticles"
-STUDY_PACKAGE = SRC / "fracstudy"
-# What a run depends on, and nothing else: editing a plot reruns no solver.
-CORE = sources_of(PACKAGE / "run/solver.py", SRC)
-# The printed claims, by the letter that the inventory gives a document.
-PRINTED = {
-    "L": "report/printed/lucchesi2020.yaml",
-    "M": "report/printed/lewandowski2005.yaml",
-    "S": "report/printed/ghorbani.yaml",
-    "P": "report/printed/particle_note.yaml",
-}
-# What is compiled together: the solver, and what only some scenes need.
-AREAS = {
-    "core": CORE,
-    "random_walk": [str(PACKAGE / "moving/random_walk.py")],
-    "sph": sorted(map(str, PACKAGE.glob("sph/*.py"))),
-}
-BENCHMARK_SCENES = [name for name, scene in SCENES.items() if scene.benchmarks]
-COMPILED = RESULTS / "runs/.compiled_core"
 LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
+TIMED = [name for name, scene in SCENES.items() if scene.benchmark is not None]
+FROM_TIMES = [name for name, scene in SCENES.items() if scene.all_benchmarks]
+# What a run depends on, and nothing else: editing a plot reruns no solver.
+SOLVER = Path("src/fracparticles/run/solver.py")
+READER = Path("src/fracparticles/run/dataset.py")
 
 
 wildcard_constraints:
     scene="|".join(SCENES),
-    benchmark="|".join(STUDY.benchmarks),
-    area="|".join(AREAS),
 
 
-def run_files(scene):
-    """The run files of a scene."""
-    return [RESULTS / "runs" / case.path for case in CASES[scene]]
+if problem := next((c for c in " '\"" if c in str(Path.cwd())), None):
+    raise WorkflowError(
+        f"the folder {Path.cwd()} has {problem!r} in its path, which Snakemake's jobs cannot take: "
+        "move the project, or call it by a link without."
+    )
+
+def claim_folder():
+    """Refuse a second workflow in this folder. The system lets go of the lock when the process ends, whatever ends it."""
+    global RUNNING
+    RUNNING = open(".snakemake/running", "w")
+    try:
+        fcntl.flock(RUNNING, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise WorkflowError("a workflow runs in this folder already: wait for its end.") from None
 
 
-def study_sources(scene):
-    """The source files that a scene's study is made of; to read runs it does not take what makes them."""
-    study = STUDY_PACKAGE / f"studies/{STUDIES[SCENES[scene].study]}.py"
-    return sources_of(study, SRC, ends=[PACKAGE / "run/dataset.py"])
+onstart:
+    claim_folder()
 
 
-def benchmark_sources(benchmark):
-    """The source files that a benchmark is made of."""
-    return sources_of(STUDY_PACKAGE / f"benchmarks/{BENCHMARKS[benchmark]}.py", SRC)
+def code(*files):
+    """A digest of the source files that these are made of, a parameter of their rule: a change of one reruns it.
 
-
-def compiled_areas(scene):
-    """The marks of the areas of whose compiled modules a scene's study uses any."""
-    compiled = {module for module in study_sources(scene) if "@njit(" in Path(module).read_text()}
-    return [
-        RESULTS / f"runs/.compiled_{area}" for area, code in AREAS.items() if compiled & set(code)
-    ]
-
-
-def printed_files(scene):
-    """The files of the documents whose items a scene judges."""
-    return sorted({PRINTED[item[0]] for item in SCENES[scene].items})
-
-
-def has_figure(scene):
-    return SCENES[scene].figure is not None
+    To read runs takes not what makes them. As inputs they would be sixty files more a job for Snakemake to look after.
+    """
+    made_of = {source for file in files if file for source in sources_of(Path(file), ends=[READER])}
+    return sha256(b"".join(Path(source).read_bytes() for source in sorted(made_of))).hexdigest()

@@ -1,14 +1,15 @@
-# The solver runs: one file each, many to a job.
+# The solver runs: one file each, several to a job.
 
 
 rule compile:
     # numba fills its cache once, before two jobs could do it at the same time.
-    input:
-        code=lambda wildcards: AREAS[wildcards.area],
     output:
-        touch(RESULTS / "runs/.compiled_{area}"),
+        touch(RESULTS / "runs/.compiled"),
     log:
-        RESULTS / "logs/compile_{area}.log",
+        RESULTS / "logs/compile.log",
+    priority: 3
+    params:
+        code=code(SOLVER),
     script:
         "../scripts/compile.py"
 
@@ -19,12 +20,12 @@ for batch, cases in BATCHES.items():
         name:
             f"solve_{batch}"
         input:
-            code=CORE,
-            compiled=COMPILED,
+            compiled=rules.compile.output,
         output:
             [RESULTS / "runs" / case.path for case in cases],
         log:
             RESULTS / f"logs/solve_{batch}.log",
+        priority: 1
         params:
             cases=[case.to_json() for case in cases],
         script:

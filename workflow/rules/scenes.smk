@@ -1,79 +1,52 @@
-# From runs to tables, findings, figures, the ledger and the report.
+# From runs to tables, findings and figures, a scene each; then the ledger and the report.
 
+for name, scene in SCENES.items():
 
-rule study:
-    input:
-        runs=lambda wildcards: run_files(wildcards.scene),
-        tables=lambda wildcards: [
-            RESULTS / f"tables/{other}.csv" for other in SCENES[wildcards.scene].tables
-        ],
-        benchmarks=lambda wildcards: [
-            RESULTS / f"benchmarks/{name}.nc" for name in SCENES[wildcards.scene].benchmarks
-        ],
-        printed=lambda wildcards: printed_files(wildcards.scene),
-        code=lambda wildcards: study_sources(wildcards.scene),
-        reference=lambda wildcards: SCENES[wildcards.scene].parameters.get("reference", []),
-        compiled=lambda wildcards: compiled_areas(wildcards.scene),
-    output:
-        csv=RESULTS / "tables/{scene}.csv",
-        md=RESULTS / "tables/{scene}.md",
-        findings=RESULTS / "findings/{scene}.json",
-        series=RESULTS / "series/{scene}.csv",
-    log:
-        RESULTS / "logs/study_{scene}.log",
-    params:
-        study=lambda wildcards: SCENES[wildcards.scene].study,
-        parameters=lambda wildcards: SCENES[wildcards.scene].parameters,
-        claimed=lambda wildcards: SCENES[wildcards.scene].items,
-        tables=lambda wildcards: SCENES[wildcards.scene].tables,
-        smoke=STUDY.smoke,
-    script:
-        "../scripts/study.py"
-
-
-rule figure:
-    input:
-        series=RESULTS / "series/{scene}.csv",
-        table=RESULTS / "tables/{scene}.csv",
-        code=lambda wildcards: [
-            STUDY_PACKAGE / "style.py",
-            STUDY_PACKAGE / "fracstudy.mplstyle",
-            STUDY_PACKAGE / f"figures/{FIGURES[SCENES[wildcards.scene].figure]}.py",
-        ],
-    output:
-        svg=report(RESULTS / "figures/{scene}.svg", category="Figures"),
-        png=RESULTS / "figures/{scene}.png",
-    log:
-        RESULTS / "logs/figure_{scene}.log",
-    params:
-        figure=lambda wildcards: SCENES[wildcards.scene].figure,
-        parameters=lambda wildcards: SCENES[wildcards.scene].parameters,
-    script:
-        "../scripts/figure.py"
+    rule:
+        name:
+            name
+        input:
+            runs=[RESULTS / "runs" / case.path for case in CASES[name]],
+            tables=[RESULTS / f"tables/{other}.csv" for other in scene.tables],
+            benchmarks=[RESULTS / f"benchmarks/{other}.nc" for other in scene.all_benchmarks],
+            printed=STUDY.printed,
+            reference=scene.parameters.get("reference", []),
+            style="src/fracstudy/fracstudy.mplstyle",
+            compiled=rules.compile.output,
+        output:
+            csv=RESULTS / f"tables/{name}.csv",
+            md=RESULTS / f"tables/{name}.md",
+            findings=RESULTS / f"findings/{name}.json",
+            series=RESULTS / f"series/{name}.csv",
+            figures=[
+                RESULTS / f"figures/{name}.{kind}"
+                for kind in ("svg", "png")
+                if scene.file("figure.py")
+            ],
+        log:
+            RESULTS / f"logs/{name}.log",
+        params:
+            scene=scene.model_dump_json(exclude={"runs"}),
+            smoke=STUDY.smoke,
+            code=code("src/fracstudy/make.py", scene.file("study.py"), scene.file("figure.py")),
+        priority: 2
+        script:
+            "../scripts/scene.py"
 
 
 rule ledger:
     input:
         findings=expand(RESULTS / "findings/{scene}.json", scene=SCENES),
-        printed=list(PRINTED.values()),
-        code=[STUDY_PACKAGE / "claims.py", STUDY_PACKAGE / "ledger.py"],
+        printed=STUDY.printed,
     output:
-        csv=report(LEDGER[0], category="Claims ledger"),
+        csv=LEDGER[0],
         md=LEDGER[1],
     log:
         RESULTS / "logs/ledger.log",
+    params:
+        code=code("src/fracstudy/ledger.py"),
     script:
         "../scripts/ledger.py"
-
-
-for scene in SCENES:
-
-    rule:
-        name:
-            scene
-        input:
-            RESULTS / f"tables/{scene}.csv",
-            [RESULTS / f"figures/{scene}.svg"] if has_figure(scene) else [],
 
 
 rule tables:
@@ -84,7 +57,7 @@ rule tables:
 
 rule figures:
     input:
-        [RESULTS / f"figures/{scene}.svg" for scene in SCENES if has_figure(scene)],
+        [RESULTS / f"figures/{name}.svg" for name, scene in SCENES.items() if scene.file("figure.py")],
 
 
 rule report:
@@ -92,29 +65,20 @@ rule report:
         rules.tables.input,
         rules.figures.input,
         ledger=LEDGER[0],
-        captions=expand("report/captions/{scene}.md", scene=SCENES),
+        captions=[scene.file("caption.md") or [] for scene in SCENES.values()],
         template=[
             "report/template/report.md.j2",
             "report/template/report.html.j2",
             "report/template/style.css",
         ],
-        code=[STUDY_PACKAGE / name for name in ("report.py", "claims.py", "ledger.py")],
     output:
         REPORT / "report.md",
         REPORT / "report.html",
     log:
         RESULTS / "logs/report.log",
     params:
-        scenes=[
-            {
-                "name": name,
-                "items": scene.items,
-                "title": scene.title,
-                "figures": [name] if scene.figure else [],
-                "tables": [name],
-                "timed": bool(scene.benchmarks),
-            }
-            for name, scene in SCENES.items()
-        ],
+        scenes=[scene.model_dump_json(exclude={"runs"}) for scene in SCENES.values()],
+        code=code("src/fracstudy/report.py"),
+        documents=STUDY.model_dump(mode="json")["documents"],
     script:
         "../scripts/report.py"

@@ -1,13 +1,13 @@
-"""Run a benchmark."""
+"""Run the benchmark of a scene."""
 
 import sys
 from typing import Any
 
 from fracparticles.run.dataset import write
-from fracstudy.benchmarks import benchmark
+from fracstudy.scene import Scene
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
-data = benchmark(snakemake.wildcards.benchmark)(**snakemake.params.parameters)
-write(data, snakemake.output[0])
+scene = Scene.model_validate_json(snakemake.params.scene)
+write(scene.function("benchmark")(**scene.benchmark), snakemake.output[0])

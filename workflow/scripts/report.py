@@ -4,15 +4,18 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from fracstudy.report import SceneEntry, build
+from fracstudy.config import Document
+from fracstudy.report import build
+from fracstudy.scene import Scene
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
+documents = snakemake.params.documents.items()
 build(
-    [SceneEntry(**scene) for scene in snakemake.params.scenes],
+    [Scene.model_validate_json(scene) for scene in snakemake.params.scenes],
+    {name: Document(**document) for name, document in documents},
     results_dir=Path(snakemake.input.ledger).parent,
-    captions_dir=Path("report/captions"),
     template_dir=Path("report/template"),
     out_dir=Path(snakemake.output[0]).parent,
 )

@@ -1,0 +1,166 @@
+"""The configuration of the study: what is global, the scenes that are found, their cases, and the batches of these.
+
+The run blocks of a scene are fields of `Case`, each with a value or a list of values; a block stands for the Cartesian
+product. Cases that several scenes need are computed once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from fracparticles.errors import InvalidInput
+from fracparticles.run.case import Case
+from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
+
+__all__ = ["Document", "StudyConfig", "batches", "cases_of", "expand", "read_config"]
+
+_STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
+_AT_ONCE = 8  # runs of a job: its start takes as long as a few of them
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class Document(_Strict):
+    """A folder of scenes, a part of the report.
+
+    Attributes
+    ----------
+    title : str
+        Heading in the report.
+    printed : str, optional
+        The file of the claims that the document prints; left out for studies of our own.
+    """
+
+    title: str = Field(min_length=1)
+    printed: str | None = None
+
+
+class StudyConfig(_Strict):
+    """What is global.
+
+    Attributes
+    ----------
+    results_dir : str
+        Where runs, tables and figures go.
+    report_dir : str
+        Where the report goes.
+    scenes_dir : str
+        Where the scenes are, `<document>/<scene>/scene.yaml`.
+    documents : dict
+        The documents by the name of their folder, in the order of the report.
+    smoke : bool
+        Whether the scenes take their `smoke` values: tiny grids, too coarse to judge the claims.
+    dvm_dt : float, optional
+        Time step of every run of DVM, whatever the scenes say, but for studies of the step.
+    """
+
+    results_dir: str = Field(min_length=1)
+    report_dir: str = Field(min_length=1)
+    scenes_dir: str = "workflow/scenes"
+    documents: dict[str, Document] = Field(min_length=1)
+    smoke: bool = False
+    dvm_dt: float | None = Field(default=None, gt=0.0)
+
+    @property
+    def printed(self) -> list[str]:
+        """The files of the printed claims."""
+        return [document.printed for document in self.documents.values() if document.printed]
+
+
+def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene]]:
+    """Validate a configuration and find its scenes; their parameters and cases are validated, too.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the key, the value, what is allowed and what to do.
+    """
+    try:
+        study = StudyConfig(**config)
+    except ValidationError as error:
+        raise complaint(error, "", StudyConfig) from None
+    scenes = read_scenes(Path(study.scenes_dir), list(study.documents), study.smoke)
+    timed = [name for name, scene in scenes.items() if scene.benchmark is not None]
+    for scene in scenes.values():
+        for key, names in (("tables", scenes), ("benchmarks", timed)):
+            for other in getattr(scene, key):
+                if other not in names:
+                    where = f"{scene.folder / 'scene.yaml'}: {key}"
+                    raise InvalidInput(where, other, f"of {', '.join(names)}", "Choose of these.")
+        check_parameters(scene)
+    if study.dvm_dt is not None:
+        scenes = {name: _with_dvm_step(scene, study.dvm_dt) for name, scene in scenes.items()}
+    return study, scenes
+
+
+def _with_dvm_step(scene: Scene, dt: float) -> Scene:
+    """Return the scene with that step for DVM; a block with a list of steps is a study of the step and stays."""
+    blocks = []
+    for block in scene.runs:
+        fields = block.model_dump(exclude_none=True)
+        schemes = fields["scheme"] if isinstance(fields["scheme"], list) else [fields["scheme"]]
+        if "DVM" not in schemes or isinstance(fields.get("dt"), list):
+            blocks.append(block)
+            continue
+        others = [name for name in schemes if name != "DVM"]
+        blocks += [RunBlock(**{**fields, "scheme": others})] if others else []
+        blocks.append(RunBlock(**{**fields, "scheme": "DVM", "dt": dt}))
+    return scene.model_copy(update={"runs": blocks})
+
+
+def expand(blocks: Iterable[BaseModel | Mapping[str, Any]]) -> list[Case]:
+    """Return the cases of run blocks, in order, without repeats."""
+    cases: dict[str, Case] = {}
+    for block in blocks:
+        fields = block.model_dump(exclude_none=True) if isinstance(block, BaseModel) else block
+        choices = [value if isinstance(value, list) else [value] for value in fields.values()]
+        for combination in product(*choices):
+            case = Case(**dict(zip(fields, combination, strict=True)))
+            case.refuse_point_mass()
+            cases.setdefault(case.path, case)
+    return list(cases.values())
+
+
+def cases_of(scene: Scene) -> list[Case]:
+    """Return the cases of a scene; a case that is not allowed is reported with the scene's file."""
+    try:
+        return expand(scene.runs)
+    except InvalidInput as error:
+        where = f"{scene.folder / 'scene.yaml'}: runs: {error.field}"
+        raise InvalidInput(where, error.value, error.allowed, error.remedy) from None
+
+
+def batches(scenes: Mapping[str, Scene]) -> tuple[dict[str, list[Case]], dict[str, list[Case]]]:
+    """Return the cases of each scene and the batches of cases that one job computes.
+
+    Two scenes that need the same run share it; it stores the more that either needs. A batch holds only cases
+    that are needed by the same scenes, so that one scene never computes a run that it does not need.
+    """
+    needed_by: dict[str, list[str]] = {}
+    widest: dict[str, Case] = {}
+    wanted: dict[str, list[str]] = {name: [] for name in scenes}
+    for name, scene in scenes.items():
+        for case in cases_of(scene):
+            key = case.model_copy(update={"store": _STORES[0]}).path
+            if key not in wanted[name]:
+                needed_by.setdefault(key, []).append(name)
+                wanted[name].append(key)
+            known = widest.setdefault(key, case)
+            if _STORES.index(case.store) > _STORES.index(known.store):
+                widest[key] = case
+    groups: dict[tuple[str, ...], list[Case]] = {}
+    for key, names in needed_by.items():
+        groups.setdefault(tuple(names), []).append(widest[key])
+    named: dict[str, list[Case]] = {}
+    for group, cases in groups.items():
+        for first in range(0, len(cases), _AT_ONCE):
+            number = sum(batch.rsplit("_", 1)[0] == group[0] for batch in named) + 1
+            named[f"{group[0]}_{number}"] = cases[first : first + _AT_ONCE]
+    return {name: [widest[key] for key in keys] for name, keys in wanted.items()}, named

@@ -1,0 +1,289 @@
+"""A scene: one folder `workflow/scenes/<document>/<scene>/`, found by its path.
+
+    scene.yaml     title, runs, and what else the fields of `Scene` say
+    study.py       study(inputs, **parameters) -> Result; without it the table of the runs
+    figure.py      figure(series, table, **parameters) -> Figure; without it there is no figure
+    benchmark.py   benchmark(**parameters) -> data set of run times, if the scene measures any
+    caption.md     what is shown, how to read it, what follows
+
+What a smoke run changes stands beside the full value: any mapping may hold `smoke`, which is laid over it, and
+`smoke: null` leaves it out. A folder with `variants` stands for several scenes: the common part, and over it its own.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Union
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, create_model
+
+from fracparticles.errors import InvalidInput
+from fracparticles.run.case import Case
+from fracparticles.run.complaints import closest
+
+__all__ = ["RunBlock", "Scene", "call", "check_parameters", "complaint", "merged", "read_scenes", "resolved"]
+
+_Tree = Any  # of mappings, lists and values, as YAML gives it
+
+
+def _value_or_list(annotation: Any) -> Any:
+    return Union[annotation, list[annotation], None]  # noqa: UP007  (an annotation known at run time only)
+
+
+_FIELDS: dict[str, Any] = {
+    name: (_value_or_list(field.annotation), Field(default=None))
+    for name, field in Case.model_fields.items()
+}
+RunBlock: type[BaseModel] = create_model(
+    "RunBlock",
+    __config__=ConfigDict(extra="forbid", strict=True, frozen=True),
+    __doc__="Fields of a case, each with one value or a list of values.",
+    **_FIELDS,
+)
+
+
+class Scene(BaseModel):
+    """One figure, table or study.
+
+    Attributes
+    ----------
+    name : str
+        Its name: that of the folder, or of the variant. It is the target, and the name of its results.
+    folder : Path
+        Where its files are.
+    title : str
+        Heading in the report.
+    place : int
+        Where in its document it stands: smaller numbers first, then by name.
+    items : list of str
+        Items of the inventory whose claims it judges; empty for a study of our own.
+    study : str, optional
+        `<document>/<folder>` of another scene, whose study and figure it takes.
+    parameters : dict
+        What the study and the figure need beyond the runs: the keywords of their functions.
+    runs : list of RunBlock
+        The cases.
+    tables : list of str
+        Scenes whose tables it reads.
+    benchmarks : list of str
+        Scenes whose benchmarks it reads; its own, if it has one, is always among them.
+    benchmark : dict, optional
+        The keywords of its own benchmark.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    name: str
+    folder: Path
+    title: str = Field(min_length=1)
+    place: int = 100
+    items: list[str] = []
+    study: str | None = None
+    parameters: dict[str, Any] = {}
+    runs: list[RunBlock] = []  # type: ignore[valid-type]
+    tables: list[str] = []
+    benchmarks: list[str] = []
+    benchmark: dict[str, Any] | None = None
+
+    @property
+    def document(self) -> str:
+        """The name of the document's folder."""
+        return self.folder.parent.name
+
+    def file(self, kind: str) -> Path | None:
+        """Return the file "study.py", "figure.py", "benchmark.py" or "caption.md" of the scene, None without it."""
+        own = self.study is None or kind in ("benchmark.py", "caption.md")
+        folder = self.folder if own else self.folder.parents[1] / str(self.study)
+        return folder / kind if (folder / kind).is_file() else None
+
+    def function(self, kind: str) -> Callable[..., Any]:
+        """Return the function `kind` of `<kind>.py`; without a study, the table of the runs."""
+        file = self.file(f"{kind}.py")
+        if file is None:
+            if kind != "study":
+                raise InvalidInput(kind, self.name, f"a scene with {kind}.py", f"Write {kind}.py.")
+            from fracstudy.run_table import study
+
+            return study
+        root = str(file.parents[3])  # of the package `scenes`
+        if root not in sys.path:
+            sys.path.insert(0, root)
+        return getattr(import_module(".".join([*file.parts[-4:-1], kind])), kind)
+
+    @cached_property
+    def all_benchmarks(self) -> list[str]:
+        """The scenes whose benchmarks it reads, its own included."""
+        own = [] if self.benchmark is None else [self.name]
+        return own + [name for name in self.benchmarks if name != self.name]
+
+
+def read_scenes(root: Path, documents: list[str], smoke: bool) -> dict[str, Scene]:
+    """Return the scenes of the documents' folders below `root`, by name, in the order of the report.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file, the key, the value, what is allowed and what to do.
+    """
+    found: dict[str, Scene] = {}
+    for document in documents:
+        if not (root / document).is_dir():
+            raise InvalidInput("documents", document, f"a folder of {root}", "Make it.")
+        scenes = [
+            scene
+            for file in (root / document).glob("*/scene.yaml")
+            for scene in _scenes_of(file, smoke)
+        ]
+        for scene in sorted(scenes, key=lambda scene: (scene.place, _natural(scene.name))):
+            if scene.name in found:
+                raise InvalidInput(
+                    "scene", scene.name, "a name that no other scene has", "Rename one."
+                )
+            found[scene.name] = scene
+    return found
+
+
+def _natural(name: str) -> list[tuple[bool, int, str]]:
+    """Sort `figure_2` before `figure_10`."""
+    parts = re.split(r"(\d+)", name)
+    return [(not part.isdigit(), int(part) if part.isdigit() else 0, part) for part in parts]
+
+
+def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
+    try:
+        tree = yaml.safe_load(file.read_text("utf-8"))
+    except yaml.YAMLError as error:
+        problem = " ".join(str(error).split())
+        raise InvalidInput(str(file), problem, "YAML", "Mend the file.") from None
+    if not isinstance(tree, dict):
+        raise InvalidInput(str(file), tree, "a mapping with title and runs", "Fill it in.")
+    variants = tree.pop("variants", {file.parent.name: {}})
+    for name, own in variants.items():
+        fields = resolved(merged(tree, own), smoke)
+        try:
+            yield Scene(name=name, folder=file.parent, **fields)
+        except ValidationError as error:
+            raise complaint(error, f"{file}: ", Scene) from None
+
+
+def merged(base: _Tree, own: _Tree) -> _Tree:
+    """Lay one tree over another: mappings by key, where null removes the key, lists of mappings item by item."""
+    if isinstance(base, Mapping) and isinstance(own, Mapping):
+        result = {**base}
+        for key, value in own.items():
+            if value is None and key != "smoke":
+                result.pop(key, None)
+            else:
+                result[key] = merged(base[key], value) if key in base else value
+        return result
+    if _of_mappings(base) and _of_mappings(own):
+        pairs = [merged(one, other) for one, other in zip(base, own, strict=False)]
+        return pairs + base[len(own) :] + own[len(base) :]
+    return own
+
+
+def _of_mappings(tree: _Tree) -> bool:
+    return isinstance(tree, list) and bool(tree) and all(isinstance(x, Mapping) for x in tree)
+
+
+_DROPPED = object()
+
+
+def resolved(tree: _Tree, smoke: bool) -> _Tree:
+    """Return a tree without `smoke`: laid over the mapping that holds it in a smoke run, left out otherwise."""
+    if isinstance(tree, Mapping):
+        changes = tree.get("smoke", {})
+        if smoke and changes is None:
+            return _DROPPED
+        own = {key: value for key, value in tree.items() if key != "smoke"}
+        own = merged(own, changes) if smoke else own
+        values = {key: resolved(value, smoke) for key, value in own.items()}
+        return {key: value for key, value in values.items() if value is not _DROPPED}
+    if isinstance(tree, list):
+        values_ = [resolved(value, smoke) for value in tree]
+        return [value for value in values_ if value is not _DROPPED]
+    return tree
+
+
+def call(function: Callable[..., Any], *arguments: Any, **parameters: Any) -> Any:
+    """Call a study, figure or benchmark with those of the parameters that it takes."""
+    taken = inspect.signature(function).parameters
+    parameters = {**parameters, "parameters": parameters}
+    return function(*arguments, **{k: v for k, v in parameters.items() if k in taken})
+
+
+def complaint(error: ValidationError, where: str, model: type[BaseModel]) -> InvalidInput:
+    """Return the first mistake that pydantic found, in our words."""
+    first = error.errors()[0]
+    # A run block's field may be a value or a list: pydantic complains about both; the first will do.
+    place = [str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)]
+    field = where + (".".join(place) or "configuration")
+    if first["type"] == "extra_forbidden":
+        names = (RunBlock if place[0] == "runs" else model).model_fields
+        names = [name for name in names if name not in ("name", "folder")]
+        remedy = closest(place[-1], names) or "Remove it."
+        return InvalidInput(field, first["input"], f"one of {', '.join(names)}", remedy)
+    if first["type"] == "missing":
+        return InvalidInput(field, None, "needed", "Add it.")
+    number = isinstance(first["input"], str) and "number" in first["msg"]
+    hint = " YAML reads 1e-4 as text: write 1.0e-4." if number else ""
+    allowed = first["msg"].removeprefix("Input should be ")
+    return InvalidInput(field, first["input"], allowed, f"Mend the value.{hint}")
+
+
+def check_parameters(scene: Scene) -> None:
+    """Check the parameters of a scene against the functions that take them: names, and types where they are given.
+
+    Raises
+    ------
+    InvalidInput
+        For a parameter that none of them takes, one that is needed and left out, or one of the wrong type.
+    """
+    kinds = [kind for kind in ("study", "figure") if kind == "study" or scene.file("figure.py")]
+    functions = [scene.function(kind) for kind in kinds]
+    if any(p.kind is p.KEYWORD_ONLY for p in inspect.signature(functions[0]).parameters.values()):
+        _check_keywords(scene, "parameters", scene.parameters, functions)
+    if scene.benchmark is not None:
+        _check_keywords(scene, "benchmark", scene.benchmark, [scene.function("benchmark")])
+
+
+_ANYTHING = inspect.Parameter("anything", inspect.Parameter.KEYWORD_ONLY)
+
+
+def _check_keywords(
+    scene: Scene, key: str, given: Mapping[str, Any], functions: list[Callable[..., Any]]
+) -> None:
+    where = f"{scene.folder / 'scene.yaml'}: {key}"
+    keywords = {
+        name: (parameter, function.__globals__)
+        for function in functions
+        for name, parameter in inspect.signature(function).parameters.items()
+        if name not in ("inputs", "series", "table") and parameter.kind is not parameter.VAR_KEYWORD
+    }
+    parameters = [p for f in functions for p in inspect.signature(f).parameters.values()]
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
+        keywords = {**dict.fromkeys(given, (_ANYTHING, {})), **keywords}
+    for name in given:
+        if name not in keywords:
+            remedy = closest(name, keywords) or "Remove it."
+            taken = f"one of {', '.join(keywords)}" if keywords else "none: the study takes none"
+            raise InvalidInput(f"{where}.{name}", given[name], taken, remedy)
+    for name, (parameter, names) in keywords.items():
+        if name not in given:
+            if parameter.default is parameter.empty:
+                raise InvalidInput(f"{where}.{name}", None, "needed by the study", "Add it.")
+        elif parameter.annotation is not parameter.empty:
+            try:
+                TypeAdapter(eval(parameter.annotation, names)).validate_python(given[name])
+            except ValidationError as error:
+                allowed = error.errors()[0]["msg"].removeprefix("Input should be ")
+                raise InvalidInput(
+                    f"{where}.{name}", given[name], allowed, "Mend the value."
+                ) from None

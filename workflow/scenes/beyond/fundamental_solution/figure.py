@@ -1,0 +1,7 @@
+"""See `fundamental_figures`."""
+
+from __future__ import annotations
+
+from scenes.lucchesi.fundamental_figures import fundamental_solution as figure
+
+__all__ = ["figure"]

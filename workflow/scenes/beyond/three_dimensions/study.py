@@ -1,0 +1,118 @@
+"""Section 5 carried to n = 3, a study of our own: error and cost against h on a cube.
+
+The schemes are those of the paper with the kernels for n = 3; the error is (59) over the ball |x| <= 5. Cost is
+counted, not timed, so that the same runs give the same table; for times see the benchmark.
+"""
+
+from __future__ import annotations
+
+from math import log2
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.fourier import transform_length
+from fracparticles.special import green
+from fracstudy.inputs import ORDERS, Inputs, Result, observed_order
+
+__all__ = ["bytes_kept", "operations", "study"]
+
+_KEY = ["scheme", "order", "exterior"]
+_ROWS, _COLUMNS = 16, 8  # lines and wave numbers that the sums transform together
+_VECTORS = 5  # strengths at t_initial and t_final, and three of the Chebyshev recurrence
+
+
+def study(inputs: Inputs) -> Result:
+    """Return the errors with their orders, what each run cost, and its mass beside the exact mass in the cube."""
+    runs = inputs.scalars.copy()
+    runs["N"] = 1 + 2 * (runs["half_width"] / runs["particle_spacing"]).round().astype(int)
+    runs["particles"] = runs["N"] ** runs["dim"]
+    per_application = [
+        operations(run.scheme, run.order, run.dim, run.N, run.overlap) for run in runs.itertuples()
+    ]
+    runs["work"] = runs["operator_applications"] * per_application
+    runs["memory"] = [
+        bytes_kept(run.scheme, run.order, run.dim, run.N, run.exterior) / run.particles
+        for run in runs.itertuples()
+    ]
+    runs["exact"] = [exact_mass(run) for run in runs.itertuples()]
+    runs = runs.sort_values([*_KEY, "particle_spacing"], ascending=[True, True, False, False])
+    runs["observed"] = np.nan
+    for _, part in runs.groupby(_KEY):
+        orders = observed_order(part["particle_spacing"], part["relative_l1_error"])
+        runs.loc[part.index[1:], "observed"] = orders
+    gpse = runs["scheme"] == "GPSE"
+    table = pd.DataFrame(
+        {
+            "scheme": runs["scheme"],
+            "order": runs["order"].map(ORDERS).where(~gpse, "-"),
+            "exterior": runs["exterior"],
+            "N": [f"{n}^{dim}" for n, dim in zip(runs["N"], runs["dim"], strict=True)],
+            "h": runs["particle_spacing"],
+            "error (59)": runs["relative_l1_error"],
+            "order from the h above": runs["observed"],
+            "operator applications": runs["operator_applications"],
+            "work / 10^9 operations": 1e-9 * runs["work"],
+            "kept / bytes a particle": runs["memory"].round().astype(int),
+            "mass at t0": runs["mass_initial"],
+            "mass at tf": runs["mass_final"],
+            "mass at tf, exact": runs["exact"],
+        }
+    )
+    columns = {"particle_spacing": "h", "relative_l1_error": "error"}
+    series = runs.rename(columns=columns)[[*_KEY, "N", "h", "error", "work"]]
+    return Result(table.reset_index(drop=True), (), series.reset_index(drop=True))
+
+
+def exact_mass(run: Any) -> float:
+    """Return h^n sum_i G(x_i, t_f), the mass that the fundamental solution has on the lattice."""
+    x = (np.arange(run.N) - run.N // 2) * run.particle_spacing
+    squares = sum(np.square(part) for part in np.meshgrid(*(x,) * run.dim, sparse=True))
+    u = green(np.sqrt(squares), run.diffusivity * run.t_final, 1.0 + run.beta, run.dim)
+    return float(run.particle_spacing**run.dim * np.sum(u))
+
+
+def operations(scheme: str, order: int, dim: int, size: int, overlap: float) -> float:
+    """Return the floating-point operations of one application on N^n particles, to leading order.
+
+    5/2 L log2 L for a real transform of length L >= 2 N - 1, twice that for a complex one, one forward and one
+    backward for each weight; only the lines that hold something are transformed: N^(n-1) along the last axis, half
+    as many wave numbers and a factor L / N more lines with each axis that follows. FPSE has n weights, and the sums
+    with the Gaussian kernel of its divergence, axis by axis, 3 M operations for a half band M.
+    """
+    length = transform_length(2 * size - 1)
+    half = length // 2 + 1
+    line = 2.5 * length * log2(length)
+    transform = size ** (dim - 1) * line
+    for axis in range(1, dim):
+        transform += half * size ** (dim - 1 - axis) * length ** (axis - 1) * 2.0 * line
+    weights = dim if scheme == "FPSE" else 1
+    total = (1 + weights) * transform + 2.0 * weights * half * length ** (dim - 1)
+    if scheme == "FPSE":
+        # Every factor is a Gaussian of width epsilon times a polynomial; order IV is a sum of products.
+        passes = dim * (dim if order == 2 else 2 + 3 * (dim - 1))
+        total += passes * 3.0 * BandedConvolution.reach(overlap, 2) * size**dim
+    return total
+
+
+def bytes_kept(scheme: str, order: int, dim: int, size: int, exterior: str) -> float:
+    """Return the memory that a run keeps after its set-up: the arrays of the sums and of the series, in bytes."""
+    particles, weights = size**dim, dim if scheme == "FPSE" else 1
+    length = transform_length(2 * size - 1)
+    half = length // 2 + 1
+    columns = -(-half // _COLUMNS) * _COLUMNS
+    symbols = weights * half ** (dim - 1) * columns
+    spectra = 2 * (1 + weights) * size ** (dim - 1) * columns
+    blocks = 4 * length ** (dim - 1) * _COLUMNS + _ROWS * (length + 2 * half)
+    vectors = weights + _VECTORS  # the sums themselves
+    if exterior == "open":
+        vectors += weights * (dim + 2)
+    if scheme == "FPSE":
+        vectors += (0 if exterior == "open" else dim) + (
+            3 if order == 2 else 5
+        )  # of the divergence
+    else:
+        vectors += 1  # the diagonal
+    return 8.0 * (symbols + spectra + blocks + vectors * particles)

@@ -1,0 +1,7 @@
+"""See `marker_clusters`."""
+
+from __future__ import annotations
+
+from scenes.lewandowski.marker_clusters import marker_fixed_grid as study
+
+__all__ = ["study"]

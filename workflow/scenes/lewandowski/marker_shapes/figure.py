@@ -1,0 +1,7 @@
+"""See `marker_initial_figures`."""
+
+from __future__ import annotations
+
+from scenes.lewandowski.marker_initial_figures import marker_shapes as figure
+
+__all__ = ["figure"]

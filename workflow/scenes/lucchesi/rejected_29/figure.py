@@ -1,0 +1,7 @@
+"""See `rejected_figures`."""
+
+from __future__ import annotations
+
+from scenes.lucchesi.rejected_figures import rejected_29 as figure
+
+__all__ = ["figure"]

@@ -1,0 +1,198 @@
+"""The scheme of Eq. (29), which the paper rejects for its instability: eigenvalues above nil, runs that grow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from fracparticles import time as integrators
+from fracparticles.errors import NonFiniteSolution
+from fracparticles.kernels.families import kernel
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import read_run
+from fracparticles.run.solver import compute, initial_strengths
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.special.stable import green
+from fracstudy.claims import Finding
+from fracstudy.inputs import Inputs, Result, statement
+
+__all__ = ["study"]
+
+_LARGE = 10.0  # an error this many times the exact value is large
+_NODES = np.linspace(0.0, 20.0, 4001)  # r; G is smooth on the scale 1
+_OVERLAP = 2.0
+
+
+def study(inputs: Inputs) -> Result:
+    """Scheme (29): the kernel, the spectrum, the growth and the errors.
+
+    On a bounded lattice -sum_j G_(i-j) > 0 stays on the diagonal near the ends, where half of the negative middle of G
+    is left alone with the positive tail. The greatest eigenvalue is a number of the kernel alone, lambda h^alpha / D,
+    and its mode a layer a few epsilon thick: in time T the solution grows by exp(lambda T), without bound as h -> 0.
+
+    The kernel statement holds if G(0) < 0, G changes sign and is not monotonic, at every beta. The errors are called
+    large if |u| is more than ten times the exact solution at |x| = D at the smallest h of every beta. The instability
+    is shown if the greatest eigenvalue is positive at every beta and the growth of the runs has its rate to 1 %.
+    """
+    runs = inputs.scalars
+    betas = sorted(runs["beta"].unique())
+    size = int(inputs.parameters["dense"])
+    spectra = {beta: _spectrum("PSE29", beta, size) for beta in betas}
+    beta = float(inputs.parameters["beta"])
+    history = _history(beta, float(spectra[beta][-1]), **inputs.parameters["history"])
+    table = _table_29(runs, {b: float(eigenvalues[-1]) for b, eigenvalues in spectra.items()})
+    kernels = {b: np.asarray(kernel("G", _NODES, 1.0 + b)) for b in betas}
+    blow_up = _blow_up(beta, float(spectra[beta][-1]))
+    findings = _findings_29(table, kernels, spectra, history, blow_up, list(runs["run"]))
+    near = _NODES <= 4.0
+    parts = [
+        pd.DataFrame({"panel": "kernel", "series": f"{b:g}", "x": _NODES[near], "y": G[near]})
+        for b, G in kernels.items()
+    ]
+    for name in ("PSE29", "DD"):
+        eigenvalues = spectra[beta] if name == "PSE29" else _spectrum(name, beta, size)
+        rank = np.arange(1, size + 1) / size
+        parts.append(
+            pd.DataFrame({"panel": "spectrum", "series": name, "x": rank, "y": eigenvalues})
+        )
+    every = max(1, len(history) // 400)
+    parts.append(history.iloc[::every].assign(panel="history"))
+    return Result(table, findings, pd.concat(parts, ignore_index=True))
+
+
+def _spectrum(name: str, beta: float, size: int) -> np.ndarray:
+    """The eigenvalues of A h^alpha / D, ascending; A is symmetric."""
+    setting = Setting(n=size // 2, spacing=1.0, alpha=1.0 + beta, overlap=_OVERLAP)
+    return np.linalg.eigvalsh(dense_matrix(SCHEMES[name].operator(setting)))
+
+
+def _history(
+    beta: float, growth: float, half_width: float, spacing: list[float], foldings: float
+) -> pd.DataFrame:
+    """|u(D, t)| of RK2 in time until it must have grown by exp(foldings), and the predicted growth.
+
+    The step is a fiftieth of the growth time: p(lambda dt) is then exp(lambda dt) to 1e-6.
+    """
+    parts = []
+    for h in spacing:
+        n = round(half_width / h)
+        setting = Setting(n=n, spacing=half_width / n, alpha=1.0 + beta, overlap=_OVERLAP)
+        rate, steps = growth * setting.rate, round(50.0 * foldings)
+        operator = SCHEMES["PSE29"].operator(setting)
+        u = np.asarray(green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta))
+        edge = [u[-1]]
+        for _ in range(steps):
+            u = integrators.step(operator, integrators.STEP_POLYNOMIALS["rk2"], 0.02 / rate, 1, u)
+            edge.append(u[-1])
+        time = 0.5 + 0.02 / rate * np.arange(steps + 1)
+        y = np.abs(edge)
+        predicted = y[-1] * np.exp(rate * (time - time[-1]))
+        late = time > time[0] + 0.75 * (time[-1] - time[0])
+        measured = np.polyfit(time[late], np.log(y[late]), 1)[0]
+        parts.append(
+            pd.DataFrame({"series": f"{h:.3g}", "x": time, "y": y, "predicted": predicted}).assign(
+                deviation=measured / rate - 1.0
+            )
+        )
+    return pd.concat(parts, ignore_index=True)
+
+
+def _blow_up(beta: float, growth: float) -> dict[str, Any]:
+    """Run (29) on a small lattice until it overflows: the step predicted from the growing modes, and the message."""
+    case = Case(
+        scheme="PSE29", beta=beta, half_width=10.0, spacing=0.2, overlap=_OVERLAP, dt=0.02, t_final=1000.0,
+        evaluation="stepping", store="metrics",
+    )  # fmt: skip
+    matrix = dense_matrix(SCHEMES["PSE29"].operator(case.setting))
+    values, modes = np.linalg.eigh(matrix)
+    amplitudes = modes.T @ initial_strengths(case)[0]
+    factor = np.log(integrators.STEP_POLYNOMIALS["rk2"](values * case.time_step))
+    largest = np.log(np.abs(amplitudes) * np.abs(modes).max(axis=0) + np.finfo(float).tiny)
+    growing = factor > 0.0
+    steps = (np.log(np.finfo(float).max) - largest[growing]) / factor[growing]
+    try:
+        compute(case)
+    except NonFiniteSolution as error:
+        return {"predicted": float(steps.min()), "message": str(error)}
+    return {"predicted": float(steps.min()), "message": ""}
+
+
+def _table_29(runs: pd.DataFrame, greatest: dict[float, float]) -> pd.DataFrame:
+    rows = []
+    for (beta, h), pair in runs.groupby(["beta", "particle_spacing"]):
+        pair = pair.set_index("scheme")
+        run = pair.loc["PSE29"]
+        u = read_run(run["run"])["u"].values
+        exact = float(green(run["half_width"], run["t_final"], 1.0 + beta))
+        rate = greatest[beta] * run["diffusivity"] / h ** (1.0 + beta)
+        ours, dd = pair["relative_l1_error"][["PSE29", "DD"]]
+        rows.append(
+            {
+                "beta": beta,
+                "h": h,
+                "greatest eigenvalue, λ h^α / D": greatest[beta],
+                "λ": rate,
+                "log10 of the growth exp(λ T)": rate
+                * (run["t_final"] - run["t_initial"])
+                / np.log(10.0),
+                "|u| / exact at |x| = D": abs(u[-1]) / exact,
+                "error (48) of (29)": ours,
+                "error (48) of DD": dd,
+                "ratio": ours / dd,
+            }
+        )
+    return pd.DataFrame(rows).sort_values(["beta", "h"], ascending=[True, False])
+
+
+def _findings_29(
+    table: pd.DataFrame,
+    kernels: Mapping[float, np.ndarray],
+    spectra: Mapping[float, np.ndarray],
+    history: pd.DataFrame,
+    blow_up: Mapping[str, Any],
+    files: list[str],
+) -> list[Finding]:
+    origin = {beta: G[0] for beta, G in kernels.items()}
+    crossing = {beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))] for beta, G in kernels.items()}
+    turns = {beta: int((np.diff(np.sign(np.diff(G))) != 0).sum()) for beta, G in kernels.items()}
+    top = {beta: _NODES[G.argmax()] for beta, G in kernels.items()}
+    finest, coarsest = (table.groupby("beta").agg(which) for which in ("last", "first"))
+    greatest = {beta: eigenvalues[-1] for beta, eigenvalues in spectra.items()}
+    edge = "|u| / exact at |x| = D"
+    deviation = history.groupby("series")["deviation"].first().abs().max()
+    return [
+        statement(
+            "L-C15.kernel",
+            all(origin[beta] < 0.0 and crossing[beta].size and turns[beta] for beta in kernels),
+            f"The kernel of (29) is G of (11): G(0) = {_by_beta(origin)}; it changes sign at r = "
+            f"{_by_beta({b: c[0] for b, c in crossing.items() if c.size})} and has its maximum at r = {_by_beta(top)}.",
+            "G does not have all three properties.",
+        ),
+        statement(
+            "L-C15.errors",
+            bool((finest[edge] > _LARGE).all()),
+            f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[edge])}; the error (48), "
+            f"over that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[edge])} "
+            f"and {_by_beta(coarsest['ratio'])}: the scheme diverges as h falls.",
+            "Within the run the layer at the ends does not outgrow the solution at every beta.",
+            files,
+        ),
+        statement(
+            "L-C15.instability",
+            all(value > 0.0 for value in greatest.values()) and bool(deviation < 0.01),
+            f"The greatest eigenvalue is {_by_beta(greatest, 4)} in units of D / h^alpha; runs grow at this rate to "
+            f"{100.0 * deviation:.2g} %. A run predicted to overflow at step {blow_up['predicted']:.0f} ends with: "
+            f"{blow_up['message'].split(':')[1].strip() if blow_up['message'] else 'no overflow'}.",
+            "The runs do not grow at the rate of a positive eigenvalue.",
+        ),
+    ]
+
+
+def _by_beta(values: Mapping[float, float] | pd.Series, digits: int = 3) -> str:
+    return ", ".join(
+        f"{value:.{digits}g} (beta = {beta:g})" for beta, value in dict(values).items()
+    )

@@ -1,0 +1,7 @@
+"""See `spacing_shared`."""
+
+from __future__ import annotations
+
+from scenes.lucchesi.spacing_shared import spacing_claims as study
+
+__all__ = ["study"]

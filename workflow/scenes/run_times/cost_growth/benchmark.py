@@ -1,0 +1,203 @@
+"""Run time and memory against the number of particles, on lines, squares and cubes of the same spacing.
+
+A run takes a set-up (kernel values, their transforms, for the open exterior its sums) and then as many applications of
+the operator as the time series has terms. Each is measured by itself, and the peak memory with it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fracparticles.run.case import Case
+from fracparticles.run.solver import Prepared, prepare
+from fracparticles.schemes import SCHEMES
+from fracstudy.benchmarks.clock import (
+    Timing,
+    forget_tables,
+    in_fresh_process,
+    measure,
+    one_core,
+    peak_so_far,
+    threads,
+    timings_dataset,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["benchmark", "measure_sizes"]
+
+_BETA = 0.5
+_START, _END = 0.5, 1.5
+# The same whatever the size, so that the domain grows with N: a solve then takes the same number of operator
+# applications. The same for all dimensions, since no time depends on how well the data are resolved.
+_SPACING = 0.2
+_TINY = 17  # particles in each direction, the fewest that a case may have: all is loaded and compiled, arrays are small
+_SHORT = 1e-6  # span of a run of three applications, which holds all arrays that a longer one holds, on any lattice
+
+_DIMENSIONS = {"line": 1, "square": 2, "cube": 3}
+_LABELS = {"kind": "scheme, order and exterior", "dim": "space dimension"}
+_VARIABLES = {
+    "particles": ("number of particles N", "1"),
+    "setup_time": ("set-up, nothing kept from before, minimum", "s"),
+    "application_time": ("one application of the operator by FFT, one core, minimum", "s"),
+    "applications": ("operator applications of a solve from t = 0.5 to 1.5", "1"),
+    "solve_time": ("solve, exact in time, minimum", "s"),
+    "naive_time": ("one application by sums over all pairs, one core, minimum", "s"),
+    "peak_memory": ("peak resident memory of a process that runs this and the smaller", "byte"),
+    "memory_per_particle": (
+        "peak memory beyond that of a run on 17 in each direction, over the particles",
+        "byte",
+    ),
+    "machine_memory": ("memory of the machine", "byte"),
+}
+
+
+def benchmark(
+    lines: Sequence[int],
+    squares: Sequence[int],
+    cubes: Sequence[int],
+    kinds: Mapping[str, Sequence[str]],
+    naive_particles: float,
+    most_solved: float,
+    repeats: int,
+    seconds: float,
+    memory: bool,
+) -> xr.Dataset:
+    """Measure set-up, application, solve and peak memory at beta = 0.5 and h = 0.2, from t = 0.5 to 1.5.
+
+    Parameters
+    ----------
+    lines, squares, cubes : sequence of int
+        Particles in each direction, odd.
+    kinds : mapping
+        What is measured on a "line", a "square" and a "cube": scheme, order and exterior, "KPSE-12-open".
+    naive_particles : float
+        The most particles whose sums are also done over all pairs, of truncated lattices only.
+    most_solved : float
+        The most particles of a whole solve.
+    repeats, seconds : int, float
+        A timing is repeated so often, fewer if that takes longer.
+    memory : bool
+        Whether to measure the peak memory: each dimension and kind then has a process of its own.
+    """
+    machine_memory = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    call = in_fresh_process if memory else _here
+    rows = []
+    for (shape, dim), sizes in zip(_DIMENSIONS.items(), (lines, squares, cubes), strict=True):
+        ascending = [_TINY, *sorted(sizes)]
+        for kind in kinds.get(shape, ()):
+            limits = naive_particles, most_solved, repeats, seconds, memory
+            tiny, *measured = call(measure_sizes, kind, dim, ascending, *limits)
+            for row in measured:
+                beyond = row["peak_memory"] - tiny["peak_memory"]
+                row["memory_per_particle"] = beyond / row["particles"]
+                rows.append({"kind": kind, "dim": dim, "machine_memory": machine_memory, **row})
+    # Of the processes that measured, not of this one.
+    taken = {name: max(row[name] for row in rows) for name in threads() if rows}
+    facts = {"repeats": repeats, "beta": _BETA, "spacing": _SPACING, **taken}
+    title = "Run time and memory against the number of particles"
+    return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
+
+
+def _here(function: Any, *arguments: Any) -> Any:
+    return function(*arguments)
+
+
+def measure_sizes(
+    kind: str,
+    dim: int,
+    sizes: Sequence[int],
+    naive_particles: float,
+    most_solved: float,
+    repeats: int,
+    seconds: float,
+    memory: bool,
+) -> list[dict[str, Any]]:
+    """Measure one kind on lattices of several sizes, the smallest first: one row a size, see `cost_growth`.
+
+    The smallest makes a short run: an open exterior would be too close for the whole one. The peak memory, nan if it
+    is not wanted, is that of the process so far.
+    """
+    one_core()
+    rows = []
+    for number, size in enumerate(sizes):
+        case = _case(kind, dim, size, _END if number else _START + _SHORT)
+        row: dict[str, Any] = {"particles": case.particles, **threads()}
+        if case.particles <= naive_particles and case.exterior == "truncated":
+            row["naive_time"] = _naive_time(case, repeats, seconds)
+        row |= _run_times(case, most_solved, repeats, seconds)
+        row["peak_memory"] = peak_so_far() if memory else float("nan")
+        rows.append(row)
+    return rows
+
+
+def _case(kind: str, dim: int, size: int, end: float) -> Case:
+    scheme, order, exterior = kind.split("-")
+    half_width = (size // 2) * _SPACING
+    return Case(
+        scheme=scheme,
+        order=int(order),
+        exterior=exterior,
+        beta=_BETA,
+        dim=dim,
+        half_width=half_width,
+        spacing=_SPACING * (1.0 - 1e-12),  # the smallest lattice is not refused for round-off
+        t_initial=_START,
+        t_final=end,
+        integrator="exponential",
+    )
+
+
+def _strengths(case: Case) -> np.ndarray:
+    """Strengths with the tail of the fundamental solution, which itself takes longer to compute than a run."""
+    return (1.0 + np.square(case.radius)) ** (-0.5 * (case.dim + case.alpha))
+
+
+def _naive_time(case: Case, repeats: int, seconds: float) -> float:
+    setting = case.model_copy(update={"summation": "naive"}).setting
+    operator = SCHEMES[case.scheme].operator(setting)
+    u = _strengths(case).reshape(-1)
+    timing, _ = measure(partial(operator.apply, u), repeats, seconds)
+    return timing.minimum
+
+
+def _run_times(case: Case, most_solved: float, repeats: int, seconds: float) -> dict[str, Any]:
+    """Times of set-up, application and solve; afterwards all arrays of a run have been there at once."""
+    u = _strengths(case)
+    setup, ready = _set_up(case, repeats, seconds)
+    row = {
+        "setup_time": setup.minimum,
+        "application_time": _application_time(ready, u, repeats, seconds),
+        "applications": ready.operator_applications,
+    }
+    if case.particles <= most_solved:
+        solve, _ = measure(partial(ready.solve, u), repeats, seconds)
+        row["solve_time"] = solve.minimum
+    else:
+        brief = case.model_copy(update={"t_final": _START + _SHORT})
+        prepare(brief, ready.operator).solve(u)
+    return row
+
+
+def _set_up(case: Case, repeats: int, seconds: float) -> tuple[Timing, Prepared]:
+    """Prepare a case, each time as if it were the first."""
+    forget_tables()
+    timing, ready = measure(partial(prepare, case))
+    while len(timing.times) < repeats and sum(timing.times) < seconds:
+        del ready  # before the next one takes its memory
+        forget_tables()
+        again, ready = measure(partial(prepare, case))
+        timing += again
+    return timing, ready
+
+
+def _application_time(ready: Prepared, u: np.ndarray, repeats: int, seconds: float) -> float:
+    flat, v = u.reshape(-1), np.zeros(u.size)
+    timing, _ = measure(partial(ready.operator.update, flat, 1.0, 0.0, 0.0, v), repeats, seconds)
+    return timing.minimum

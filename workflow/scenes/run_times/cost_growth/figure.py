@@ -1,0 +1,151 @@
+"""Run time and memory against the number of particles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fracstudy.style import COLOURS, MARKERS, note_below, slope_triangle
+
+__all__ = ["figure"]
+
+_SHAPES = {1: "lines", 2: "squares", 3: "cubes"}
+_ORDERS = {2: "II", 4: "IV", 6: "VI", 8: "VIII", 10: "X", 12: "XII"}
+# The truncated points are hollow and larger, so that an open one that agrees fills it.
+_FACES = {"truncated": (7.0, "none"), "open": (3.6, None)}
+_GREY = "0.35"
+_DASHES = (0, (4, 3))
+_WAYS: dict[str, Any] = {
+    "by FFT, one core": "-",
+    "over all pairs, one core": ":",
+    "extrapolated": _DASHES,
+}
+_MINUTE, _HOUR, _YEAR = 60.0, 3600.0, 365.25 * 86400.0  # seconds
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+    """Draw (a) the time of one application and (b) the peak memory, a column a dimension."""
+    dims = sorted(series["dim"].unique())
+    figure = Figure(figsize=(max(3.2 * len(dims), 4.6), 6.6), layout="constrained")
+    axes = figure.subplots(2, len(dims), sharex=True, sharey="row", squeeze=False)
+    for (above, below), dim in zip(axes.T, dims, strict=True):
+        here = series[series["dim"] == dim]
+        _application(above, here[here["panel"] == "application"])
+        _memory(below, here[here["panel"] == "memory"])
+        above.set_title(_SHAPES[dim])
+        below.set_xlabel("number of particles $N$")
+    for letter, ax in zip("ab", axes[:, 0], strict=True):
+        ax.set_title(f"({letter})", loc="left")
+    axes[0, 0].set_ylabel("time of one application / s")
+    axes[1, 0].set_ylabel("peak memory of the process / byte")
+    handles = _handles(series)
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles) // 2)
+    note_below(figure, series["note"].iloc[0])
+    return figure
+
+
+def _application(ax: Axes, points: pd.DataFrame) -> None:
+    ax.set(xscale="log", yscale="log")
+    for way, style in (("fast", "-"), ("naive", ":")):
+        some = points[points["series"] == way]
+        if some.empty:
+            continue
+        _curves(ax, some, style)
+        _name_end(ax, some, _durations)
+        measured = some[~some["extrapolated"]]
+        middle = measured[measured["x"] <= np.sqrt(measured["x"].min() * measured["x"].max())]
+        corner = middle.loc[middle["x"].idxmax()]
+        if way == "fast":
+            slope_triangle(ax, corner["x"], 0.2 * corner["y"], 1.0)
+        else:
+            slope_triangle(ax, corner["x"], 4.0 * corner["y"], 2.0, above=True)
+
+
+def _memory(ax: Axes, points: pd.DataFrame) -> None:
+    ax.set(xscale="log", yscale="log")
+    peak = points[points["series"] == "peak"]
+    _curves(ax, peak, "-")
+    _name_end(ax, peak, _gigabytes)
+    machine = points.loc[points["series"] == "machine", "y"].max()
+    if len(peak) and np.isfinite(machine):
+        ax.axhline(machine, color=_GREY, linewidth=0.8, linestyle="-.")
+        ax.annotate(
+            f"memory of the machine, {machine / 2**30:.2g} GiB", (peak["x"].min(), machine),
+            xytext=(0, 3), textcoords="offset points", color=_GREY, fontsize=7.5,
+        )  # fmt: skip
+
+
+def _curves(ax: Axes, points: pd.DataFrame, style: str) -> None:
+    """What was measured, and a dashed line to what is extrapolated."""
+    for kind, curve in points.groupby("kind", sort=False):
+        curve = curve.sort_values("x")
+        measured, look = curve[~curve["extrapolated"]], _look(kind)
+        ax.plot(measured["x"], measured["y"], **look, linestyle=style)
+        ax.plot(
+            curve["x"].iloc[-2:], curve["y"].iloc[-2:], color=look["color"], linewidth=0.9,
+            linestyle=_DASHES,
+        )  # fmt: skip
+
+
+def _name_end(ax: Axes, points: pd.DataFrame, text: Callable[[float, float], str]) -> None:
+    """Write the least and the greatest extrapolated value at their end."""
+    ends = points[points["extrapolated"]]
+    if ends.empty:
+        return
+    ax.annotate(
+        text(ends["y"].min(), ends["y"].max()),
+        (ends["x"].max(), ends["y"].max()),
+        xytext=(0, 5),
+        textcoords="offset points",
+        ha="right",
+        fontsize=7.5,
+        color=_GREY,
+    )
+
+
+def _durations(least: float, greatest: float) -> str:
+    for unit, name in ((_YEAR, "years"), (_HOUR, "h"), (_MINUTE, "min")):
+        if greatest >= 1.5 * unit:
+            return _range(least / unit, greatest / unit, name)
+    return _range(least, greatest, "s")
+
+
+def _gigabytes(least: float, greatest: float) -> str:
+    return _range(1e-9 * least, 1e-9 * greatest, "GB")
+
+
+def _range(least: float, greatest: float, unit: str) -> str:
+    low, high = (f"{value:.{3 if value >= 100.0 else 2}g}" for value in (least, greatest))
+    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+
+
+def _look(kind: str) -> dict[str, Any]:
+    scheme, _, exterior = kind.split("-")
+    size, face = _FACES[exterior]
+    return {
+        "color": COLOURS[scheme],
+        "marker": MARKERS[scheme],
+        "markersize": size,
+        "markerfacecolor": face or COLOURS[scheme],
+    }
+
+
+def _handles(series: pd.DataFrame) -> list[Line2D]:
+    """Kinds in the upper row, ways in the lower: a legend is filled column by column."""
+    kinds = []
+    for kind in series["kind"].unique():
+        scheme, order, exterior = kind.split("-")
+        name = f"{scheme} {_ORDERS[int(order)]}, {exterior}"
+        kinds.append(Line2D([], [], **_look(kind), linestyle="none", label=name))
+    ways = [
+        Line2D([], [], color=_GREY, linestyle=style, label=name) for name, style in _WAYS.items()
+    ]
+    blank = Line2D([], [], linestyle="none", label=" ")
+    return [handle for column in zip_longest(kinds, ways, fillvalue=blank) for handle in column]

@@ -1,0 +1,7 @@
+"""See `which_method_shared`."""
+
+from __future__ import annotations
+
+from scenes.run_times.which_method_shared import run_time_goals as study
+
+__all__ = ["study"]

@@ -1,0 +1,185 @@
+"""One operator, every time integrator: the error in time alone against run time.
+
+The operators are one of ours and the peers that have no lattice sum for exp(A t); each is made once, and what is timed
+is the way from u(0) to u(T) = exp(A T) u(0) with it:
+
+    Runge-Kutta steps (Euler, midpoint, RK4)       n steps of s operator applications, n from the stability limit up
+    RKC2                                           n steps of as many stages as are stable
+    expm_multiply                                  scipy's, Al-Mohy & Higham, SIAM J. Sci. Comput. 33 (2011) 488
+    Chebyshev series                               of the exponential
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.linalg import expm
+from scipy.sparse.linalg import LinearOperator, expm_multiply
+
+from fracparticles.lattice.operators import Operator
+from fracparticles.run.case import Case
+from fracparticles.run.solver import prepare
+from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
+from fracparticles.time import STEP_POLYNOMIALS, StepPolynomial, exponential, step
+from fracparticles.time.rkc import ChebyshevStep, stages_for
+from fracstudy.benchmarks.clock import measure, one_core, timings_dataset
+from fracstudy.benchmarks.problem import Problem
+from fracstudy.peers import peer
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["benchmark"]
+
+# Integrator, steps, operator applications, run.
+Way = tuple[str, int, int, Callable[[], np.ndarray]]
+
+_LABELS = {"operator": "scheme, or method of the literature", "integrator": "time integrator"}
+_VARIABLES = {
+    "particles": ("number of points", "1"),
+    "steps": ("time steps", "1"),
+    "applications": ("operator applications", "1"),
+    "error": ("sum |u - exp(A T) u0| / sum |exp(A T) u0|", "1"),
+    "solve_time": ("solve, minimum", "s"),
+    "solve_time_median": ("solve, median", "s"),
+    "solves": ("solves that were timed", "1"),
+}
+
+
+def benchmark(
+    beta: float,
+    truncation: float,
+    spacing: float,
+    order: int,
+    peers: Sequence[str],
+    factors: Sequence[int],
+    repeats: int,
+    seconds: float,
+) -> xr.Dataset:
+    """Measure the integrators on KPSE and on some peers, all with the open exterior.
+
+    Parameters
+    ----------
+    beta : float
+        Fractional order.
+    truncation, spacing, order : float, float, int
+        The lattice, and the order of KPSE.
+    peers : sequence of str
+        Names of peers on a lattice.
+    factors : sequence of int
+        Numbers of steps over the least stable one; of RKC2, the numbers of steps themselves.
+    repeats, seconds : int, float
+        Solves, fewer if they take longer than that.
+    """
+    one_core()
+    problem = Problem(beta)
+    rows: list[dict[str, Any]] = []
+    for name, x, operator, interval in _operators(problem, truncation, spacing, order, peers):
+        u0 = problem.initial(np.abs(x))
+        matrix = dense_matrix(operator)
+        exact = expm(problem.time * matrix) @ u0
+        for integrator, steps, applications, run in _ways(
+            operator, interval, problem.time, u0, factors, float(np.trace(matrix))
+        ):
+            run()
+            timing, u = measure(run, repeats, seconds)
+            rows.append(
+                {
+                    "operator": name,
+                    "integrator": integrator,
+                    "particles": x.size,
+                    "steps": steps,
+                    "applications": applications,
+                    "error": float(np.abs(u - exact).sum() / np.abs(exact).sum()),
+                    "solve_time": timing.minimum,
+                    "solve_time_median": timing.median,
+                    "solves": len(timing.times),
+                }
+            )
+    title = "Error of the time integration against run time"
+    facts = {"beta": beta, "truncation": truncation, "spacing": spacing, "repeats": repeats}
+    return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
+
+
+def _operators(
+    problem: Problem, truncation: float, spacing: float, order: int, peers: Sequence[str]
+) -> Iterator[tuple[str, np.ndarray, Operator, tuple[float, float]]]:
+    """The operators with their points and an interval that holds their spectrum."""
+    case = Case(
+        scheme="KPSE",
+        order=order,
+        beta=problem.beta,
+        truncation=truncation,
+        spacing=spacing,
+        exterior="open",
+        integrator="exponential",
+    )
+    operator = prepare(case).operator
+    yield f"KPSE {order}", case.x, operator, spectral_interval(case, operator)
+    for name in peers:
+        solver: Any = peer(name).prepare(
+            alpha=problem.alpha,
+            half_width=problem.half_width(truncation),
+            spacing=spacing,
+            time=problem.time,
+            exterior="open",
+            propagation="series",
+        )
+        yield name, solver.x, solver.operator, solver.interval
+
+
+def _ways(
+    operator: Operator,
+    interval: tuple[float, float],
+    time: float,
+    u0: np.ndarray,
+    factors: Sequence[int],
+    trace: float,
+) -> Iterator[Way]:
+    stiffness = -interval[0] * time
+    for name, polynomial in STEP_POLYNOMIALS.items():
+        least = int(np.ceil(stiffness / polynomial.stability_interval))
+        for factor in factors:
+            steps = factor * least
+
+            def stepped(polynomial: StepPolynomial = polynomial, steps: int = steps) -> np.ndarray:
+                return step(operator, polynomial, time / steps, steps, u0)
+
+            yield name, steps, steps * polynomial.stages, stepped
+    for steps in factors:
+        stages = stages_for(stiffness / steps)
+        chebyshev = ChebyshevStep(stages)
+
+        def stabilised(chebyshev: ChebyshevStep = chebyshev, steps: int = steps) -> np.ndarray:
+            return chebyshev.advance(operator.apply, u0, dt=time / steps, steps=steps)
+
+        yield "RKC2", steps, steps * stages, stabilised
+    yield "expm_multiply", 1, *_expm_multiply(operator, time, u0, trace)
+    series = exponential(time, *interval)
+    yield "Chebyshev series", 1, series.degree, lambda: series(operator, u0)
+
+
+def _expm_multiply(
+    operator: Operator, time: float, u0: np.ndarray, trace: float
+) -> tuple[int, Callable[[], np.ndarray]]:
+    """scipy's, with the trace of A that it would have to estimate; counted by a first run.
+
+    Norms are estimated from random vectors: another run may take a few applications more or less.
+    """
+    calls = 0
+
+    def product(u: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        return time * operator.apply(np.ravel(u))
+
+    # For the norms that it estimates it asks for the transpose, too: of A without the exterior A itself.
+    matrix = LinearOperator((u0.size, u0.size), matvec=product, rmatvec=product, dtype=float)
+
+    def run() -> np.ndarray:
+        return np.asarray(expm_multiply(matrix, u0, traceA=time * trace))
+
+    run()
+    return calls, run

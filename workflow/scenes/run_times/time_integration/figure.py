@@ -1,0 +1,75 @@
+"""Error of the time integration against run time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from fracstudy.style import axes_row, legend_below, note_below, slope_triangle
+
+__all__ = ["figure"]
+
+# Colours of Okabe & Ito again: no scheme has a curve here, one panel is one operator.
+_LINES: dict[str, dict[str, Any]] = {
+    "RK1": {"color": "#56B4E9", "marker": "o"},
+    "RK2": {"color": "#0072B2", "marker": "s"},
+    "RK4": {"color": "#009E73", "marker": "^"},
+    "RKC2": {"color": "#E69F00", "marker": "D"},
+}
+_ORDERS = {"RK1": 1.0, "RK2": 2.0, "RK4": 4.0}
+_POINTS: dict[str, dict[str, Any]] = {
+    "expm_multiply": {"color": "#D55E00", "marker": "P", "markersize": 9.0},
+    "Chebyshev series": {"color": "#000000", "marker": "*", "markersize": 12.0},
+}
+
+
+def figure(
+    series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]
+) -> Figure:
+    """One panel an operator; a line an integrator that takes steps, a large marker one that takes none."""
+    operators = list(series["operator"].unique())
+    width = 3.3 if len(operators) > 1 else 5.0
+    figure, axes = axes_row(len(operators), height=4.2, width=width, sharex=True, sharey=True)
+    for letter, ax, operator in zip("abcdefgh", axes, operators, strict=False):
+        _panel(ax, series[series["operator"] == operator])
+        ax.set_title(f"({letter}) {operator}" if len(operators) > 1 else operator, loc="left")
+    _slopes(axes[0], series[series["operator"] == operators[0]])
+    axes[0].set_ylabel("relative error of the time integration,\n" + r"against $e^{A T} u(0)$")
+    legend_below(figure, axes[0], columns=6 if len(operators) > 1 else 3)
+    note_below(figure, f"timed: the solve, with the operator made; {series['note'].iloc[0]}")
+    return figure
+
+
+def _panel(ax: Axes, runs: pd.DataFrame) -> None:
+    for integrator, look in _LINES.items():
+        line = runs[runs["integrator"] == integrator].sort_values("steps")
+        ax.plot(1e3 * line["solve_time"], line["error"], label=integrator, **look)
+    for integrator, look in _POINTS.items():
+        for run in runs[runs["integrator"] == integrator].itertuples():
+            time = 1e3 * run.solve_time
+            # What of the lines lies on its left is faster.
+            ax.axvline(time, color=look["color"], linewidth=0.7, linestyle=":", zorder=1)
+            ax.plot(time, run.error, label=integrator, linestyle="none", **look)
+            ax.annotate(
+                f"{run.applications}\napplications", (time, run.error), xytext=(8, 0),
+                textcoords="offset points", va="center", fontsize=7, color=look["color"],
+            )  # fmt: skip
+    ax.set(xscale="log", yscale="log", xlabel="time of a solve / ms")
+    ax.xaxis.set_major_locator(LogLocator(numticks=8))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
+    ax.minorticks_off()
+
+
+def _slopes(ax: Axes, runs: pd.DataFrame) -> None:
+    """Above the middle of each line the slope of its order: the time is in proportion to the number of steps."""
+    for integrator, order in _ORDERS.items():
+        line = runs[runs["integrator"] == integrator].sort_values("steps")
+        if len(line) > 1:
+            middle = line.iloc[len(line) // 2]
+            slope_triangle(ax, 1e3 * middle["solve_time"], 2.0 * middle["error"], -order)

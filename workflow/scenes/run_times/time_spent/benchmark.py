@@ -1,0 +1,132 @@
+"""Where the time of a run goes: the parts of the set-up, the sums over the particles, and the rest."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+from unittest.mock import patch
+
+import numpy as np
+
+from fracparticles.run.case import Case
+from fracparticles.run.solver import Prepared, initial_strengths, prepare
+from fracstudy.benchmarks.clock import Timing, forget_tables, measure, one_core, timings_dataset
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["PARTS", "benchmark"]
+
+# The parts of a set-up, each by the functions where a caller looks them up; a part within a part counts for itself.
+PARTS = {
+    "kernel values": ("schemes.base.kernel", "schemes.fpse.kernel"),
+    "far field": (
+        "schemes.base.far_field",
+        "schemes.fpse.far_field",
+        "schemes.base.box_far_field",
+        "schemes.fpse.box_far_field",
+        "propagator.tabulated_far_field",
+    ),
+    "range of the symbol": ("solver.spectral_interval",),
+    "time series": ("solver.exponential_flow", "solver.power_flow"),
+    "weights from the symbol": ("propagator.propagator_weights",),
+}
+_OTHER = "plans and the rest"
+_SOLVES = 10  # solves for every set-up
+_LABELS = {"run": "what is run"}
+_VARIABLES = {
+    "particles": ("number of particles", "1"),
+    "applications": ("operator applications of a solve", "1"),
+    "setup_time": ("set-up, nothing kept from before, minimum", "s"),
+    **{name: (f"of the set-up: {name}", "s") for name in (*PARTS, _OTHER)},
+    "solve_time": ("solve, minimum", "s"),
+    "lattice sums": (
+        "of the solve: the sums over the particles, one of them times their number",
+        "s",
+    ),
+    "rest of the solve": ("of the solve: all else", "s"),
+}
+
+
+def benchmark(cases: Mapping[str, Mapping[str, Any]], repeats: int) -> xr.Dataset:
+    """Take the time of runs apart.
+
+    Parameters
+    ----------
+    cases : mapping
+        Fields of a case by a name for it.
+    repeats : int
+        Set-ups and solves; the least of each is kept.
+    """
+    one_core()
+    rows = [_row(name, Case(**fields), repeats) for name, fields in cases.items()]
+    title = "Where the time of a run goes"
+    return timings_dataset("case", rows, _LABELS, _VARIABLES, title, {"repeats": repeats})
+
+
+def _row(name: str, case: Case, repeats: int) -> dict[str, Any]:
+    u0, _ = initial_strengths(case)
+    prepare(case).solve(u0)  # compiles what is not compiled yet
+    best: dict[str, Any] = {"setup_time": np.inf}
+    solve = one_sum = Timing(())
+    for _ in range(repeats):
+        forget_tables()
+        setup, parts, ready = _watched_setup(case)
+        if setup < best["setup_time"]:
+            best = {"setup_time": setup, **parts, _OTHER: setup - sum(parts.values())}
+        operator: Any = ready.operator
+        # In turn, so that a clock that slows down meanwhile slows both.
+        for _ in range(_SOLVES):
+            solve += measure(partial(ready.solve, u0))[0]
+            one_sum += measure(partial(operator.convolve, u0))[0]
+    sums = one_sum.minimum * ready.operator_applications
+    return {
+        "run": name,
+        "particles": case.particles,
+        "applications": ready.operator_applications,
+        **best,
+        "solve_time": solve.minimum,
+        "lattice sums": sums,
+        "rest of the solve": solve.minimum - sums,
+    }
+
+
+def _watched_setup(case: Case) -> tuple[float, dict[str, float], Prepared]:
+    """The time of a set-up, that of its parts without the parts within them, and the case made ready."""
+    spent = dict.fromkeys(PARTS, 0.0)
+    within: list[float] = []  # of each part that is under way, the time of the parts within it
+
+    def watched(part: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*arguments: Any, **options: Any) -> Any:
+            within.append(0.0)
+            start = time.perf_counter()
+            try:
+                return function(*arguments, **options)
+            finally:
+                whole = time.perf_counter() - start
+                spent[part] += whole - within.pop()
+                if within:
+                    within[-1] += whole
+
+        return call
+
+    with ExitStack() as stack:
+        for part, places in PARTS.items():
+            for place in places:
+                stack.enter_context(_replaced(place, partial(watched, part)))
+        timing, ready = measure(lambda: prepare(case))
+    return timing.minimum, spent, ready
+
+
+@contextmanager
+def _replaced(
+    place: str, wrap: Callable[[Callable[..., Any]], Callable[..., Any]]
+) -> Iterator[None]:
+    module, name = place.rsplit(".", 1)
+    owner = import_module(f"fracparticles.{module}")
+    with patch.object(owner, name, wrap(getattr(owner, name))):
+        yield

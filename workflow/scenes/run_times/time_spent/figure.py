@@ -1,0 +1,88 @@
+"""Shares of the parts of set-up and solve."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from fracstudy.style import note_below
+
+__all__ = ["figure"]
+
+# Colours of Okabe & Ito, in which no scheme has a bar here; what is not taken apart further is grey.
+_COLOURS = {
+    "kernel values": "#0072B2",
+    "far field": "#009E73",
+    "range of the symbol": "#E69F00",
+    "time series": "#CC79A7",
+    "weights from the symbol": "#56B4E9",
+    "plans and the rest": "#BBBBBB",
+    "lattice sums": "#D55E00",
+    "rest of the solve": "#DDDDDD",
+}
+_DARK = ("#0072B2", "#009E73", "#D55E00")  # of these, on which white is read better than black
+_WRITTEN = 0.08  # shares from here on are written into the bar
+_PANELS = ("set-up", "solve")
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+    """Draw (a) the set-up and (b) the solve, a bar of shares a case, its whole time at the end."""
+    cases = series.drop_duplicates("case")
+    figure = Figure(figsize=(8.6, 1.5 + 0.42 * len(cases)), layout="constrained")
+    axes = figure.subplots(1, len(_PANELS), sharey=True)
+    for letter, ax, panel in zip("ab", axes, _PANELS, strict=True):
+        _bars(ax, series[series["panel"] == panel])
+        ax.set_title(f"({letter}) {panel}", loc="left")
+    axes[0].set_yticks(np.arange(len(cases)), [_name(case) for case in cases.itertuples()])
+    axes[0].set_ylim(len(cases) - 0.5, -0.5)  # the first on top
+    drawn = series.loc[series["share"] > 0.0, "part"].unique()
+    handles = [Patch(color=_COLOURS[part], label=part) for part in _COLOURS if part in drawn]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    note_below(figure, f"set-up: nothing kept from before; {series['note'].iloc[0]}")
+    return figure
+
+
+def _bars(ax: Axes, parts: pd.DataFrame) -> None:
+    for place, (_, bar) in enumerate(parts.groupby("case", sort=False)):
+        start = 0.0
+        for part, share in zip(bar["part"], bar["share"], strict=True):
+            colour = _COLOURS[part]
+            ax.barh(place, share, left=start, height=0.62, color=colour, edgecolor="white")
+            if share >= _WRITTEN:
+                ax.annotate(
+                    f"{100.0 * share:.0f}", (start + 0.5 * share, place), ha="center", va="center",
+                    fontsize=7, color="white" if colour in _DARK else "black",
+                )  # fmt: skip
+            start += share
+        ax.annotate(
+            _duration(bar["total"].iloc[0]), (1.0, place), xytext=(4, 0),
+            textcoords="offset points", va="center", fontsize=8,
+        )  # fmt: skip
+    ax.set_xlim(0.0, 1.0)
+    ax.set_xticks(np.linspace(0.0, 1.0, 5), [f"{share}" for share in range(0, 101, 25)])
+    ax.set_xlabel("share / %")
+    ax.tick_params(axis="y", length=0)
+    ax.grid(visible=False)
+    ax.spines["left"].set_visible(False)
+
+
+def _name(case: Any) -> str:
+    applied = "application" if case.applications == 1 else "applications"
+    return f"{case.case}\nN = {case.particles}, {case.applications} {applied}"
+
+
+def _duration(seconds: float) -> str:
+    """A time to two digits, in the unit in which it is a number from 1 on."""
+    for unit, name in ((1.0, "s"), (1e-3, "ms")):
+        if seconds >= unit:
+            return f"{_two_digits(seconds / unit)} {name}"
+    return f"{_two_digits(1e6 * seconds)} µs"
+
+
+def _two_digits(value: float) -> str:
+    return f"{value:.0f}" if value >= 9.95 else f"{value:.1f}"

@@ -1,0 +1,62 @@
+"""Where the time of a run goes: the parts of its set-up and of its solve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pandas as pd
+
+from fracstudy.inputs import Inputs, Result
+from fracstudy.machine import machine_note
+
+__all__ = ["PARTS", "study"]
+
+# Columns of the benchmark: what is taken apart -> its parts, in the order in which they are drawn.
+PARTS = {
+    "setup_time": (
+        "kernel values",
+        "far field",
+        "range of the symbol",
+        "time series",
+        "weights from the symbol",
+        "plans and the rest",
+    ),
+    "solve_time": ("lattice sums", "rest of the solve"),
+}
+_NAMES = {"setup_time": "set-up", "solve_time": "solve"}
+
+
+def study(inputs: Inputs) -> Result:
+    """List set-up, solve and their parts in milliseconds, a row a case; the series holds the parts' shares."""
+    data = inputs.benchmarks["time_spent"]
+    table = pd.DataFrame(
+        {"case": data["run"], "N": data["particles"], "applications": data["applications"]}
+    )
+    for whole, parts in PARTS.items():
+        table[f"{_NAMES[whole]} / ms"] = 1e3 * data[whole]
+        for part in parts:
+            table[f"{part} / ms"] = 1e3 * data[part]
+    table["set-up / solve"] = data["setup_time"] / data["solve_time"]
+    series = pd.DataFrame(row for whole in PARTS for row in _shares(data, whole))
+    return Result(table, (), series.assign(note=machine_note(data)))
+
+
+def _shares(data: pd.DataFrame, whole: str) -> Iterator[dict[str, Any]]:
+    """The parts of one whole, case by case.
+
+    The rest of a solve is a difference of two minima and may come out below nil, where it is next to nothing.
+    """
+    parts = data[list(PARTS[whole])].clip(lower=0.0)
+    shares = parts.div(parts.sum(axis="columns"), axis="index")
+    for row, (_, share) in zip(data.to_dict("records"), shares.iterrows(), strict=True):
+        for part in PARTS[whole]:
+            yield {
+                "panel": _NAMES[whole],
+                "case": row["run"],
+                "particles": row["particles"],
+                "applications": row["applications"],
+                "total": row[whole],
+                "part": part,
+                "share": share[part],
+            }
