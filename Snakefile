@@ -7,7 +7,6 @@ min_version("9.0")
 configfile: "config/study.yaml"
 
 
-
 include: "workflow/rules/common.smk"
 include: "workflow/rules/runs.smk"
 include: "workflow/rules/scenes.smk"

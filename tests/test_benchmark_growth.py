@@ -8,13 +8,13 @@ import numba as nb
 import numpy as np
 import pandas as pd
 import pytest
+from scenes.run_times.cost_growth.benchmark import cost_growth as measure_growth
+from scenes.run_times.cost_growth.figure import cost_growth as draw
+from scenes.run_times.cost_growth.study import cost_growth, exponent, extrapolate
+from scenes.run_times.scattered_sums.benchmark import scattered
 
 from fracparticles.moving.scattered import NonuniformFourierSum
 from fracparticles.run.dataset import read_benchmark, write
-from fracstudy.benchmarks.cost_growth import cost_growth as measure_growth
-from fracstudy.benchmarks.scattered import scattered
-from fracstudy.figures.cost_growth import cost_growth as draw
-from fracstudy.studies.cost_growth import cost_growth, exponent, extrapolate
 from fracstudy.style import save
 
 KINDS = {

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pyfftw
 import pytest
+from scenes.run_times.reference_times.benchmark import reference, transform_pairs
 from threadpoolctl import threadpool_limits
 
 import fracparticles as fp
@@ -18,7 +19,6 @@ from fracparticles.run.solver import compute, relative_l1_error
 from fracparticles.schemes.stability import _symbol_range, stability_limit
 from fracstudy.benchmarks import BENCHMARKS, benchmark, clock
 from fracstudy.benchmarks.problem import Problem
-from fracstudy.benchmarks.reference import reference, transform_pairs
 from fracstudy.benchmarks.sweeps import (
     graded_trials,
     lent_exterior_trials,

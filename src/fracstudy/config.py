@@ -17,10 +17,11 @@ from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
 
-__all__ = ["Document", "StudyConfig", "batches", "cases_of", "expand", "read_config"]
+__all__ = ["Document", "StudyConfig", "batches", "cases_of", "expand", "jobs", "read_config"]
 
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 _AT_ONCE = 8  # runs of a job: its start takes as long as a few of them
+_SMOKE_JOBS = 2  # where it takes longer than all of them
 
 
 class _Strict(BaseModel):
@@ -137,7 +138,25 @@ def cases_of(scene: Scene) -> list[Case]:
         raise InvalidInput(where, error.value, error.allowed, error.remedy) from None
 
 
-def batches(scenes: Mapping[str, Scene]) -> tuple[dict[str, list[Case]], dict[str, list[Case]]]:
+def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str]]:
+    """Return the scenes that one job makes: one, so that nothing is done that was not asked for.
+
+    On the tiny grids of a smoke run, where the start of a job outweighs what it does, those that wait for runs only
+    go together.
+    """
+    together = [name for name, scene in scenes.items() if smoke and _waits_for_runs_only(scene)]
+    parts = {f"part_{k + 1}": together[k::_SMOKE_JOBS] for k in range(_SMOKE_JOBS)}
+    alone = {name: [name] for name in scenes if name not in together}
+    return {job: names for job, names in parts.items() if names} | alone
+
+
+def _waits_for_runs_only(scene: Scene) -> bool:
+    return not scene.tables and not scene.all_benchmarks
+
+
+def batches(
+    scenes: Mapping[str, Scene], smoke: bool = False
+) -> tuple[dict[str, list[Case]], dict[str, list[Case]]]:
     """Return the cases of each scene and the batches of cases that one job computes.
 
     Two scenes that need the same run share it; it stores the more that either needs. A batch holds only cases
@@ -155,10 +174,16 @@ def batches(scenes: Mapping[str, Scene]) -> tuple[dict[str, list[Case]], dict[st
             known = widest.setdefault(key, case)
             if _STORES.index(case.store) > _STORES.index(known.store):
                 widest[key] = case
+    named: dict[str, list[Case]] = {}
     groups: dict[tuple[str, ...], list[Case]] = {}
+    if smoke:
+        every = list(widest.values())
+        named = {
+            f"part_{k + 1}": every[k::_SMOKE_JOBS] for k in range(min(_SMOKE_JOBS, len(every)))
+        }
+        needed_by.clear()
     for key, names in needed_by.items():
         groups.setdefault(tuple(names), []).append(widest[key])
-    named: dict[str, list[Case]] = {}
     for group, cases in groups.items():
         for first in range(0, len(cases), _AT_ONCE):
             number = sum(batch.rsplit("_", 1)[0] == group[0] for batch in named) + 1

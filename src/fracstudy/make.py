@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
@@ -12,41 +12,57 @@ from fracstudy.claims import read_claims, write_findings
 from fracstudy.inputs import Inputs, Result, excuse, write_table
 from fracstudy.scene import Scene, call
 
-__all__ = ["make"]
+__all__ = ["made", "make"]
 
 
-def make(scene: Scene, given: Any, output: Any, smoke: bool) -> None:
+def made(scene: Scene, results: Path) -> list[Path]:
+    """Return the files that a scene consists of, below the folder of the results."""
+    kinds = ["tables/{}.csv", "tables/{}.md", "findings/{}.json", "series/{}.csv"]
+    if scene.file("figure.py"):
+        kinds += ["figures/{}.svg", "figures/{}.png"]
+    return [results / kind.format(scene.name) for kind in kinds]
+
+
+def make(
+    scene: Scene, results: Path, runs: Sequence[str], printed: Sequence[str], smoke: bool
+) -> None:
     """Run the study of a scene, write what it gives, and draw its figure from what was written.
 
     Parameters
     ----------
     scene : Scene
-    given : named lists of paths
-        `runs`, `tables`, `benchmarks` of other scenes, and `printed`, the claims of the documents.
-    output : named paths
-        `csv` and `md`, the table; `findings`; `series`; `figures`, none or one a format.
+    results : Path
+        The folder of the results: tables and benchmarks of other scenes are read there, and its own files written.
+    runs : sequence of str
+        Its run files, in the order of its cases.
+    printed : sequence of str
+        The files of the claims of the documents.
     smoke : bool
         Whether the grids are too coarse to judge the claims.
     """
-    claims = [claim for claim in read_claims(*given.printed) if claim.item in scene.items]
+    csv, md, findings, series, *figures = made(scene, results)
+    claims = [claim for claim in read_claims(*printed) if claim.item in scene.items]
     inputs = Inputs(
         scene=scene.name,
         items=scene.items,
-        parameters=scene.parameters,
         printed={claim.id: claim.printed for claim in claims if claim.printed is not None},
-        runs=list(given.runs),
-        tables={Path(path).stem: pd.read_csv(path) for path in given.tables},
-        benchmarks={Path(path).stem: read_benchmark(path) for path in given.benchmarks},
+        runs=runs,
+        tables={other: pd.read_csv(results / f"tables/{other}.csv") for other in scene.tables},
+        benchmarks={
+            other: read_benchmark(results / f"benchmarks/{other}.nc")
+            for other in scene.all_benchmarks
+        },
+        parameters=scene.parameters,
     )
     result: Result = call(scene.function("study"), inputs, **scene.parameters)
-    findings = excuse(result.findings, claims) if smoke else result.findings
-    write_findings(findings, output.findings)
-    series = pd.DataFrame() if result.series is None else result.series
-    write_table(series, output.series)
-    write_table(result.table, output.csv, output.md)
-    if output.figures:
+    found = excuse(result.findings, claims) if smoke else result.findings
+    write_findings(found, findings)
+    write_table(pd.DataFrame() if result.series is None else result.series, series)
+    write_table(result.table, csv, md)
+    if figures:
         from fracstudy.style import save
 
-        drawn = [pd.read_csv(output.series), pd.read_csv(output.csv)]
-        figure = call(scene.function("figure"), *drawn, **scene.parameters)
-        save(figure, Path(output.figures[0]).with_suffix(""))
+        drawn = call(
+            scene.function("figure"), pd.read_csv(series), pd.read_csv(csv), **scene.parameters
+        )
+        save(drawn, figures[0].with_suffix(""))

@@ -154,9 +154,7 @@ def _parts(
     return parts
 
 
-def _section(
-    scene: Scene, df: pd.DataFrame, results: Path, out: Path
-) -> _Section:
+def _section(scene: Scene, df: pd.DataFrame, results: Path, out: Path) -> _Section:
     if strangers := sorted(set(scene.items) - set(df["item"])):
         raise ReportError(f"scene {scene.name}: no claims for the item {', '.join(strangers)}")
     rows = df[df["item"].isin(list(scene.items))]
@@ -166,7 +164,9 @@ def _section(
         items=scene.items,
         document=scene.document,
         caption=_caption(scene, df),
-        figures=[_figure(results / "figures" / scene.name, scene, out)] if scene.file("figure.py") else [],
+        figures=[_figure(results / "figures" / scene.name, scene, out)]
+        if scene.file("figure.py")
+        else [],
         tables=[_table(results / "tables" / scene.name, scene, out)],
         summary=summary_line(rows),
         claims=ledger_markdown(rows),

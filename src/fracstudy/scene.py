@@ -28,7 +28,16 @@ from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import closest
 
-__all__ = ["RunBlock", "Scene", "call", "check_parameters", "complaint", "merged", "read_scenes", "resolved"]
+__all__ = [
+    "RunBlock",
+    "Scene",
+    "call",
+    "check_parameters",
+    "complaint",
+    "merged",
+    "read_scenes",
+    "resolved",
+]
 
 _Tree = Any  # of mappings, lists and values, as YAML gives it
 

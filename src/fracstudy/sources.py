@@ -47,7 +47,9 @@ def _imported(module: Path, root: Path) -> Iterator[Path]:
         if isinstance(node, ast.ImportFrom) and node.module is not None:
             names = node.module.split(".")
             if names[0] in _HOMES:
-                yield from _files(root.joinpath(_HOMES[names[0]], *names), (alias.name for alias in node.names))
+                yield from _files(
+                    root.joinpath(_HOMES[names[0]], *names), (alias.name for alias in node.names)
+                )
         elif isinstance(node, ast.Import):
             for alias in node.names:
                 names = alias.name.split(".")

@@ -11,15 +11,17 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMB
     os.environ[name] = "1"
 
 from fracparticles.errors import InvalidInput
-from fracstudy.config import batches, read_config
+from fracstudy.config import batches, jobs, read_config
+from fracstudy.make import made
 from fracstudy.sources import sources_of
 
 try:
     STUDY, SCENES = read_config(config)
-    CASES, BATCHES = batches(SCENES)
+    CASES, BATCHES = batches(SCENES, STUDY.smoke)
 except InvalidInput as error:
     raise WorkflowError(f"configuration: {error}") from None
 
+JOBS = jobs(SCENES, STUDY.smoke)
 RESULTS = Path(STUDY.results_dir)
 REPORT = Path(STUDY.report_dir)
 LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
@@ -28,6 +30,7 @@ FROM_TIMES = [name for name, scene in SCENES.items() if scene.all_benchmarks]
 # What a run depends on, and nothing else: editing a plot reruns no solver.
 SOLVER = Path("src/fracparticles/run/solver.py")
 READER = Path("src/fracparticles/run/dataset.py")
+FUNCTIONS = ("study.py", "figure.py")
 
 
 wildcard_constraints:
@@ -39,6 +42,7 @@ if problem := next((c for c in " '\"" if c in str(Path.cwd())), None):
         f"the folder {Path.cwd()} has {problem!r} in its path, which Snakemake's jobs cannot take: "
         "move the project, or call it by a link without."
     )
+
 
 def claim_folder():
     """Refuse a second workflow in this folder. The system lets go of the lock when the process ends, whatever ends it."""
@@ -61,3 +65,13 @@ def code(*files):
     """
     made_of = {source for file in files if file for source in sources_of(Path(file), ends=[READER])}
     return sha256(b"".join(Path(source).read_bytes() for source in sorted(made_of))).hexdigest()
+
+
+def run_files(name):
+    """The run files of a scene."""
+    return [RESULTS / "runs" / case.path for case in CASES[name]]
+
+
+def as_json(name):
+    """A scene as a job takes it; its runs are files by then."""
+    return SCENES[name].model_dump_json(exclude={"runs"})

@@ -1,4 +1,38 @@
-# From runs to tables, findings and figures, a scene each; then the ledger and the report.
+# From runs to tables, findings and figures; then the ledger and the report.
+
+for job, names in JOBS.items():
+
+    rule:
+        name:
+            f"make_{job}"
+        input:
+            runs=[run_files(name) for name in names],
+            tables=[RESULTS / f"tables/{other}.csv" for n in names for other in SCENES[n].tables],
+            benchmarks=[
+                RESULTS / f"benchmarks/{other}.nc"
+                for n in names
+                for other in SCENES[n].all_benchmarks
+            ],
+            printed=STUDY.printed,
+            reference=[SCENES[name].parameters.get("reference", []) for name in names],
+            style="src/fracstudy/fracstudy.mplstyle",
+            compiled=rules.compile.output,
+        output:
+            [made(SCENES[name], RESULTS) for name in names],
+        log:
+            RESULTS / f"logs/make_{job}.log",
+        priority: 2
+        params:
+            results=str(RESULTS),
+            scenes=[as_json(name) for name in names],
+            runs=[list(map(str, run_files(name))) for name in names],
+            smoke=STUDY.smoke,
+            code=code(
+                "src/fracstudy/make.py", *(SCENES[n].file(f) for n in names for f in FUNCTIONS)
+            ),
+        script:
+            "../scripts/make.py"
+
 
 for name, scene in SCENES.items():
 
@@ -6,32 +40,7 @@ for name, scene in SCENES.items():
         name:
             name
         input:
-            runs=[RESULTS / "runs" / case.path for case in CASES[name]],
-            tables=[RESULTS / f"tables/{other}.csv" for other in scene.tables],
-            benchmarks=[RESULTS / f"benchmarks/{other}.nc" for other in scene.all_benchmarks],
-            printed=STUDY.printed,
-            reference=scene.parameters.get("reference", []),
-            style="src/fracstudy/fracstudy.mplstyle",
-            compiled=rules.compile.output,
-        output:
-            csv=RESULTS / f"tables/{name}.csv",
-            md=RESULTS / f"tables/{name}.md",
-            findings=RESULTS / f"findings/{name}.json",
-            series=RESULTS / f"series/{name}.csv",
-            figures=[
-                RESULTS / f"figures/{name}.{kind}"
-                for kind in ("svg", "png")
-                if scene.file("figure.py")
-            ],
-        log:
-            RESULTS / f"logs/{name}.log",
-        params:
-            scene=scene.model_dump_json(exclude={"runs"}),
-            smoke=STUDY.smoke,
-            code=code("src/fracstudy/make.py", scene.file("study.py"), scene.file("figure.py")),
-        priority: 2
-        script:
-            "../scripts/scene.py"
+            made(scene, RESULTS),
 
 
 rule ledger:
@@ -57,7 +66,11 @@ rule tables:
 
 rule figures:
     input:
-        [RESULTS / f"figures/{name}.svg" for name, scene in SCENES.items() if scene.file("figure.py")],
+        [
+            RESULTS / f"figures/{name}.svg"
+            for name, scene in SCENES.items()
+            if scene.file("figure.py")
+        ],
 
 
 rule report:
@@ -77,7 +90,7 @@ rule report:
     log:
         RESULTS / "logs/report.log",
     params:
-        scenes=[scene.model_dump_json(exclude={"runs"}) for scene in SCENES.values()],
+        scenes=[as_json(name) for name in SCENES],
         code=code("src/fracstudy/report.py"),
         documents=STUDY.model_dump(mode="json")["documents"],
     script:

@@ -1,0 +1,21 @@
+"""Turn the runs of scenes into tables, findings, series and figures."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from fracstudy.make import make
+from fracstudy.scene import Scene
+
+snakemake: Any
+sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
+
+params = snakemake.params
+for scene, runs in zip(params.scenes, params.runs, strict=True):
+    make(
+        Scene.model_validate_json(scene),
+        Path(params.results),
+        runs,
+        snakemake.input.printed,
+        params.smoke,
+    )
