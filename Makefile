@@ -17,8 +17,7 @@ INSTALLED := $(VENV)/.installed
 PIP       := $(BIN)/python -m pip --disable-pip-version-check
 
 # Shell commands of the workflow find the environment's programs first.
-SNAKEMAKE = PATH="$(abspath $(BIN)):$$PATH" $(BIN)/snakemake -j$(JOBS) \
-            --workflow-profile workflow/profiles/default
+SNAKEMAKE = PATH="$(abspath $(BIN)):$$PATH" $(BIN)/snakemake -j$(JOBS)
 # One thread each: the tests already run in $(JOBS) processes, each module of tests in one of them.
 PYTEST    = OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
             $(BIN)/python -m pytest -n $(JOBS) --dist loadscope --no-loadscope-reorder
@@ -41,7 +40,7 @@ test: $(INSTALLED) ## run the tests
 	$(PYTEST) $(ARGS)
 
 smoke: $(INSTALLED) ## run the same study on tiny grids, into results-smoke
-	$(SNAKEMAKE) --configfile config/smoke.yaml --config results_dir=$(SMOKE_RESULTS) $(ARGS)
+	$(SNAKEMAKE) --configfile config/smoke.yaml --config results_dir=$(SMOKE_RESULTS) report_dir=$(SMOKE_RESULTS)/report $(ARGS)
 
 bench: $(INSTALLED) ## time the schemes; wants the machine to itself
 	$(SNAKEMAKE) bench $(ARGS)
@@ -49,12 +48,12 @@ bench: $(INSTALLED) ## time the schemes; wants the machine to itself
 report: $(INSTALLED) ## build the report
 	$(SNAKEMAKE) report
 
-lint: $(INSTALLED) ## check style, types, the lock and the workflow
+lint: $(INSTALLED) ## check style, types, layers and the workflow
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/mypy
-	$(BIN)/python tools/check_lock.py
+	$(BIN)/lint-imports
 	$(BIN)/snakemake --lint
 
 # Not part of the environment: the compiler of the lock lives in an environment of its own.
@@ -66,7 +65,6 @@ lock: ## resolve requirements.lock anew from pyproject.toml
 	    --generate-hashes --strip-extras \
 	    --no-emit-index-url --no-emit-trusted-host --no-emit-find-links \
 	    --output-file requirements.lock pyproject.toml
-	.venv-lock/bin/python tools/check_lock.py
 	rm -rf .venv-lock
 
 clean: ## remove the environment, the caches and the smoke results; results/ stays

@@ -10,15 +10,16 @@ import pytest
 import yaml
 
 from fracstudy.claims import Status, read_claims
+from fracstudy.config import read_config
 from fracstudy.ledger import read_ledger, summary_line
-from fracstudy.plan import read_config
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [
     ROOT / f"report/printed/{name}.yaml"
     for name in ("lucchesi2020", "lewandowski2005", "ghorbani", "particle_note")
 ]
-STUDY = read_config(yaml.safe_load((ROOT / "config/study.yaml").read_text()))
+CONFIG = yaml.safe_load((ROOT / "config/study.yaml").read_text())
+SCENES = read_config(CONFIG | {"scenes_dir": str(ROOT / "workflow/scenes"), "grids": None})[1]
 
 
 @pytest.fixture(scope="module")
@@ -39,20 +40,19 @@ def test_a_deviation_has_a_reason_of_its_own(ledger):
 
 
 def test_a_claim_is_judged_by_one_scene_only():
-    items = [item for scene in STUDY.scenes.values() for item in scene.items]
+    items = [item for scene in SCENES.values() for item in scene.items]
     assert len(items) == len(set(items))
     printed = {claim.item for claim in read_claims(*DOCUMENTS)}
     assert set(items) == printed
 
 
 def test_every_scene_has_its_table_and_figure():
-    for name, scene in STUDY.scenes.items():
+    for name, scene in SCENES.items():
         assert (ROOT / f"results/tables/{name}.csv").exists()
         assert (ROOT / f"results/tables/{name}.md").exists()
-        assert (ROOT / f"report/captions/{name}.md").exists()
         for suffix in ("svg", "png"):
             assert (ROOT / f"results/figures/{name}.{suffix}").exists() == (
-                scene.figure is not None
+                scene.file("figure.py") is not None
             )
 
 
@@ -81,8 +81,8 @@ def markdown_tables(text: str) -> list[list[int]]:
 def tracked_markdown() -> list[Path]:
     return sorted(
         path
-        for folder in ("", "config", "results", "results/tables", "report", "report/captions")
-        for path in (ROOT / folder).glob("*.md")
+        for folder in ("", "config", "results", "results/tables", "report", "workflow/scenes/*/*")
+        for path in ROOT.glob(f"{folder}/*.md" if folder else "*.md")
     )
 
 
@@ -121,5 +121,5 @@ def test_every_table_of_the_report_is_one_in_its_page():
 
 def test_the_tables_of_the_report_are_those_of_the_results():
     text = (ROOT / "report/report.md").read_text("utf-8")
-    for name in STUDY.scenes:
+    for name in SCENES:
         assert (ROOT / f"results/tables/{name}.md").read_text("utf-8").strip() in text, name

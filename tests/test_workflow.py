@@ -1,7 +1,8 @@
-"""One complete smoke workflow, in a copy of the project, and what makes it run again."""
+"""One complete smoke workflow, in a copy of the project, what makes it run again, and what is added to it."""
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import signal
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "config", "workflow", "report", "src")
@@ -42,16 +44,19 @@ def planned(project: Path, *arguments: str) -> str:
     return done.stdout + done.stderr
 
 
-@pytest.fixture(scope="module")
-def project(tmp_path_factory):
-    project = tmp_path_factory.mktemp("project")
+def copy(target: Path) -> Path:
     for part in PARTS:
         source = ROOT / part
         if source.is_dir():
-            shutil.copytree(source, project / part, ignore=shutil.ignore_patterns("*.nb?"))
+            shutil.copytree(source, target / part, ignore=shutil.ignore_patterns("*.nb?"))
         else:
-            shutil.copy2(source, project / part)
-    return project
+            shutil.copy2(source, target / part)
+    return target
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    return copy(tmp_path_factory.mktemp("project"))
 
 
 @pytest.fixture(scope="module")
@@ -70,14 +75,20 @@ def test_a_misspelt_key_is_refused_before_any_work(project):
 
 
 def test_every_scene_has_its_table_findings_and_figure(finished):
-    from fracstudy import plan
-
     results = finished / "results-smoke"
-    study = plan.read_config(_merged(finished))
-    for name, scene in study.scenes.items():
+    scenes = {
+        name: folder
+        for folder in finished.glob("workflow/scenes/*/*/")
+        if (folder / "scene.yaml").exists()
+        for name in yaml.safe_load((folder / "scene.yaml").read_text()).get(
+            "variants", [folder.name]
+        )
+    }
+    assert len(scenes) > 60
+    for name, folder in scenes.items():
         assert (results / f"tables/{name}.csv").stat().st_size > 0
         assert (results / f"tables/{name}.md").stat().st_size > 0
-        if scene.figure:
+        if (folder / "figure.py").exists():
             assert (results / f"figures/{name}.png").stat().st_size > 5000
             assert (results / f"figures/{name}.svg").stat().st_size > 5000
     assert len(pd.read_csv(results / "claims.csv")) > 100
@@ -86,29 +97,43 @@ def test_every_scene_has_its_table_findings_and_figure(finished):
 
 def test_nothing_is_left_to_do_and_nothing_half_written(finished):
     assert "Nothing to be done" in planned(finished, "all", *SMOKE)
-    stray = [
-        path
-        for path in (finished / "results-smoke").rglob(".*")
-        if not path.name.startswith(".compiled_")
-    ]
+    stray = [path for path in (finished / "results-smoke").rglob(".*") if path.name != ".compiled"]
     assert not stray
 
 
-def test_editing_a_plot_reruns_the_plot_and_no_solver(finished):
-    touch(finished / "src/fracstudy/figures/errors.py")
+def test_editing_a_plot_reruns_its_scene_and_no_solver(finished):
+    change(finished / "workflow/scenes/lucchesi/overlap/figure.py")
     jobs = planned(finished, "figures", *SMOKE)
-    assert "rule figure:" in jobs
+    assert "rule make_part_" in jobs
     assert "rule solve_" not in jobs
-    assert "rule study:" not in jobs
+    assert "rule compile:" not in jobs
     snakemake(finished, "all", *SMOKE)
 
 
 def test_editing_a_solver_reruns_its_runs(finished):
-    touch(finished / "src/fracparticles/time/chebyshev.py")
-    jobs = planned(finished, "lucchesi_figure_4a", *SMOKE)
-    assert "rule solve_smoke_1:" in jobs
-    assert "rule study:" in jobs
-    assert "scene=lucchesi_table_2" not in jobs
+    change(finished / "src/fracparticles/time/chebyshev.py")
+    jobs = planned(finished, "overlap", *SMOKE)
+    assert "rule solve_part_1:" in jobs
+    assert "rule make_part_" in jobs
+
+
+def test_a_second_workflow_in_the_same_folder_is_refused_in_one_line(finished):
+    (finished / ".snakemake").mkdir(exist_ok=True)
+    with open(finished / ".snakemake/running", "w") as running:
+        fcntl.flock(running, fcntl.LOCK_EX)
+        done = snakemake(finished, "lucchesi_table_1", *SMOKE, "--forcerun", "lucchesi_table_1")
+        assert done.returncode != 0
+        assert "a workflow runs in this folder already" in done.stderr
+        planned(finished, "lucchesi_table_1", *SMOKE)  # to look does no harm
+
+
+@pytest.mark.parametrize("folder", ["with a blank", "with'quote"])
+def test_a_folder_that_jobs_cannot_take_is_refused_in_one_line(tmp_path, folder):
+    project = copy(tmp_path / folder)
+    done = snakemake(project, "lucchesi_table_1")
+    assert done.returncode != 0
+    assert "in its path" in done.stderr
+    assert not (project / "results").exists()
 
 
 def test_a_killed_workflow_carries_on(finished):
@@ -116,7 +141,7 @@ def test_a_killed_workflow_carries_on(finished):
     from fracparticles.run.dataset import read_run
 
     runs = finished / "results-killed/runs"
-    call = ["lucchesi_figure_4a", *SMOKE, "--config", "results_dir=results-killed"]
+    call = ["overlap", *SMOKE, "--config", "results_dir=results-killed"]
     process = subprocess.Popen(
         [sys.executable, "-m", "snakemake", "-j1", *call],
         cwd=finished,
@@ -133,22 +158,46 @@ def test_a_killed_workflow_carries_on(finished):
     process.wait()
     for path in runs.rglob("[!.]*.nc"):
         assert "mass_final" in read_run(path)
-    profile = ("--workflow-profile", "workflow/profiles/default")
-    done = snakemake(finished, *call, *profile)
+    done = snakemake(finished, *call)
     assert done.returncode == 0, done.stderr[-4000:]
 
 
-def touch(path: Path) -> None:
-    """Change a file as an editor would."""
-    path.write_text(path.read_text() + "\n")
+# --- nothing to register ------------------------------------------------------------------------------------------
+
+NEW_SCENE = """
+title: "Errors of a scheme of one's own"
+runs:
+  - {scheme: [KPSE, GAUSS], beta: 0.5, truncation: 10.0, spacing: [0.4, 0.2], integrator: exponential, store: metrics}
+"""
+
+NEW_FIGURE = """
+from fracstudy.style import axes_row, scheme_lines
 
 
-def _merged(project: Path) -> dict:
-    import yaml
-    from snakemake.utils import update_config
+def figure(series, table):
+    figure, (axes,) = axes_row(1)
+    scheme_lines(axes, table, x="particle_spacing", y="relative error")
+    return figure
+"""
 
-    study, smoke = (
-        yaml.safe_load((project / f"config/{name}.yaml").read_text()) for name in ("study", "smoke")
-    )
-    update_config(study, smoke)  # as Snakemake lays one file over the other
-    return study
+
+def test_a_new_scheme_and_a_new_scene_run_to_a_figure_and_nothing_else_is_touched(finished):
+    """One module, one folder."""
+    from test_new_scheme import MODULE
+
+    (finished / "src/fracparticles/schemes/gauss.py").write_text(MODULE)
+    folder = finished / "workflow/scenes/beyond/of_my_own"
+    folder.mkdir()
+    (folder / "scene.yaml").write_text(NEW_SCENE)
+    (folder / "figure.py").write_text(NEW_FIGURE)
+    done = snakemake(finished, "of_my_own", "--config", "results_dir=mine")
+    assert done.returncode == 0, done.stderr[-4000:]
+    table = pd.read_csv(finished / "mine/tables/of_my_own.csv")
+    assert set(table["scheme"]) == {"KPSE", "GAUSS"}
+    assert len(table) == 4
+    assert (table["relative error"] < 0.5).all()
+    assert (finished / "mine/figures/of_my_own.png").stat().st_size > 5000
+
+
+def change(path: Path) -> None:
+    path.write_text(path.read_text() + "\n# changed\n")

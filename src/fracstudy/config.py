@@ -6,18 +6,18 @@ product. Cases that several scenes need are computed once.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from itertools import product
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
 
-__all__ = ["Document", "StudyConfig", "batches", "cases_of", "expand", "jobs", "read_config"]
+__all__ = ["Document", "StudyConfig", "batches", "jobs", "read_config"]
 
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 _AT_ONCE = 8  # runs of a job: its start takes as long as a few of them
@@ -56,6 +56,8 @@ class StudyConfig(_Strict):
         Where the scenes are, `<document>/<scene>/scene.yaml`.
     documents : dict
         The documents by the name of their folder, in the order of the report.
+    grids : str, optional
+        The file that says on which grid the claims of an item can be judged.
     smoke : bool
         Whether the scenes take their `smoke` values: tiny grids, too coarse to judge the claims.
     dvm_dt : float, optional
@@ -66,6 +68,7 @@ class StudyConfig(_Strict):
     report_dir: str = Field(min_length=1)
     scenes_dir: str = "workflow/scenes"
     documents: dict[str, Document] = Field(min_length=1)
+    grids: str | None = None
     smoke: bool = False
     dvm_dt: float | None = Field(default=None, gt=0.0)
 
@@ -88,7 +91,12 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
     except ValidationError as error:
         raise complaint(error, "", StudyConfig) from None
     scenes = read_scenes(Path(study.scenes_dir), list(study.documents), study.smoke)
+    if study.dvm_dt is not None:
+        scenes = {name: _with_dvm_step(scene, study.dvm_dt) for name, scene in scenes.items()}
     timed = [name for name, scene in scenes.items() if scene.benchmark is not None]
+    # A smoke run says of what it cannot judge that its grids are too coarse.
+    judged = study.grids is not None and not study.smoke
+    grids = yaml.safe_load(Path(study.grids).read_text("utf-8")) if judged else {}
     for scene in scenes.values():
         for key, names in (("tables", scenes), ("benchmarks", timed)):
             for other in getattr(scene, key):
@@ -96,9 +104,46 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
                     where = f"{scene.folder / 'scene.yaml'}: {key}"
                     raise InvalidInput(where, other, f"of {', '.join(names)}", "Choose of these.")
         check_parameters(scene)
-    if study.dvm_dt is not None:
-        scenes = {name: _with_dvm_step(scene, study.dvm_dt) for name, scene in scenes.items()}
+        _check_runs(scene)
+        _check_grid(scene, grids)
     return study, scenes
+
+
+def _check_runs(scene: Scene) -> None:
+    """Refuse runs that the study cannot do without, and parameters that say what the runs say already."""
+    where = f"{scene.folder / 'scene.yaml'}"
+    for name in Case.model_fields.keys() & scene.parameters.keys() if scene.runs else ():
+        raise InvalidInput(
+            f"{where}: parameters.{name}",
+            scene.parameters[name],
+            "nothing that the runs say themselves",
+            "Leave it out, or give it another name.",
+        )
+    cases = scene.cases
+    for name, needed in scene.needs.items():
+        found = {getattr(case, name) for case in cases}
+        if missing := [value for value in needed if value not in found]:
+            raise InvalidInput(
+                f"{where}: runs: {name}",
+                " and ".join(map(str, found)) or None,
+                f"{' and '.join(map(str, needed))}, all of which the study compares",
+                f"Add runs with {name}: {missing[0]}.",
+            )
+
+
+def _check_grid(scene: Scene, grids: Mapping[str, Mapping[str, list[Any]]]) -> None:
+    """Refuse to judge a claim on a grid that it does not speak of."""
+    for item in scene.items if scene.runs else ():
+        for name, values in grids.get(item, {}).items():
+            found = dict.fromkeys(getattr(case, name) for case in scene.cases)
+            if any(value not in found for value in values):
+                raise InvalidInput(
+                    f"{scene.folder / 'scene.yaml'}: items",
+                    item,
+                    f"an item whose claims speak of the runs; it speaks of {name} = "
+                    f"{', '.join(map(str, values))}, and the runs have {', '.join(map(str, found))}",
+                    "Leave the item out, or add the runs.",
+                )
 
 
 def _with_dvm_step(scene: Scene, dt: float) -> Scene:
@@ -114,28 +159,6 @@ def _with_dvm_step(scene: Scene, dt: float) -> Scene:
         blocks += [RunBlock(**{**fields, "scheme": others})] if others else []
         blocks.append(RunBlock(**{**fields, "scheme": "DVM", "dt": dt}))
     return scene.model_copy(update={"runs": blocks})
-
-
-def expand(blocks: Iterable[BaseModel | Mapping[str, Any]]) -> list[Case]:
-    """Return the cases of run blocks, in order, without repeats."""
-    cases: dict[str, Case] = {}
-    for block in blocks:
-        fields = block.model_dump(exclude_none=True) if isinstance(block, BaseModel) else block
-        choices = [value if isinstance(value, list) else [value] for value in fields.values()]
-        for combination in product(*choices):
-            case = Case(**dict(zip(fields, combination, strict=True)))
-            case.refuse_point_mass()
-            cases.setdefault(case.path, case)
-    return list(cases.values())
-
-
-def cases_of(scene: Scene) -> list[Case]:
-    """Return the cases of a scene; a case that is not allowed is reported with the scene's file."""
-    try:
-        return expand(scene.runs)
-    except InvalidInput as error:
-        where = f"{scene.folder / 'scene.yaml'}: runs: {error.field}"
-        raise InvalidInput(where, error.value, error.allowed, error.remedy) from None
 
 
 def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str]]:
@@ -166,7 +189,7 @@ def batches(
     widest: dict[str, Case] = {}
     wanted: dict[str, list[str]] = {name: [] for name in scenes}
     for name, scene in scenes.items():
-        for case in cases_of(scene):
+        for case in scene.cases:
             key = case.model_copy(update={"store": _STORES[0]}).path
             if key not in wanted[name]:
                 needed_by.setdefault(key, []).append(name)

@@ -1,7 +1,8 @@
 """A scene: one folder `workflow/scenes/<document>/<scene>/`, found by its path.
 
     scene.yaml     title, runs, and what else the fields of `Scene` say
-    study.py       study(inputs, **parameters) -> Result; without it the table of the runs
+    study.py       study(inputs, **parameters) -> Result, and NEEDS, the values that fields of its runs must have;
+                   without it the table of the runs
     figure.py      figure(series, table, **parameters) -> Figure; without it there is no figure
     benchmark.py   benchmark(**parameters) -> data set of run times, if the scene measures any
     caption.md     what is shown, how to read it, what follows
@@ -15,9 +16,10 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib import import_module
+from itertools import product
 from pathlib import Path
 from typing import Any, Union
 
@@ -34,6 +36,7 @@ __all__ = [
     "call",
     "check_parameters",
     "complaint",
+    "expand",
     "merged",
     "read_scenes",
     "resolved",
@@ -112,6 +115,26 @@ class Scene(BaseModel):
         folder = self.folder if own else self.folder.parents[1] / str(self.study)
         return folder / kind if (folder / kind).is_file() else None
 
+    @cached_property
+    def cases(self) -> list[Case]:
+        """The cases of its runs, in order, without repeats.
+
+        Raises
+        ------
+        InvalidInput
+            For a case that is not allowed, with the scene's file.
+        """
+        try:
+            return expand(self.runs)
+        except InvalidInput as error:
+            where = f"{self.folder / 'scene.yaml'}: runs: {error.field}"
+            raise InvalidInput(where, error.value, error.allowed, error.remedy) from None
+
+    @property
+    def needs(self) -> dict[str, list[Any]]:
+        """What the runs must hold for the study: values of fields of a case, `NEEDS` of study.py."""
+        return getattr(sys.modules[self.function("study").__module__], "NEEDS", {})
+
     def function(self, kind: str) -> Callable[..., Any]:
         """Return the function `kind` of `<kind>.py`; without a study, the table of the runs."""
         file = self.file(f"{kind}.py")
@@ -131,6 +154,19 @@ class Scene(BaseModel):
         """The scenes whose benchmarks it reads, its own included."""
         own = [] if self.benchmark is None else [self.name]
         return own + [name for name in self.benchmarks if name != self.name]
+
+
+def expand(blocks: Iterable[BaseModel | Mapping[str, Any]]) -> list[Case]:
+    """Return the cases of run blocks, in order, without repeats."""
+    cases: dict[str, Case] = {}
+    for block in blocks:
+        fields = block.model_dump(exclude_none=True) if isinstance(block, BaseModel) else block
+        choices = [value if isinstance(value, list) else [value] for value in fields.values()]
+        for combination in product(*choices):
+            case = Case(**dict(zip(fields, combination, strict=True)))
+            case.refuse_point_mass()
+            cases.setdefault(case.path, case)
+    return list(cases.values())
 
 
 def read_scenes(root: Path, documents: list[str], smoke: bool) -> dict[str, Scene]:
@@ -290,7 +326,9 @@ def _check_keywords(
                 raise InvalidInput(f"{where}.{name}", None, "needed by the study", "Add it.")
         elif parameter.annotation is not parameter.empty:
             try:
-                TypeAdapter(eval(parameter.annotation, names)).validate_python(given[name])
+                written = parameter.annotation
+                kind = eval(written, names) if isinstance(written, str) else written
+                TypeAdapter(kind).validate_python(given[name], strict=True)
             except ValidationError as error:
                 allowed = error.errors()[0]["msg"].removeprefix("Input should be ")
                 raise InvalidInput(

@@ -11,7 +11,7 @@ __all__ = ["reference_times", "scattered_sums"]
 
 def reference_times(inputs: Inputs) -> Result:
     """List the reference problem's run times, and of the series what its transforms alone take."""
-    runs = inputs.benchmarks["reference"]
+    runs = inputs.benchmarks["reference_times"]
     table = pd.DataFrame(
         {
             "scheme": runs["scheme"],
@@ -43,7 +43,7 @@ def reference_times(inputs: Inputs) -> Result:
 
 def scattered_sums(inputs: Inputs) -> Result:
     """List the times of field and flux of scattered particles by both ways, and their difference."""
-    sums = inputs.benchmarks["scattered"]
+    sums = inputs.benchmarks["scattered_sums"]
     table = pd.DataFrame(
         {
             "N": sums["particles"],

@@ -98,7 +98,7 @@ def run_time_goals(inputs: Inputs) -> Result:
     """
     asked: Mapping[str, float] = inputs.parameters["goals"]
     errors = inputs.parameters["errors"]
-    line, reference = trials_of(inputs, _LINE), inputs.benchmarks["reference"]
+    line, reference = trials_of(inputs, _LINE), inputs.benchmarks["reference_times"]
     middle = line[line["beta"] == 0.5]
     series = _series(middle)
     kpse = reference[(reference["scheme"] == "KPSE") & (reference["order"] == 2)]
