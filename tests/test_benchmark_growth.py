@@ -8,14 +8,15 @@ import numba as nb
 import numpy as np
 import pandas as pd
 import pytest
-from scenes.run_times.cost_growth.benchmark import cost_growth as measure_growth
-from scenes.run_times.cost_growth.figure import cost_growth as draw
-from scenes.run_times.cost_growth.study import cost_growth, exponent, extrapolate
-from scenes.run_times.scattered_sums.benchmark import scattered
 
 from fracparticles.moving.scattered import NonuniformFourierSum
 from fracparticles.run.dataset import read_benchmark, write
 from fracstudy.style import save
+from scenes.run_times.cost_growth.benchmark import benchmark as measure_growth
+from scenes.run_times.cost_growth.figure import figure as draw
+from scenes.run_times.cost_growth.study import exponent, extrapolate
+from scenes.run_times.cost_growth.study import study as cost_growth
+from scenes.run_times.scattered_sums.benchmark import benchmark as scattered
 
 KINDS = {
     "line": ["KPSE-12-open", "FPSE-4-truncated"],

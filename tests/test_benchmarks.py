@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pyfftw
 import pytest
-from scenes.run_times.reference_times.benchmark import reference, transform_pairs
 from threadpoolctl import threadpool_limits
 
 import fracparticles as fp
@@ -15,7 +14,8 @@ from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.lattice.fourier import transform_length
 from fracparticles.moving.random_walk import cell_masses
 from fracparticles.run.dataset import read_benchmark, write
-from fracparticles.run.solver import compute, relative_l1_error
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute
 from fracparticles.schemes.stability import _symbol_range, stability_limit
 from fracstudy.benchmarks import BENCHMARKS, benchmark, clock
 from fracstudy.benchmarks.problem import Problem
@@ -35,6 +35,8 @@ from fracstudy.benchmarks.sweeps import (
 )
 from fracstudy.benchmarks.trial import Contender, Trial, run_trials
 from fracstudy.peers import PEERS
+from scenes.run_times.reference_times.benchmark import benchmark as reference
+from scenes.run_times.reference_times.benchmark import transform_pairs
 
 LINE, PLANE = Problem(0.5), Problem(0.5, dim=2)
 GRID = {"spacings": [0.4], "truncations": [5.0], "most": 1000}

@@ -78,7 +78,7 @@ def test_the_spectral_interval_holds_the_spectrum(name, order, exterior):
         exterior=exterior, **({} if name == "GPSE" else {"integrator": "exponential"}),
     )  # fmt: skip
     operator = SCHEMES[name].operator(case.setting)
-    low, high = spectral_interval(case, operator)
+    low, high = spectral_interval(case.scheme, case.setting, operator, case.steps)
     eigenvalues = np.linalg.eigvals(dense_matrix(operator))
     # FPSE: its real parts come close to 0 from either side, by the ends of the lattice.
     room = 1e-3 * (high - low)

@@ -21,7 +21,11 @@ def words_of(text: str) -> list[str]:
 
 SMALL = words_of("--scheme KPSE --order 4 --beta 0.5 --half-width 10 --spacing 0.25")
 CASE = Case(scheme="KPSE", order=4, beta=0.5, half_width=10.0, spacing=0.25, dt=0.05)
-PROGRAM = [sys.executable, "-c", "import sys; from fracparticles.cli import main; sys.exit(main())"]
+PROGRAM = [
+    sys.executable,
+    "-c",
+    "import sys; from fracparticles.run.cli import main; sys.exit(main())",
+]
 
 
 @pytest.fixture

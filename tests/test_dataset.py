@@ -298,7 +298,7 @@ def test_what_is_not_a_data_set_is_refused(tmp_path):
 def test_the_mode_is_what_the_umask_leaves(tmp_path, umask):
     program = (
         "import os, sys, xarray as xr\n"
-        "from fracparticles.dataset import write\n"
+        "from fracparticles.run.dataset import write\n"
         f"os.umask({umask})\n"
         "write(xr.Dataset({'a': 1.0}), sys.argv[1])"
     )
@@ -369,7 +369,7 @@ def test_names_as_long_as_they_may_be(tmp_path, name):
 
 _FULL_DISK = (
     "import sys, warnings, fracparticles as fp\n"
-    "from fracparticles.cli import main\n"
+    "from fracparticles.run.cli import main\n"
     "{limit}\n"
     "sys.exit(main(sys.argv[1:]))"
 )

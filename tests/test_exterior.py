@@ -8,7 +8,8 @@ import pytest
 from fracparticles.errors import InvalidInput
 from fracparticles.lattice.exterior import _expansion, far_field, tabulated_far_field
 from fracparticles.run.case import Case
-from fracparticles.run.solver import compute, relative_l1_error
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.schemes.stability import symbol_range

@@ -472,8 +472,8 @@ def test_a_run_from_the_fundamental_solution_stays_what_it_was():
 def test_bare_data_import_no_library_of_labels():
     program = (
         "import sys, numpy as np\n"
-        "from fracparticles.case import Case\n"
-        "from fracparticles.initial import initial_strengths\n"
+        "from fracparticles.run.case import Case\n"
+        "from fracparticles.run.initial import initial_strengths\n"
         f"case = Case(**{GIVEN!r})\n"
         "initial_strengths(case, np.ones(81))\n"
         "sys.exit(sum(name in sys.modules for name in ('xarray', 'pandas', 'netCDF4')))"

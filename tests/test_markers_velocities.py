@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scenes.lewandowski.marker_velocities.study import kdv_residual
 
 from fracparticles.errors import InvalidInput
 from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, equal_weight, run, uniform
@@ -18,6 +17,7 @@ from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.source import GaussianSource, advance_weights, source_flux
 from fracparticles.moving.lagrangian import FieldNotPositive
+from scenes.lewandowski.marker_velocities.study import kdv_residual
 
 # --- Burgers --------------------------------------------------------------------------------------
 

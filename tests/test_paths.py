@@ -10,7 +10,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fracparticles.run.case import Case
-from fracstudy.plan import Scene, batches, expand
+from fracstudy.config import batches
+from fracstudy.scene import Scene, expand
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "dt": 1e-4}
 DVM = {**GIVEN, "scheme": "DVM", "dt": 1e-3}

@@ -9,8 +9,8 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
-from fracparticles.lattice.exterior import tail_constant
 from fracparticles.run.solver import compute, initial_strengths, prepare
+from fracparticles.special.tails import tail_constant
 from fracparticles.time.propagator import propagator, propagator_weights
 
 WIDE = {"beta": 0.5, "truncation": 20.0, "exterior": "open", "integrator": "exponential"}

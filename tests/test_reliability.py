@@ -11,7 +11,8 @@ import pytest
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.reliability import estimates, wavenumber
-from fracparticles.run.solver import compute, relative_l1_error
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute
 from fracparticles.special.stable import central_mass, green
 from fracparticles.time.propagator import propagator
 

@@ -89,7 +89,7 @@ def test_a_mistake_is_named_in_one_line(tmp_path, scene, words):
         ({"parameters": {"width": "1e-4"}}, ("parameters.width", "'1e-4'", "number")),
         ({"parameters": {"width": 1.0, "widht": 1.0}}, ("widht", "Did you mean 'width'?")),
         ({"parameters": {"width": 1.0, "counts": [1.5]}}, ("counts", "integer")),
-        ({"parameters": {"width": 1.0, "beta": 0.5}}, ("parameters.beta", "Leave it out")),
+        ({"parameters": {"width": 1.0, "beta": 0.3}}, ("parameters.beta = 0.3", "have, 0.5")),
         (
             {"parameters": {"width": 1.0}, "runs": [{**BLOCK, "exterior": "open"}]},
             ("runs: exterior", "open", "truncated", "Add runs"),

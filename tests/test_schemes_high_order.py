@@ -11,7 +11,8 @@ from scipy.linalg import expm
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import family_of, kernel, kernel_transform
 from fracparticles.run.case import Case
-from fracparticles.run.solver import compute, prepare, relative_l1_error, solve
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute, prepare, solve
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.base import lattice_transform
 from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
@@ -97,7 +98,7 @@ def on_sixty(scheme: str, order: int, beta: float, overlap: float, exterior: str
 def outside(case: Case) -> tuple[float, float]:
     """How far the eigenvalues lie outside the interval, and off the real line; relative to its length."""
     operator = SCHEMES[case.scheme].operator(case.setting)
-    low, high = spectral_interval(case, operator)
+    low, high = spectral_interval(case.scheme, case.setting, operator, case.steps)
     values = np.linalg.eigvals(dense_matrix(operator))
     beyond = max(low - values.real.min(), values.real.max() - high)
     return beyond / (high - low), np.abs(values.imag).max() / (high - low)

@@ -10,7 +10,8 @@ import pytest
 import fracparticles as fp
 from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
 from fracparticles.run.case import Case
-from fracparticles.run.solver import compute, initial_strengths, relative_l1_error
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute, initial_strengths
 from fracparticles.special import central_mass, green, mean_radius
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "half_width": 10.0, "spacing": 0.25}

@@ -16,7 +16,11 @@ def names(module: str) -> set[str]:
 
 def test_what_is_imported_counts_at_any_depth():
     found = names("fracstudy/studies/reference_case.py")
-    assert {"fracstudy/studies/reference_case.py", "fracstudy/inputs.py", "fracstudy/claims.py"} <= found
+    assert {
+        "fracstudy/studies/reference_case.py",
+        "fracstudy/inputs.py",
+        "fracstudy/claims.py",
+    } <= found
     assert {
         "fracparticles/special/stable.py",
         "fracparticles/special/chebyshev.py",

@@ -41,7 +41,7 @@ def test_the_interval_holds_every_eigenvalue_and_all_are_real(combination, beta)
         for n in (8, 60):
             case = case_of(combination, beta, overlap, n)
             operator = SCHEMES[case.scheme].operator(case.setting)
-            low, high = spectral_interval(case, operator)
+            low, high = spectral_interval(case.scheme, case.setting, operator, case.steps)
             values = np.linalg.eigvals(dense_matrix(operator))
             room = ROUND_OFF * 10.0 * (high - low)
             assert np.abs(values.imag).max() <= room, (overlap, n)

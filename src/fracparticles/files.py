@@ -1,16 +1,19 @@
-"""Files that are whole or not there: written under a temporary name, renamed when they are done."""
+"""Files that are whole or not there, written under a temporary name and renamed when done; and how NetCDF is read."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fracparticles.errors import InvalidInput
 
-__all__ = ["replaceable", "replacing", "write_text"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["load_netcdf", "replaceable", "replacing", "write_text"]
 
 
 def replaceable(path: Any, field: str = "path") -> Path:
@@ -81,3 +84,31 @@ def write_text(path: Any, text: str) -> None:
     """
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def load_netcdf(path: Path, names: Sequence[str] | None = None) -> xr.Dataset:
+    """Read a NetCDF file, or some variables of it: no other is decoded. Units of time are left as they are.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no readable NetCDF file.
+    """
+    import xarray as xr
+
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise InvalidInput("file", str(path), "a regular file", "Copy the data into one.")
+    try:
+        with xr.open_dataset(path, engine="netcdf4", decode_cf=False) as raw:
+            wanted = raw
+            if names is not None:
+                wanted = raw[[name for name in names if name in raw.variables]]
+                wanted = wanted.drop_vars([name for name in wanted.coords if name not in names])
+            return xr.decode_cf(wanted, decode_times=False).load()
+    except FileNotFoundError:
+        raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
+    except Exception as error:  # the library raises many kinds for damaged files
+        reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+        raise InvalidInput(
+            "file", str(path), f"a readable NetCDF file ({reason})", "Write or copy it again."
+        ) from None

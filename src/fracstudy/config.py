@@ -95,8 +95,9 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
         scenes = {name: _with_dvm_step(scene, study.dvm_dt) for name, scene in scenes.items()}
     timed = [name for name, scene in scenes.items() if scene.benchmark is not None]
     # A smoke run says of what it cannot judge that its grids are too coarse.
-    judged = study.grids is not None and not study.smoke
-    grids = yaml.safe_load(Path(study.grids).read_text("utf-8")) if judged else {}
+    grids = {}
+    if study.grids is not None and not study.smoke:
+        grids = yaml.safe_load(Path(study.grids).read_text("utf-8"))
     for scene in scenes.values():
         for key, names in (("tables", scenes), ("benchmarks", timed)):
             for other in getattr(scene, key):
@@ -110,16 +111,19 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
 
 
 def _check_runs(scene: Scene) -> None:
-    """Refuse runs that the study cannot do without, and parameters that say what the runs say already."""
+    """Refuse parameters that say what the runs are not, and runs that lack what the study compares."""
     where = f"{scene.folder / 'scene.yaml'}"
-    for name in Case.model_fields.keys() & scene.parameters.keys() if scene.runs else ():
-        raise InvalidInput(
-            f"{where}: parameters.{name}",
-            scene.parameters[name],
-            "nothing that the runs say themselves",
-            "Leave it out, or give it another name.",
-        )
     cases = scene.cases
+    for name in Case.model_fields.keys() & scene.parameters.keys() if cases else ():
+        given, found = scene.parameters[name], {getattr(case, name) for case in cases} - {None}
+        one_by_one = given if isinstance(given, list) else [given]
+        if found and not isinstance(given, dict) and not found.issuperset(one_by_one):
+            raise InvalidInput(
+                f"{where}: parameters.{name}",
+                given,
+                f"what the runs have, {' or '.join(map(str, found))}",
+                "Change the runs, too: they are what is shown.",
+            )
     for name, needed in scene.needs.items():
         found = {getattr(case, name) for case in cases}
         if missing := [value for value in needed if value not in found]:

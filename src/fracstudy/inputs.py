@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,23 +13,30 @@ import pandas as pd
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
+from fracparticles.run.orders import observed_order
 from fracstudy.claims import Claim, Finding, judge
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
+    "NUMERALS",
     "ORDERS",
     "Inputs",
     "Result",
     "excuse",
+    "listed",
     "observed_order",
+    "spelled",
     "statement",
     "value",
     "write_table",
 ]
 
 ORDERS = {2: "II", 4: "IV"}
+"""The orders of the paper, as it writes them."""
+NUMERALS = {**ORDERS, 6: "VI", 8: "VIII", 10: "X", 12: "XII"}
+"""All orders of kernels, written like these."""
 
 
 @dataclass(frozen=True)
@@ -43,23 +51,23 @@ class Inputs:
         The items of the documents that it judges.
     parameters : mapping
         The block `parameters` of the scene.
-    printed : mapping
-        The printed numbers of its items by claim.
     runs : sequence of str
         The run files of the scene, in the order of its configuration.
     tables : mapping
         Tables of other scenes that this one reads, by scene.
     benchmarks : mapping
-        The data of benchmarks that it reads, one row a measurement, by benchmark; the machine is in `attrs`.
+        The data of benchmarks that it reads, one row a measurement, by scene; the machine is in `attrs`.
+    printed : mapping
+        The printed numbers of its items by claim.
     """
 
     scene: str
     items: Sequence[str] = ()
     parameters: Mapping[str, Any] = field(default_factory=dict)
-    printed: Mapping[str, str] = field(default_factory=dict)
     runs: Sequence[str] = ()
     tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     benchmarks: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+    printed: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def scalars(self) -> pd.DataFrame:
@@ -144,6 +152,16 @@ def statement(
     )
 
 
+def listed(values: Iterable[float], form: str = "g") -> str:
+    """Return numbers in words: 0.1, 0.5, 0.9."""
+    return ", ".join(f"{v:{form}}" for v in values)
+
+
+def spelled(values: pd.Series, form: str = ".3g") -> str:
+    """Return named numbers in words: DD 0.1, FPSE 0.5."""
+    return ", ".join(f"{name} {v:{form}}" for name, v in values.items())
+
+
 def excuse(findings: Iterable[Finding], claims: Iterable[Claim]) -> list[Finding]:
     """Give a reason to the findings of a smoke run that deviate for want of resolution."""
     known = {claim.id: claim for claim in claims}
@@ -156,7 +174,7 @@ def excuse(findings: Iterable[Finding], claims: Iterable[Claim]) -> list[Finding
     ]
 
 
-def write_table(table: pd.DataFrame, csv: str, md: str | None = None) -> None:
+def write_table(table: pd.DataFrame, csv: Path, md: Path | None = None) -> None:
     """Write a table as CSV with full precision and, if asked, as Markdown with four digits, a | in it escaped."""
     write_text(csv, table.to_csv(index=False, lineterminator="\n") if len(table.columns) else "\n")
     if md is not None:
@@ -170,12 +188,6 @@ def _shown(cell: Any) -> Any:
     if isinstance(cell, str):
         return cell.replace("|", r"\|")
     return cell + 0.0 if isinstance(cell, float) else cell  # no -0
-
-
-def observed_order(h: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Return log(e_k / e_{k+1}) / log(h_k / h_{k+1}), the order between neighbouring levels."""
-    h, error = np.asarray(h, dtype=float), np.asarray(error, dtype=float)
-    return np.log(error[:-1] / error[1:]) / np.log(h[:-1] / h[1:])
 
 
 def _plain(value: Any) -> Any:

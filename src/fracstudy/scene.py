@@ -99,7 +99,7 @@ class Scene(BaseModel):
     items: list[str] = []
     study: str | None = None
     parameters: dict[str, Any] = {}
-    runs: list[RunBlock] = []  # type: ignore[valid-type]
+    runs: list[RunBlock] = []
     tables: list[str] = []
     benchmarks: list[str] = []
     benchmark: dict[str, Any] | None = None
@@ -271,8 +271,8 @@ def complaint(error: ValidationError, where: str, model: type[BaseModel]) -> Inv
     place = [str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)]
     field = where + (".".join(place) or "configuration")
     if first["type"] == "extra_forbidden":
-        names = (RunBlock if place[0] == "runs" else model).model_fields
-        names = [name for name in names if name not in ("name", "folder")]
+        fields = (RunBlock if place[0] == "runs" else model).model_fields
+        names = [name for name in fields if name not in ("name", "folder")]
         remedy = closest(place[-1], names) or "Remove it."
         return InvalidInput(field, first["input"], f"one of {', '.join(names)}", remedy)
     if first["type"] == "missing":

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from scenes.lucchesi.conservation.study import weight_sum
 
 from fracparticles.run.dataset import write
 from fracparticles.run.solver import solve
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure, study
+from scenes.lucchesi.conservation.study import weight_sum
 
 
 @pytest.mark.parametrize("scheme", ["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD"])

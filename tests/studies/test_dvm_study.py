@@ -5,12 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from scenes.beyond.dvm_particles.study import lattice_strengths, spread
-from scenes.lucchesi.dvm_domain import truncation_effect
-from scenes.lucchesi.dvm_stability.study import displacement_growth, gpse_factors, worst_wave
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.run.case import Case
@@ -18,6 +12,12 @@ from fracparticles.run.dataset import read_run, write
 from fracparticles.run.solver import solve
 from fracparticles.schemes import dd
 from fracparticles.schemes.stability import stability_limit
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure, study
+from scenes.beyond.dvm_particles.study import lattice_strengths, spread
+from scenes.lucchesi.dvm_domain import truncation_effect
+from scenes.lucchesi.dvm_stability.study import displacement_growth, gpse_factors, worst_wave
 
 REMESHINGS = ["M4'", "Lambda3", "none"]
 
@@ -184,7 +184,7 @@ def test_table_2_of_dvm_needs_its_three_levels(tmp_path):
         "spacing": {"0.5": 0.2},
         "printed": {"L-T2.DVM.II.beta0.5": "2.00"},
     }
-    result = study("self_convergence")(Inputs("t", ["L-T2"], parameters, runs))
+    result = study("lucchesi_table_2")(Inputs("t", ["L-T2"], parameters, runs))
     ours = result.table.set_index("scheme")["ours"]
     # Epsilon = 2 h = 0.4 on the middle level: the next term of the smoothing error is of relative size 0.4^2.
     assert ours["DVM, M4'"] == pytest.approx(2.0, abs=0.16)

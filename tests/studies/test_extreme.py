@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs, study
+
+from fracstudy.inputs import Inputs
+from scene_functions import figure, study
 from scenes.beyond.stiff_extreme.study import UNEXPECTED
 
 PARAMETERS = {

@@ -6,9 +6,12 @@ from math import gamma, log, pi, sqrt
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs
+
+import fracparticles as fp
+from fracparticles.kernels.families import kernel
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure
 from scenes.lucchesi.fickian_limit.study import (
     decade_moments,
     fickian_error,
@@ -16,9 +19,6 @@ from scenes.lucchesi.fickian_limit.study import (
     heat_kernel,
     kernel_distance,
 )
-
-import fracparticles as fp
-from fracparticles.kernels.families import kernel
 
 LATTICE = {"half_width": 15.0, "overlap": 2.0, "t_initial": 0.5, "t_final": 1.5}
 

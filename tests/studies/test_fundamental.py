@@ -9,9 +9,13 @@ from pathlib import Path
 import mpmath as mp
 import pandas as pd
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs
 from matplotlib.figure import Figure
+from scipy.integrate import quad
+
+from fracparticles.special import mean_radius as closed_form
+from fracparticles.special import reduced_green
+from fracstudy.inputs import Inputs
+from scene_functions import figure
 from scenes.lucchesi.fundamental import (
     expansions,
     fundamental_solution,
@@ -20,10 +24,6 @@ from scenes.lucchesi.fundamental import (
     outer_moment,
     split_radius,
 )
-from scipy.integrate import quad
-
-from fracparticles.special import mean_radius as closed_form
-from fracparticles.special import reduced_green
 
 REFERENCE = Path(__file__).parents[2] / "report/reference/stable_density.csv"
 
@@ -80,7 +80,7 @@ def test_expansions(alpha, item):
         f"{item}.{n}" for n in ("series", "asymptotic", "overlap")
     ]
     assert all(finding.verdict for finding in result.findings)
-    drawn = figure("expansions")(result.series, result.table, parameters)
+    drawn = figure("lucchesi_figure_A10")(result.series, result.table, parameters)
     assert isinstance(drawn, Figure)
     drawn.draw_without_rendering()
 

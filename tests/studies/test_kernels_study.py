@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs
-from scenes.lucchesi.lucchesi_figure_1.study import kernels, tail_exponent
+
+from fracstudy.inputs import Inputs
+from scene_functions import figure
+from scenes.lucchesi.lucchesi_figure_1.study import study as kernels
+from scenes.lucchesi.lucchesi_figure_1.study import tail_exponent
 
 PARAMETERS = {"beta": [0.1, 0.5, 0.9], "points": 401}
 
@@ -29,7 +31,7 @@ def test_kernels():
     reason = {finding.claim: finding.reason for finding in result.findings}["L-F1.K_positive.IV"]
     assert "beta = 0.9" in reason
     assert "beta = 0.5" not in reason
-    drawn = figure("kernels")(result.series, result.table, PARAMETERS)
+    drawn = figure("lucchesi_figure_1")(result.series, result.table, PARAMETERS)
     assert len(drawn.axes) == 3
     drawn.draw_without_rendering()
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs, study
+
+from fracstudy.inputs import Inputs
+from scene_functions import figure, study
 from scenes.lewandowski.marker_nonlinear.study import Setting, evolve
 
 NONLINEAR = {

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs, study
-from scenes.lewandowski.marker_claims.study import quadrature_exponent, smoothing_exponent
-from scenes.lewandowski.marker_growth.study import largest_step, measured_rate
-from scenes.lewandowski.marker_runs import cluster_centres, delay, emptiness, load, spectrum, trace
 
 from fracparticles.markers import SHAPES, Square
 from fracparticles.markers.stability import rate
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracstudy.claims import Status, judge, read_claims
+from fracstudy.inputs import Inputs
+from scene_functions import figure, study
+from scenes.lewandowski.marker_claims.study import quadrature_exponent, smoothing_exponent
+from scenes.lewandowski.marker_growth.study import largest_step, measured_rate
+from scenes.lewandowski.marker_runs import cluster_centres, delay, emptiness, load, spectrum, trace
 
 CLAIMS = {
     claim.id: claim
@@ -66,7 +66,7 @@ SCENES = {
 @pytest.mark.parametrize("name", SCENES)
 def test_every_claim_is_answered_and_the_figure_drawn(name):
     items, parameters = SCENES[name]
-    result = study(name)(Inputs("scene", items, {**parameters, "printed": {}}))
+    result = study(name)(Inputs("scene", items, parameters, printed={}))
     answered = sorted(finding.claim for finding in result.findings)
     assert answered == sorted(key for key, claim in CLAIMS.items() if claim.item in items)
     for finding in result.findings:

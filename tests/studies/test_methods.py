@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fracstudy.studies import Inputs
-from scenes.lucchesi.lucchesi_table_1.study import (
-    PAIR_SUMS,
-    consistency_order,
-    diffusion_velocity,
-    methods,
-)
 
 from fracparticles.moving import dvm
 from fracparticles.schemes import SCHEMES, Setting
+from fracstudy.inputs import Inputs
+from scenes.lucchesi.lucchesi_table_1.study import PAIR_SUMS, consistency_order, diffusion_velocity
+from scenes.lucchesi.lucchesi_table_1.study import study as methods
 
 PARAMETERS = {"beta": [0.5], "particles": 11, "spacing": 0.3}
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs, study
-from scenes.particle_note.note_conservation.study import Skewed, heat, heat_second, particles
-from scenes.particle_note.pse_note import wave
 
 from fracparticles.pse import GAUSSIAN_20, StrengthExchange, moment, regularised
 from fracstudy.claims import read_claims
+from fracstudy.inputs import Inputs
+from scene_functions import figure, study
+from scenes.particle_note.note_conservation.study import Skewed, heat, heat_second, particles
+from scenes.particle_note.pse_note import wave
 
 PRINTED = Path(__file__).resolve().parents[2] / "report/printed/particle_note.yaml"
 SCENES = {

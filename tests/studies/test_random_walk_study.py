@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from scenes.lucchesi.random_walk.study import few_walkers_beyond, walkers_to_equal
 
 import fracparticles as fp
 from fracparticles.moving.random_walk import cell_masses, expected_deviation
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure, study
+from scenes.lucchesi.random_walk.study import few_walkers_beyond, walkers_to_equal
 
 PARAMETERS = {
     "beta": 0.5,
     "seed": 1976,
     "t_initial": 0.5,
     "times": [1.0, 1.5],
-    "dt": [0.5, 0.1],
+    "walk_steps": [0.5, 0.1],
     "walkers": [1000, 10000, 50000],
     "increments": 150000,
     "cells": 32,

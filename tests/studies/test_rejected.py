@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
 from scipy.integrate import quad
 
 from fracparticles.kernels.families import kernel
@@ -14,6 +11,9 @@ from fracparticles.run.dataset import write
 from fracparticles.run.solver import solve
 from fracparticles.schemes import riesz
 from fracparticles.special.stable import green, green_flux
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure, study
 
 
 def inputs(folder, scene, items, blocks, parameters):
@@ -89,9 +89,9 @@ def test_riesz(tmp_path):
     ]  # fmt: skip
     parameters = {
         "alpha": [1.3, 1.5, 1.9],
-        "half_width": 60.0,
-        "spacing": [0.08, 0.04, 0.02],
-        "overlap": 2.0,
+        "sum_half_width": 60.0,
+        "sum_spacing": [0.08, 0.04, 0.02],
+        "sum_overlap": 2.0,
         "time": 1.0,
     }
     scene = inputs(tmp_path, "rejected_riesz", ["L-C16"], blocks, parameters)

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs, study
+
+from fracparticles.sph import ParticleLine
+from fracparticles.sph.closed_forms import FUNCTIONS
+from fracstudy.claims import Status, judge, read_claims
+from fracstudy.inputs import Inputs
+from scene_functions import figure, study
 from scenes.ghorbani.sph_closed_forms.study import defining_integral
 from scenes.ghorbani.sph_operators.study import OPERATORS, order_at
 from scenes.ghorbani.sph_readings.study import CASES
 from scenes.ghorbani.sph_spline.study import kernel_sums
 from scenes.ghorbani.sph_sums import Reading, approximate
-
-from fracparticles.sph import ParticleLine
-from fracparticles.sph.closed_forms import FUNCTIONS
-from fracstudy.claims import Status, judge, read_claims
 
 CLAIMS = {
     claim.id: claim
@@ -32,7 +32,7 @@ def run(name, items, **parameters):
         for key, claim in CLAIMS.items()
         if claim.item in items and claim.printed is not None
     }
-    result = study(name)(Inputs("scene", items, {**parameters, "printed": printed}))
+    result = study(name)(Inputs("scene", items, parameters, printed=printed))
     answered = [finding.claim for finding in result.findings]
     assert sorted(answered) == sorted(key for key, c in CLAIMS.items() if c.item in items)
     statuses = {f.claim: judge(CLAIMS[f.claim], f)[0] for f in result.findings}
@@ -52,15 +52,15 @@ def run(name, items, **parameters):
     ],
 )
 def test_all_six_digits_come_out(operator, order, items):
-    _, statuses = run("sph_operator", items, operator=operator, order=order, **PAPER)
+    _, statuses = run("sph_caputo", items, operator=operator, order=order, **PAPER)
     assert set(statuses.values()) == {Status.REPRODUCED}
 
 
 def test_the_operator_figure_is_drawn():
     parameters = {"operator": "rl_derivative", "order": 0.75, **PAPER, "count": 41}
-    result, _ = run("sph_operator", ["S-F4"], **parameters)
+    result, _ = run("sph_caputo", ["S-F4"], **parameters)
     assert len(result.table) == 12
-    drawn = figure("sph_operator")(result.series, result.table, parameters)
+    drawn = figure("sph_caputo")(result.series, result.table, parameters)
     drawn.draw_without_rendering()
     assert len(drawn.axes) == 8
 

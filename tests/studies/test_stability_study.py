@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.studies import Inputs
 from matplotlib.figure import Figure
-from scenes.lucchesi.lucchesi_table_3.study import spectrum, stability, truncated_print
+
+from fracstudy.inputs import Inputs
+from scene_functions import figure
+from scenes.lucchesi.lucchesi_table_3.study import spectrum, truncated_print
+from scenes.lucchesi.lucchesi_table_3.study import study as stability
 
 PARAMETERS = {
     "beta": [0.1, 0.5, 0.9],
@@ -44,7 +46,7 @@ def test_power_iteration_comes_from_above(result):
 
 
 def test_figure_renders(result):
-    drawn = figure("stability")(result.series, result.table, PARAMETERS)
+    drawn = figure("lucchesi_table_3")(result.series, result.table, PARAMETERS)
     assert isinstance(drawn, Figure)
     assert len(drawn.axes) == 2
     drawn.draw_without_rendering()

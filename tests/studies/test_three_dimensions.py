@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from scenes.beyond.three_dimensions.study import bytes_kept, operations
 
 from fracparticles.lattice.fourier import transform_length
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import write
 from fracparticles.run.solver import solve
 from fracparticles.schemes import SCHEMES
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure, study
+from scenes.beyond.three_dimensions.study import bytes_kept, operations
 
 
 @pytest.fixture(scope="module")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
 
 from fracparticles.run.dataset import write
 from fracparticles.run.solver import solve
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure, study
 
 
 @pytest.fixture(scope="module")

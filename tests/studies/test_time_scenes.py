@@ -7,12 +7,6 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from scenes.run_times.time_integration.benchmark import time_integration as run_integrations
-from scenes.run_times.time_integration.figure import time_integration as draw_integrations
-from scenes.run_times.time_integration.study import time_integration
-from scenes.run_times.time_spent.benchmark import time_spent as take_apart
-from scenes.run_times.time_spent.figure import time_spent as draw_parts
-from scenes.run_times.time_spent.study import PARTS, time_spent
 
 from fracparticles.lattice.fourier import FourierConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
@@ -20,6 +14,13 @@ from fracparticles.time import STEP_POLYNOMIALS
 from fracparticles.time.rkc import stages_for
 from fracstudy.benchmarks import time_integration as integration_benchmark
 from fracstudy.style import save
+from scenes.run_times.time_integration.benchmark import benchmark as run_integrations
+from scenes.run_times.time_integration.figure import figure as draw_integrations
+from scenes.run_times.time_integration.study import study as time_integration
+from scenes.run_times.time_spent.benchmark import benchmark as take_apart
+from scenes.run_times.time_spent.figure import figure as draw_parts
+from scenes.run_times.time_spent.study import PARTS
+from scenes.run_times.time_spent.study import study as time_spent
 
 NAMES = {"euler": "RK1", "rk2": "RK2", "rk4": "RK4"}
 CASES = {

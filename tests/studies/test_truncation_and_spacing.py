@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
-from scenes.lucchesi.lucchesi_table_2.study import self_convergence_order
-from scenes.lucchesi.spacing_shared import spacing
-from scenes.lucchesi.truncation_shared import exchange_truncation_error, truncation
 
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import write
-from fracparticles.run.solver import compute, relative_l1_error, solve
-from fracstudy.inputs import observed_order
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute, solve
+from fracstudy.inputs import Inputs, observed_order
+from fracstudy.scene import expand
+from scene_functions import figure, study
+from scenes.lucchesi.lucchesi_table_2.study import self_convergence_order
+from scenes.lucchesi.spacing_shared import spacing
+from scenes.lucchesi.truncation_shared import exchange_truncation_error, truncation
 
 
 def computed(tmp_path, blocks):
@@ -96,7 +96,7 @@ def test_the_claims_on_truncation_read_the_tables(truncated):
     verdicts = {finding.claim: finding.verdict for finding in result.findings}
     assert verdicts["L-C5.origin"] is True
     assert verdicts["L-C6.different_mechanism"] is False
-    drawn = figure("truncation_overview")(result.series, result.table, {})
+    drawn = figure("truncation_claims")(result.series, result.table, {})
     assert len(drawn.axes) == 3
 
 
@@ -126,7 +126,7 @@ def test_spacing_finds_the_orders_of_the_kernels(tmp_path):
     np.testing.assert_allclose(finest["II"], 2.0, atol=0.1)
     np.testing.assert_allclose(finest["IV"], 4.0, atol=0.2)
     parts = {f"t{beta:g}": table.assign(beta=beta) for beta in (0.1, 0.5, 0.9)}
-    claims = study("spacing_claims")(Inputs("spatial_claims", ["L-C7", "L-C8"], {}, (), parts))
+    claims = study("spatial_claims")(Inputs("spatial_claims", ["L-C7", "L-C8"], {}, (), parts))
     verdicts = {finding.claim: finding.verdict for finding in claims.findings}
     assert verdicts["L-C8.cause"] is False
     for name, drawn in (("spacing", result), ("truncation", None)):
@@ -165,7 +165,7 @@ def test_the_reference_case_judges_both_windows(tmp_path):
         "printed_particles": 64000,
         "mass_beta": [0.5],
     }
-    result = study("reference_case")(Inputs("f2", ["L-F2", "L-C1", "L-C2"], parameters, runs))
+    result = study("lucchesi_figure_2")(Inputs("f2", ["L-F2", "L-C1", "L-C2"], parameters, runs))
     verdicts = {finding.claim: finding.verdict for finding in result.findings}
     assert verdicts["L-F2.peak"] is True, result.findings[0].evidence
     assert verdicts["L-F2.initial_decay"] is False
@@ -174,4 +174,4 @@ def test_the_reference_case_judges_both_windows(tmp_path):
     assert verdicts["L-C1.DVM_domain"] is False
     assert set(result.series["panel"]) == {0, 1}
     assert isinstance(result.table, pd.DataFrame)
-    assert len(figure("reference_case")(result.series, result.table, parameters).axes) == 3
+    assert len(figure("lucchesi_figure_2")(result.series, result.table, parameters).axes) == 3

@@ -7,9 +7,17 @@ from math import pi
 import numpy as np
 import pandas as pd
 import pytest
-from fracstudy.figures import figure
-from fracstudy.plan import expand
-from fracstudy.studies import Inputs, study
+
+from fracparticles.kernels.families import kernel
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import write
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute, solve
+from fracparticles.schemes import SCHEMES
+from fracparticles.special import green, green_flux, reduced_green
+from fracstudy.inputs import Inputs
+from fracstudy.scene import expand
+from scene_functions import figure, study
 from scenes.beyond.solution_map_2d.study import (
     reconstructed,
     square_exchange_error,
@@ -23,13 +31,6 @@ from scenes.lucchesi.lucchesi_figure_6.study import (
 )
 from scenes.lucchesi.lucchesi_figure_7.study import flux_along_axis
 from scenes.lucchesi.lucchesi_figure_9.study import disk_error
-
-from fracparticles.kernels.families import kernel
-from fracparticles.run.case import Case
-from fracparticles.run.dataset import write
-from fracparticles.run.solver import compute, relative_l1_error, solve
-from fracparticles.schemes import SCHEMES
-from fracparticles.special import green, green_flux, reduced_green
 
 ALPHA = 1.5
 # The half-width is 8.94; N = 17, 33, 65.
@@ -185,9 +186,9 @@ def test_planar_green():
             "integral_up_to": 40.0,
         },
     }
-    result = study("planar_green")(Inputs("a", ["L-F6"], parameters))
+    result = study("lucchesi_figure_6")(Inputs("a", ["L-F6"], parameters))
     assert findings(result)["L-F6.fundamental"].verdict
-    drawn("planar_green", result, parameters)
+    drawn("lucchesi_figure_6", result, parameters)
 
 
 def test_planar_operators():
@@ -199,13 +200,13 @@ def test_planar_operators():
         "finer": [129],
         "reach": 3.0,
     }
-    result = study("planar_operators")(Inputs("b", ["L-F7"], parameters))
+    result = study("lucchesi_figure_7")(Inputs("b", ["L-F7"], parameters))
     assert len(result.table) == 3 * 4
     found = findings(result)
     assert found["L-F7.flux_converges"].verdict
     # On lattices as coarse as these the order is not 2: the verdict can fail.
     assert not found["L-F7.second_order"].verdict
-    drawn("planar_operators", result, parameters)
+    drawn("lucchesi_figure_7", result, parameters)
 
 
 def test_planar_profiles(runs):
@@ -213,7 +214,7 @@ def test_planar_profiles(runs):
     tables = []
     for store in ("profile", "field"):
         files = runs({**COMMON, **block, "dt": 2e-3, "store": store})
-        result = study("planar_profiles")(Inputs("c", ["L-F8", "L-C19"], {}, files))
+        result = study("lucchesi_figure_8")(Inputs("c", ["L-F8", "L-C19"], {}, files))
         tables.append(result.table)
     # A run that another scene shares may hold the whole field: the same comes out.
     pd.testing.assert_frame_equal(*tables)
@@ -229,7 +230,7 @@ def test_planar_profiles(runs):
 def test_planar_map(runs):
     block = {"scheme": ["DD", "KPSE"], "spacing": 0.5586979, "exterior": ["truncated", "open"]}
     parameters = {"maps": [["DD", 2, "u"], ["DD", 2, "error"], ["KPSE", 2, "error"]]}
-    result = study("planar_map")(Inputs("d", [], parameters, runs({**COMMON, **block})))
+    result = study("solution_map_2d")(Inputs("d", [], parameters, runs({**COMMON, **block})))
     assert len(result.table) == 4
     # Three maps, truncated and open, of the quadrant of 17^2 particles.
     assert len(result.series) == 3 * 2 * 17**2
@@ -253,7 +254,7 @@ def test_planar_errors(runs):
         {**COMMON, "scheme": "KPSE", "order": 4, **both},
     )
     parameters = {"truncation": 4.0, "particles": [17, 33, 65], "compared_h": SPACINGS[1]}
-    result = study("planar_errors")(Inputs("e", ["L-F9"], parameters, files))
+    result = study("lucchesi_figure_9")(Inputs("e", ["L-F9"], parameters, files))
     found = findings(result)
     assert found["L-F9.decreases"].verdict
     assert found["L-F9.fpse_larger"].verdict
@@ -277,7 +278,7 @@ PRINTED = {
 def test_planar_orders(runs):
     files = runs({**COMMON, "scheme": ["DD", "FPSE"], "spacing": SPACINGS})
     parameters = {"spacing": {"0.223": 33}, "printed": PRINTED}
-    result = study("planar_orders")(Inputs("f", ["L-2D-ORD"], parameters, files))
+    result = study("lucchesi_2d_orders")(Inputs("f", ["L-2D-ORD"], parameters, files))
     assert len(result.table) == 2 * 4
     # Three lattices: only h as the middle level can be had, and no tables.
     assert result.table["ours, h as middle level"].notna().all()
@@ -292,7 +293,7 @@ def test_planar_mass(runs):
         {**COMMON, "scheme": "DD", "spacing": SPACINGS[1], "dim": 1},
     )
     parameters = {"truncation": 4.0, "compared_count": 33, "printed": PRINTED}
-    result = study("planar_mass")(Inputs("g", ["L-2D-MASS"], parameters, files))
+    result = study("lucchesi_2d_mass")(Inputs("g", ["L-2D-MASS"], parameters, files))
     table = result.table
     lost = "lost in the run, % of the initial mass"
     # FPSE conserves to round-off; DD loses about what the exact solution sends out.
@@ -306,7 +307,7 @@ def test_planar_tables(runs):
     blocks = {**COMMON, "scheme": ["DD", "FPSE"], "spacing": SPACINGS, "store": "metrics"}
     files = runs(blocks, {**blocks, "kernel_table": [0.01, 0.1]})
     parameters = {"beta": 0.5, "truncation": 4.0, "steps": [0.01, 0.1]}
-    result = study("planar_tables")(Inputs("h", ["L-2D-TAB"], parameters, files))
+    result = study("lucchesi_2d_tables")(Inputs("h", ["L-2D-TAB"], parameters, files))
     found = findings(result)
     assert found["L-2D-TAB.F.step0.01"].verdict
     # On coarse lattices the table of step 0.1 does not show yet: the verdict can fail.

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+
+from fracstudy.inputs import Inputs
+from fracstudy.style import save
 from scenes.run_times.run_times import reference_times, scattered_sums
 from scenes.run_times.which_method_shared import _off_the_front, run_time_goals, which_method
 from scenes.run_times.work_precision_figures import time_to_accuracy as draw_bars
@@ -16,9 +19,6 @@ from scenes.run_times.work_precision_shared import (
     trials_of,
     work_precision,
 )
-
-from fracstudy.inputs import Inputs
-from fracstudy.style import save
 
 NAN = float("nan")
 # family, variant, group, error, set-up, solve, extrapolated

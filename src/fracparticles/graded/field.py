@@ -29,9 +29,9 @@ import math
 
 import numpy as np
 
+from fracparticles.arguments import fractional_order, positive_real
 from fracparticles.graded.particles import graded_particles, refuse_many
 from fracparticles.special import green
-from fracparticles.special.arguments import fractional_order, positive_real
 
 __all__ = ["green_step_of_field"]
 

@@ -24,14 +24,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput
-from fracparticles.special import green
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     fractional_order,
     positive_integer,
     positive_real,
     real_array,
 )
+from fracparticles.errors import InvalidInput
+from fracparticles.special import green
 
 __all__ = ["FORMS", "MOST", "SIZES", "graded_particles", "green_step"]
 

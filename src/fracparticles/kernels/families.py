@@ -28,10 +28,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gamma, gammaincc
 
+from fracparticles.arguments import fractional_order, real_array
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels import high_order as kernels_high_order
 from fracparticles.kernels.high_order import gamma_nb
-from fracparticles.special.arguments import fractional_order, real_array
 from fracparticles.special.hypergeometric import kummer_order_four, kummer_transformed
 from fracparticles.special.stable import reduced_green
 

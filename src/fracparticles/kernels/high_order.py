@@ -40,9 +40,9 @@ from numpy.typing import NDArray
 from scipy.special import binom, gamma, gammaincc, gammainccinv, poch, rgamma
 
 from fracparticles._compiled import njit
+from fracparticles.arguments import dimension, elementwise, fractional_order, real_array
 from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
-from fracparticles.special.arguments import dimension, elementwise, fractional_order, real_array
 
 __all__ = ["NAMES", "ORDERS", "gamma_nb", "kernel", "kernel_transform", "wavenumber_reach"]
 

@@ -28,12 +28,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from scipy.special import gamma, hyp2f1, roots_jacobi
+from scipy.special import hyp2f1, roots_jacobi
 
 from fracparticles.lattice.fourier import valid_convolution
 from fracparticles.lattice.operators import FarField
 
-__all__ = ["continuation", "far_field", "tabulated_far_field", "tail_constant"]
+__all__ = ["continuation", "far_field", "tabulated_far_field"]
 
 # Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
 # varies on the scale n and two terms leave a relative error of order n^-4.
@@ -175,11 +175,3 @@ def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray
 
 def _far_field_of(depth: np.ndarray, right: np.ndarray, parity: int) -> FarField:
     return FarField(depth, right, np.ascontiguousarray(parity * right[:, ::-1]))
-
-
-def tail_constant(alpha: float) -> float:
-    """Return C of (-Laplacian)^(alpha/2) u(x) = C int (u(x) - u(y)) |x - y|^(-1-alpha) dy on the line.
-
-    C = 2^(alpha-1) alpha Gamma((1+alpha)/2) / (sqrt(pi) Gamma(1-alpha/2)) = Gamma(1+alpha) sin(pi alpha/2) / pi.
-    """
-    return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) / np.pi)

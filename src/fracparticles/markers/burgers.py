@@ -23,10 +23,10 @@ from typing import Any
 import numpy as np
 from scipy.special import erfc, erfcinv, erfcx, ndtri_exp
 
+from fracparticles.arguments import check_fields, finite_result, places, scale
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.profiles import inside
 from fracparticles.markers.solver import Flux
-from fracparticles.special.arguments import check_fields, finite_result, places, scale
 
 __all__ = ["PointSource", "burgers"]
 

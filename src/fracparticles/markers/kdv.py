@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     SIZES,
     check_fields,
     finite_array,

@@ -12,9 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput
-from fracparticles.markers.profiles import Profile
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     MOST,
     SIZES,
     pair,
@@ -23,7 +21,9 @@ from fracparticles.special.arguments import (
     sampled,
     scale,
 )
-from fracparticles.special.arguments import generator as random_generator
+from fracparticles.arguments import generator as random_generator
+from fracparticles.errors import InvalidInput
+from fracparticles.markers.profiles import Profile
 
 __all__ = ["equal_weight", "random", "uniform"]
 

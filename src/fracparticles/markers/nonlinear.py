@@ -25,8 +25,7 @@ from numpy.polynomial import polynomial
 from scipy.integrate import solve_ivp
 from scipy.sparse import diags
 
-from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     check_fields,
     finite_array,
     finite_result,
@@ -40,6 +39,7 @@ from fracparticles.special.arguments import (
     whole_number,
     within,
 )
+from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = ["Lines", "NonlinearDiffusion"]
 

@@ -24,9 +24,7 @@ from typing import Any
 import numpy as np
 from scipy.special import erf, erfc
 
-from fracparticles.errors import InvalidInput
-from fracparticles.markers.shapes import Shape
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     MOST,
     check_fields,
     finite_array,
@@ -41,6 +39,8 @@ from fracparticles.special.arguments import (
     vector,
     within,
 )
+from fracparticles.errors import InvalidInput
+from fracparticles.markers.shapes import Shape
 
 __all__ = ["TwoBlobs", "decoupled", "reconstruct", "sequential", "weighted"]
 

@@ -24,7 +24,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.special import erf, erfc, erfcinv, erfcx, erfinv
 
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     SIZES,
     finite_array,
     finite_result,

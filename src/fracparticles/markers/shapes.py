@@ -25,9 +25,9 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from fracparticles.arguments import choice, finite_array, real_array, whole_number, within
 from fracparticles.errors import InvalidInput
 from fracparticles.moving.scattered import ScatteredKernel
-from fracparticles.special.arguments import choice, finite_array, real_array, whole_number, within
 
 __all__ = ["SHAPES", "Shape", "shape_function"]
 

@@ -17,12 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
-from fracparticles.markers.shapes import Shape
-from fracparticles.markers.stability import extremes
-from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
-from fracparticles.moving.scattered import NeighbourSum
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     function,
     instance,
     positions,
@@ -30,6 +25,11 @@ from fracparticles.special.arguments import (
     vector,
     whole_number,
 )
+from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
+from fracparticles.markers.shapes import Shape
+from fracparticles.markers.stability import extremes
+from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
+from fracparticles.moving.scattered import NeighbourSum
 
 __all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run", "warn_of_step"]
 

@@ -24,11 +24,7 @@ from typing import Any
 import numpy as np
 from scipy.special import erf, erfc
 
-from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.markers.profiles import Gaussian
-from fracparticles.markers.solver import Flux, MarkerVelocity, warn_of_step
-from fracparticles.moving.lagrangian import quotient_velocity
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     MOST_STEPS,
     SIZES,
     check_fields,
@@ -43,6 +39,10 @@ from fracparticles.special.arguments import (
     scale,
     vector,
 )
+from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.markers.profiles import Gaussian
+from fracparticles.markers.solver import Flux, MarkerVelocity, warn_of_step
+from fracparticles.moving.lagrangian import quotient_velocity
 from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["GaussianSource", "advance_weights", "source_flux"]

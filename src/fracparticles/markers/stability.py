@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.arguments import finite_array, instance, real_between
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.shapes import Shape
-from fracparticles.special.arguments import finite_array, instance, real_between
 
 __all__ = ["Extremes", "extremes", "lattice_rate", "rate"]
 

@@ -20,10 +20,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fracparticles.arguments import fractional_order, positive_real, real_array
 from fracparticles.errors import InvalidInput
 from fracparticles.moving.lagrangian import History, Observer, Remeshing, advance, quotient_velocity
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
-from fracparticles.special.arguments import fractional_order, positive_real, real_array
 
 LATTICES = ("initial", "extended")
 

@@ -25,9 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
-from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     MOST_STEPS,
     choice,
     finite_real,
@@ -41,6 +39,8 @@ from fracparticles.special.arguments import (
     scale,
     vector,
 )
+from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
+from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh
 
 __all__ = ["FieldNotPositive", "History", "Remeshing", "advance", "quotient_velocity"]
 

@@ -24,8 +24,7 @@ from numpy.typing import NDArray
 from scipy.special import gammaln, xlog1py, xlogy
 
 from fracparticles._compiled import njit
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     MOST,
     fractional_order,
     positions,
@@ -34,7 +33,8 @@ from fracparticles.special.arguments import (
     scale,
     within,
 )
-from fracparticles.special.arguments import generator as random_generator
+from fracparticles.arguments import generator as random_generator
+from fracparticles.errors import InvalidInput
 from fracparticles.special.stable import tail_mass
 
 __all__ = [

@@ -23,8 +23,7 @@ from typing import Any
 import numpy as np
 
 from fracparticles._compiled import njit
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     choice,
     elementwise,
     finite_result,
@@ -34,6 +33,7 @@ from fracparticles.special.arguments import (
     scale,
     vector,
 )
+from fracparticles.errors import InvalidInput
 
 __all__ = ["REMESHINGS", "Elimination", "eliminate", "interpolation_function", "remesh"]
 

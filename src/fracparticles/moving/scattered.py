@@ -33,9 +33,7 @@ from scipy.fft import next_fast_len
 from scipy.special import erfc
 
 from fracparticles._compiled import njit
-from fracparticles.errors import InvalidInput
-from fracparticles.kernels.families import KERNELS, kernel
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     SIZES,
     choice,
     function,
@@ -46,6 +44,8 @@ from fracparticles.special.arguments import (
     vector,
     whole_number,
 )
+from fracparticles.errors import InvalidInput
+from fracparticles.kernels.families import KERNELS, kernel
 
 __all__ = [
     "NaiveScatteredSum",

@@ -8,10 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fracparticles.errors import InvalidInput
-from fracparticles.pse.moments import nodes_and_weights
-from fracparticles.pse.shapes import Kernel, kernel_of
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     finite_array,
     finite_result,
     positions,
@@ -21,6 +18,9 @@ from fracparticles.special.arguments import (
     vector,
     whole_number,
 )
+from fracparticles.errors import InvalidInput
+from fracparticles.pse.moments import nodes_and_weights
+from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["derivative", "lattice", "reconstruct", "regularised"]
 

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.arguments import dimension, instance, real_between, whole_number
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.moments import gaussian_moment, lattice_moment
 from fracparticles.pse.shapes import GaussianKernel, Stencil, kernel_of
-from fracparticles.special.arguments import dimension, instance, real_between, whole_number
 
 __all__ = [
     "construct",

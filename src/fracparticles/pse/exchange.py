@@ -9,9 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
-from fracparticles.errors import InvalidInput
-from fracparticles.pse.shapes import Kernel, kernel_of
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     finite_array,
     finite_result,
     operand,
@@ -20,6 +18,8 @@ from fracparticles.special.arguments import (
     scale,
     within,
 )
+from fracparticles.errors import InvalidInput
+from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["StrengthExchange", "cell_volumes"]
 

@@ -9,9 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fracparticles.errors import InvalidInput
-from fracparticles.pse.shapes import Kernel, kernel_of
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     dimension,
     finite_array,
     finite_real,
@@ -19,6 +17,8 @@ from fracparticles.special.arguments import (
     whole_number,
     within,
 )
+from fracparticles.errors import InvalidInput
+from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = [
     "absolute_moment",

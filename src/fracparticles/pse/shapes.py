@@ -16,8 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     check_fields,
     dimension,
     finite_array,
@@ -26,6 +25,7 @@ from fracparticles.special.arguments import (
     real_between,
     whole_number,
 )
+from fracparticles.errors import InvalidInput
 
 __all__ = [
     "GAUSSIAN_20",

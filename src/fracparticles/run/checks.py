@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
 
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import family_of
 from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.run.parameters import OVERLAPS, Parameters
 from fracparticles.schemes import METHODS
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import central_mass
 
-if TYPE_CHECKING:
-    from fracparticles.run.case import Case
+__all__ = ["check"]
 
-__all__ = ["FUNDAMENTAL", "OVERLAPS", "SIZES", "check"]
-
-FUNDAMENTAL = "fundamental"
-SIZES = 1e-100, 1e100  # lengths and times; nothing made of them overflows
-OVERLAPS = 0.25, 1000.0
 # Measured, by dimension: about 20 arrays of float64 at the peak. The open exterior of a square or a cube takes its
 # own for every point where the sums are wanted, which for FPSE go beyond the lattice.
 _BYTES_PER_PARTICLE = {1: 200, 2: 220, 3: 260}
@@ -31,7 +25,7 @@ _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square roo
 _ROUNDED = 1e-9  # of an overlap that is a quotient
 
 
-def check(case: Case) -> None:
+def check(case: Parameters) -> None:
     """Check a case whose fields are valid each by itself.
 
     Raises
@@ -48,7 +42,7 @@ def check(case: Case) -> None:
     _check_work(case)
 
 
-def _check_time(case: Case) -> None:
+def _check_time(case: Parameters) -> None:
     if not 1.0 < case.alpha < 2.0:
         raise InvalidInput(
             "beta", case.beta, "a number that makes 1 + beta differ from 1 and 2", "Move it inward."
@@ -62,7 +56,7 @@ def _check_time(case: Case) -> None:
         )
 
 
-def _check_domain(case: Case) -> None:
+def _check_domain(case: Parameters) -> None:
     if (case.truncation is None) == (case.half_width is None):
         raise InvalidInput(
             "truncation",
@@ -98,7 +92,7 @@ def _check_domain(case: Case) -> None:
         )
 
 
-def _check_work(case: Case) -> None:
+def _check_work(case: Parameters) -> None:
     span = case.t_final - case.t_initial
     if not case.steps_taken and span * case.setting.rate > _STIFFEST:
         raise InvalidInput(
@@ -113,7 +107,7 @@ def _check_work(case: Case) -> None:
         )
 
 
-def _check_far_field(case: Case) -> None:
+def _check_far_field(case: Parameters) -> None:
     """The lattice must end in the tail of the solution; more than one term, used again and again, ask for more.
 
     Found by computation (tests/test_exterior.py): from n = 10 epsilon / h on, no eigenvalue leaves the range of the
@@ -145,7 +139,7 @@ def _check_far_field(case: Case) -> None:
         )
 
 
-def _check_width(case: Case) -> None:
+def _check_width(case: Parameters) -> None:
     """A point mass must not spread beyond the lattice: no power of |x| continues a solution that is flat there."""
     time = case.diffusivity * (case.t_final - case.t_initial)
     inside = float(central_mass(case.domain, time, case.alpha, case.dim))
@@ -161,7 +155,7 @@ def _check_width(case: Case) -> None:
         )
 
 
-def _check_scheme(case: Case) -> None:
+def _check_scheme(case: Parameters) -> None:
     scheme = METHODS[case.scheme]
     if case.dim not in scheme.DIMS:
         raise InvalidInput(
@@ -214,7 +208,7 @@ def _check_scheme(case: Case) -> None:
         )
 
 
-def _check_particles(case: Case) -> None:
+def _check_particles(case: Parameters) -> None:
     """What only DVM takes, whose particles move, and what it does not."""
     if case.scheme != "DVM":
         for name in ("remeshing", "remesh_above", "threshold"):
@@ -243,7 +237,7 @@ def _check_particles(case: Case) -> None:
                 )
 
 
-def _check_integrator(case: Case) -> None:
+def _check_integrator(case: Parameters) -> None:
     if case.method == "exponential":
         if case.dt is not None:
             raise InvalidInput(
@@ -301,7 +295,7 @@ def _check_integrator(case: Case) -> None:
         )
 
 
-def _check_convolution(case: Case) -> None:
+def _check_convolution(case: Parameters) -> None:
     """One lattice sum is that of the infinite lattice, of exact kernels; GPSE's steps are exponentials themselves."""
     methods = ("euler",) if case.scheme == "GPSE" else ("exponential",)
     needed = {

@@ -119,8 +119,8 @@ def limit(
     diffusivity : float
         D of Eq. (2).
     """
+    from fracparticles.arguments import positive_real
     from fracparticles.schemes.stability import stability_limit
-    from fracparticles.special.arguments import positive_real
 
     if scheme == "FD" and overlap is not None:
         raise InvalidInput(

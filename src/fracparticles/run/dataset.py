@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,9 +12,10 @@ import numpy as np
 
 from fracparticles import __version__
 from fracparticles.errors import InvalidInput
-from fracparticles.files import replacing
+from fracparticles.files import load_netcdf, replacing
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.initial import case_of_run
+from fracparticles.run.solution import Solution, relative_l1_error
 from fracparticles.special.stable import mean_radius
 
 if TYPE_CHECKING:
@@ -23,9 +23,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fracparticles.moving.dvm import ParticleRun
-    from fracparticles.run.solver import Solution
 
-__all__ = ["load", "read_benchmark", "read_run", "source", "to_dataset", "write"]
+__all__ = ["read_benchmark", "read_run", "source", "to_dataset", "write"]
 
 REFERENCE = (
     "Lucchesi, Allouch, Le Maitre, Mustapha, Knio (2020), Particle simulation of space-fractional diffusion "
@@ -68,8 +67,6 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     Eqs. (48), (59). For DVM also the particles and their history.
     """
     import xarray as xr
-
-    from fracparticles.run.solver import relative_l1_error
 
     case, u = solution.case, solution.u
     volume = case.particle_spacing**case.dim
@@ -282,7 +279,7 @@ def read_run(path: str | Path) -> xr.Dataset:
     InvalidInput
         If the file is missing, not NetCDF, damaged, or not a run of this package.
     """
-    dataset = load(Path(path))
+    dataset = load_netcdf(Path(path))
     if "case" not in dataset.attrs or "mass_final" not in dataset:
         raise InvalidInput(
             "file",
@@ -301,38 +298,10 @@ def read_benchmark(path: str | Path) -> pd.DataFrame:
     InvalidInput
         If there is no readable NetCDF file.
     """
-    data = load(Path(path))
+    data = load_netcdf(Path(path))
     frame = data.to_dataframe().reset_index(drop=True)
     frame.attrs = dict(data.attrs)
     return frame
-
-
-def load(path: Path, names: Sequence[str] | None = None) -> xr.Dataset:
-    """Read a NetCDF file, or some variables of it: no other is decoded. Units of time are left as they are.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no readable NetCDF file.
-    """
-    import xarray as xr
-
-    if path.exists() and not path.is_file() and not path.is_dir():
-        raise InvalidInput("file", str(path), "a regular file", "Copy the data into one.")
-    try:
-        with xr.open_dataset(path, engine="netcdf4", decode_cf=False) as raw:
-            wanted = raw
-            if names is not None:
-                wanted = raw[[name for name in names if name in raw.variables]]
-                wanted = wanted.drop_vars([name for name in wanted.coords if name not in names])
-            return xr.decode_cf(wanted, decode_times=False).load()
-    except FileNotFoundError:
-        raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
-    except Exception as error:  # the library raises many kinds for damaged files
-        reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-        raise InvalidInput(
-            "file", str(path), f"a readable NetCDF file ({reason})", "Write or copy it again."
-        ) from None
 
 
 def _parameters(case: Case) -> dict[str, object]:

@@ -19,9 +19,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from fracparticles.arguments import real_array
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.special.arguments import real_array
 from fracparticles.special.stable import green
 
 if TYPE_CHECKING:
@@ -336,9 +337,7 @@ def _labels(given: Any) -> xr.Dataset | None:
 
 
 def _read(path: Path) -> xr.Dataset:
-    from fracparticles.run.dataset import load
-
-    return load(path, ("u", *_AXES, *_SAYS))
+    return load_netcdf(path, ("u", *_AXES, *_SAYS))
 
 
 def _real(values: Any) -> np.ndarray:

@@ -20,11 +20,11 @@ from fracparticles.lattice.operators import LatticeOperator
 from fracparticles.moving import dvm
 from fracparticles.run.case import Case
 from fracparticles.run.initial import Initial, bare_strengths, initial_strengths, refuse_non_finite
-from fracparticles.run.reliability import Estimates, estimates, warn_if_doubtful
+from fracparticles.run.reliability import estimates, warn_if_doubtful
+from fracparticles.run.solution import Solution
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import largest_degree, spectral_interval
 from fracparticles.schemes.stability import grows
-from fracparticles.special.stable import central_mass, green
 from fracparticles.time import (
     STEP_POLYNOMIALS,
     Flow,
@@ -43,50 +43,17 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Prepared",
-    "Solution",
     "advect",
     "compute",
     "initial_strengths",
     "matrix_of",
     "prepare",
-    "relative_l1_error",
     "solve",
 ]
 
 _LARGEST_MATRIX = 16384  # particles
 _NO_GROWTH = 1e-3  # over the run, as an exponent
 Advance = Callable[[np.ndarray], np.ndarray]
-
-
-@dataclass(frozen=True)
-class Solution:
-    """What a run computes.
-
-    Attributes
-    ----------
-    case : Case
-    x : array, shape (N,)
-        Positions along an axis.
-    u0, u : array, shape (N,) * dim
-        Initial and final strengths on the lattice; for DVM the final field (7) there.
-    operator_applications : int
-        How often the operator was applied, or the velocity evaluated.
-    initial : str
-        Where the initial data came from.
-    particles : ParticleRun, optional
-        For DVM, the particles themselves and what happened to them.
-    estimates : dict
-        What the strengths say of the accuracy, see `reliability`.
-    """
-
-    case: Case
-    x: np.ndarray
-    u0: np.ndarray
-    u: np.ndarray
-    operator_applications: int
-    initial: str
-    particles: ParticleRun | None = None
-    estimates: Estimates = field(default_factory=dict)
 
 
 def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
@@ -343,8 +310,8 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         return Prepared(
             case, operator, applications, partial(step, operator, polynomial, dt, steps)
         )
-    low, high = spectral_interval(case, operator)
-    most = largest_degree(case, operator)
+    low, high = spectral_interval(case.scheme, case.setting, operator, case.steps)
+    most = largest_degree(case.scheme, case.setting, operator)
     try:
         if case.method == "exponential":
             flow = exponential_flow(operator, case.t_final - case.t_initial, low, high, most)
@@ -384,16 +351,3 @@ def _lattice_sum(case: Case) -> LatticeOperator:
 
 def _named(case: Case, error: NonFiniteSolution) -> NonFiniteSolution:
     return NonFiniteSolution(f"{case.scheme} (order {case.order}): {error}")
-
-
-def relative_l1_error(case: Case, u: np.ndarray) -> float:
-    """Return the error against the fundamental solution, Eqs. (48), (59), over |x| <= `case.error_radius`.
-
-    sum_i V_i |u_i - G(x_i, t_f)| / int |G(x, t_f)| dx, the integral in closed form.
-    """
-    radius = np.abs(case.x) if case.dim == 1 else case.radius
-    inside = radius <= case.error_radius * (1.0 + 1e-12)
-    time = case.diffusivity * case.t_final
-    exact = green(radius[inside], time, case.alpha, case.dim)
-    deviation = case.particle_spacing**case.dim * np.abs(u[inside] - exact).sum()
-    return float(deviation / central_mass(case.error_radius, time, case.alpha, case.dim))

@@ -9,9 +9,8 @@ import numpy as np
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.operators import LatticeOperator, Operator
-from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.stability import grows
+from fracparticles.schemes.stability import grows, range_in
 
 __all__ = ["dense_matrix", "largest_degree", "power_iteration", "spectral_interval"]
 
@@ -27,7 +26,9 @@ _LARGEST_DEGREE = {"line": 10_000, "other": 400}
 _FEW_OVERLAPS, _FEW = 24, 150
 
 
-def spectral_interval(case: Case, operator: LatticeOperator) -> tuple[float, float]:
+def spectral_interval(
+    name: str, setting: Setting, operator: LatticeOperator, steps: int = 0
+) -> tuple[float, float]:
     """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
 
     A truncated convolution (DD, FD) is a compression of the operator on the infinite lattice: its eigenvalues lie
@@ -44,29 +45,27 @@ def spectral_interval(case: Case, operator: LatticeOperator) -> tuple[float, flo
     3e-4 of the range above zero, is that of a small lattice, on whose size it does not depend. Where
     there are positive eigenvalues, for scheme (29) or an overlap too small for the order, the greatest is computed.
     """
-    low, high = case.symbol_range
-    scheme, rate = SCHEMES[case.scheme], case.setting.rate
-    share = _ROOM if case.kernel_table is None else _ROOM_OF_A_TABLE
+    low, high = range_in(name, setting)
+    scheme, rate = SCHEMES[name], setting.rate
+    share = _ROOM if setting.kernel_table is None else _ROOM_OF_A_TABLE
     room = share * (max(high, 0.0) - low)
     if not scheme.DISSIPATIVE or grows(low, high):
         high = max(high, _greatest_eigenvalue(operator, rate * high) / rate) + room
-    elif case.scheme == "FPSE" and case.dim == 1 and case.order >= 6:
-        high = max(0.0, _greatest_of_a_small_lattice(case.setting))
+    elif name == "FPSE" and setting.dim == 1 and setting.order >= 6:
+        high = max(0.0, _greatest_of_a_small_lattice(setting))
     else:
         high = max(0.0, high)
-    if (
-        case.steps
-    ):  # the polynomial of a step grows below its interval: by exp(8) over the run at most
-        room = min(room, -low / case.steps)
+    if steps:  # the polynomial of a step grows below its interval: by exp(8) over the run at most
+        room = min(room, -low / steps)
     return rate * (low - room) + operator.least_excess, rate * high
 
 
-def largest_degree(case: Case, operator: LatticeOperator) -> int | None:
+def largest_degree(name: str, setting: Setting, operator: LatticeOperator) -> int | None:
     """Return the largest degree of a Chebyshev series of A; None where its spectrum is proved to be in the interval."""
-    exact = case.kernel_table is None
+    exact = setting.kernel_table is None
     if operator.symmetric and exact:
         return None
-    on_the_line = case.dim == 1 and exact and not (case.scheme == "FPSE" and case.order >= 6)
+    on_the_line = setting.dim == 1 and exact and not (name == "FPSE" and setting.order >= 6)
     return _LARGEST_DEGREE["line" if on_the_line else "other"]
 
 

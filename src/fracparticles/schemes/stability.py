@@ -10,9 +10,9 @@ from scipy.special import gamma, gammainc
 
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import family_of
-from fracparticles.schemes import scheme
+from fracparticles.schemes import Setting, scheme
 
-__all__ = ["closed_form_limit", "grows", "stability_limit", "symbol_range"]
+__all__ = ["closed_form_limit", "grows", "range_in", "stability_limit", "symbol_range"]
 
 # By dimension: samples in each coordinate, then closer and closer looks at the neighbourhood of an extreme, with so
 # many samples from neighbour to neighbour. In one dimension each is 16 times as close: 256 times as exact.
@@ -95,6 +95,12 @@ def symbol_range(
             raise InvalidInput("family", family, f"nothing for {name}", "Leave it out.")
         family_of(order, family)
     return _symbol_range(name, float(beta), int(order), float(overlap), int(dim), family)
+
+
+def range_in(name: str, setting: Setting) -> tuple[float, float]:
+    """Return the `symbol_range` of a scheme in its setting."""
+    s = setting
+    return symbol_range(name, s.alpha - 1.0, s.order, s.overlap, s.dim, s.family)
 
 
 def _is_number(value: object) -> bool:

@@ -15,9 +15,11 @@ from fracparticles.special.stable import (
     reduced_green,
     tail_mass,
 )
+from fracparticles.special.tails import exchange_truncation_error, tail_constant
 
 __all__ = [
     "central_mass",
+    "exchange_truncation_error",
     "green",
     "green_asymptotic",
     "green_flux",
@@ -29,5 +31,6 @@ __all__ = [
     "kummer_transformed",
     "mean_radius",
     "reduced_green",
+    "tail_constant",
     "tail_mass",
 ]

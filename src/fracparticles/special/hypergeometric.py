@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from scipy.special import gamma, poch, rgamma
 
 from fracparticles._compiled import njit
+from fracparticles.arguments import elementwise, real_array
 from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
-from fracparticles.special.arguments import elementwise, real_array
 
 __all__ = ["kummer", "kummer_order_four", "kummer_transformed"]
 

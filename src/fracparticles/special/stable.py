@@ -19,9 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gamma, gammaln, xlogy
 
-from fracparticles.errors import InvalidInput
-from fracparticles.special import radial
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     dimension,
     elementwise,
     fractional_order,
@@ -29,6 +27,8 @@ from fracparticles.special.arguments import (
     positive_real,
     real_array,
 )
+from fracparticles.errors import InvalidInput
+from fracparticles.special import radial
 from fracparticles.special.radial import radial_table, tail_sine
 
 __all__ = [

@@ -33,8 +33,7 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma, hyp1f1
 
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     SIZES,
     check_fields,
     finite_array,
@@ -46,6 +45,7 @@ from fracparticles.special.arguments import (
     scale,
     within,
 )
+from fracparticles.errors import InvalidInput
 from fracparticles.sph.one_f_two import one_f_two
 
 __all__ = ["FUNCTIONS", "Cosine", "Exponential", "Function", "ShiftedPower", "Sine"]

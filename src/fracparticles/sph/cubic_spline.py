@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from fracparticles._compiled import njit
-from fracparticles.special.arguments import elementwise, real_array, scale
+from fracparticles.arguments import elementwise, real_array, scale
 
 __all__ = ["SUPPORT", "spline", "spline_gradient", "spline_integral"]
 

@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 
 from fracparticles._compiled import njit
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     finite_array,
     finite_result,
     flag,
@@ -29,6 +28,7 @@ from fracparticles.special.arguments import (
     vector,
     within,
 )
+from fracparticles.errors import InvalidInput
 from fracparticles.sph.cubic_spline import SUPPORT, dw
 
 __all__ = ["BROOKSHAW_ETA", "correction", "gradient", "second_derivative"]

@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 
 from fracparticles._compiled import njit
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     choice,
     finite_array,
     finite_result,

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.arguments import vector
 from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import vector
 
 __all__ = ["r2_score", "relative_l2"]
 

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma
 
+from fracparticles.arguments import finite_array, within
 from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import finite_array, within
 
 __all__ = ["one_f_two"]
 

@@ -28,8 +28,8 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma
 
+from fracparticles.arguments import choice, finite_array, instance, within
 from fracparticles.errors import AccuracyWarning
-from fracparticles.special.arguments import choice, finite_array, instance, within
 from fracparticles.sph.derivatives import gradient, second_derivative
 from fracparticles.sph.integrals import COMPLETED, METHODS, power_integral
 from fracparticles.sph.particles import ParticleLine

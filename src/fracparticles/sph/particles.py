@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import (
+from fracparticles.arguments import (
     MOST,
     SIZES,
     check_fields,
@@ -18,6 +17,7 @@ from fracparticles.special.arguments import (
     real_between,
     whole_number,
 )
+from fracparticles.errors import InvalidInput
 from fracparticles.sph.cubic_spline import SUPPORT
 
 __all__ = ["ParticleLine"]

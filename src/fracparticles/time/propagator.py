@@ -19,9 +19,10 @@ from scipy.fft import irfft
 from scipy.special import gamma, zeta
 
 from fracparticles.errors import InvalidInput
-from fracparticles.lattice.exterior import tabulated_far_field, tail_constant
+from fracparticles.lattice.exterior import tabulated_far_field
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.lattice.sums import fast_convolution
+from fracparticles.special.tails import tail_constant
 
 __all__ = ["propagator", "propagator_weights", "tabulated_operator", "tail_amplitude"]
 

@@ -20,8 +20,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from fracparticles.arguments import MOST_STEPS, positive_integer, positive_real
 from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.special.arguments import MOST_STEPS, positive_integer, positive_real
 
 __all__ = ["ChebyshevStep", "stages_for"]
 

@@ -6,8 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
+from fracparticles.arguments import positive_integer, positive_real
 from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import positive_integer, positive_real
 
 __all__ = ["Peer", "Solver", "check_choice", "half_intervals"]
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.lattice.exterior import tail_constant
+from fracparticles.special.tails import tail_constant
 from fracstudy.peers.lattice import EXTERIORS, SERIES, LatticeSolver, prepare_lattice
 
 __all__ = ["EXTERIORS", "NAME", "PROPAGATIONS", "REFERENCE", "TITLE", "prepare", "weights"]

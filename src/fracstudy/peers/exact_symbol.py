@@ -14,8 +14,8 @@ from threading import Lock
 import numpy as np
 import pyfftw
 
+from fracparticles.arguments import fractional_order, positive_real
 from fracparticles.lattice.fourier import transform_length
-from fracparticles.special.arguments import fractional_order, positive_real
 from fracstudy.peers.base import check_choice, half_intervals
 
 __all__ = [

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from scipy.special import gamma, poch
 
-from fracparticles.lattice.exterior import tail_constant
+from fracparticles.special.tails import tail_constant
 from fracstudy.peers.lattice import EXTERIORS, SERIES, LatticeSolver, prepare_lattice
 
 __all__ = ["EXTERIORS", "NAME", "PROPAGATIONS", "REFERENCE", "TITLE", "prepare", "weights"]

@@ -17,9 +17,9 @@ from functools import cached_property
 import numpy as np
 from scipy.fft import next_fast_len, rfft
 
-from fracparticles.lattice.exterior import tail_constant
+from fracparticles.arguments import fractional_order, positive_real
 from fracparticles.lattice.operators import ConvolutionOperator
-from fracparticles.special.arguments import fractional_order, positive_real
+from fracparticles.special.tails import tail_constant
 from fracparticles.time import Flow, exponential_flow
 from fracparticles.time.propagator import propagator, tabulated_operator
 from fracstudy.peers.base import check_choice, half_intervals

@@ -35,8 +35,8 @@ from scipy.fft import ifft, irfft, rfft
 from scipy.linalg import eigh, toeplitz
 from scipy.special import poch
 
+from fracparticles.arguments import fractional_order, positive_real
 from fracparticles.errors import InvalidInput
-from fracparticles.special.arguments import fractional_order, positive_real
 from fracstudy.peers.base import check_choice, half_intervals
 
 __all__ = [

@@ -31,10 +31,10 @@ import pyfftw
 from scipy.fft import dct
 from scipy.special import factorial, gamma, rgamma, zeta
 
+from fracparticles.arguments import fractional_order, positive_real, real_array
 from fracparticles.errors import InvalidInput
 from fracparticles.lattice.box import BOX_SUMMATIONS
 from fracparticles.lattice.fourier import transform_length
-from fracparticles.special.arguments import fractional_order, positive_real, real_array
 from fracstudy.peers import exact_symbol, fractional_centred, sinc_lattice
 from fracstudy.peers.base import check_choice, half_intervals
 

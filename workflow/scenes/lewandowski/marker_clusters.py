@@ -11,6 +11,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+
+from fracparticles.markers import shape_function
+from fracparticles.markers.stability import extremes
+from fracstudy.claims import Finding
+from fracstudy.inputs import Inputs, Result, statement
 from scenes.lewandowski.marker_runs import (
     LOADINGS,
     SQUARE,
@@ -23,11 +28,6 @@ from scenes.lewandowski.marker_runs import (
     trace,
     traces,
 )
-
-from fracparticles.markers import shape_function
-from fracparticles.markers.stability import extremes
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
 
 __all__ = ["marker_error_norm", "marker_fixed_grid", "marker_moving_grid"]
 

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
-from scenes.lewandowski.marker_initial_figures import SHAPE_COLOURS
 
 from fracstudy.style import COLOURS, axes_row
+from scenes.lewandowski.marker_initial_figures import SHAPE_COLOURS
 
 __all__ = [
     "marker_claims",

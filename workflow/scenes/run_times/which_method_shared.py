@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.run_times.work_precision_shared import best, trials_of
 
 from fracstudy.inputs import Inputs, Result
+from scenes.run_times.work_precision_shared import best, trials_of
 
 __all__ = ["run_time_goals", "which_method"]
 

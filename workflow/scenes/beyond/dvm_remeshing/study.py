@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from scenes.beyond.dvm_particles.study import lattice_strengths
 
 from fracparticles.run.dataset import read_run
 from fracparticles.special.stable import central_mass, green, mean_radius
 from fracstudy.inputs import ORDERS, Inputs, Result, observed_order
+from scenes.beyond.dvm_particles.study import lattice_strengths
 
 __all__ = ["study"]
 

@@ -15,7 +15,8 @@ from fracparticles import time as integrators
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
 from fracparticles.kernels.families import kernel
 from fracparticles.run.case import Case
-from fracparticles.run.solver import Solution, compute, initial_strengths, relative_l1_error
+from fracparticles.run.solution import Solution, relative_l1_error
+from fracparticles.run.solver import compute, initial_strengths
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.schemes.stability import symbol_range

@@ -19,9 +19,7 @@ _NAMES = {2: "II", 4: "IV"}
 _FACES = {"truncated": (7.0, "none"), "open": (3.6, None)}
 
 
-def figure(
-    series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]
-) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
     """Draw (a) the error against h, (b) the error against the floating-point operations of the run."""
     figure, (against_h, against_work) = axes_row(2, height=4.6, width=4.4, sharey=True)
     # GPSE with the open exterior has errors so small that the rest would be crowded: they are named instead.

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.ghorbani.sph_operators.study import LABELS, order_at
 from scipy.special import gamma, gammaincc, roots_jacobi
 
 from fracparticles.sph.closed_forms import FUNCTIONS, Function, ShiftedPower
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.ghorbani.sph_operators.study import LABELS, order_at
 
 __all__ = ["defining_integral", "study"]
 

@@ -1,7 +1,45 @@
-"""See `sph_figures`."""
+"""The convergence of the SPH operators."""
 
 from __future__ import annotations
 
-from scenes.ghorbani.sph_figures import sph_convergence as figure
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
+
+from fracstudy.style import axes_row, slope_triangle
 
 __all__ = ["figure"]
+
+_PANELS = (("rl_integral", "sin"), ("caputo", "cos"), ("rl_derivative", "sin"))
+_FAINT = {"color": SUMS["modified"][1], "alpha": 0.35}
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+    """Draw the error (39) of each operator's worst function against s; faint: its real part."""
+    drawn, axes = axes_row(3, height=3.5, width=3.1, sharey=True)
+    left = series[series["side"] == "left"].set_index(["operator", "function"]).sort_index()
+    for ax, (operator, name) in zip(axes, _PANELS, strict=True):
+        shown = left.loc[(operator, name)]
+        for (method, order), curve in shown.groupby(["method", "order"]):
+            _, colour, marker = SUMS[method]
+            line = "-" if order == "constant" else "--"
+            ax.plot(curve["x"], curve["y"], line, color=colour, marker=marker)
+            if method == "modified":
+                ax.plot(curve["x"], curve["real"], line, linewidth=1.0, **_FAINT)
+        ax.set(xscale="log", yscale="log", xlabel="particle spacing $s$")
+        title = f"{ax.get_title(loc='left')} {OPERATORS[operator].axis}, {TITLES[name]}"
+        ax.set_title(title, loc="left")
+        ticks = sorted(shown["x"].unique())
+        ax.set_xticks(ticks, [f"{s:.3g}" for s in ticks], rotation=30)
+        ax.minorticks_off()
+        top = shown[(shown["method"] == "standard") & (shown["order"] == "constant")]
+        y = float(np.interp(ticks[1], top["x"][::-1], top["y"][::-1]))
+        slope_triangle(ax, ticks[1], 0.45 * y, 1.0)
+    axes[0].set_ylabel("relative error $L_2$ (39)")
+    entries = [Line2D([], [], color=c, marker=m, label=label) for label, c, m in SUMS.values()]
+    entries.append(Line2D([], [], color="0.3", linestyle="--", label=r"variable $\alpha(x)$"))
+    entries.append(Line2D([], [], label="its real part", **_FAINT))
+    drawn.legend(handles=entries, loc="outside lower center", ncols=len(entries))
+    return drawn

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from itertools import product
 
 import numpy as np
 import pandas as pd
-from scenes.ghorbani.sph_operators.study import LABELS, OPERATORS, order_at, particles
+from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
 
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
@@ -17,73 +16,67 @@ from fracstudy.inputs import Inputs, Result, observed_order
 
 __all__ = ["study"]
 
-# Operator, its worst function, and the order: constant or variable.
-_CURVES = (
-    ("rl_integral", "sin", "constant"),
-    ("caputo", "cos", "constant"),
-    ("rl_derivative", "sin", "constant"),
-    ("rl_integral", "sin", "variable"),
-    ("caputo", "cos", "variable"),
+# Side, operator, function and order: of the left-handed ones the worst functions, of the right-handed exp.
+_CASES = (
+    ("left", "rl_integral", "sin", "constant"),
+    ("left", "caputo", "cos", "constant"),
+    ("left", "rl_derivative", "sin", "constant"),
+    ("left", "rl_integral", "sin", "variable"),
+    ("left", "caputo", "cos", "variable"),
+    ("right", "rl_integral", "exp", "constant"),
+    ("right", "caputo", "exp", "constant"),
+    ("right", "rl_derivative", "exp", "constant"),
 )
-_MIRRORED = ("rl_integral", "caputo", "rl_derivative")  # right-handed, of exp
-_NAMES = {
-    "rl_integral": "RL integral",
-    "caputo": "Caputo derivative",
-    "rl_derivative": "RL derivative",
-}
 
 
-def study(inputs: Inputs) -> Result:
+def study(
+    inputs: Inputs,
+    *,
+    counts: list[int],
+    shown: int,
+    order: float,
+    variable: dict[str, float],
+    length: float,
+    smoothing_ratio: float,
+) -> Result:
     """Follow the error (39) over several spacings, for each way to place the volumes.
 
-    Parameters of the scene: `counts` (particles, each level twice as fine), `shown` (the count whose error the table
-    has), `order`, `variable`, `length`, `smoothing_ratio`. No claims: it is a study of our own.
+    The lines have `counts` particles, each level twice as fine; the table has the error of that with `shown` of them.
+    No claims: it is a study of our own.
     """
-    parameters = inputs.parameters
-    lines = [particles(parameters, count) for count in parameters["counts"]]
-    shown = list(parameters["counts"]).index(parameters["shown"])
+    lines = [ParticleLine(0.0, length, count, smoothing_ratio) for count in counts]
+    orders: dict[str, Order] = {"constant": order, "variable": variable}
     spacing = np.array([line.spacing for line in lines])
+    at = counts.index(shown)
     rows, curves = [], []
-    settings = [("left", *curve) for curve in _CURVES]
-    settings += [("right", operator, "exp", "constant") for operator in _MIRRORED]
-    for side, operator, name, order in settings:
-        for method in METHODS:
-            errors = np.array(
-                [_errors(line, parameters, side, operator, name, order, method) for line in lines]
-            )
-            whole, real = errors.T
-            key = {"operator": operator, "function": name, "side": side, "order": order}
-            rows.append(
-                {
-                    "operator": _NAMES[operator],
-                    "side": side,
-                    "function": LABELS[name],
-                    "α": order,
-                    "sums": method,
-                    f"L2, s = {spacing[shown]:g}": whole[shown],
-                    "order": observed_order(spacing, whole)[-1],
-                    "L2 of the real part": real[shown],
-                    "its order": observed_order(spacing, real)[-1],
-                }
-            )
-            curves.append(
-                pd.DataFrame({**key, "method": method, "x": spacing, "y": whole, "real": real})
-            )
+    for (side, operator, name, varies), method in product(_CASES, METHODS):
+        errors = [_errors(line, side, operator, name, orders[varies], method) for line in lines]
+        whole, real = np.array(errors).T
+        rows.append(
+            {
+                "operator": OPERATORS[operator].name,
+                "side": side,
+                "function": LABELS[name],
+                "α": varies,
+                "sums": method,
+                f"L2, s = {spacing[at]:g}": whole[at],
+                "order": observed_order(spacing, whole)[-1],
+                "L2 of the real part": real[at],
+                "its order": observed_order(spacing, real)[-1],
+            }
+        )
+        key = {"operator": operator, "function": name, "side": side, "order": varies}
+        columns = {"method": method, "x": spacing, "y": whole, "real": real}
+        curves.append(pd.DataFrame({**key, **columns}))
     return Result(pd.DataFrame(rows), (), pd.concat(curves, ignore_index=True))
 
 
 def _errors(
-    line: ParticleLine,
-    parameters: Mapping[str, Any],
-    side: str,
-    operator: str,
-    name: str,
-    order: str,
-    method: str,
+    line: ParticleLine, side: str, operator: str, name: str, order: Order, method: str
 ) -> tuple[float, float]:
     """(39) of the complex values and of their real part."""
     kind, function = OPERATORS[operator], FUNCTIONS[name]
-    alpha = order_at(parameters["order" if order == "constant" else "variable"], line.x_all)
+    alpha = order_at(order, line.x_all)
     ours = kind.approximate(line, function.value(line.x_all), alpha, side=side, method=method)
     here = alpha[line.inside]
     if side == "left":

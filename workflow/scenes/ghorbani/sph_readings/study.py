@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.ghorbani.sph_operators.study import OPERATORS, order_at, particles
-from scenes.ghorbani.sph_sums import Reading, approximate
 
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
@@ -17,6 +15,8 @@ from fracparticles.sph.derivatives import correction, gradient
 from fracparticles.sph.norms import relative_l2
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.ghorbani.sph_operators.study import OPERATORS, order_at, particles
+from scenes.ghorbani.sph_sums import Reading, approximate
 
 __all__ = ["CASES", "READINGS", "study"]
 

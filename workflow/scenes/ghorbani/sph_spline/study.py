@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -24,34 +27,25 @@ def kernel_sums(ratio: float, offset: float = 0.0) -> tuple[float, float]:
     """
     reach = int(np.ceil(SUPPORT * ratio)) + 1
     x = np.arange(-reach, reach + 1.0)
-    volumes = np.ones_like(x)
-    point = np.array([offset])
-    total = np.sum(spline(offset - x, ratio))
-    return float(total), float(correction(point, x, volumes, ratio)[0])
+    factor = correction(np.array([offset]), x, np.ones_like(x), ratio)
+    return float(np.sum(spline(offset - x, ratio))), float(factor[0])
 
 
-def study(inputs: Inputs) -> Result:
+def study(inputs: Inputs, *, smoothing_ratio: float, ratios: list[float]) -> Result:
     """Tabulate W, W' and W~, and check them against each other piece by piece.
 
-    Parameters of the scene: `smoothing_ratio`, the h / s of the paper, and `ratios`, the range drawn. The derivative
-    and the integral hold if Gauss-Legendre quadrature of W' over each piece gives the change of W, and that of W the
-    change of W~, to 1e-13 (polynomials of degree 3 and 2: five nodes are exact).
+    `smoothing_ratio` is the h / s of the paper, `ratios` the range drawn. The derivative and the integral hold if
+    Gauss-Legendre quadrature of W' over each piece gives the change of W, and that of W the change of W~, to 1e-13
+    (polynomials of degree 3 and 2: five nodes are exact).
     """
-    ratio = float(inputs.parameters["smoothing_ratio"])
     q = np.array(_RADII)
-    table = pd.DataFrame(
-        {
-            "x / h": q,
-            "h W": spline(q, 1.0),
-            "h² W'": spline_gradient(q, 1.0),
-            "W~": spline_integral(q, 1.0),
-            "W~ at -x": spline_integral(-q, 1.0),
-        }
-    )
+    shown = {"h W": spline, "h² W'": spline_gradient, "W~": spline_integral}
+    table = pd.DataFrame({"x / h": q, **{name: of(q, 1.0) for name, of in shown.items()}})
+    table["W~ at -x"] = spline_integral(-q, 1.0)
     slope = _largest_gap(spline_gradient, spline)
     integral = _largest_gap(spline, spline_integral)
     inside, beyond = spline(SUPPORT / _OUTSIDE, 1.0), spline(SUPPORT * _OUTSIDE, 1.0)
-    at_paper = kernel_sums(ratio)
+    total, factor = kernel_sums(smoothing_ratio)
     findings = [
         statement(
             "S-F2.support",
@@ -63,34 +57,36 @@ def study(inputs: Inputs) -> Result:
             "S-F2.analytic",
             max(slope, integral) <= _ROUNDOFF,
             f"Piece by piece, quadrature of W' gives W to {slope:.1e} / h and quadrature of W gives W~ to "
-            f"{integral:.1e}; W~ ends at {spline_integral(SUPPORT, 1.0):.15g}. At h = {ratio:g} s the sum of s W over "
-            f"the particles is {at_paper[0]:.6f}, and L of (19) is {at_paper[1]:.6f}.",
+            f"{integral:.1e}; W~ ends at {spline_integral(SUPPORT, 1.0):.15g}. At h = {smoothing_ratio:g} s the sum of "
+            f"s W over the particles is {total:.6f}, and L of (19) is {factor:.6f}.",
             "Derivative or integral is not that of W.",
         ),
     ]
-    return Result(table, findings, _series(inputs.parameters))
+    return Result(table, findings if "S-F2" in inputs.items else (), _series(*ratios))
 
 
-def _largest_gap(integrand, antiderivative) -> float:  # type: ignore[no-untyped-def]
+def _largest_gap(integrand: Callable[..., Any], antiderivative: Callable[..., Any]) -> float:
     nodes, weights = np.polynomial.legendre.leggauss(5)
     x = _PIECES[:-1, None] + 0.5 * (nodes + 1.0)
     by_quadrature = 0.5 * integrand(x, 1.0) @ weights
     return float(np.abs(by_quadrature - np.diff(antiderivative(_PIECES, 1.0))).max())
 
 
-def _series(parameters) -> pd.DataFrame:  # type: ignore[no-untyped-def]
+def _series(low: float, high: float) -> pd.DataFrame:
     """Panels "kernel" (curves W, dW, integral) and "sums" (sum, L, by h / s)."""
-    q = np.linspace(-2.5, 2.5, 501)
-    kernels = {"W": spline, "dW": spline_gradient, "integral": spline_integral}
-    rows = [
-        pd.DataFrame({"panel": "kernel", "curve": name, "x": q, "y": of(q, 1.0)})
-        for name, of in kernels.items()
-    ]
-    low, high = parameters["ratios"]
-    ratios = np.linspace(low, high, 241)
+    q, ratios = np.linspace(-2.5, 2.5, 501), np.linspace(low, high, 241)
     sums = np.array([kernel_sums(ratio) for ratio in ratios])
-    for column, name in enumerate(("sum", "L")):
-        rows.append(
-            pd.DataFrame({"panel": "sums", "curve": name, "x": ratios, "y": sums[:, column]})
-        )
-    return pd.concat(rows, ignore_index=True)
+    curves = {
+        ("kernel", "W"): (q, spline(q, 1.0)),
+        ("kernel", "dW"): (q, spline_gradient(q, 1.0)),
+        ("kernel", "integral"): (q, spline_integral(q, 1.0)),
+        ("sums", "sum"): (ratios, sums[:, 0]),
+        ("sums", "L"): (ratios, sums[:, 1]),
+    }
+    return pd.concat(
+        [
+            pd.DataFrame({"panel": panel, "curve": name, "x": x, "y": y})
+            for (panel, name), (x, y) in curves.items()
+        ],
+        ignore_index=True,
+    )

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.lewandowski.marker_runs import LOADINGS, SQUARE, Trace, fixed_grid, load, trace
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.markers import Gaussian, MarkerVelocity, Shape, run, shape_function, uniform
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.lewandowski.marker_runs import LOADINGS, SQUARE, Trace, fixed_grid, load, trace
 
 __all__ = ["optimal_support", "quadrature_exponent", "smoothing_exponent", "study"]
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.lewandowski.marker_runs import trace
 
 from fracparticles.markers import SHAPES, MarkerVelocity, run, shape_function
 from fracparticles.markers.stability import extremes, lattice_rate, rate
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.lewandowski.marker_runs import trace
 
 __all__ = ["largest_step", "measured_rate", "study"]
 

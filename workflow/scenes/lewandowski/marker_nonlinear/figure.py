@@ -17,9 +17,7 @@ __all__ = ["figure"]
 _BLUE, _RED, _GREEN, _PINK, _ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
 
 
-def figure(
-    series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]
-) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
     """Draw (a) the profiles, (b) the step, (c) where the solution vanishes, (d) how the steady state is met."""
     figure = Figure(figsize=(8.6, 6.6), layout="constrained")
     axes = figure.subplots(2, 2)

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.lewandowski.marker_runs import LOADINGS, SQUARE, delay, fixed_grid, trace
 
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.lewandowski.marker_runs import LOADINGS, SQUARE, delay, fixed_grid, trace
 
 __all__ = ["study"]
 

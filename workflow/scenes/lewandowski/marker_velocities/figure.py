@@ -18,9 +18,7 @@ _BLUE, _RED, _GREEN, _PINK, _SKY, _ORANGE = (
 )  # fmt: skip
 
 
-def figure(
-    series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]
-) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
     """Draw (a) Burgers' equation, (b) a soliton, (c) a source, (d) the errors."""
     figure = Figure(figsize=(8.6, 6.8), layout="constrained")
     axes = figure.subplots(2, 2)

@@ -16,18 +16,19 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.beyond.dvm_particles.study import observed_run
 
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
 from fracparticles.moving import dvm
 from fracparticles.moving.lagrangian import FieldNotPositive, advance
 from fracparticles.run.case import Case
-from fracparticles.run.solver import compute, initial_strengths, relative_l1_error
+from fracparticles.run.solution import relative_l1_error
+from fracparticles.run.solver import compute, initial_strengths
 from fracparticles.schemes import dd, gpse
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import mean_radius
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.beyond.dvm_particles.study import observed_run
 
 __all__ = ["displacement_growth", "gpse_factors", "study", "worst_wave"]
 

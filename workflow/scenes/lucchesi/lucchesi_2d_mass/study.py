@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.beyond.solution_map_2d.study import square_tail_mass, with_count
 
 from fracparticles.special.stable import tail_mass
 from fracstudy.inputs import Inputs, Result, statement, value
+from scenes.beyond.solution_map_2d.study import square_tail_mass, with_count
 
 __all__ = ["study"]
 

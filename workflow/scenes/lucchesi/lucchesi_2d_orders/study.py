@@ -7,10 +7,10 @@ from itertools import product
 import netCDF4
 import numpy as np
 import pandas as pd
-from scenes.beyond.solution_map_2d.study import DISK, reconstructed, with_count
-from scenes.lucchesi.lucchesi_table_2.study import self_convergence_order
 
 from fracstudy.inputs import Inputs, Result, statement, value
+from scenes.beyond.solution_map_2d.study import DISK, reconstructed, with_count
+from scenes.lucchesi.lucchesi_table_2.study import self_convergence_order
 
 __all__ = ["study"]
 

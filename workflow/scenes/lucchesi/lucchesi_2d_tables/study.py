@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.beyond.solution_map_2d.study import with_count
 
 from fracparticles.kernels.families import kernel
 from fracparticles.kernels.tabulated import tabulated
@@ -15,6 +14,7 @@ from fracparticles.run.case import Case
 from fracparticles.schemes.base import lattice_radii
 from fracparticles.schemes.dd import weights
 from fracstudy.inputs import Inputs, Result, observed_order, statement
+from scenes.beyond.solution_map_2d.study import with_count
 
 __all__ = ["spurious_rate", "study"]
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from scenes.lucchesi.dvm_domain import lagrangian_domain
 
 from fracparticles.run.dataset import read_run
 from fracparticles.special.stable import central_mass, green, mean_radius
 from fracstudy.inputs import Inputs, Result, statement, value
+from scenes.lucchesi.dvm_domain import lagrangian_domain
 
 if TYPE_CHECKING:
     import xarray as xr

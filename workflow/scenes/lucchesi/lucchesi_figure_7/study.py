@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.beyond.solution_map_2d.study import DISK
 
 from fracparticles.lattice.box import BOX_SUMMATIONS
 from fracparticles.run.case import Case
@@ -15,6 +14,7 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.fpse import flux_weights
 from fracparticles.special.stable import green, green_flux, green_rate
 from fracstudy.inputs import Inputs, Result, observed_order, statement
+from scenes.beyond.solution_map_2d.study import DISK
 
 __all__ = ["flux_along_axis", "study"]
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from scenes.beyond.solution_map_2d.study import DISK
 
 from fracparticles.special.stable import green
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.beyond.solution_map_2d.study import DISK
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,10 +8,10 @@ from typing import Any
 import netCDF4
 import numpy as np
 import pandas as pd
-from scenes.beyond.solution_map_2d.study import DISK, reconstructed, with_count
 
 from fracparticles.special.stable import central_mass, green
 from fracstudy.inputs import ORDERS, Inputs, Result, observed_order, statement
+from scenes.beyond.solution_map_2d.study import DISK, reconstructed, with_count
 
 __all__ = ["disk_error", "study"]
 

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scenes.beyond.dvm_particles.study import lattice_strengths
 
 from fracparticles.run.dataset import read_run
 from fracparticles.special.stable import green, mean_radius
 from fracstudy.claims import Finding
 from fracstudy.inputs import ORDERS, Inputs, Result, observed_order, statement, value
+from scenes.beyond.dvm_particles.study import lattice_strengths
 
 __all__ = ["self_convergence_order", "study"]
 

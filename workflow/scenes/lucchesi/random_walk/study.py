@@ -64,10 +64,10 @@ def study(inputs: Inputs) -> Result:
     """
     parameters = inputs.parameters
     alpha = 1.0 + float(parameters["beta"])
-    walks = [_walk(parameters, alpha, number) for number in range(len(parameters["dt"]))]
+    walks = [_walk(parameters, alpha, number) for number in range(len(parameters["walk_steps"]))]
     rows = [
         _row(parameters, alpha, dt, t, x, n)
-        for dt, positions in zip(parameters["dt"], walks, strict=True)
+        for dt, positions in zip(parameters["walk_steps"], walks, strict=True)
         for t, x in positions.items()
         for n in parameters["walkers"]
         if n <= x.size
@@ -85,7 +85,7 @@ def study(inputs: Inputs) -> Result:
 
 def _walk(parameters: Mapping[str, Any], alpha: float, number: int) -> dict[float, np.ndarray]:
     """The positions at each time, by steps of about dt, of as many walkers as may be afforded."""
-    dt, times = float(parameters["dt"][number]), [float(t) for t in parameters["times"]]
+    dt, times = float(parameters["walk_steps"][number]), [float(t) for t in parameters["times"]]
     start = float(parameters["t_initial"])
     legs = np.diff([start, *times])
     steps = [max(1, round(leg / dt)) for leg in legs]

@@ -32,7 +32,7 @@ def study(inputs: Inputs) -> Result:
     parameters = inputs.parameters
     alphas = [float(alpha) for alpha in parameters["alpha"]]
     rows = [
-        _flux_errors(alpha, float(h), parameters) for alpha in alphas for h in parameters["spacing"]
+        _flux_errors(alpha, float(h), parameters) for alpha in alphas for h in parameters["sum_spacing"]
     ]
     flux = pd.DataFrame(rows)
     flux["observed order, cut-off"] = _orders(flux, "error, cut-off")
@@ -94,7 +94,7 @@ def study(inputs: Inputs) -> Result:
             runs.assign(
                 panel="solution", series=runs["scheme"], x=runs["h"], y=runs["relative_l1_error"]
             ),
-            *_flux_profile(max(alphas), float(parameters["spacing"][-1]), parameters),
+            *_flux_profile(max(alphas), float(parameters["sum_spacing"][-1]), parameters),
         ]
     )
     return Result(table, findings, drawn[["panel", "series", "alpha", "x", "y"]])
@@ -104,7 +104,7 @@ def _fluxes(
     alpha: float, h: float, parameters: Mapping[str, Any]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Positions within 5 R_alpha, the exact flux, that of the cut-off potential, that of (19)."""
-    n, s = round(float(parameters["half_width"]) / h), float(parameters["overlap"])
+    n, s = round(float(parameters["sum_half_width"]) / h), float(parameters["sum_overlap"])
     x, time = np.arange(-n, n + 1) * h, float(parameters["time"])
     u = np.asarray(green(x, time, alpha))
     r = np.arange(-2 * n, 2 * n + 1) / s

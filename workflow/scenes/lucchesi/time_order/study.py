@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from scenes.lucchesi.lucchesi_table_2.study import self_convergence_order
 
 from fracparticles.run.dataset import read_run
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, observed_order, statement
+from scenes.lucchesi.lucchesi_table_2.study import self_convergence_order
 
 __all__ = ["study"]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from scenes.particle_note.pse_note import wave
 
 from fracparticles.pse import (
     GAUSSIAN_20,
@@ -23,6 +22,7 @@ from fracparticles.pse import (
 from fracparticles.pse.construction import taylor_constant
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from scenes.particle_note.pse_note import wave
 
 __all__ = ["study"]
 

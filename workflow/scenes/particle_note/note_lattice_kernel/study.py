@@ -6,7 +6,6 @@ from fractions import Fraction
 
 import numpy as np
 import pandas as pd
-from scenes.particle_note.pse_note import second_derivative_error
 
 from fracparticles.pse import (
     GAUSSIAN_20,
@@ -21,6 +20,7 @@ from fracparticles.pse import (
 )
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, observed_order, statement
+from scenes.particle_note.pse_note import second_derivative_error
 
 __all__ = ["study"]
 

@@ -117,7 +117,12 @@ def _operators(
         integrator="exponential",
     )
     operator = prepare(case).operator
-    yield f"KPSE {order}", case.x, operator, spectral_interval(case, operator)
+    yield (
+        f"KPSE {order}",
+        case.x,
+        operator,
+        spectral_interval(case.scheme, case.setting, operator, case.steps),
+    )
     for name in peers:
         solver: Any = peer(name).prepare(
             alpha=problem.alpha,

@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["benchmark", "plane_trials"]
 
 
-def benchmark(
-    beta: float, rounds: int, repeats: int, seconds: float, **grids: Any
-) -> xr.Dataset:
+def benchmark(beta: float, rounds: int, repeats: int, seconds: float, **grids: Any) -> xr.Dataset:
     """Measure error, set-up and solve of all contenders in the plane.
 
     Parameters

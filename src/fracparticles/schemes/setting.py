@@ -1,0 +1,88 @@
+"""The parameters of a scheme on a lattice."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fracparticles.kernels.families import kernel
+from fracparticles.kernels.tabulated import tabulated
+
+__all__ = ["Setting"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """One scheme on one lattice x_i = i h, i = -n .. n in each of `dim` coordinates.
+
+    A Fourier symbol is that of the infinite lattice: it depends on the first five alone.
+
+    Attributes
+    ----------
+    alpha : float
+        Fractional order, alpha = 1 + beta.
+    order : {2, 4, 6, 8, 10, 12}
+        Order of the kernels.
+    overlap : float
+        s = epsilon / h.
+    dim : {1, 2, 3}
+        Space dimension.
+    family : {"printed", "gamma"}, optional
+        Family of the kernels, see `kernels.kernel`.
+    n : int
+        Half the number of lattice intervals; there are N = 2 n + 1 particles in each direction.
+    spacing : float
+        Particle spacing h; the particle volume is h^dim.
+    diffusivity : float
+        D of Eq. (2).
+    summation : {"fft", "naive"}
+        See `lattice.sums`.
+    exterior : {"truncated", "open"}
+        See `lattice.exterior`.
+    far_terms : {1, 2, 3}
+        Terms that continue the solution in an open exterior, dim = 1.
+    kernel_table : float, optional
+        Step of the table that the kernels are interpolated in; exact kernels without it.
+    """
+
+    alpha: float
+    order: int = 2
+    overlap: float = 2.0
+    dim: int = 1
+    family: str | None = None
+    n: int = 0
+    spacing: float = 1.0
+    diffusivity: float = 1.0
+    summation: str = "fft"
+    exterior: str = "truncated"
+    far_terms: int = 1
+    kernel_table: float | None = None
+
+    @property
+    def size(self) -> int:
+        """The number N of particles in each direction."""
+        return 2 * self.n + 1
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the lattice."""
+        return (self.size,) * self.dim
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the solution goes on beyond the lattice."""
+        return self.exterior == "open"
+
+    @property
+    def rate(self) -> float:
+        """D / h^alpha, the unit of the operator."""
+        return self.diffusivity / self.spacing**self.alpha
+
+    def kernel(self, name: str, r: np.ndarray) -> np.ndarray:
+        """Return the values of a kernel, exact or interpolated, at distances in units of epsilon."""
+        if self.kernel_table is not None:
+            values = tabulated(self.kernel_table, self.family)
+            return np.asarray(values(name, r, self.alpha, dim=self.dim, order=self.order))
+        given = {"dim": self.dim, "order": self.order, "family": self.family}
+        return np.asarray(kernel(name, r, self.alpha, **given))

@@ -1,0 +1,41 @@
+"""The far field of the fractional Laplacian on the line: its constant, and what leaving it out costs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import gamma
+
+from fracparticles.arguments import FloatArray
+
+__all__ = ["exchange_truncation_error", "tail_constant"]
+
+
+def tail_constant(alpha: float) -> float:
+    """Return C of (-Laplacian)^(alpha/2) u(x) = C int (u(x) - u(y)) |x - y|^(-1-alpha) dy on the line.
+
+    C = 2^(alpha-1) alpha Gamma((1+alpha)/2) / (sqrt(pi) Gamma(1-alpha/2)) = Gamma(1+alpha) sin(pi alpha/2) / pi.
+    """
+    return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) / np.pi)
+
+
+def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) -> FloatArray:
+    """Return the relative error that the truncation at |x| = D causes in KPSE and GPSE, time (2 C / alpha) D^(-alpha).
+
+    A truncated exchange, (34) or (41), leaves out the integral over |y| > D of C (u(y) - u(x)) |y - x|^(-1-alpha), C =
+    `tail_constant`. Of it the loss -u(x) 2 C D^(-alpha) / alpha matters near the origin: each particle keeps the
+    strength that it would have given to places beyond D. The next term is smaller by D^(-alpha).
+
+    Parameters
+    ----------
+    half_width : array_like
+        D, any shape.
+    alpha : float
+        1 < alpha < 2.
+    time : float
+        Time of the run, t_f - t_0, times the diffusivity.
+    """
+    constant = math.gamma(1.0 + alpha) * math.sin(0.5 * math.pi * alpha) / math.pi
+    return time * 2.0 * constant / alpha * np.asarray(half_width, dtype=float) ** -alpha

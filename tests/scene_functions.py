@@ -1,0 +1,31 @@
+"""The functions of our scenes by the scene's name, called as the workflow calls them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from fracstudy.inputs import Inputs, Result
+from fracstudy.scene import Scene, call, read_scenes
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@cache
+def scenes() -> dict[str, Scene]:
+    documents = yaml.safe_load((ROOT / "config/study.yaml").read_text())["documents"]
+    return read_scenes(ROOT / "workflow/scenes", list(documents), smoke=True)
+
+
+def study(name: str) -> Callable[[Inputs], Result]:
+    function = scenes()[name].function("study")
+    return lambda inputs: call(function, inputs, **inputs.parameters)
+
+
+def figure(name: str) -> Callable[..., Any]:
+    function = scenes()[name].function("figure")
+    return lambda series, table, parameters: call(function, series, table, **parameters)

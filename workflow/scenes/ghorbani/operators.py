@@ -1,0 +1,70 @@
+"""What the SPH scenes share: the three operators, the order alpha(x), and how functions and sums are named and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from fracparticles.sph import caputo_derivative, rl_derivative, rl_integral
+from fracparticles.sph.closed_forms import Function
+
+__all__ = ["LABELS", "OPERATORS", "SLOPES", "SUMS", "TITLES", "Operator", "Order", "order_at"]
+
+Order = float | dict[str, float]  # a constant, or mean, amplitude and waves of alpha(x)
+
+LABELS = {"sin": "sin πx", "cos": "cos πx", "exp": "exp x", "cubic": "(x − 1)³"}
+TITLES = {"sin": r"$\sin \pi x$", "cos": r"$\cos \pi x$", "exp": r"$\exp x$", "cubic": "$(x-1)^3$"}
+SLOPES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "sin": lambda x: pi * np.cos(pi * x),
+    "cos": lambda x: -pi * np.sin(pi * x),
+    "exp": np.exp,
+    "cubic": lambda x: 3.0 * (x - 1.0) ** 2,
+}
+SUMS = {  # label, colour and marker of each way to do the sum for the integral
+    "standard": ("standard (17)", "#D55E00", "o"),
+    "halved": ("half volumes at the ends", "#0072B2", "s"),
+    "modified": ("modified (20)", "#009E73", "^"),
+}
+
+
+@dataclass(frozen=True)
+class Operator:
+    """A fractional operator: its names, its approximation, its closed form, and the first particle that is judged."""
+
+    name: str
+    axis: str
+    approximate: Callable[..., np.ndarray]
+    exact: Callable[[Function, np.ndarray, Any], np.ndarray]
+    first: int = 0
+
+
+OPERATORS = {
+    "rl_integral": Operator(
+        "RL integral", r"RL integral $I^{\alpha} f$", rl_integral, lambda f, x, a: f.rl(x, -a)
+    ),
+    "caputo": Operator(
+        "Caputo derivative",
+        r"Caputo derivative ${}^{C}D^{\alpha} f$",
+        caputo_derivative,
+        lambda f, x, a: f.caputo(x, a),
+    ),
+    # The derivative of Riemann and Liouville is infinite at x = a: the paper leaves that particle out.
+    "rl_derivative": Operator(
+        "RL derivative",
+        r"RL derivative ${}^{RL}D^{\alpha} f$",
+        rl_derivative,
+        lambda f, x, a: f.rl(x, a),
+        first=1,
+    ),
+}
+
+
+def order_at(order: Order, x: np.ndarray) -> np.ndarray:
+    """Return alpha at x: a constant, or mean + amplitude sin(waves pi x)."""
+    if isinstance(order, dict):
+        return order["mean"] + order["amplitude"] * np.sin(order["waves"] * pi * x)
+    return np.full_like(x, order)
