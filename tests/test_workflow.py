@@ -1,4 +1,7 @@
-"""One complete smoke workflow, in a copy of the project, what makes it run again, and what is added to it."""
+"""The smoke workflow of some scenes, in a copy of the project, what makes it run again, and what is added to it.
+
+All scenes together are run by `make smoke`.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,16 @@ import yaml
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "config", "workflow", "report", "src")
 SMOKE = ("--configfile", "config/smoke.yaml")
+# A few of each kind: with runs, variants, tables of others, a benchmark, a study alone; one of each document.
+KEPT = {
+    "lucchesi": ("overlap", "lucchesi_table_1", "truncation", "truncation_claims"),
+    "lewandowski": ("marker_shapes",),
+    "ghorbani": ("sph_spline",),
+    "particle_note": ("note_particles",),
+    "run_times": ("scattered_sums",),
+    "beyond": ("kernel_orders",),
+}
+TARGETS = tuple(name for names in KEPT.values() for name in names)
 
 
 def snakemake(project: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -51,6 +64,9 @@ def copy(target: Path) -> Path:
             shutil.copytree(source, target / part, ignore=shutil.ignore_patterns("*.nb?"))
         else:
             shutil.copy2(source, target / part)
+    for folder in target.glob("workflow/scenes/*/*/"):
+        if (folder / "scene.yaml").exists() and folder.name not in KEPT[folder.parent.name]:
+            (folder / "scene.yaml").unlink()  # others may take their functions
     return target
 
 
@@ -61,13 +77,13 @@ def project(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def finished(project):
-    done = snakemake(project, "all", *SMOKE)
+    done = snakemake(project, *TARGETS, *SMOKE)
     assert done.returncode == 0, done.stderr[-4000:]
     return project
 
 
 def test_a_misspelt_key_is_refused_before_any_work(project):
-    done = snakemake(project, "all", "--config", "result_dir=elsewhere")
+    done = snakemake(project, "overlap", "--config", "result_dir=elsewhere")
     assert done.returncode != 0
     assert "result_dir" in done.stderr
     assert "Did you mean 'results_dir'?" in done.stderr
@@ -84,30 +100,28 @@ def test_every_scene_has_its_table_findings_and_figure(finished):
             "variants", [folder.name]
         )
     }
-    assert len(scenes) > 60
+    assert len(scenes) == len(TARGETS) + 2  # three variants in one folder
     for name, folder in scenes.items():
         assert (results / f"tables/{name}.csv").stat().st_size > 0
         assert (results / f"tables/{name}.md").stat().st_size > 0
         if (folder / "figure.py").exists():
             assert (results / f"figures/{name}.png").stat().st_size > 5000
             assert (results / f"figures/{name}.svg").stat().st_size > 5000
-    assert len(pd.read_csv(results / "claims.csv")) > 100
-    assert "</html>" in (results / "report/report.html").read_text()
 
 
 def test_nothing_is_left_to_do_and_nothing_half_written(finished):
-    assert "Nothing to be done" in planned(finished, "all", *SMOKE)
+    assert "Nothing to be done" in planned(finished, *TARGETS, *SMOKE)
     stray = [path for path in (finished / "results-smoke").rglob(".*") if path.name != ".compiled"]
     assert not stray
 
 
 def test_editing_a_plot_reruns_its_scene_and_no_solver(finished):
     change(finished / "workflow/scenes/lucchesi/overlap/figure.py")
-    jobs = planned(finished, "figures", *SMOKE)
+    jobs = planned(finished, *TARGETS, *SMOKE)
     assert "rule make_part_" in jobs
     assert "rule solve_" not in jobs
     assert "rule compile:" not in jobs
-    snakemake(finished, "all", *SMOKE)
+    snakemake(finished, *TARGETS, *SMOKE)
 
 
 def test_editing_a_solver_reruns_its_runs(finished):

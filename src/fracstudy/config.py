@@ -17,10 +17,15 @@ from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
 
-__all__ = ["Document", "StudyConfig", "batches", "jobs", "read_config"]
+__all__ = ["Document", "StudyConfig", "batches", "jobs", "read_config", "targets"]
 
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
-_AT_ONCE = 8  # runs of a job: its start takes as long as a few of them
+_AT_ONCE = {
+    1: 24,
+    2: 8,
+    3: 4,
+}  # runs of a job by dimension: its start takes as long as a few of them
+_MOVING_AT_ONCE = 3  # of particles that move, which take a hundred times as long
 _SMOKE_JOBS = 2  # where it takes longer than all of them
 
 
@@ -165,6 +170,14 @@ def _with_dvm_step(scene: Scene, dt: float) -> Scene:
     return scene.model_copy(update={"runs": blocks})
 
 
+def targets(scenes: Mapping[str, Scene]) -> dict[str, list[str]]:
+    """Return what can be asked for: a scene by its name, the scenes of a folder by that of the folder."""
+    folders: dict[str, list[str]] = {}
+    for name, scene in scenes.items():
+        folders.setdefault(scene.folder.name, []).append(name)
+    return folders | {name: [name] for name in scenes}
+
+
 def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str]]:
     """Return the scenes that one job makes: one, so that nothing is done that was not asked for.
 
@@ -202,7 +215,7 @@ def batches(
             if _STORES.index(case.store) > _STORES.index(known.store):
                 widest[key] = case
     named: dict[str, list[Case]] = {}
-    groups: dict[tuple[str, ...], list[Case]] = {}
+    groups: dict[tuple[Any, ...], list[Case]] = {}
     if smoke:
         every = list(widest.values())
         named = {
@@ -210,9 +223,11 @@ def batches(
         }
         needed_by.clear()
     for key, names in needed_by.items():
-        groups.setdefault(tuple(names), []).append(widest[key])
-    for group, cases in groups.items():
-        for first in range(0, len(cases), _AT_ONCE):
-            number = sum(batch.rsplit("_", 1)[0] == group[0] for batch in named) + 1
-            named[f"{group[0]}_{number}"] = cases[first : first + _AT_ONCE]
+        case = widest[key]
+        at_once = _MOVING_AT_ONCE if case.scheme == "DVM" else _AT_ONCE[case.dim]
+        groups.setdefault((at_once, *names), []).append(case)
+    for (at_once, name, *_), cases in groups.items():
+        for first in range(0, len(cases), at_once):
+            number = sum(batch.rsplit("_", 1)[0] == name for batch in named) + 1
+            named[f"{name}_{number}"] = cases[first : first + at_once]
     return {name: [widest[key] for key in keys] for name, keys in wanted.items()}, named

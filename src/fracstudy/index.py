@@ -46,8 +46,8 @@ def index(project: Path) -> str:
         lines += ["", f"## {document.title}", ""]
         lines += ["| equation | code |", "|---|---|"]
         lines += [
-            f"| {number} | {'; '.join(places)} |"
-            for number, places in sorted(equations[name].items(), key=lambda pair: _rank(pair[0]))
+            f"| {number} | {'; '.join(_place(*pair) for pair in places.items())} |"
+            for number, places in sorted(equations[name].items(), key=lambda pair: _split(pair[0]))
         ]
         lines += ["", "| item | printed in | scene | claims |", "|---|---|---|---|"]
         lines += _items(project / document.printed, scenes, project)
@@ -72,20 +72,23 @@ def _link(scene: Scene, project: Path) -> str:
     return f"[{scene.name}]({scene.folder.relative_to(project).as_posix()})"
 
 
-def _equations(project: Path) -> dict[str, dict[str, list[str]]]:
-    """By document and number, where the library names an equation: links to modules, with the names of functions."""
-    found: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
+def _place(module: str, names: list[str]) -> str:
+    return " ".join([module, ", ".join(f"`{name}`" for name in names)]).strip()
+
+
+def _equations(project: Path) -> dict[str, dict[str, dict[str, list[str]]]]:
+    """By document and number, where the library names an equation: links to modules, each with names in it."""
+    found: dict[str, dict[str, dict[str, list[str]]]] = defaultdict(lambda: defaultdict(dict))
     root = project / "src/fracparticles"
     for file in sorted(root.rglob("*.py")):
         parts = file.relative_to(root).with_suffix("").parts
         document = _ROOMS.get(parts[0], "lucchesi")
         module = ".".join(part for part in parts if part != "__init__")
         for name, text in _docstrings(file):
-            place = f"[{module}]({file.relative_to(project).as_posix()})" + f" `{name}`" * bool(
-                name
-            )
+            link = f"[{module}]({file.relative_to(project).as_posix()})"
             for number in _numbers(text):
-                found[document][number].append(place)
+                names = found[document][number].setdefault(link, [])
+                names += [name] if name and name not in names else []
     return found
 
 
@@ -111,10 +114,6 @@ def _numbers(text: str) -> list[str]:
 def _split(number: str) -> tuple[str, int]:
     head, digits = re.fullmatch(r"\(([AB]\.)?(\d+)\)", number).groups()  # type: ignore[union-attr]
     return head or "", int(digits)
-
-
-def _rank(number: str) -> tuple[str, int]:
-    return _split(number)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMB
     os.environ[name] = "1"
 
 from fracparticles.errors import InvalidInput
-from fracstudy.config import batches, jobs, read_config
+from fracstudy.config import batches, jobs, read_config, targets
 from fracstudy.make import made
 from fracstudy.sources import sources_of
 
@@ -75,3 +75,9 @@ def run_files(name):
 def as_json(name):
     """A scene as a job takes it; its runs are files by then."""
     return SCENES[name].model_dump_json(exclude={"runs"})
+
+
+def printed_files(name):
+    """The file of the claims of a scene's document, if it has any."""
+    printed = STUDY.documents[SCENES[name].document].printed
+    return [] if printed is None else [printed]

@@ -7,7 +7,7 @@ rule compile:
         touch(RESULTS / "runs/.compiled"),
     log:
         RESULTS / "logs/compile.log",
-    priority: 3
+    priority: 2
     params:
         code=code(SOLVER),
     script:
@@ -25,7 +25,8 @@ for batch, cases in BATCHES.items():
             [RESULTS / "runs" / case.path for case in cases],
         log:
             RESULTS / f"logs/solve_{batch}.log",
-        priority: 1
+        # Particles that move take the longest: first.
+        priority: 1 if any(case.scheme == "DVM" for case in cases) else 0
         params:
             cases=[case.to_json() for case in cases],
         script:

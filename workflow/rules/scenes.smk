@@ -13,15 +13,18 @@ for job, names in JOBS.items():
                 for n in names
                 for other in SCENES[n].all_benchmarks
             ],
-            printed=STUDY.printed,
+            printed=sorted({file for n in names for file in printed_files(n)}),
             reference=[SCENES[name].parameters.get("reference", []) for name in names],
             style="src/fracstudy/fracstudy.mplstyle",
             compiled=rules.compile.output,
         output:
-            [made(SCENES[name], RESULTS) for name in names],
+            [
+                report(file, category="Figures") if file.suffix == ".svg" else file
+                for name in names
+                for file in made(SCENES[name], RESULTS)
+            ],
         log:
             RESULTS / f"logs/make_{job}.log",
-        priority: 2
         params:
             results=str(RESULTS),
             scenes=[as_json(name) for name in names],
@@ -34,13 +37,14 @@ for job, names in JOBS.items():
             "../scripts/make.py"
 
 
-for name, scene in SCENES.items():
+# A target a scene, and one for a folder of several.
+for target, names in targets(SCENES).items():
 
     rule:
         name:
-            name
+            target
         input:
-            made(scene, RESULTS),
+            [made(SCENES[name], RESULTS) for name in names],
 
 
 rule ledger:
@@ -48,7 +52,7 @@ rule ledger:
         findings=expand(RESULTS / "findings/{scene}.json", scene=SCENES),
         printed=STUDY.printed,
     output:
-        csv=LEDGER[0],
+        csv=report(LEDGER[0], category="Claims ledger"),
         md=LEDGER[1],
     log:
         RESULTS / "logs/ledger.log",
