@@ -26,9 +26,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 COMBINATIONS = [
     pytest.param((name, order, exterior), id=f"{name}-{order}-{exterior}")
     for name, scheme in SCHEMES.items()
-    for order in scheme.ORDERS
+    for order in scheme.orders
     if order in PAPER_ORDERS
-    for exterior in scheme.EXTERIORS
+    for exterior in scheme.exteriors
 ]
 
 

@@ -19,7 +19,7 @@ from fracparticles.special import green
 BOXED = [
     (name, order)
     for name, scheme in SCHEMES.items()
-    for order in scheme.BOX_ORDERS
+    for order in scheme.box_orders
     if order in PAPER_ORDERS
 ]
 EPS = np.finfo(float).eps
@@ -50,7 +50,7 @@ def test_a_wave_in_the_middle_sees_the_symbol(name, order, dim):
     window = np.exp(-np.square(j / (0.3 * n)).sum(axis=0))
     wave = np.cos(np.tensordot(theta, j, axes=1)) * window
     ours = box(name, order, n=n, dim=dim).apply(wave.ravel()).reshape(wave.shape)
-    symbol = SCHEMES[name].symbol(theta, alpha, order, 2.0, dim)
+    symbol = SCHEMES[name].symbol(theta, Setting(alpha=alpha, order=order, dim=dim))
     middle = (slice(n - 3, n + 4),) * dim
     assert np.abs(ours - symbol * wave)[middle].max() < 20.0 / (0.3 * n) ** 2 * abs(symbol)
 
@@ -61,7 +61,7 @@ def test_conservation_and_symmetry(name, order):
     rng = np.random.default_rng(1)
     u = rng.standard_normal(operator.size)
     total = np.abs(operator.apply(u)).sum()
-    if SCHEMES[name].CONSERVATIVE:
+    if SCHEMES[name].conservative:
         assert abs(operator.apply(u).sum()) <= 1e-13 * total
     else:
         assert abs(operator.apply(u).sum()) > 1e-3 * total
@@ -95,7 +95,7 @@ def test_stability_limit(name, order, dim):
     assert cube == pytest.approx(line, rel=1e-3 if name == "KPSE" else 1e-7)
     theta = np.random.default_rng(2).uniform(-np.pi, np.pi, (2000, dim))
     low, high = symbol_range(name, 0.5, order, 2.0, dim)
-    values = SCHEMES[name].symbol(theta, 1.5, order, 2.0, dim)
+    values = SCHEMES[name].symbol(theta, Setting(alpha=1.5, order=order, dim=dim))
     assert low * (1.0 + 1e-7) <= values.min()
     assert values.max() <= high + 1e-12
 
@@ -172,7 +172,8 @@ def peak_on_the_infinite_lattice(scheme, order, dim, h, alpha=1.5, start=0.5, en
     k, step = np.linspace(0.0, np.pi / h, 200001, retstep=True)
     theta = np.zeros((k.size, dim))
     theta[:, 0] = k * h
-    growth = SCHEMES[scheme].symbol(theta, alpha, order, 2.0, dim) * (end - start) / h**alpha
+    setting = Setting(alpha=alpha, order=order, dim=dim)
+    growth = SCHEMES[scheme].symbol(theta, setting) * (end - start) / h**alpha
     surface = {2: 2.0 * np.pi, 3: 4.0 * np.pi}[dim]
     spectrum = k ** (dim - 1) * np.exp(-(k**alpha) * start + growth)
     return surface / (2.0 * np.pi) ** dim * spectrum[1:].sum() * step

@@ -11,7 +11,7 @@ from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.kernels.families import kernel_transform
 from fracparticles.moving import dvm
 from fracparticles.moving.lagrangian import FieldNotPositive, Remeshing, advance, quotient_velocity
-from fracparticles.schemes import dd
+from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.special.stable import green, mean_radius
 
 START = 0.5
@@ -70,7 +70,8 @@ def test_a_displacement_wave_decays_at_the_symbol_of_dd(order, theta):
     rate = (change[middle] @ wave[middle]) / (wave[middle] @ wave[middle]) / amplitude * h**alpha
     expected = -(theta**alpha) * kernel_transform("eta", 2.0 * theta, alpha, order=order)
     assert rate == pytest.approx(expected, rel=3e-4)  # the ends are 2000 h away: F ~ 2000^-1.5
-    assert expected == pytest.approx(dd.symbol(np.array([theta]), alpha, order)[0], rel=1e-3)
+    symbol = SCHEMES["DD"].symbol(np.array([theta]), Setting(alpha=alpha, order=order))[0]
+    assert expected == pytest.approx(symbol, rel=1e-3)
 
 
 @pytest.mark.parametrize(("factor", "stable"), [(0.9, True), (1.1, False)])

@@ -55,7 +55,7 @@ def test_adding_the_far_field():
     assert y == pytest.approx(1.0 + 20.0 * far.right[0] + 0.0 * far.left[0], rel=1e-15)
 
 
-@pytest.mark.parametrize("name", [n for n, s in SCHEMES.items() if "open" in s.EXTERIORS])
+@pytest.mark.parametrize("name", [n for n, s in SCHEMES.items() if "open" in s.exteriors])
 def test_the_open_operator_is_that_of_a_very_wide_lattice(name):
     """A u in the middle of 40 n points, where u beyond n is continued as the closure has it."""
     n, wide, alpha = 50, 20_000, 1.5
@@ -170,7 +170,7 @@ def test_more_terms_of_the_exterior_leave_less_error(scheme):
 @pytest.mark.parametrize("terms", [1, 2, 3])
 @pytest.mark.parametrize(("scheme", "order"), [("DD", 4), ("FPSE", 2), ("KPSE", 12), ("GPSE", 2)])
 def test_the_terms_of_the_exterior_leave_the_operator_dissipative(scheme, order, terms):
-    """No eigenvalue above nil, whatever the terms: the series and the steps stay stable."""
+    """No eigenvalue above zero, whatever the terms: the series and the steps stay stable."""
     setting = Setting(n=40, spacing=0.4, alpha=1.5, order=order, exterior="open", far_terms=terms)
     eigenvalues = np.linalg.eigvals(dense_matrix(SCHEMES[scheme].operator(setting)))
     low, high = (setting.rate * edge for edge in symbol_range(scheme, 0.5, order))

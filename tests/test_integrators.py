@@ -150,7 +150,7 @@ def non_normality(beta, order, n=60) -> float:
     A is similar to B^(1/2) L B^(1/2): the bound is the root of the condition number of B, and so much more does
     round-off weigh.
     """
-    b = dpse.potential_weights(np.arange(2.0 * n + 1.0), 1.0 + beta, order, 2.0)
+    b = dpse.potential_weights(np.arange(2.0 * n + 1.0), Setting(alpha=1.0 + beta, order=order))
     return float(np.sqrt(np.linalg.cond(toeplitz(b))))
 
 

@@ -13,7 +13,7 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import kernel, kernel_transform
 from fracparticles.kernels.tabulated import tabulated
-from fracparticles.schemes import Setting, dpse, fd, riesz
+from fracparticles.schemes import SCHEMES, Setting, dpse, riesz
 from fracparticles.schemes.spectrum import dense_matrix
 
 EPS = np.finfo(float).eps
@@ -105,7 +105,9 @@ def potential(m: int, alpha: float, order: int, overlap: float):
 @pytest.mark.parametrize("overlap", [0.25, 1.0, 2.0, 8.0])
 @pytest.mark.parametrize("beta", [1e-15, 1e-12, 1e-6, 4.9e-3])
 def test_differences_of_the_potential_keep_their_digits(order, overlap, beta):
-    ours = dpse.potential_differences(np.arange(400.0), 1.0 + beta, order, overlap)
+    ours = dpse.potential_differences(
+        np.arange(400.0), Setting(alpha=1.0 + beta, order=order, overlap=overlap)
+    )
     assert ours[0] == 0.0
     with mp.workdps(60):
         for m in (1, 2, 5, 20, 399):
@@ -120,12 +122,12 @@ def test_differences_of_the_potential_keep_their_digits(order, overlap, beta):
 def test_dpse_is_the_product_of_its_two_matrices(order, beta):
     """Element by element, from many digits: the constant 1 / beta leaves no roundings that make mass."""
     setting = Setting(n=12, spacing=0.1, alpha=1.0 + beta, order=order)
-    ours = dense_matrix(dpse.operator(setting))
+    ours = dense_matrix(SCHEMES["DPSE"].operator(setting))
     m = np.arange(setting.size)
     lag = np.abs(m[:, None] - m)
     with mp.workdps(60):
         b = np.array([float(potential(int(k), 1.0 + beta, order, 2.0)) for k in m])
-    c = dpse.laplacian_weights(m.astype(float), 1.0 + beta, order, 2.0)[lag]
+    c = dpse.laplacian_weights(m.astype(float), setting)[lag]
     np.fill_diagonal(c, 0.0)
     laplacian = c - np.diag(c.sum(axis=1))
     expected = setting.rate * laplacian @ b[lag]
@@ -139,7 +141,7 @@ def test_dpse_is_the_product_of_its_two_matrices(order, beta):
 @given(beta=st.floats(-15.0, -0.1), order=st.sampled_from([2, 4]), time=st.floats(-3.0, 3.0))
 def test_dpse_keeps_the_mass_however_small_beta(beta, order, time):
     setting = Setting(n=20, spacing=0.1, alpha=1.0 + 10.0**beta, order=order)
-    matrix = dense_matrix(dpse.operator(setting))
+    matrix = dense_matrix(SCHEMES["DPSE"].operator(setting))
     u0 = np.random.default_rng(8).uniform(size=setting.size)
     u = expm(10.0**time * matrix / np.abs(matrix).max()) @ u0
     # Each of the digits that the constant may cost (200), times T |A| of the longest run.
@@ -148,6 +150,8 @@ def test_dpse_keeps_the_mass_however_small_beta(beta, order, time):
 
 
 # --- FD: differences of nearly linear or nearly constant powers ----------------------------------------------------
+
+FD = SCHEMES["FD"]
 
 
 def finite_difference_weight(m: int, alpha: float):
@@ -172,7 +176,7 @@ def finite_difference_weight(m: int, alpha: float):
 def test_weights_of_the_finite_differences_in_the_limits(beta):
     """The third difference cancels to 2 / m^2 of its terms near beta = 0, to 2 / m^3 near 1, below the far series."""
     m = np.array([0, 1, 2, 3, 10, 100, 199, 200, 1000, 10**5])
-    ours = fd.weights(m, 1.0 + beta)
+    ours = FD.weights(m, Setting(alpha=1.0 + beta))
     with mp.workdps(60):
         for k, value in zip(m, ours, strict=True):
             expected = float(finite_difference_weight(int(k), 1.0 + beta))
@@ -185,18 +189,19 @@ def test_weights_of_the_finite_differences_in_the_limits(beta):
 def test_the_symbol_of_the_finite_differences_is_the_sum_of_its_weights(beta):
     theta = np.array([0.4, 1.0, 2.2, np.pi])
     m = np.arange(1.0, 200_001.0)
-    w0, w = fd.weights(np.zeros(1), 1.0 + beta)[0], fd.weights(m, 1.0 + beta)
+    setting = Setting(alpha=1.0 + beta)
+    w0, w = FD.weights(np.zeros(1), setting)[0], FD.weights(m, setting)
     direct = np.array([w0 + 2.0 * (w * np.cos(m * t)).sum() for t in theta])
     left_out = 2.0 * w[-1] / np.sin(0.5 * theta)
     room = np.abs(left_out) + 1e-12 * abs(w0)
-    assert (np.abs(fd.symbol(theta, 1.0 + beta) - direct) <= room).all()
+    assert (np.abs(FD.symbol(theta, setting) - direct) <= room).all()
 
 
 @pytest.mark.parametrize("beta", [0.9951, 0.999, 1.0 - 1e-6, 1.0 - 1e-12])
 def test_the_symbol_of_the_finite_differences_near_the_pole_of_zeta(beta):
     """Its two zeta functions are 1 / (1 - beta) each, of which nothing is left."""
     theta = np.array([1e-3, 0.4, 1.0, 2.2, np.pi])
-    ours = fd.symbol(theta, 1.0 + beta)
+    ours = FD.symbol(theta, Setting(alpha=1.0 + beta))
     with mp.workdps(50):
         p = 3 - mp.mpf(1.0 + beta)
         for t, value in zip(theta, ours, strict=True):

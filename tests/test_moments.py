@@ -331,7 +331,7 @@ def test_the_exchange_is_the_sum_over_pairs(dim):
     exchange = StrengthExchange(x, v, epsilon, kernel, d)
     np.testing.assert_allclose(exchange.apply(q), expected, atol=1e-13 * np.abs(expected).max())
     out = np.arange(len(q), dtype=float)
-    exchange.update(q, 2.0, -1.0, 0.5, out)
+    exchange.combine(q, out, 2.0, -1.0, 0.5)
     wanted = 2.0 * expected - q + 0.5 * np.arange(len(q))
     np.testing.assert_allclose(out, wanted, atol=1e-12 * np.abs(wanted).max())
 

@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import FAMILIES, kernel
-from fracparticles.schemes import SCHEMES, Setting, dpse, fd, fpse, kpse, riesz, scheme
+from fracparticles.schemes import SCHEMES, Setting, dpse, fpse, riesz, scheme
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special import green
 
@@ -117,7 +117,7 @@ def test_far_weights_of_the_finite_differences_are_third_differences():
                     c * mp.mpf(m + k) ** p for c, k in ((1, 2), (-3, 1), (3, 0), (-1, -1))
                 ) / mp.gamma(p + 1)
                 exact = float(third / (2 * abs(mp.cos(mp.pi * alpha / 2))))
-                ours = fd.weights(np.array([float(m)]), float(alpha))[0]
+                ours = SCHEMES["FD"].weights(np.array([float(m)]), Setting(alpha=float(alpha)))[0]
                 # The near branch cancels down to m^-3 of its terms; round-off 1e-16 of these.
                 assert ours == pytest.approx(exact, rel=1e-15 * 200.0**3 if m < 200 else 1e-12)
 
@@ -134,11 +134,11 @@ def test_naive_and_fft_agree(combination):
     assert np.abs(fast - naive).max() <= 1e-12 * np.abs(naive).max()
 
 
-def test_update_is_apply_and_two_multiples(combination):
+def test_combine_is_apply_and_two_multiples(combination):
     operator = SCHEMES[combination[0]].operator(setting(combination))
     u, v = np.random.default_rng(7).standard_normal((2, 2 * N + 1))
     expected = 0.3 * operator.apply(u) - 2.0 * u + 0.7 * v
-    operator.update(u, 0.3, -2.0, 0.7, v)
+    operator.combine(u, v, 0.3, -2.0, 0.7)
     assert v == pytest.approx(expected, rel=1e-13, abs=1e-13 * np.abs(expected).max())
 
 
@@ -166,13 +166,11 @@ def left_out(weights: np.ndarray, theta: np.ndarray) -> np.ndarray:
 def test_the_symbol_is_the_fourier_sum_of_the_weights(name, alpha):
     module = SCHEMES[name]
     m = np.arange(FAR + 1.0)
-    for order in module.ORDERS:
-        if name in ("DD", "KPSE"):
-            weights = module.weights(m, alpha, order, S)
-        else:
-            weights = module.weights(m, alpha) if name == "FD" else module.weights(m, alpha, S)
+    for order in module.orders:
+        given_ = Setting(alpha=alpha, order=order, overlap=S)
+        weights = module.weights(m, given_)
         direct = fourier_sum(weights, THETA)
-        symbol = module.symbol(THETA, alpha, order, S)
+        symbol = module.symbol(THETA, given_)
         if name not in ("DD", "FD"):  # an exchange: less the sum of the weights, which cancels here
             direct, symbol = direct - direct[0], symbol - symbol[0]
         room = left_out(weights, THETA) + left_out(weights, THETA[:1])
@@ -183,29 +181,31 @@ def test_the_symbol_is_the_fourier_sum_of_the_weights(name, alpha):
 @pytest.mark.parametrize("order", [2, 4])
 def test_the_symbol_of_fpse_is_the_product_of_two_sums(alpha, order):
     m = np.arange(FAR + 1.0)
-    flux = fpse.flux_weights(m, alpha, order, S)
-    divergence = fpse.divergence_weights(m[:60], alpha, order, S)
+    given_ = Setting(alpha=alpha, order=order, overlap=S)
+    flux = fpse.flux_weights(m, given_)
+    divergence = fpse.divergence_weights(m[:60], given_)
     # (-i)(-i) = -1 for two odd sums
     direct = -fourier_sum(flux, THETA, -1) * fourier_sum(divergence, THETA, -1)
     room = left_out(flux, THETA) * np.abs(divergence).sum() * 2.0
-    assert (np.abs(direct - fpse.symbol(THETA, alpha, order, S)) <= room).all()
+    assert (np.abs(direct - SCHEMES["FPSE"].symbol(THETA, given_)) <= room).all()
 
 
 @pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
 @pytest.mark.parametrize("order", [2, 4])
 def test_the_symbol_of_dpse_is_the_product_of_two_sums(alpha, order):
     m = np.arange(FAR + 2.0)
-    potential = dpse.potential_weights(m, alpha, order, S)
+    given_ = Setting(alpha=alpha, order=order, overlap=S)
+    potential = dpse.potential_weights(m, given_)
     # The potential's sum hardly converges, that of its second differences does: they multiply it by 2 - 2 cos.
     curved = np.empty(FAR + 1)
     curved[0] = 2.0 * (potential[0] - potential[1])
     curved[1:] = 2.0 * potential[1:-1] - potential[:-2] - potential[2:]
-    laplacian = dpse.laplacian_weights(m[:60], alpha, order, S)
+    laplacian = dpse.laplacian_weights(m[:60], given_)
     change = fourier_sum(laplacian, THETA) - fourier_sum(laplacian, np.zeros(1))
     factor = change / (2.0 - 2.0 * np.cos(THETA))
     room = (left_out(curved, THETA) + 1e-11 * np.abs(potential[:1])) * np.abs(factor)
     direct = fourier_sum(curved, THETA) * factor
-    assert (np.abs(direct - dpse.symbol(THETA, alpha, order, S)) <= room).all()
+    assert (np.abs(direct - SCHEMES["DPSE"].symbol(THETA, given_)) <= room).all()
 
 
 @pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
@@ -213,7 +213,8 @@ def test_long_waves_decay_as_they_should(combination, beta):
     """symbol -> -|theta|^alpha; the error is (s theta / 2)^2 for order II and its square for order IV."""
     name, order, _ = combination
     alpha, theta = 1.0 + beta, 1e-3
-    symbol = SCHEMES[name].symbol(np.array([theta]), alpha, order, S)[0]
+    given_ = Setting(alpha=alpha, order=order, overlap=S)
+    symbol = SCHEMES[name].symbol(np.array([theta]), given_)[0]
     first_order = theta / (2.0 * np.tan(0.5 * np.pi * beta))
     slack = {"FD": first_order, "RIESZ": (S * theta) ** (2.0 - alpha)}.get(name, (S * theta) ** 1.0)
     if name == "GPSE":
@@ -228,10 +229,10 @@ STRENGTHS = arrays(float, 2 * N + 1, elements=st.floats(-1e6, 1e6))
 
 
 @pytest.mark.parametrize("order", [2, 4])
-@pytest.mark.parametrize("name", [n for n, s in SCHEMES.items() if s.CONSERVATIVE])
+@pytest.mark.parametrize("name", [n for n, s in SCHEMES.items() if s.conservative])
 @given(u=STRENGTHS)
 def test_conservative_schemes_keep_the_total_strength(name, order, u):
-    if order not in SCHEMES[name].ORDERS:
+    if order not in SCHEMES[name].orders:
         return
     operator = _operator(name, order)
     change = operator.apply(u)
@@ -299,8 +300,8 @@ def test_positive_weights_keep_the_solution_positive(name):
 
 def test_order_four_gives_positivity_up_at_large_beta():
     m = np.arange(40.0)
-    assert (kpse.weights(m, 1.7, 4, S) > 0.0).all()
-    assert (kpse.weights(m, 1.9, 4, S) < 0.0).any()
+    assert (SCHEMES["KPSE"].weights(m, Setting(alpha=1.7, order=4, overlap=S)) > 0.0).all()
+    assert (SCHEMES["KPSE"].weights(m, Setting(alpha=1.9, order=4, overlap=S)) < 0.0).any()
 
 
 def test_a_green_step_is_the_convolution_with_the_fundamental_solution():
@@ -323,11 +324,11 @@ def test_unknown_schemes_are_refused():
 def test_every_scheme_describes_itself():
     for name, module in SCHEMES.items():
         assert scheme(name) is module
-        assert name == module.NAME
-        assert module.TITLE
-        assert module.EQUATION
+        assert name == module.name
+        assert module.title
+        assert module.equation
         high = name in ("DD", "FPSE", "KPSE")
-        assert set(module.ORDERS) <= ({2, 4, 6, 8, 10, 12} if high else {2, 4})
-        assert (FAMILIES if high else ()) == module.FAMILIES
-        assert bool(module.BOX_ORDERS) == (2 in module.DIMS)
-        assert set(module.EXTERIORS) <= {"truncated", "open"}
+        assert set(module.orders) <= ({2, 4, 6, 8, 10, 12} if high else {2, 4})
+        assert (FAMILIES if high else ()) == module.families
+        assert bool(module.box_orders) == (2 in module.dims)
+        assert set(module.exteriors) <= {"truncated", "open"}

@@ -29,7 +29,7 @@ def test_weights_of_the_stable_law_are_its_density_on_a_fine_lattice(alpha):
 
 
 @pytest.mark.parametrize("alpha", [1.2, 1.8])
-def test_weights_sum_to_one_if_the_symbol_is_nil_at_nil(alpha):
+def test_weights_sum_to_one_if_the_symbol_vanishes_at_zero(alpha):
     """With what the table leaves out: two terms of the expansion, summed as integrals from M - 1/2."""
     count, tau = 4000, 5.0
     e = propagator_weights(lambda theta: np.exp(-tau * theta**alpha), alpha, tau, count)

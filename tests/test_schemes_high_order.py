@@ -14,9 +14,9 @@ from fracparticles.run.case import Case
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute, prepare, solve
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.base import lattice_transform
 from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
 from fracparticles.schemes.stability import stability_limit, symbol_range
+from fracparticles.schemes.transform import lattice_transform
 from fracparticles.special.stable import central_mass
 
 EPS = np.finfo(float).eps
@@ -147,7 +147,7 @@ def test_the_interval_of_fpse_ends_at_an_eigenvalue_above_zero(order, overlap):
 @pytest.mark.parametrize("scheme", HIGH)
 @pytest.mark.parametrize("order", [4, 6, 12])
 def test_the_operator_in_the_middle_is_the_symbol(scheme, order, family):
-    """The kernels in space against those in Fourier space, for a Gaussian that is nil at the ends.
+    """The kernels in space against those in Fourier space, for a Gaussian that is zero at the ends.
 
     At m = 0 the operator gives the mean over theta of the symbol times the transform of u. The mean over M angles
     lacks the weights beyond M, which are below M^(-1-alpha).
@@ -159,7 +159,7 @@ def test_the_operator_in_the_middle_is_the_symbol(scheme, order, family):
     theta = 2.0 * np.pi * np.arange(angles) / angles
     theta = np.minimum(theta, 2.0 * np.pi - theta)
     transform = 3.0 * math.sqrt(math.pi) * np.exp(-np.square(1.5 * theta))
-    symbol = SCHEMES[scheme].symbol(theta, alpha, order, 2.0, family=family)
+    symbol = SCHEMES[scheme].symbol(theta, setting)
     # exp(-(1.5 pi)^2) = 2e-10: the next alias of u.
     assert rate == pytest.approx((symbol * transform).mean(), abs=2e-9)
 
@@ -209,7 +209,7 @@ def test_the_default_family_is_the_papers_as_far_as_it_goes():
 
 @pytest.mark.parametrize("dim", [1, 2])
 @pytest.mark.parametrize("order", [6, 12])
-def test_the_aliases_of_a_high_order_are_summed_until_they_are_nil(order, dim):
+def test_the_aliases_of_a_high_order_are_summed_until_they_vanish(order, dim):
     """Poisson's formula: the transform's aliases against the kernel on the lattice, at an overlap with many."""
     overlap = 0.7
     m = np.stack(np.meshgrid(*(np.arange(-12, 13.0),) * dim, indexing="ij"), axis=-1)
@@ -218,7 +218,8 @@ def test_the_aliases_of_a_high_order_are_summed_until_they_are_nil(order, dim):
     weights = kernel("eta", radius / overlap, 1.5, dim=dim, order=order)
     direct = float((weights * np.cos(m @ theta)).sum()) / overlap**dim
     at = theta if dim == 1 else theta[None]
-    aliases = float(lattice_transform("eta", at, 1.5, order, overlap, dim=dim)[0])
+    setting = Setting(alpha=1.5, order=order, overlap=overlap, dim=dim)
+    aliases = float(lattice_transform("eta", at, setting)[0])
     assert aliases == pytest.approx(direct, abs=1e-13)
 
 

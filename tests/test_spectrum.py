@@ -13,7 +13,7 @@ from fracparticles.schemes.spectrum import dense_matrix, power_iteration, spectr
 from fracparticles.schemes.stability import symbol_range
 
 OVERLAPS = {"GPSE": (1.65, 2.0, 2.9), "FD": (2.0,)}
-# FPSE of order IV with overlap 2.9 has a defective eigenvalue near nil: round-off eps splits it by sqrt(eps).
+# FPSE of order IV with overlap 2.9 has a defective eigenvalue near zero: round-off eps splits it by sqrt(eps).
 ROUND_OFF = np.sqrt(np.finfo(float).eps)
 
 
@@ -67,19 +67,19 @@ def test_the_lowest_eigenvalue_tends_to_the_least_of_the_symbol(combination, bet
 
 
 def test_a_kernel_that_changes_sign_pushes_an_eigenvalue_below_the_symbol():
-    """KPSE of order IV at beta = 0.9 has negative weights: why `least_excess` is needed."""
+    """KPSE of order IV at beta = 0.9 has negative weights: why the shift of the diagonal is needed."""
     case = case_of(("KPSE", 4, "truncated"), 0.9, 4.0, 60)
     operator = SCHEMES["KPSE"].operator(case.setting)
     values = np.linalg.eigvalsh(dense_matrix(operator))
     least = symbol_range("KPSE", 0.9, 4, 4.0)[0]
-    assert operator.least_excess < values[0] - least < 0.0
+    assert operator.diagonal_shift[0] < values[0] - least < 0.0
     assert values[0] < least * (1.0 + 1e-3)
 
 
-def test_positive_weights_need_no_excess():
+def test_positive_weights_need_no_shift():
     for scheme in ("KPSE", "GPSE", "RIESZ"):
         operator = SCHEMES[scheme].operator(Setting(n=40, spacing=1.0, alpha=1.5))
-        assert operator.least_excess == 0.0
+        assert operator.diagonal_shift[0] == 0.0
 
 
 def test_dense_matrix_of_known_weights():

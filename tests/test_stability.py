@@ -11,7 +11,7 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
-from fracparticles.schemes.stability import closed_form_limit, stability_limit, symbol_range
+from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.time import STEP_POLYNOMIALS
 
 # epsilon / h = 2, order II: the infinite lattice, to the digits given.
@@ -37,20 +37,22 @@ def test_closed_forms_neglect_the_aliases_only(scheme, beta, overlap):
     # form drops 2^beta Gamma(alpha / 2, (pi s / 2)^2) there: exp(-(pi s / 2)^2) = 5e-5 and less.
     rel = 1e-4 if scheme == "KPSE" else 1e-8
     assert stability_limit(scheme, beta, 2, overlap) == pytest.approx(
-        closed_form_limit(scheme, beta, overlap), rel=rel
+        SCHEMES[scheme].closed_form_limit(beta, overlap), rel=rel
     )
 
 
 def test_there_is_no_closed_form_for_the_others():
     with pytest.raises(InvalidInput, match="scheme = 'GPSE'"):
-        closed_form_limit("GPSE", 0.5)
+        SCHEMES["GPSE"].closed_form_limit(0.5, 2.0)
 
 
 def test_the_range_holds_the_symbol(combination):
     name, order, _ = combination
     for overlap in (0.3, 1.0, 2.0, 7.0, 300.0):
         low, high = symbol_range(name, 0.5, order, overlap)
-        values = SCHEMES[name].symbol(np.linspace(0.0, np.pi, 4001), 1.5, order, overlap)
+        values = SCHEMES[name].symbol(
+            np.linspace(0.0, np.pi, 4001), Setting(alpha=1.5, order=order, overlap=overlap)
+        )
         room = 1e-7 * (high - low)
         assert values.min() >= low - room
         assert values.max() <= high + room
@@ -65,7 +67,7 @@ def test_beyond_the_limit_the_powers_grow(name, integrator):
     operator = SCHEMES[name].operator(Setting(n=60, spacing=0.1, alpha=1.5))
     eigenvalues = np.linalg.eigvals(dense_matrix(operator)).real
     dt = stability_limit(name, 0.5) * 0.1**1.5 * p.stability_interval / 2.0
-    assert np.abs(p(eigenvalues * dt * 0.999)).max() <= 1.0 + 1e-13  # an eigenvalue is nil
+    assert np.abs(p(eigenvalues * dt * 0.999)).max() <= 1.0 + 1e-13  # an eigenvalue is zero
     assert np.abs(p(eigenvalues * dt * 1.02)).max() > 1.0
 
 
@@ -124,5 +126,6 @@ def test_refused(arguments, field):
 def test_the_limit_is_zero_where_the_symbol_is_positive(scheme, beta, order, overlap):
     """Whether a kernel of high order at a small overlap amplifies a wave is seen from the symbol on a fine grid."""
     theta = np.linspace(0.01, np.pi, 2000)
-    assert SCHEMES[scheme].symbol(theta, 1.0 + beta, order, overlap).max() > 0.0
+    setting = Setting(alpha=1.0 + beta, order=order, overlap=overlap)
+    assert SCHEMES[scheme].symbol(theta, setting).max() > 0.0
     assert stability_limit(scheme, beta, order, overlap) == 0.0

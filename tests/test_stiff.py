@@ -149,7 +149,7 @@ def test_fpse_in_the_plane_is_the_exponential_of_its_matrix(exterior, time):
 def growth_of_chebyshev(case: Case, terms: int) -> float:
     """The rate at which |T_k(B) v| grows, per term, for random v."""
     operator = SCHEMES[case.scheme].operator(case.setting)
-    low = case.setting.rate * case.symbol_range[0] + operator.least_excess
+    low = case.setting.rate * case.symbol_range[0] + operator.diagonal_shift[0]
     b = 2.0 / -low * dense_matrix(operator) + np.eye(operator.size)
     v = np.random.default_rng(1).standard_normal((operator.size, 4))
     before, now, sizes = v, b @ v, []
@@ -278,11 +278,11 @@ def test_dd_at_a_small_overlap_says_that_a_constant_decays():
 def cases(draw, one_sum: bool = False) -> Case:
     """Cases that are valid; `one_sum`: or done by one lattice sum, which uses the far field once, so not in pieces."""
     scheme = draw(st.sampled_from(["DD", "FPSE", "KPSE", "GPSE", "DPSE", "FD"]))
-    dim = draw(st.sampled_from([1, 1, 1, 2, 2, 3])) if len(SCHEMES[scheme].DIMS) > 1 else 1
-    orders = SCHEMES[scheme].ORDERS if dim == 1 else SCHEMES[scheme].BOX_ORDERS
+    dim = draw(st.sampled_from([1, 1, 1, 2, 2, 3])) if len(SCHEMES[scheme].dims) > 1 else 1
+    orders = SCHEMES[scheme].orders if dim == 1 else SCHEMES[scheme].box_orders
     order = draw(st.sampled_from(orders))
     # The set-up of an open cube takes seconds.
-    exterior = draw(st.sampled_from(SCHEMES[scheme].EXTERIORS)) if dim < 3 else "truncated"
+    exterior = draw(st.sampled_from(SCHEMES[scheme].exteriors)) if dim < 3 else "truncated"
     beta = draw(st.sampled_from([0.02, 0.3, 0.5, 0.77, 0.98]))
     n = draw(st.integers(8, {1: 60, 2: 12, 3: 8}[dim]))
     if scheme == "GPSE" and exterior == "open":

@@ -8,9 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.direct import MatrixConvolution, NaiveConvolution
 from fracparticles.lattice.fourier import FourierConvolution, transform_length
-from fracparticles.lattice.matrix import MatrixConvolution
-from fracparticles.lattice.naive import NaiveConvolution
 from fracparticles.lattice.sums import SUMMATIONS, fast_convolution
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 __all__ = [
     "AccuracyWarning",
     "FracparticlesError",
@@ -9,6 +11,8 @@ __all__ = [
     "InvalidInput",
     "NonFiniteSolution",
     "StabilityWarning",
+    "one_of",
+    "spelled",
 ]
 
 _LONGEST = 200  # characters of a value that a message shows
@@ -41,6 +45,27 @@ class InvalidInput(FracparticlesError, ValueError):
         value = " ".join(repr(self.value).split())
         shown = value if len(value) <= _LONGEST else f"{value[:_LONGEST]}..."
         return f"{self.field} = {shown} is not allowed: {self.allowed}. {self.remedy}"
+
+
+def spelled(values: Iterable[object], last: str = " or ") -> str:
+    """Return the values as a list in words: "2, 4 or 6"; with none among them as "nothing", and texts in quotes then."""
+    values = list(values)
+    words = [str(one) for one in values]
+    if None in values:
+        words = ["nothing" if one is None else repr(one) for one in values]
+    return last.join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
+def one_of(
+    field: str,
+    value: object,
+    choices: Iterable[object],
+    where: str = "",
+    remedy: str = "Choose one of these.",
+) -> InvalidInput:
+    """Return the error of a value that is none of the choices; `where` says what has only these."""
+    allowed = f"{spelled(choices)} for {where}" if where else f"one of {spelled(choices, ', ')}"
+    return InvalidInput(field, value, allowed, remedy)
 
 
 class NonFiniteSolution(FracparticlesError, ArithmeticError):

@@ -224,7 +224,7 @@ def batches(
         needed_by.clear()
     for key, names in needed_by.items():
         case = widest[key]
-        at_once = _MOVING_AT_ONCE if case.scheme == "DVM" else _AT_ONCE[case.dim]
+        at_once = _MOVING_AT_ONCE if case.kind.moving else _AT_ONCE[case.dim]
         groups.setdefault((at_once, *names), []).append(case)
     for (at_once, name, *_), cases in groups.items():
         for first in range(0, len(cases), at_once):

@@ -113,6 +113,10 @@ class Inputs:
                 found = found[np.isclose(column.astype(float), wanted, rtol=1e-6, atol=0.0)]
         return found
 
+    def judged(self, findings: Iterable[Finding]) -> list[Finding]:
+        """Return the findings on claims of the scene's items."""
+        return [finding for finding in findings if finding.claim.split(".")[0] in self.items]
+
 
 @dataclass(frozen=True)
 class Result:

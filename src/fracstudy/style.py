@@ -2,49 +2,50 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import matplotlib.style
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
 
 from fracparticles.files import replacing
+from fracparticles.schemes import ALL_SCHEMES
+from fracstudy.inputs import NUMERALS
 
-__all__ = ["COLOURS", "MARKERS", "axes_row", "legend_below", "note_below", "save", "slope_triangle"]
+__all__ = [
+    "COLOURS",
+    "MARKERS",
+    "axes_row",
+    "entry",
+    "guide",
+    "legend_below",
+    "legend_entries",
+    "log_log",
+    "name_ticks",
+    "note",
+    "note_below",
+    "panel_title",
+    "save",
+    "scheme_legend",
+    "scheme_lines",
+    "scheme_style",
+    "slope_triangle",
+]
 
 mpl.use("Agg")
 mpl.style.use(Path(__file__).with_name("fracstudy.mplstyle"))
 
-# Okabe & Ito (2008), one colour and one marker for each scheme, everywhere; DVM's is not theirs.
-COLOURS = {
-    "DD": "#0072B2",
-    "FPSE": "#D55E00",
-    "KPSE": "#009E73",
-    "GPSE": "#CC79A7",
-    "DVM": "#7F3C8D",  # their yellow is too pale for lines
-    "FD": "#56B4E9",
-    "DPSE": "#E69F00",
-    "PSE29": "#999999",
-    "RIESZ": "#8A6D3B",
-    "exact": "#000000",
-}
-MARKERS = {
-    "DD": "o",
-    "FPSE": "s",
-    "KPSE": "^",
-    "GPSE": "D",
-    "DVM": "p",
-    "FD": "v",
-    "DPSE": "P",
-    "PSE29": "X",
-    "RIESZ": "*",
-    "exact": "",
-}
+# Okabe & Ito (2008), one colour and one marker for each scheme, everywhere.
+COLOURS = {name: scheme.colour for name, scheme in ALL_SCHEMES.items()} | {"exact": "#000000"}
+MARKERS = {name: scheme.marker for name, scheme in ALL_SCHEMES.items()} | {"exact": ""}
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -61,19 +62,108 @@ def axes_row(
     return figure, axes
 
 
-def legend_below(figure: Figure, ax: Axes, columns: int = 4) -> None:
-    """Put one frameless legend, with the entries of `ax`, below the panels."""
-    handles, labels = ax.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+def panel_title(ax: Axes, letter: str, text: str) -> None:
+    """Title a panel "(a) text", at the left."""
+    ax.set_title(f"({letter}) {text}", loc="left")
 
 
-def note_below(figure: Figure, note: str) -> None:
+def log_log(ax: Axes, **more: Any) -> None:
+    """Make both axes logarithmic, and set what else is given: labels, limits."""
+    ax.set(xscale="log", yscale="log", **more)
+
+
+def name_ticks(ax: Axes, values: Iterable[float], axis: str = "x", form: str = "g") -> None:
+    """Put ticks at these values of an axis, as plain numbers, and nowhere else."""
+    named = {value: f"{value:{form}}" for value in values}
+    ax.set(**{f"{axis}ticks": list(named), f"{axis}ticklabels": list(named.values())})
+    getattr(ax, f"{axis}axis").minorticks_off()
+
+
+def note(ax: Axes, text: str, at: tuple[Any, Any], shift: tuple[float, float], **more: Any) -> None:
+    """Write a text in small print, `shift` points from a place."""
+    style = {"color": "0.3", "fontsize": 8, "textcoords": "offset points", **more}
+    ax.annotate(text, at, xytext=shift, **style)
+
+
+def scheme_style(scheme: str, order: int | str | None = None, **more: Any) -> dict[str, Any]:
+    """Return the line of a scheme: its colour and marker; solid and filled for order 2 or none, dashed and open beyond.
+
+    Parameters
+    ----------
+    scheme : str
+        A scheme, or "exact".
+    order : int or str, optional
+        2, 4, ..., or as the paper writes them.
+    **more
+        What else a line is drawn with, or otherwise than here.
+    """
+    colour, low = COLOURS[scheme], order in (None, 2, "II")
+    line = {"linestyle": "-" if low else "--", "markerfacecolor": colour if low else "white"}
+    return {"color": colour, "marker": MARKERS[scheme], **line, **more}
+
+
+def scheme_lines(
+    ax: Axes,
+    frame: pd.DataFrame,
+    x: str = "x",
+    y: str = "y",
+    by: Sequence[str] = ("scheme", "order"),
+    **more: Any,
+) -> None:
+    """Draw one column against another, a line a scheme, or a scheme and order, in `scheme_style`."""
+    for key, points in frame.sort_values(x).groupby(list(by)):
+        ax.plot(points[x], points[y], **scheme_style(*key, **more))
+
+
+def entry(label: str, **style: Any) -> Line2D:
+    """Return an entry of a legend."""
+    return Line2D([], [], label=label, **style)
+
+
+def legend_entries(
+    pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]], **more: Any
+) -> list[Line2D]:
+    """Return an entry for each scheme and order; those of a frame are in its columns `scheme` and `order`.
+
+    The order is not named if it is None, nor for GPSE, which has none.
+    """
+    if isinstance(pairs, pd.DataFrame):
+        pairs = sorted(pairs.groupby(["scheme", "order"]).groups)
+    entries = []
+    for scheme, order in pairs:
+        words = [scheme]
+        if order is not None and scheme != "GPSE":
+            words.append(order if isinstance(order, str) else NUMERALS[order])
+        entries.append(entry(" ".join(words), **scheme_style(scheme, order, **more)))
+    return entries
+
+
+def scheme_legend(
+    figure: Figure,
+    pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]],
+    extra: Iterable[Line2D] = (),
+    columns: int | None = None,
+) -> None:
+    """Name schemes and orders, see `legend_entries`, and what else is given below the panels."""
+    legend_below(figure, [*legend_entries(pairs), *extra], columns)
+
+
+def legend_below(
+    figure: Figure, entries: Axes | Sequence[Line2D], columns: int | None = None
+) -> None:
+    """Put one frameless legend below the panels: the entries given, or those of `ax`; all in a row if not told."""
+    handles = entries.get_legend_handles_labels()[0] if isinstance(entries, Axes) else list(entries)
+    ncols = len(handles) if columns is None else columns
+    figure.legend(handles=handles, loc="outside lower center", ncols=ncols)
+
+
+def note_below(figure: Figure, text: str) -> None:
     """Write what was timed, and on what machine, in small print: above the legend, or below the panels without one."""
     if not figure.legends:
-        figure.supxlabel(note, fontsize=7, color="0.4")
+        figure.supxlabel(text, fontsize=7, color="0.4")
         return
     legend = figure.legends[-1]
-    legend.set_title(note)
+    legend.set_title(text)
     legend.get_title().set(fontsize=7, color="0.4")
 
 
@@ -95,6 +185,16 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
         color="0.25",
         fontsize=8,
     )
+
+
+def guide(
+    ax: Axes, x: Sequence[float], through: tuple[float, float], slope: float, label: str = ""
+) -> None:
+    """Draw a dotted line of that slope on log-log axes between two `x`, through a point; its label at the right end."""
+    ends = np.array([min(x), max(x)])
+    y = through[1] * (ends / through[0]) ** slope
+    ax.plot(ends, y, color="0.45", linewidth=0.9, linestyle=":")
+    note(ax, label, (ends[1], y[1]), (0, 4), ha="right")
 
 
 def save(figure: Figure, stem: str | Path) -> None:

@@ -29,16 +29,36 @@ import math
 
 import numpy as np
 
-from fracparticles.arguments import fractional_order, positive_real
-from fracparticles.graded.particles import graded_particles, refuse_many
+from fracparticles.arguments import choice, fractional_order, positive_real
+from fracparticles.graded.particles import FORMS, graded_particles, green_step, refuse_many
 from fracparticles.special import green
 
-__all__ = ["green_step_of_field"]
+__all__ = ["GRADED_FORMS", "INTERPOLATED", "graded_step", "green_step_of_field"]
+
+INTERPOLATED = "interpolated"
+GRADED_FORMS = (*FORMS, INTERPOLATED)
 
 # The worst panel, of length d, has singularities over one of its ends, d away from it: the error of Gauss's rule is
 # about 4.6^(-2 n), 1e-16 for 12 nodes.
 _NODES = 12
 _BLOCK = 2**22  # values of sincs at a time: 32 MB
+
+
+def graded_step(
+    count: int, reach: float, scale: float, alpha: float, time: float, form: str = INTERPOLATED
+) -> np.ndarray:
+    """Return the matrix of one step on graded particles in any of the `GRADED_FORMS`.
+
+    It is that of `green_step_of_field` for "interpolated", and else that of `green_step`; parameters as there.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    if choice("form", form, GRADED_FORMS) == INTERPOLATED:
+        return green_step_of_field(count, reach, scale, alpha, time)
+    return green_step(*graded_particles(count, reach, scale), alpha, time, form)
 
 
 def green_step_of_field(

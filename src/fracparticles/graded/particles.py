@@ -24,20 +24,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.arguments import (
-    fractional_order,
-    positive_integer,
-    positive_real,
-    real_array,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.special import green
 
-__all__ = ["FORMS", "MOST", "SIZES", "graded_particles", "green_step"]
+__all__ = ["FORMS", "MOST", "graded_particles", "green_step", "refuse_many"]
 
 FORMS = ("exchange", "quadrature")
 MOST = 10001  # particles: the matrix then takes 800 MB
-SIZES = 1e-100, 1e100  # lengths; no ratio, square or sum of them overflows
 _LARGEST = 1e150  # of the positions and volumes that `green_step` takes
 
 
@@ -58,22 +52,13 @@ def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray
     InvalidInput
         If an argument is outside its range.
     """
-    count = positive_integer("count", count)
+    count = check.positive_integer("count", count)
     if count < 3 or count % 2 == 0:
         raise InvalidInput("count", count, "an odd number > 1", "Add one particle.")
-    reach, scale = _length("reach", reach), _length("scale", scale)
+    reach, scale = check.scale("reach", reach), check.scale("scale", scale)
     step = 2.0 * np.arcsinh(reach / scale) / (count - 1)
     s = (np.arange(count) - count // 2) * step
     return scale * np.sinh(s), scale * np.cosh(s) * step
-
-
-def _length(field: str, value: float) -> float:
-    size = positive_real(field, value)
-    if not SIZES[0] <= size <= SIZES[1]:
-        raise InvalidInput(
-            field, value, f"from {SIZES[0]:g} to {SIZES[1]:g}", "Take another unit of length."
-        )
-    return size
 
 
 def refuse_many(field: str, count: int) -> None:
@@ -85,9 +70,8 @@ def refuse_many(field: str, count: int) -> None:
         If there are more than `MOST`.
     """
     if count > MOST:
-        raise InvalidInput(
-            field, count, f"at most {MOST} particles in a dense matrix", "Take fewer particles."
-        )
+        most = f"at most {MOST} particles in a dense matrix"
+        raise InvalidInput(field, count, most, "Take fewer particles.")
 
 
 def green_step(
@@ -112,29 +96,12 @@ def green_step(
     InvalidInput
         If an argument is outside its range.
     """
-    if form not in FORMS:
-        raise InvalidInput("form", form, " or ".join(FORMS), "Choose one of these.")
-    alpha, time = fractional_order(alpha), positive_real("time", time)
-    x, volumes = real_array("x", x), real_array("volumes", volumes)
-    if x.ndim != 1 or x.shape != volumes.shape or x.size == 0:
-        raise InvalidInput(
-            "volumes",
-            f"an array of shape {volumes.shape}",
-            f"an array of shape {x.shape}, one volume for each particle on the line, one particle at least",
-            "Give a volume for each position.",
-        )
+    check.choice("form", form, FORMS)
+    alpha, time = check.fractional_order(alpha), check.positive_real("time", time)
+    x = check.within("x", check.vector("x", x, least=0), -_LARGEST, _LARGEST)
+    volumes = check.vector("volumes", volumes, x.size)
+    volumes = check.within("volumes", volumes, 0.0, _LARGEST, inside=True)
     refuse_many("x", x.size)
-    if not (np.abs(x) <= _LARGEST).all():
-        raise InvalidInput(
-            "x", float(np.abs(x).max()), f"at most {_LARGEST:g} in size", "Take another unit."
-        )
-    if not ((volumes > 0.0) & (volumes <= _LARGEST)).all():
-        raise InvalidInput(
-            "volumes",
-            float(volumes[np.argmin((volumes > 0.0) & (volumes <= _LARGEST))]),
-            f"above zero, and at most {_LARGEST:g}",
-            "Mend the particles; `graded_particles` makes such.",
-        )
     matrix = volumes * np.asarray(green(x[:, None] - x, time, alpha))
     if form == "exchange":
         np.fill_diagonal(matrix, 0.0)

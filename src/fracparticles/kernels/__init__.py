@@ -1,1 +1,1 @@
-"""The kernels of the schemes: by name and family, of high order, tabulated."""
+"""The kernels of the schemes: by name and kernel family, printed, of high order, tabulated."""

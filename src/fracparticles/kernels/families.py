@@ -1,16 +1,9 @@
-r"""The kernels of the particle schemes, by name.
+r"""The kernels of the particle schemes, by name and kernel family.
 
 Every kernel is radial (a function of r = |r|) or a vector along r; each has unit smoothing length,
-K_eps(r) = eps^-n K(r / eps). With M(a, b, z) = 1F1(a; b; -z), orders II and IV differ in one rule:
-
-    order II:  M(a, b, r^2)
-    order IV:  2 M(a, b, r^2) - 2^-a M(a, b, r^2 / 2)
-
-((B.18), which misprints the last argument; compare (12), (15), (21)). In Fourier space the rule is
-2 f(k) - f(sqrt(2) k) for the two Gaussians of (8) and (9).
-
-These are the `printed` family. There is a second one, `gamma`, of any even order to 12 (`kernels_high_order`): the
-same in order 2, another in order 4, and the only one from order 6.
+K_eps(r) = eps^-n K(r / eps). There are two kernel families: `printed`, the paper's orders II and IV
+(`kernels.printed`), and `gamma`, of any even order to 12 (`kernels.high_order`): the same in order 2, another in
+order 4, and the only one from order 6.
 
 `KERNELS` lists what there is; `kernel` evaluates, `kernel_transform` gives the Fourier transform.
 Equation numbers are those of Lucchesi et al. (2020).
@@ -19,21 +12,16 @@ Equation numbers are those of Lucchesi et al. (2020).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-from scipy.special import gamma, gammaincc
-
-from fracparticles.arguments import fractional_order, real_array
+from fracparticles.arguments import choice
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels import high_order as kernels_high_order
-from fracparticles.kernels.high_order import gamma_nb
-from fracparticles.special.hypergeometric import kummer_order_four, kummer_transformed
-from fracparticles.special.stable import reduced_green
+from fracparticles.kernels.high_order import GAMMA, ORDERS
+from fracparticles.kernels.printed import PRINTED
+from fracparticles.kernels.rules import FloatArray, KernelFamily
 
 __all__ = [
     "FAMILIES",
@@ -45,137 +33,8 @@ __all__ = [
     "kernel_transform",
 ]
 
-FloatArray = NDArray[np.float64]
-LARGEST = 1e150  # the square must not overflow
 FAMILIES = ("printed", "gamma")
-PAPER_ORDERS = (2, 4)  # of the printed family
-
-
-# --- in space -------------------------------------------------------------------------------------
-
-
-def _m(c: float, b: float, r: FloatArray, order: int) -> FloatArray:
-    """M(b - c, b, r^2) in order II or IV (B.18); c = b - a keeps its digits as alpha nears 2."""
-    return np.asarray(
-        kummer_transformed(c, b, r * r) if order == 2 else kummer_order_four(c, b, r * r)
-    )
-
-
-def _gaussian(r: FloatArray, n: int) -> FloatArray:
-    return np.exp(-r * r) / math.pi ** (0.5 * n)
-
-
-def _wide_gaussian(r: FloatArray, n: int) -> FloatArray:
-    return np.exp(-0.5 * r * r) / (2.0 * math.pi) ** (0.5 * n)
-
-
-def _eta(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """eta = pi^(-n/2) exp(-r^2)  (8);  2 pi^(-n/2) exp(-r^2) - (2 pi)^(-n/2) exp(-r^2/2)  (9)."""
-    if order == 2:
-        return _gaussian(r, n)
-    return 2.0 * _gaussian(r, n) - _wide_gaussian(r, n)
-
-
-def _eta1(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """eta1 = -2 r pi^(-n/2) exp(-r^2)  (23);  -(n + 4 - 2 r^2) r pi^(-n/2) exp(-r^2).
-
-    (24) prints 5 - 2 r^2, which is n = 1; the second-moment condition gives n + 4.
-    """
-    if order == 2:
-        return -2.0 * r * _gaussian(r, n)
-    return -(n + 4.0 - 2.0 * r * r) * (r * _gaussian(r, n))
-
-
-def _phi(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """Phi = -(1/r) d eta/dr = 2 pi^(-n/2) exp(-r^2)  (17); order IV: the same of (9)."""
-    if order == 2:
-        return 2.0 * _gaussian(r, n)
-    return 4.0 * _gaussian(r, n) - _wide_gaussian(r, n)
-
-
-def _kappa(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """kappa = Gamma_{n,0}(beta-1) M((beta-1+n)/2, n/2, r^2)  (14), (15)."""
-    return gamma_nb(n, 0, alpha - 2.0) * _m(0.5 * (2.0 - alpha), 0.5 * n, r, order)
-
-
-def _f(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """F = -Gamma_{n,2}(alpha) M((n+alpha)/2, (n+2)/2, r^2) r  (20), (21)."""
-    return -r * _k(r, alpha, n, order)
-
-
-def _g(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """G = -Gamma_{n,0}(alpha) M((alpha+n)/2, n/2, r^2)  (11), (12)."""
-    return -gamma_nb(n, 0, alpha) * _m(-0.5 * alpha, 0.5 * n, r, order)
-
-
-def _k(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """K = -F . r / |r|^2 = Gamma_{n,2}(alpha) M((alpha+n)/2, (n+2)/2, r^2)  (31), (32)."""
-    return gamma_nb(n, 2, alpha) * _m(0.5 * (2.0 - alpha), 0.5 * (n + 2), r, order)
-
-
-def _e(r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """E = L_alpha^0  (39); Phi_{n,alpha} of (57), (58) in n dimensions."""
-    return np.asarray(reduced_green(r, alpha, n))
-
-
-# --- in Fourier space -----------------------------------------------------------------------------
-
-
-def _eta_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """exp(-k^2/4);  2 exp(-k^2/4) - exp(-k^2/2)."""
-    narrow = np.exp(-0.25 * k * k)
-    return narrow if order == 2 else 2.0 * narrow - np.exp(-0.5 * k * k)
-
-
-def _eta1_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """k exp(-k^2/4);  k (1 + k^2/4) exp(-k^2/4), for every n.
-
-    Order IV is the gradient of ((n + 2)/2 - r^2) pi^(-n/2) exp(-r^2).
-    """
-    return k * np.exp(-0.25 * k * k) * (1.0 if order == 2 else 1.0 + 0.25 * k * k)
-
-
-def _phi_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """2 exp(-k^2/4);  4 exp(-k^2/4) - exp(-k^2/2)."""
-    narrow = np.exp(-0.25 * k * k)
-    return 2.0 * narrow if order == 2 else 4.0 * narrow - np.exp(-0.5 * k * k)
-
-
-def _kappa_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """k^(alpha-2) eta^(k)  (B.11): infinite at k = 0."""
-    with np.errstate(divide="ignore"):
-        return k ** (alpha - 2.0) * _eta_hat(k, alpha, n, order)
-
-
-def _f_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """k^(alpha-1) eta^(k)  (B.12)."""
-    return k ** (alpha - 1.0) * _eta_hat(k, alpha, n, order)
-
-
-def _g_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """-k^alpha eta^(k)  (B.13)."""
-    return -(k**alpha) * _eta_hat(k, alpha, n, order)
-
-
-def _k_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """2^beta Gamma(s, k^2/4);  2^alpha Gamma(s, k^2/4) - 2^(s-1) Gamma(s, k^2/2),  s = alpha/2.
-
-    From r K = -F the transform obeys dK^/dk = -k^(alpha-1) eta^(k), for every n, and vanishes at
-    infinity; Gamma(s, x) is the upper incomplete gamma function.
-    """
-    s = 0.5 * alpha
-    narrow = 2.0 ** (alpha - 1.0) * gamma(s) * gammaincc(s, 0.25 * k * k)
-    if order == 2:
-        return narrow
-    return 2.0 * narrow - 2.0 ** (s - 1.0) * gamma(s) * gammaincc(s, 0.5 * k * k)
-
-
-def _e_hat(k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-    """exp(-k^alpha)."""
-    return np.exp(-(k**alpha))
-
-
-# --- by name --------------------------------------------------------------------------------------
+PAPER_ORDERS = PRINTED.orders
 
 
 @dataclass(frozen=True)
@@ -200,10 +59,8 @@ class Kernel:
     symbol: str
     equation: str
     parity: str
-    _space: Callable[[FloatArray, float, int, int], FloatArray]
-    _transform: Callable[[FloatArray, float, int, int], FloatArray]
     _excess: float = math.inf  # the far field is r^-(n + alpha + excess); inf: Gaussian
-    orders: tuple[int, ...] = kernels_high_order.ORDERS
+    orders: tuple[int, ...] = ORDERS
     dims: tuple[int, ...] = (1, 2, 3)
 
     def decay(self, alpha: float, dim: int = 1) -> float:
@@ -211,61 +68,31 @@ class Kernel:
         return dim + alpha + self._excess
 
 
-KERNELS: Mapping[str, Kernel] = MappingProxyType(
-    {
-        entry.name: entry
-        for entry in (
-            Kernel("eta", r"\eta", "(8), (9)", "even", _eta, _eta_hat),
-            Kernel("eta1", r"\eta^1", "(23), (24)", "odd", _eta1, _eta1_hat),
-            Kernel("Phi", r"\Phi", "(17)", "even", _phi, _phi_hat),
-            Kernel("kappa", r"\kappa^\beta", "(14), (15)", "even", _kappa, _kappa_hat, -2.0),
-            Kernel("F", r"\mathbf{F}", "(20), (21)", "odd", _f, _f_hat, -1.0),
-            Kernel("G", "G", "(11), (12)", "even", _g, _g_hat, 0.0),
-            Kernel("K", "K", "(31), (32)", "even", _k, _k_hat, 0.0),
-            Kernel("E", "E", "(39)", "even", _e, _e_hat, 0.0, orders=(2,)),
-        )
-    }
+_LISTED = (
+    Kernel("eta", r"\eta", "(8), (9)", "even"),
+    Kernel("eta1", r"\eta^1", "(23), (24)", "odd"),
+    Kernel("Phi", r"\Phi", "(17)", "even"),
+    Kernel("kappa", r"\kappa^\beta", "(14), (15)", "even", -2.0),
+    Kernel("F", r"\mathbf{F}", "(20), (21)", "odd", -1.0),
+    Kernel("G", "G", "(11), (12)", "even", 0.0),
+    Kernel("K", "K", "(31), (32)", "even", 0.0),
+    Kernel("E", "E", "(39)", "even", 0.0, orders=(2,)),
 )
+KERNELS: Mapping[str, Kernel] = MappingProxyType({entry.name: entry for entry in _LISTED})
 
 
 def family_of(order: int, family: str | None = None, field: str = "family") -> str:
-    """Return the family, the default resolved: printed for the orders 2 and 4, gamma beyond.
+    """Return the kernel family, the default resolved: printed for the orders 2 and 4, gamma beyond.
 
-    Raises
-    ------
-    InvalidInput
-        If there is no such family, or it has no such order.
+    Raises `InvalidInput` if there is no such kernel family, or it has no such order.
     """
     if family is None:
         return "printed" if order in PAPER_ORDERS else "gamma"
-    if family not in FAMILIES:
-        raise InvalidInput(field, family, f"one of {', '.join(FAMILIES)}", "Choose a family.")
+    choice(field, family, FAMILIES)
     if family == "printed" and order not in PAPER_ORDERS:
-        raise InvalidInput(
-            field,
-            family,
-            f"'gamma' for order {order}: the paper prints the orders 2 and 4",
-            "Leave it out, or choose order 2 or 4.",
-        )
+        allowed = f"'gamma' for order {order}: the paper prints the orders 2 and 4"
+        raise InvalidInput(field, family, allowed, "Leave it out, or choose order 2 or 4.")
     return family
-
-
-def _select(name: str, alpha: Any, dim: int, order: int) -> tuple[Kernel, float]:
-    if not isinstance(name, str) or name not in KERNELS:
-        raise InvalidInput("name", name, f"one of {', '.join(KERNELS)}", "Choose a kernel.")
-    entry = KERNELS[name]
-    if dim not in entry.dims:
-        raise InvalidInput("dim", dim, f"one of {entry.dims} for {name}", "Choose a dimension.")
-    if order not in entry.orders:
-        raise InvalidInput("order", order, f"one of {entry.orders} for {name}", "Choose an order.")
-    return entry, fractional_order(alpha)
-
-
-def _takes_gamma(entry: Kernel, order: int, family: str | None) -> bool:
-    """Whether the kernel is one of the gamma family that the printed one does not have."""
-    if family is not None and len(entry.orders) == 1:
-        raise InvalidInput("family", family, f"nothing for {entry.name}", "Leave it out.")
-    return family_of(order, family) == "gamma" and order > 2
 
 
 def kernel(
@@ -287,7 +114,7 @@ def kernel(
     order : int
         2, 4, 6, 8, 10 or 12 (E: 2, it has no other form).
     family : {"printed", "gamma"}, optional
-        Family of the kernels; printed for the orders 2 and 4, gamma beyond if left out. Order 2 is the same in both.
+        Kernel family; printed for the orders 2 and 4, gamma beyond if left out. Order 2 is the same in both.
 
     Returns
     -------
@@ -301,16 +128,7 @@ def kernel(
     InvalidInput
         If the kernel does not exist, alpha is outside (1, 2), or r is not a distance.
     """
-    entry, alpha = _select(name, alpha, dim, order)
-    if _takes_gamma(entry, order, family):
-        return kernels_high_order.kernel(name, r, alpha, dim=dim, order=order)
-    r = real_array("r", r)
-    if (np.abs(r) > LARGEST).any():
-        raise InvalidInput("r", float(np.abs(r).max()), "|r| <= 1e150", "Scale the distances.")
-    if dim > 1 and (r < 0.0).any():
-        raise InvalidInput("r", float(r.min()), "a radius r >= 0 for dim > 1", "Give |r|.")
-    value = entry._space(r, alpha, dim, order)
-    return float(value) if r.ndim == 0 else value
+    return _family(name, order, family).kernel(name, r, alpha, dim, order)
 
 
 def kernel_transform(
@@ -336,11 +154,14 @@ def kernel_transform(
     InvalidInput
         If the kernel does not exist, alpha is outside (1, 2), or k is negative or not numeric.
     """
-    entry, alpha = _select(name, alpha, dim, order)
-    if _takes_gamma(entry, order, family):
-        return kernels_high_order.kernel_transform(name, k, alpha, dim=dim, order=order)
-    k = real_array("k", k)
-    if not ((k >= 0.0) & (k <= LARGEST)).all():
-        raise InvalidInput("k", k, "0 <= k <= 1e150", "Give the modulus of the wave vector.")
-    value = entry._transform(k, alpha, dim, order)
-    return float(value) if k.ndim == 0 else value
+    return _family(name, order, family).kernel_transform(name, k, alpha, dim, order)
+
+
+def _family(name: str, order: int, family: str | None) -> KernelFamily:
+    """The family that has the kernel in this order; of the two that have order 2, the printed one."""
+    entry = KERNELS[choice("name", name, tuple(KERNELS))]
+    if order not in entry.orders:
+        raise InvalidInput("order", order, f"one of {entry.orders} for {name}", "Choose an order.")
+    if family is not None and len(entry.orders) == 1:
+        raise InvalidInput("family", family, f"nothing for {name}", "Leave it out.")
+    return GAMMA if family_of(order, family) == "gamma" and order > 2 else PRINTED

@@ -1,17 +1,17 @@
-r"""Kernels of any even order 2m: one family, whose regularisation is an incomplete gamma function.
+r"""The gamma kernel family, of any even order 2m: its regularisation is an incomplete gamma function.
 
 The Gaussian (8) has the transform exp(-z), z = k^2 / 4. Times the first m terms of exp(z) it stays near 1:
 
     eta^(k) = e^-z sum_{j<m} z^j / j! = Q(m, z) = 1 - z^m / m! + ...,
 
-so that every kernel built from it is of order 2m. m = 1 is the order II of the paper; its order IV (9) is another
-family, all but (24), which is the gradient of m = 2. Back in space z^j is a power of the Laplacian, and with
+so that every kernel built from it is of order 2m. m = 1 is the order II of the paper; its order IV (9) is of another
+kernel family, all but (24), which is the gradient of m = 2. Back in space z^j is a power of the Laplacian, and with
 M(a, b, x) = 1F1(a; b; -x)
 
     eta = pi^(-n/2) e^-x L_{m-1}^(n/2)(x),                x = r^2,
     G   = -Gamma_{n,0}(alpha) W_m((n+alpha)/2, n/2, x),   W_m(a, b, x) = sum_{j<m} (a)_j / j! M(a + j, b, x),
 
-and likewise kappa, F and K with the constants (B.14) and parameters of (14), (20), (31). W_m is evaluated as
+and likewise kappa, F and K, see `kernels.rules`. W_m is evaluated as
 
     W_m(a, b, x) = sum_k p_k(x) q_k,   q_k = sum_{j<m} (a)_j / j! (b-a-j)_k / (b)_k,   p_k = e^-x x^k / k!  (near),
     W_m(a, b, x) ~ Gamma(b) / Gamma(b-a) x^-a [1 - (-1)^m sum_{l>=m} C(l-1, m-1) (a)_l (a-b+1)_l / (l! x^l)]  (far).
@@ -30,35 +30,25 @@ of W_m are greatest at r = 0, where all are positive. (The series in powers of x
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
 from functools import lru_cache
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import binom, gamma, gammaincc, gammainccinv, poch, rgamma
 
 from fracparticles._compiled import njit
-from fracparticles.arguments import dimension, elementwise, fractional_order, real_array
-from fracparticles.errors import InvalidInput
+from fracparticles.arguments import elementwise
+from fracparticles.kernels.rules import FloatArray, KernelFamily
 from fracparticles.special import chebyshev
 
-__all__ = ["NAMES", "ORDERS", "gamma_nb", "kernel", "kernel_transform", "wavenumber_reach"]
-
-FloatArray = NDArray[np.float64]
+__all__ = ["GAMMA", "NAMES", "ORDERS", "kernel", "kernel_transform", "wavenumber_reach"]
 
 ORDERS = (2, 4, 6, 8, 10, 12)
-_LARGEST = 1e150  # the square must not overflow
-_NIL = 750.0  # exp(-x) and any Laguerre polynomial times it is nil beyond
-
+_ZERO = 750.0  # exp(-x) and any Laguerre polynomial times it is zero beyond
 _FAR = 80.0  # beyond, 48 terms of the asymptotic series leave 1e-19 at order 12
 _WIDTH = 2.0
 _TERMS = 48
 _LAST = 260  # p_k(80) < 1e-50 beyond
-
-
-# --- W_m ------------------------------------------------------------------------------------------
 
 
 class _Table(NamedTuple):
@@ -120,26 +110,12 @@ def _evaluate(x: FloatArray, table: _Table, out: FloatArray) -> None:
         out[i] = table.prefactor * x[i] ** -table.a * (1.0 + correction)
 
 
-def _w(c: float, b: float, m: int, r: FloatArray) -> FloatArray:
-    """W_m(b - c, b, r^2)."""
-    return np.asarray(elementwise(_evaluate, r * r, _table(c, b, m)))
-
-
-# --- in space -------------------------------------------------------------------------------------
-
-
-def gamma_nb(n: int, b: int, alpha: float) -> float:
-    """Gamma_{n,b}(alpha) = 2^alpha Gamma((alpha+n)/2) / (pi^(n/2) Gamma((n+b)/2) b!)  (B.14)."""
-    return float(
-        2.0**alpha
-        * gamma(0.5 * (alpha + n))
-        / (math.pi ** (0.5 * n) * gamma(0.5 * (n + b)) * math.factorial(b))
-    )
+# --- the kernel family ----------------------------------------------------------------------------
 
 
 def _laguerre_gaussian(r: FloatArray, n: int, m: int, upper: float) -> FloatArray:
     """pi^(-n/2) e^-x L_{m-1}^(upper)(x), x = r^2, by the three-term recurrence (DLMF 18.9.1)."""
-    x = np.minimum(r * r, _NIL)
+    x = np.minimum(r * r, _ZERO)
     before, value = np.zeros_like(x), np.ones_like(x)
     for k in range(m - 1):
         next_value = ((2 * k + 1 + upper - x) * value - (k + upper) * before) / (k + 1)
@@ -147,196 +123,63 @@ def _laguerre_gaussian(r: FloatArray, n: int, m: int, upper: float) -> FloatArra
     return np.exp(-x) * value / math.pi ** (0.5 * n)
 
 
-def _eta(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """eta = pi^(-n/2) e^-x L_{m-1}^(n/2)(x): the moments of order 2 to 2m - 2 vanish."""
-    return _laguerre_gaussian(r, n, m, 0.5 * n)
+class _Gamma(KernelFamily):
+    orders = ORDERS
+
+    def m(self, c: float, b: float, r: FloatArray, order: int) -> FloatArray:
+        """W_m(b - c, b, r^2)."""
+        return np.asarray(elementwise(_evaluate, r * r, _table(c, b, int(order) // 2)))
+
+    def eta(self, r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
+        """pi^(-n/2) e^-x L_{m-1}^(n/2)(x): the moments of order 2 to 2m - 2 vanish."""
+        return _laguerre_gaussian(r, n, int(order) // 2, 0.5 * n)
+
+    def phi(self, r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
+        """2 pi^(-n/2) e^-x L_{m-1}^(n/2+1)(x), as (17)."""
+        return 2.0 * _laguerre_gaussian(r, n, int(order) // 2, 0.5 * n + 1.0)
+
+    def eta1(self, r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
+        """d eta/dr = -r Phi: (23), and for m = 2 (24)."""
+        return -r * self.phi(r, alpha, n, order)
+
+    def eta_hat(self, k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
+        """Q(m, k^2/4) = e^-z sum_{j<m} z^j / j!,  z = k^2/4."""
+        return np.asarray(gammaincc(int(order) // 2, 0.25 * k * k))
+
+    def eta1_hat(self, k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
+        """k eta^(k), for every n."""
+        return k * self.eta_hat(k, alpha, n, order)
+
+    def k_hat(self, k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
+        """int_k^inf k^(alpha-1) eta^ dk = 2^(alpha-1) sum_{j<m} Gamma(s + j, k^2/4) / j!,  s = alpha/2.
+
+        For every n; Gamma(s, x) is the upper incomplete gamma function.
+        K^(0) = (2^alpha / alpha) Gamma(m + s) / (m-1)!.
+        """
+        s, z = 0.5 * alpha, np.minimum(0.25 * k * k, _ZERO)
+        # Gamma(s + 1, z) = s Gamma(s, z) + z^s e^-z: no term is negative.
+        upper, power = gamma(s) * gammaincc(s, z), z**s * np.exp(-z)
+        total = upper
+        for j in range(1, int(order) // 2):
+            upper = (s + j - 1.0) * upper + power
+            power = power * z
+            total = total + upper / math.factorial(j)
+        return 2.0 ** (alpha - 1.0) * total
+
+    def phi_hat(self, k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
+        """2 sum_{j<m} Q(j + 1, k^2/4): K^ for alpha = 2."""
+        return self.k_hat(k, 2.0, n, order)
 
 
-def _phi(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """Phi = -(1/r) d eta/dr = 2 pi^(-n/2) e^-x L_{m-1}^(n/2+1)(x), as (17)."""
-    return 2.0 * _laguerre_gaussian(r, n, m, 0.5 * n + 1.0)
+GAMMA = _Gamma()
+NAMES = GAMMA.names
+kernel, kernel_transform = GAMMA.kernel, GAMMA.kernel_transform
 
 
-def _eta1(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """eta1 = d eta/dr = -r Phi: (23), and for m = 2 (24)."""
-    return -r * _phi(r, alpha, n, m)
+def wavenumber_reach(order: int, smallest: float = 1e-22) -> float:
+    """Return the wavenumber beyond which eta^ = Q(m, k^2/4) < smallest; all transforms are a power of k times that.
 
-
-def _kappa(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """kappa = Gamma_{n,0}(beta-1) W_m((beta-1+n)/2, n/2, r^2), as (14)."""
-    return gamma_nb(n, 0, alpha - 2.0) * _w(0.5 * (2.0 - alpha), 0.5 * n, m, r)
-
-
-def _g(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """G = -Gamma_{n,0}(alpha) W_m((alpha+n)/2, n/2, r^2), as (11)."""
-    return -gamma_nb(n, 0, alpha) * _w(-0.5 * alpha, 0.5 * n, m, r)
-
-
-def _k(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """K = Gamma_{n,2}(alpha) W_m((n+alpha)/2, (n+2)/2, r^2), as (31)."""
-    return gamma_nb(n, 2, alpha) * _w(0.5 * (2.0 - alpha), 0.5 * (n + 2), m, r)
-
-
-def _f(r: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """F = -r K, as (20)."""
-    return -r * _k(r, alpha, n, m)
-
-
-# --- in Fourier space -----------------------------------------------------------------------------
-
-
-def _eta_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """Q(m, k^2/4) = e^-z sum_{j<m} z^j / j!,  z = k^2/4."""
-    return np.asarray(gammaincc(m, 0.25 * k * k))
-
-
-def _eta1_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """k eta^(k), for every n."""
-    return k * _eta_hat(k, alpha, n, m)
-
-
-def _k_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """int_k^inf k^(alpha-1) eta^ dk = 2^(alpha-1) sum_{j<m} Gamma(s + j, k^2/4) / j!,  s = alpha/2.
-
-    For every n; Gamma(s, x) is the upper incomplete gamma function. K^(0) = (2^alpha / alpha) Gamma(m + s) / (m-1)!.
+    Raises `InvalidInput` if the order is not one of `ORDERS`.
     """
-    s, z = 0.5 * alpha, np.minimum(0.25 * k * k, _NIL)
-    # Gamma(s + 1, z) = s Gamma(s, z) + z^s e^-z: no term is negative.
-    upper, power = gamma(s) * gammaincc(s, z), z**s * np.exp(-z)
-    total = upper
-    for j in range(1, m):
-        upper = (s + j - 1.0) * upper + power
-        power = power * z
-        total = total + upper / math.factorial(j)
-    return 2.0 ** (alpha - 1.0) * total
-
-
-def _phi_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """2 sum_{j<m} Q(j + 1, k^2/4): K^ for alpha = 2."""
-    return _k_hat(k, 2.0, n, m)
-
-
-def _kappa_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """k^(alpha-2) eta^(k): infinite at k = 0."""
-    with np.errstate(divide="ignore"):
-        return k ** (alpha - 2.0) * _eta_hat(k, alpha, n, m)
-
-
-def _f_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """k^(alpha-1) eta^(k)."""
-    return k ** (alpha - 1.0) * _eta_hat(k, alpha, n, m)
-
-
-def _g_hat(k: FloatArray, alpha: float, n: int, m: int) -> FloatArray:
-    """-k^alpha eta^(k)."""
-    return -(k**alpha) * _eta_hat(k, alpha, n, m)
-
-
-# --- by name --------------------------------------------------------------------------------------
-
-_Function = Callable[[FloatArray, float, int, int], FloatArray]
-
-_FUNCTIONS: Mapping[str, tuple[_Function, _Function]] = MappingProxyType(
-    {
-        "eta": (_eta, _eta_hat),
-        "eta1": (_eta1, _eta1_hat),
-        "Phi": (_phi, _phi_hat),
-        "kappa": (_kappa, _kappa_hat),
-        "F": (_f, _f_hat),
-        "G": (_g, _g_hat),
-        "K": (_k, _k_hat),
-    }
-)
-NAMES = tuple(_FUNCTIONS)
-
-
-def _half_order(order: Any) -> int:
-    if isinstance(order, bool) or order not in ORDERS:
-        raise InvalidInput("order", order, f"one of {ORDERS}", "Choose an order.")
-    return int(order) // 2
-
-
-def _select(name: str, alpha: Any, dim: Any, order: Any) -> tuple[_Function, _Function, float, int]:
-    if not isinstance(name, str) or name not in _FUNCTIONS:
-        raise InvalidInput("name", name, f"one of {', '.join(NAMES)}", "Choose a kernel.")
-    dimension(dim)
-    m = _half_order(order)
-    return (*_FUNCTIONS[name], fractional_order(alpha), m)
-
-
-def kernel(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> FloatArray | float:
-    """Return the kernel `name` of order 2m at distance r, for unit smoothing length.
-
-    Parameters
-    ----------
-    name : str
-        One of `NAMES`.
-    r : array_like
-        Distances |r| <= 1e150, any shape. For dim = 1 they may have a sign.
-    alpha : float
-        Fractional order, 1 < alpha < 2 (eta, eta1 and Phi do not depend on it).
-    dim : int
-        Number of dimensions, 1 to 3.
-    order : int
-        One of `ORDERS`.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as r; vectors (eta1, F) as the component along r/|r|, for dim = 1 the odd function of signed r.
-
-    Raises
-    ------
-    InvalidInput
-        If the kernel does not exist, alpha is outside (1, 2), or r is not a distance.
-    """
-    space, _, alpha, m = _select(name, alpha, dim, order)
-    r = real_array("r", r)
-    if (np.abs(r) > _LARGEST).any():
-        raise InvalidInput("r", float(np.abs(r).max()), "|r| <= 1e150", "Scale the distances.")
-    if dim > 1 and (r < 0.0).any():
-        raise InvalidInput("r", float(r.min()), "a radius r >= 0 for dim > 1", "Give |r|.")
-    value = space(r, alpha, dim, m)
-    return float(value) if r.ndim == 0 else value
-
-
-def kernel_transform(
-    name: str, k: Any, alpha: float, dim: int = 1, order: int = 2
-) -> FloatArray | float:
-    """Return the Fourier transform, int K(r) exp(-i k.r) dr, at angular wavenumber |k|.
-
-    Parameters
-    ----------
-    name, alpha, dim, order
-        As for `kernel`.
-    k : array_like
-        Angular wavenumbers 0 <= k <= 1e150, any shape.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as k. For vectors (eta1, F) the real g(k) of the transform i k/|k| g(k). None depends on dim.
-        The transform of kappa is infinite at k = 0.
-
-    Raises
-    ------
-    InvalidInput
-        If the kernel does not exist, alpha is outside (1, 2), or k is negative or not numeric.
-    """
-    _, transform, alpha, m = _select(name, alpha, dim, order)
-    k = real_array("k", k)
-    if not ((k >= 0.0) & (k <= _LARGEST)).all():
-        raise InvalidInput("k", k, "0 <= k <= 1e150", "Give the modulus of the wave vector.")
-    value = transform(k, alpha, dim, m)
-    return float(value) if k.ndim == 0 else value
-
-
-def wavenumber_reach(order: int, nil: float = 1e-22) -> float:
-    """Return the wavenumber beyond which eta^ = Q(m, k^2/4) < nil; all transforms are a power of k times that.
-
-    Raises
-    ------
-    InvalidInput
-        If the order is not one of `ORDERS`.
-    """
-    return 2.0 * math.sqrt(float(gammainccinv(_half_order(order), nil)))
+    GAMMA.check_order(order)
+    return 2.0 * math.sqrt(float(gammainccinv(int(order) // 2, smallest)))

@@ -24,14 +24,14 @@ KernelValues = Callable[..., Any]
 
 
 def tabulated(step: float, family: str | None = None) -> KernelValues:
-    """Return a function with the parameters of `kernels.kernel` that interpolates in a table of this step.
+    """Return a function with the parameters of `kernels.families.kernel` that interpolates in a table of this step.
 
     Parameters
     ----------
     step : float
         Step of the table, in units of the smoothing length.
     family : str, optional
-        Family of the kernels, see `kernels.kernel`.
+        Kernel family, see `kernels.families.kernel`.
 
     Raises
     ------
@@ -43,12 +43,10 @@ def tabulated(step: float, family: str | None = None) -> KernelValues:
         size = np.abs(np.asarray(r, dtype=float))
         largest = float(size.max(initial=0.0))
         if not largest < _MOST_POINTS * step:
-            raise InvalidInput(
-                "kernel_table",
-                step,
-                f"at least {largest / _MOST_POINTS:.3g} for distances up to {largest:.4g} smoothing lengths",
-                "Take a larger step, or a narrower domain.",
-            )
+            least = f"at least {largest / _MOST_POINTS:.3g}"
+            allowed = f"{least} for distances up to {largest:.4g} smoothing lengths"
+            remedy = "Take a larger step, or a narrower domain."
+            raise InvalidInput("kernel_table", step, allowed, remedy)
         points = step * np.arange(int(largest / step) + 2)
         table = np.asarray(kernel(name, points, alpha, dim=dim, order=order, family=family))
         return np.interp(size, points, table)

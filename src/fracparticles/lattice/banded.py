@@ -11,12 +11,12 @@ __all__ = ["BandedConvolution"]
 
 # exp(-r^2) falls below the round-off of a unit sum, 1e-18, at r = 6.44; the printed kernels of order IV may hold
 # exp(-r^2 / 2), which does so at r = 9.1. In the gamma family it has a polynomial for a factor:
-# the ends are those measured of eta1, where it falls below _NIL of its greatest value.
+# the ends are those measured of eta1, where it falls below _NEGLIGIBLE of its greatest value.
 _REACH = {
     "printed": {2: 6.5, 4: 9.2},
     "gamma": {2: 6.5, 4: 6.7, 6: 6.9, 8: 7.1, 10: 7.3, 12: 7.4},
 }
-_NIL = 2.0**-56  # of the largest weight: an eighth of a rounding error
+_NEGLIGIBLE = 2.0**-56  # of the largest weight: an eighth of a rounding error
 _BLOCK = 512  # rows at a time, so that the sums stay in the first-level cache
 
 
@@ -32,7 +32,7 @@ class BandedConvolution:
     """
 
     def __init__(self, weights: np.ndarray, parity: int) -> None:
-        significant = np.flatnonzero(np.abs(weights) > _NIL * np.abs(weights).max())
+        significant = np.flatnonzero(np.abs(weights) > _NEGLIGIBLE * np.abs(weights).max())
         half_band = int(significant[-1]) if significant.size else 0
         # One zero weight more if M is odd: the sum takes two at a time.
         self._weights = np.zeros(half_band + half_band % 2 + 1)
@@ -57,18 +57,18 @@ class BandedConvolution:
         _sums_along(lines, self._weights, self._parity, out.reshape(lines.shape[0], count, -1))
         return out
 
-    def update(
+    def combine(
         self,
         q: np.ndarray,
         diagonal: np.ndarray,
         u: np.ndarray,
-        a: float,
-        b: float,
-        c: float,
-        v: np.ndarray,
+        out: np.ndarray,
+        scale: float,
+        shift: float,
+        keep: float,
     ) -> None:
-        """Write a (y + d q) + b u + c v into v, where y is the sum over q: one pass over memory."""
-        _update(q, self._weights, self._parity, diagonal, u, a, b, c, v)
+        """Write scale (y + d q) + shift u + keep out into `out`, where y is the sum over q: one pass over memory."""
+        _combine(q, self._weights, self._parity, diagonal, u, out, scale, shift, keep)
 
 
 @njit()
@@ -106,22 +106,19 @@ def _sums_along(v, weights, parity, out):
 
 
 @njit()
-def _update(q, weights, parity, diagonal, u, a, b, c, v):
-    skip = (q.size - v.size) // 2
+def _combine(q, weights, parity, diagonal, u, out, scale, shift, keep):
+    skip = (q.size - out.size) // 2
     window = np.empty(_BLOCK + 2 * (weights.size - 1))
     block = np.empty(_BLOCK)
-    for start in range(0, v.size, _BLOCK):
-        rows = min(_BLOCK, v.size - start)
+    for start in range(0, out.size, _BLOCK):
+        rows = min(_BLOCK, out.size - start)
         y = block[:rows]
         _sum_block(q, weights, parity, start + skip, window, y)
         middle = q[start + skip : start + skip + rows]
-        d, given, new = (
-            diagonal[start : start + rows],
-            u[start : start + rows],
-            v[start : start + rows],
-        )
+        part = slice(start, start + rows)
+        d, given, new = diagonal[part], u[part], out[part]
         for i in range(rows):
-            new[i] = a * (y[i] + d[i] * middle[i]) + b * given[i] + c * new[i]
+            new[i] = scale * (y[i] + d[i] * middle[i]) + shift * given[i] + keep * new[i]
 
 
 @njit()

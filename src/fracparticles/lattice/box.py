@@ -18,11 +18,10 @@ import pyfftw
 from scipy.fft import dct, dst
 
 from fracparticles._compiled import njit
-from fracparticles.lattice.fourier import transform_length
+from fracparticles.lattice.fourier import PLAN, line_plans, transform_length
 
-__all__ = ["BOX_SUMMATIONS", "BoxConvolution", "NaiveBoxConvolution"]
+__all__ = ["BoxConvolution", "NaiveBoxConvolution"]
 
-_PLAN = ("FFTW_ESTIMATE",)  # the same plans every time: the same case gives the same bytes
 # Lines that are transformed together: enough for whole cache lines to be copied, few enough to stay in the cache.
 _ROWS = 16
 _COLUMNS = 8
@@ -64,13 +63,7 @@ class BoxConvolution:
 
         self._line = pyfftw.zeros_aligned((_ROWS, length))
         self._line_spectrum = pyfftw.empty_aligned((_ROWS, half), dtype=complex)
-        self._forward_line = pyfftw.FFTW(self._line, self._line_spectrum, flags=_PLAN)
-        self._backward_line = pyfftw.FFTW(
-            self._line_spectrum,
-            self._line,
-            direction="FFTW_BACKWARD",
-            flags=(*_PLAN, "FFTW_DESTROY_INPUT"),
-        )
+        self._forward_line, self._backward_line = line_plans(self._line, self._line_spectrum)
         lines = (length,) * (dim - 1)
         self._block = pyfftw.zeros_aligned((*lines, _COLUMNS), dtype=complex)
         self._product = pyfftw.empty_aligned((*lines, _COLUMNS), dtype=complex)
@@ -139,7 +132,7 @@ class BoxConvolution:
 
 def _plans(block: np.ndarray, first: int, count: int, direction: str) -> list[pyfftw.FFTW]:
     """Transforms of a block in place, axis by axis from the last: of lines that hold something only."""
-    options = {"direction": direction, "flags": _PLAN}
+    options = {"direction": direction, "flags": PLAN}
     whole = pyfftw.FFTW(block, block, axes=(0,), **options)
     if block.ndim == 2:
         return [whole]
@@ -160,14 +153,10 @@ def _symbol(weights: np.ndarray, odd: int | None, length: int) -> np.ndarray:
     w[part] = weights[part]
     for axis in range(weights.ndim):
         if axis == odd:
-            inner = tuple(
-                slice(1, -1) if other == axis else slice(None) for other in range(weights.ndim)
-            )
-            w[inner] = -dst(w[inner], type=1, axis=axis)
-            edge = tuple(0 if other == axis else slice(None) for other in range(weights.ndim))
-            w[edge] = 0.0
-            edge = tuple(-1 if other == axis else slice(None) for other in range(weights.ndim))
-            w[edge] = 0.0
+            inner = (slice(None),) * axis + (slice(1, -1),)
+            sines = -dst(w[inner], type=1, axis=axis)
+            w = np.zeros_like(w)
+            w[inner] = sines
         else:
             w = dct(w, type=1, axis=axis, overwrite_x=True)
     padded = -(-half // _COLUMNS) * _COLUMNS
@@ -247,9 +236,3 @@ def _sum_over_pairs(u, weights, odd, flat, shift, out):
                             w = -w
                         total += w * u[a, b, c]
             out[p, q, r] = total
-
-
-BOX_SUMMATIONS: dict[str, type[BoxConvolution] | type[NaiveBoxConvolution]] = {
-    "fft": BoxConvolution,
-    "naive": NaiveBoxConvolution,
-}

@@ -26,14 +26,15 @@ where '' halves the term m = M; the integral is n^q M^(-alpha-q) / (alpha + q) 2
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import hyp2f1, roots_jacobi
 
+from fracparticles._compiled import njit
 from fracparticles.lattice.fourier import valid_convolution
-from fracparticles.lattice.operators import FarField
 
-__all__ = ["continuation", "far_field", "tabulated_far_field"]
+__all__ = ["LineFarField", "continuation", "far_field", "tabulated_far_field"]
 
 # Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
 # varies on the scale n and two terms leave a relative error of order n^-4.
@@ -45,6 +46,27 @@ _NODES = 24
 _DEPTHS = (0.0, 0.25, 0.5, 0.625)
 
 
+@dataclass(frozen=True)
+class LineFarField:
+    """The sum over the exterior, sum_p (u_{n-p} right_i^p + u_{-n+p} left_i^p): some strengths near the ends, extended.
+
+    Attributes
+    ----------
+    depth : array of int, shape (terms,)
+        p: how far from the ends.
+    right, left : array, shape (terms, points)
+        What each of these strengths adds to the sums.
+    """
+
+    depth: np.ndarray
+    right: np.ndarray
+    left: np.ndarray
+
+    def add(self, u: np.ndarray, y: np.ndarray) -> None:
+        """Add the contribution of the exterior to the sums y."""
+        _add(self.depth, self.right, self.left, u, y)
+
+
 def far_field(
     weight: Callable[[np.ndarray], np.ndarray],
     decay: float,
@@ -53,7 +75,7 @@ def far_field(
     parity: int = 1,
     pad: int = 0,
     terms: int = 1,
-) -> FarField:
+) -> LineFarField:
     """Return the exterior sums for the lattice -n .. n, at i = -n-pad .. n+pad.
 
     Parameters
@@ -117,7 +139,7 @@ def _tails(
 
 def tabulated_far_field(
     w: np.ndarray, n: int, alpha: float, amplitudes: Sequence[float], terms: int = 1
-) -> FarField:
+) -> LineFarField:
     """Return the exterior sums for the lattice -n .. n at its own points, for an even w.
 
     Parameters
@@ -137,7 +159,9 @@ def tabulated_far_field(
     last = w.size - 1
     i = np.arange(-n, n + 1)
     k = np.arange(n + 1, n + last + 1)
-    present = np.zeros(2 * n + last)  # w_{i-k} for the offsets i - k = -2 n - M .. -1, nil beyond M
+    present = np.zeros(
+        2 * n + last
+    )  # w_{i-k} for the offsets i - k = -2 n - M .. -1, zero beyond M
     present[2 * n :] = w[:0:-1]
     present[2 * n] *= 0.5
     sums = valid_convolution((n / k) ** powers[:, None], present)
@@ -173,5 +197,14 @@ def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray
     return depth, powers, np.linalg.inv((n / (n - depth)[:, None]) ** powers)
 
 
-def _far_field_of(depth: np.ndarray, right: np.ndarray, parity: int) -> FarField:
-    return FarField(depth, right, np.ascontiguousarray(parity * right[:, ::-1]))
+def _far_field_of(depth: np.ndarray, right: np.ndarray, parity: int) -> LineFarField:
+    return LineFarField(depth, right, np.ascontiguousarray(parity * right[:, ::-1]))
+
+
+@njit()
+def _add(depth, right, left, u, y):
+    for k in range(depth.size):
+        last, first = u[u.size - 1 - depth[k]], u[depth[k]]
+        from_right, from_left = right[k], left[k]
+        for i in range(y.size):
+            y[i] += last * from_right[i] + first * from_left[i]

@@ -14,14 +14,15 @@ paper, which truncates the lattice.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import roots_jacobi, roots_legendre
 
+from fracparticles._compiled import njit
 from fracparticles.lattice.box import BoxConvolution
-from fracparticles.lattice.operators import BoxFarField
 
-__all__ = ["box_continuation", "box_far_field"]
+__all__ = ["BoxFarField", "box_continuation", "box_far_field"]
 
 # Lattice points up to this many times the cube wanted are summed one by one, those beyond by an integral whose
 # relative error is of order (2 N)^-4. In three dimensions a larger cube would take too much memory.
@@ -31,6 +32,31 @@ _TARGET_NODES = {2: 14, 3: 9}
 _NODES = {2: 16, 3: 9}
 
 Weight = Callable[..., np.ndarray]
+
+
+@dataclass(frozen=True)
+class BoxFarField:
+    """The sums over the exterior of a square or a cube, sum_k a_k S_k with a = fit u_boundary.
+
+    Attributes
+    ----------
+    boundary : array of int, shape (B,)
+        The outermost particles.
+    fit : array, shape (K, B)
+        From their strengths to the amplitudes of the K modes.
+    sums : array, shape (weights, K, points)
+        S_k for each weight.
+    """
+
+    boundary: np.ndarray
+    fit: np.ndarray
+    sums: np.ndarray
+
+    def add(self, u: np.ndarray, y: np.ndarray) -> None:
+        """Add the contribution of the exterior to the sums y of every weight."""
+        amplitudes = self.fit @ u[self.boundary]
+        for sums, total in zip(self.sums, y.reshape(self.sums.shape[0], -1), strict=True):
+            _add(amplitudes, sums, total)
 
 
 def box_far_field(
@@ -61,7 +87,7 @@ def box_far_field(
     pad : int
         How many points beyond each face are wanted.
     """
-    boundary, edge = _boundary(n, dim)
+    boundary, edge = _shell(n, dim, n)
     fit = np.linalg.pinv(np.array(list(_modes(edge / n, alpha, dim))).T)
     near = _near_sums(weights, odd_axes, alpha, n, dim, pad)
     near += _tail_sums(weights, odd_axes, decay, alpha, n, dim, pad)
@@ -78,7 +104,7 @@ def box_continuation(u: np.ndarray, n: int, alpha: float) -> tuple[np.ndarray, n
     values : array, shape (P,)
         What the modes say there.
     """
-    boundary, edge = _boundary(n, u.ndim)
+    boundary, edge = _shell(n, u.ndim, n)
     modes = np.array(list(_modes(edge / n, alpha, u.ndim))).T
     amplitudes = np.linalg.lstsq(modes, u.reshape(-1)[boundary], rcond=None)[0]
     inner, position = _shell(n, u.ndim, round(0.75 * n))
@@ -92,11 +118,6 @@ def _modes(position: Iterable[np.ndarray], alpha: float, dim: int) -> Iterator[n
     yield square ** (-0.5 * (dim + 2.0 * alpha))
     for part in position:
         yield square ** (-0.5 * (dim + alpha + 2.0)) * part
-
-
-def _boundary(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
-    """The flat indices and the coordinates of the outermost particles."""
-    return _shell(n, dim, n)
 
 
 def _shell(n: int, dim: int, distance: int) -> tuple[np.ndarray, np.ndarray]:
@@ -212,3 +233,11 @@ def _midpoint_points(j: np.ndarray, volume: np.ndarray) -> tuple[np.ndarray, np.
     steps = np.concatenate([np.zeros((1, dim)), np.eye(dim), -np.eye(dim)])
     factors = np.array([1.0 + 2.0 * dim / 24.0, *[-1.0 / 24.0] * (2 * dim)])
     return (j[:, None, :] + steps.T[:, :, None]).reshape(dim, -1), np.outer(factors, volume).ravel()
+
+
+@njit()
+def _add(amplitudes, sums, y):
+    for k in range(amplitudes.size):
+        amplitude, mode = amplitudes[k], sums[k]
+        for i in range(y.size):
+            y[i] += amplitude * mode[i]

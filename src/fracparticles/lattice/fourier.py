@@ -8,12 +8,19 @@ from scipy.fft import irfft, next_fast_len, rfft
 
 from fracparticles._compiled import njit
 
-__all__ = ["FourierConvolution", "shares_memory", "transform_length"]
+__all__ = [
+    "PLAN",
+    "FourierConvolution",
+    "line_plans",
+    "shares_memory",
+    "transform_length",
+    "valid_convolution",
+]
 
 # FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths chosen below its plans take about a tenth longer to run
 # (`benchmarks.reference`), but they are made in milliseconds instead of seconds, and they are the same every time, so
 # that the same case gives the same bytes.
-_PLAN = ("FFTW_ESTIMATE",)
+PLAN = ("FFTW_ESTIMATE",)
 _CLOSE = 1.03  # a power of two is taken up to this ratio
 _LONG = 10**6
 _SHORT = 1000  # up to here the next length counts more than its factors
@@ -41,13 +48,7 @@ class FourierConvolution:
         self.size, self.pad = size, pad
         length = transform_length(2 * (size + pad) - 1)
         self._real, self._spectrum = _buffers(length)
-        self._forward = pyfftw.FFTW(self._real, self._spectrum, flags=_PLAN)
-        self._backward = pyfftw.FFTW(
-            self._spectrum,
-            self._real,
-            direction="FFTW_BACKWARD",
-            flags=(*_PLAN, "FFTW_DESTROY_INPUT"),
-        )
+        self._forward, self._backward = line_plans(self._real, self._spectrum)
         self._particles = self._real[pad : pad + size]
         self._before, self._after = self._real[:pad], self._real[pad + size :]
         self._sums = self._real[: size + 2 * pad]
@@ -70,6 +71,12 @@ class FourierConvolution:
         self._multiply(self._spectrum, self._symbol)
         self._backward.execute()
         return self._sums
+
+
+def line_plans(real: np.ndarray, spectrum: np.ndarray) -> tuple[pyfftw.FFTW, pyfftw.FFTW]:
+    """Return the transforms of the last axis of `real`, there and back; the way back spoils the spectrum."""
+    back = {"direction": "FFTW_BACKWARD", "flags": (*PLAN, "FFTW_DESTROY_INPUT")}
+    return pyfftw.FFTW(real, spectrum, flags=PLAN), pyfftw.FFTW(spectrum, real, **back)
 
 
 def transform_length(least: int) -> int:

@@ -1,7 +1,7 @@
 """Linear operators on the lattice, as the integrators see them: du/dt = A u.
 
-Every operator has `size`, `apply(u)` and the fused `update(u, a, b, c, v)`, which writes
-a (A u) + b u + c v into v in one pass over memory: stepping and Chebyshev recurrences are made of it.
+Every operator has `size`, `apply(u)` and the fused `combine(u, out, scale, shift, keep)`, which writes
+scale A u + shift u + keep out into `out` in one pass over memory: stepping and Chebyshev recurrences are made of it.
 
 The sums keep work arrays. An operator locks them while it uses them, so that threads may share it: they take turns.
 """
@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from threading import Lock
 from typing import Protocol
 
@@ -20,11 +19,11 @@ from fracparticles._compiled import njit
 from fracparticles.lattice.banded import BandedConvolution
 
 __all__ = [
-    "BoxFarField",
     "ConvolutionOperator",
     "FarField",
     "FluxDivergenceOperator",
     "LatticeOperator",
+    "MatrixOperator",
     "Operator",
     "TwoPassOperator",
 ]
@@ -37,64 +36,20 @@ class Operator(Protocol):
 
     size: int
 
-    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
-        """Write a (A u) + b u + c v into v; u and v are different arrays."""
+    def combine(
+        self, u: np.ndarray, out: np.ndarray, scale: float, shift: float = 0.0, keep: float = 0.0
+    ) -> None:
+        """Write scale A u + shift u + keep out into `out`; u and out are different arrays."""
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return A u as a new array."""
 
 
-@dataclass(frozen=True)
-class FarField:
-    """The sum over the exterior, sum_p (u_{n-p} right_i^p + u_{-n+p} left_i^p): some strengths near the ends, extended.
-
-    A truncated problem has no far field: its operators take None instead.
-
-    Attributes
-    ----------
-    depth : array of int, shape (terms,)
-        p: how far from the ends.
-    right, left : array, shape (terms, points)
-        What each of these strengths adds to the sums.
-    """
-
-    depth: np.ndarray
-    right: np.ndarray
-    left: np.ndarray
+class FarField(Protocol):
+    """The sums over what is beyond the lattice, see `exterior`. A truncated problem has none: None instead."""
 
     def add(self, u: np.ndarray, y: np.ndarray) -> None:
         """Add the contribution of the exterior to the sums y."""
-        _add_far_field(self.depth, self.right, self.left, u, y)
-
-
-class _Far(Protocol):
-    def add(self, u: np.ndarray, y: np.ndarray) -> None:
-        """Add the contribution of the exterior to the sums y."""
-
-
-@dataclass(frozen=True)
-class BoxFarField:
-    """The sums over the exterior of a square or a cube, sum_k a_k S_k with a = fit u_boundary.
-
-    Attributes
-    ----------
-    boundary : array of int, shape (B,)
-        The outermost particles.
-    fit : array, shape (K, B)
-        From their strengths to the amplitudes of the K modes.
-    sums : array, shape (weights, K, points)
-        S_k for each weight.
-    """
-
-    boundary: np.ndarray
-    fit: np.ndarray
-    sums: np.ndarray
-
-    def add(self, u: np.ndarray, y: np.ndarray) -> None:
-        """Add the contribution of the exterior to the sums y of every weight."""
-        amplitudes = self.fit @ u[self.boundary]
-        for sums, total in zip(self.sums, y.reshape(self.sums.shape[0], -1), strict=True):
-            _add_modes(amplitudes, sums, total)
 
 
 class LatticeOperator(ABC):
@@ -103,26 +58,29 @@ class LatticeOperator(ABC):
     size: int
     dim: int = 1
     symmetric: bool = False  # the matrix of A
-    # The least and the greatest of what the bounded lattice adds to the diagonal of the infinite one, with zero.
-    least_excess: float = 0.0
-    greatest_excess: float = 0.0
+    # What the bounded lattice adds to the diagonal of the infinite one: the least and the greatest, with zero.
+    diagonal_shift: tuple[float, float] = (0.0, 0.0)
 
     def __init__(self) -> None:
         self._lock = Lock()
 
-    def update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
-        """Write a (A u) + b u + c v into v; u and v are different arrays."""
+    def combine(
+        self, u: np.ndarray, out: np.ndarray, scale: float, shift: float = 0.0, keep: float = 0.0
+    ) -> None:
+        """Write scale A u + shift u + keep out into `out`; u and out are different arrays."""
         with self._lock:
-            self._update(u, a, b, c, v)
+            self._combine(u, out, scale, shift, keep)
 
     @abstractmethod
-    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+    def _combine(
+        self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
+    ) -> None:
         """Do so with the work arrays to itself."""
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return A u as a new array."""
         out = np.zeros(self.size)
-        self.update(np.ascontiguousarray(u, dtype=float), 1.0, 0.0, 0.0, out)
+        self.combine(np.ascontiguousarray(u, dtype=float), out, 1.0)
         return out
 
 
@@ -147,22 +105,39 @@ class ConvolutionOperator(LatticeOperator):
         self,
         convolve: Convolution,
         diagonal: np.ndarray,
-        far_field: _Far | None,
+        far_field: FarField | None,
         infinite_diagonal: float | None = None,
         dim: int = 1,
     ) -> None:
         super().__init__()
         self.size, self.dim, self.symmetric = diagonal.size, dim, far_field is None
         if infinite_diagonal is not None:
-            self.least_excess = min(0.0, float(diagonal.min()) - infinite_diagonal)
-            self.greatest_excess = max(0.0, float(diagonal.max()) - infinite_diagonal)
+            least = min(0.0, float(diagonal.min()) - infinite_diagonal)
+            greatest = max(0.0, float(diagonal.max()) - infinite_diagonal)
+            self.diagonal_shift = least, greatest
         self.convolve, self._diagonal, self._far = convolve, diagonal, far_field
 
-    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+    def _combine(
+        self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
+    ) -> None:
         y = self.convolve(u)
         if self._far is not None:
             self._far.add(u, y)
-        _add_diagonal(y, self._diagonal, u, a, b, c, v)
+        _combine_with_diagonal(y, self._diagonal, u, out, scale, shift, keep)
+
+
+class MatrixOperator(LatticeOperator):
+    """A dense matrix, shape (N, N)."""
+
+    def __init__(self, matrix: np.ndarray) -> None:
+        super().__init__()
+        self.size, self._matrix = len(matrix), matrix
+
+    def _combine(
+        self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
+    ) -> None:
+        with np.errstate(over="ignore", invalid="ignore"):  # whoever steps looks at the result
+            out[:] = scale * (self._matrix @ u) + shift * u + keep * out
 
 
 class TwoPassOperator(LatticeOperator):
@@ -192,11 +167,13 @@ class TwoPassOperator(LatticeOperator):
         self.convolve, self._stencil = convolve, stencil
         self._diagonal, self._far = diagonal, far_field
 
-    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+    def _combine(
+        self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
+    ) -> None:
         q = self.convolve(u)
         if self._far is not None:
             self._far.add(u, q)
-        self._stencil.update(q, self._diagonal, u, a, b, c, v)
+        self._stencil.combine(q, self._diagonal, u, out, scale, shift, keep)
 
 
 class FluxDivergenceOperator(LatticeOperator):
@@ -210,7 +187,7 @@ class FluxDivergenceOperator(LatticeOperator):
         S: from the components of the flux to one value a particle, shape (N, .., N).
     diagonal : array, shape (dim, N, .., N), or None
         c_d; None if it is zero.
-    far_field : BoxFarField or None
+    far_field : FarField or None
         The contribution of the exterior to q.
     shape : tuple of int
         The lattice.
@@ -221,7 +198,7 @@ class FluxDivergenceOperator(LatticeOperator):
         convolve: Convolution,
         divergence: Convolution,
         diagonal: np.ndarray | None,
-        far_field: BoxFarField | None,
+        far_field: FarField | None,
         shape: tuple[int, ...],
     ) -> None:
         super().__init__()
@@ -230,7 +207,9 @@ class FluxDivergenceOperator(LatticeOperator):
         self.convolve, self._divergence = convolve, divergence
         self._diagonal, self._far = diagonal, far_field
 
-    def _update(self, u: np.ndarray, a: float, b: float, c: float, v: np.ndarray) -> None:
+    def _combine(
+        self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
+    ) -> None:
         q = self.convolve(u.reshape(self._shape))
         if self._far is not None:
             self._far.add(u, q)
@@ -238,39 +217,22 @@ class FluxDivergenceOperator(LatticeOperator):
         if self._diagonal is not None:
             for part, component in zip(self._diagonal, q, strict=True):
                 _add_product(part.reshape(-1), component.reshape(-1), y.reshape(-1))
-        _combine(y.reshape(-1), u, a, b, c, v)
+        _combine(y.reshape(-1), u, out, scale, shift, keep)
 
 
 @njit()
-def _add_diagonal(y, diagonal, u, a, b, c, v):
-    for i in range(v.size):
-        v[i] = a * (y[i] + diagonal[i] * u[i]) + b * u[i] + c * v[i]
+def _combine(y, u, out, scale, shift, keep):
+    for i in range(out.size):
+        out[i] = scale * y[i] + shift * u[i] + keep * out[i]
 
 
 @njit()
-def _add_far_field(depth, right, left, u, y):
-    for k in range(depth.size):
-        last, first = u[u.size - 1 - depth[k]], u[depth[k]]
-        from_right, from_left = right[k], left[k]
-        for i in range(y.size):
-            y[i] += last * from_right[i] + first * from_left[i]
-
-
-@njit()
-def _combine(y, u, a, b, c, v):
-    for i in range(v.size):
-        v[i] = a * y[i] + b * u[i] + c * v[i]
+def _combine_with_diagonal(y, diagonal, u, out, scale, shift, keep):
+    for i in range(out.size):
+        out[i] = scale * (y[i] + diagonal[i] * u[i]) + shift * u[i] + keep * out[i]
 
 
 @njit()
 def _add_product(diagonal, q, y):
     for i in range(y.size):
         y[i] += diagonal[i] * q[i]
-
-
-@njit()
-def _add_modes(amplitudes, sums, y):
-    for k in range(amplitudes.size):
-        amplitude, mode = amplitudes[k], sums[k]
-        for i in range(y.size):
-            y[i] += amplitude * mode[i]

@@ -8,8 +8,6 @@ and there are two ways to do it: `fast_convolution`, O(N log N), which is a `Fou
 `MatrixConvolution`, and `NaiveConvolution`, the papers' own double loop, O(N^2), which is the oracle of the first;
 `BoxConvolution` and `NaiveBoxConvolution` on a square or cubic lattice. `BandedConvolution` serves the kernels that
 decay like a Gaussian.
-
-Over particles that lie anywhere: `scattered`.
 """
 
 from __future__ import annotations
@@ -18,40 +16,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.lattice.banded import BandedConvolution
-from fracparticles.lattice.box import BOX_SUMMATIONS, BoxConvolution, NaiveBoxConvolution
-from fracparticles.lattice.fourier import FourierConvolution, valid_convolution
-from fracparticles.lattice.matrix import MatrixConvolution
-from fracparticles.lattice.naive import NaiveConvolution
-from fracparticles.moving.scattered import (
-    NaiveScatteredSum,
-    NeighbourSum,
-    NonuniformFourierSum,
-    ScatteredKernel,
-    ScatteredSum,
-    scattered_sum,
-    smooth_kernel,
-)
+from fracparticles.lattice.box import BoxConvolution, NaiveBoxConvolution
+from fracparticles.lattice.direct import MatrixConvolution, NaiveConvolution
+from fracparticles.lattice.fourier import FourierConvolution
 
-__all__ = [
-    "BOX_SUMMATIONS",
-    "SUMMATIONS",
-    "BandedConvolution",
-    "BoxConvolution",
-    "FourierConvolution",
-    "MatrixConvolution",
-    "NaiveBoxConvolution",
-    "NaiveConvolution",
-    "NaiveScatteredSum",
-    "NeighbourSum",
-    "NonuniformFourierSum",
-    "ScatteredKernel",
-    "ScatteredSum",
-    "fast_convolution",
-    "scattered_sum",
-    "smooth_kernel",
-    "valid_convolution",
-]
+__all__ = ["BOX_SUMMATIONS", "SUMMATIONS", "fast_convolution", "sums_of_weights"]
 
 # Up to about here a product with a matrix takes no longer than two transforms, and it is set up in some ten
 # microseconds, where their plans take a millisecond.
@@ -72,3 +41,18 @@ SUMMATIONS: dict[str, Callable[..., _Convolution]] = {
     "fft": fast_convolution,
     "naive": NaiveConvolution,
 }
+BOX_SUMMATIONS: dict[str, type[BoxConvolution] | type[NaiveBoxConvolution]] = {
+    "fft": BoxConvolution,
+    "naive": NaiveBoxConvolution,
+}
+
+
+def sums_of_weights(w: np.ndarray, parity: int, size: int) -> np.ndarray:
+    """Return sum_j w_{i-j} over the particles present, for each of the `size` particles.
+
+    By cumulative sums from the small far weights to the large near ones. Weights that are not given are zero.
+    """
+    tail = np.zeros(size)
+    tail[1 : w.size] = w[1:size]
+    one_sided = np.cumsum(tail)
+    return w[0] * (1 + parity) / 2 + parity * one_sided[::-1] + one_sided

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from scipy.special import erfc, erfcinv, erfcx, ndtri_exp
 
-from fracparticles.arguments import check_fields, finite_result, places, scale
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.profiles import inside
 from fracparticles.markers.solver import Flux
@@ -37,12 +37,9 @@ _SHARPEST = 1e8
 def burgers(mu: float) -> Flux:
     """Return the flux V F = F^2 / 2 - mu F_x.
 
-    Raises
-    ------
-    InvalidInput
-        If mu is not positive.
+    Raises `InvalidInput` if mu is not positive.
     """
-    mu = scale("mu", mu)
+    mu = check.scale("mu", mu)
 
     def flux(x: np.ndarray, fields: np.ndarray) -> np.ndarray:
         return 0.5 * fields[0] ** 2 - mu * fields[1]
@@ -69,7 +66,7 @@ class PointSource:
     total: float
 
     def __post_init__(self) -> None:
-        check_fields(self, mu=scale, total=scale)
+        check.fields(self, mu=check.scale, total=check.scale)
         if not self.reynolds <= _SHARPEST:
             raise InvalidInput(
                 "mu",
@@ -123,14 +120,14 @@ class PointSource:
             beyond = np.log(-np.expm1(-(self.total - g) / (2.0 * self.mu)))
             right = -ndtri_exp(beyond - g / (2.0 * self.mu)) / math.sqrt(2.0)
             z = np.where(left < 0.5, -erfcinv(2.0 * np.minimum(left, 0.5)), right)
-        return finite_result("g", width * z)
+        return check.finite_result("g", width * z)
 
     def _scaled(self, x: Any, t: float) -> tuple[np.ndarray, float]:
         s = self._width(t)
-        return places("x", x) / s, s
+        return check.places("x", x) / s, s
 
     def _width(self, t: float) -> float:
-        return 2.0 * math.sqrt(self.mu * scale("t", t))
+        return 2.0 * math.sqrt(self.mu * check.scale("t", t))
 
     def _phi(self, z: np.ndarray) -> np.ndarray:
         # A sum of two positive terms: nothing cancels where phi is small.

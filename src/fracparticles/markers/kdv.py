@@ -13,21 +13,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import (
-    SIZES,
-    check_fields,
-    finite_array,
-    finite_result,
-    places,
-    real_between,
-    scale,
-    within,
-)
+from fracparticles import arguments as check
 
 __all__ = ["Soliton", "kdv"]
 
@@ -56,7 +46,7 @@ class Soliton:
     background: float = 0.0
 
     def __post_init__(self) -> None:
-        check_fields(self, c=scale, background=partial(real_between, low=0.0, high=SIZES[1]))
+        check.fields(self, c=check.scale, background=check.not_negative)
 
     @property
     def speed(self) -> float:
@@ -65,21 +55,20 @@ class Soliton:
 
     def value(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return f(x, t)."""
-        x = places("x", x)
-        t = real_between("t", t, -SIZES[1], SIZES[1])
-        z = 0.5 * math.sqrt(self.c) * (x - self.speed * t)
+        x = check.places("x", x)
+        z = 0.5 * math.sqrt(self.c) * (x - self.speed * check.place("t", t))
         with np.errstate(over="ignore"):  # f - b is zero there
             return self.background + 0.5 * self.c / np.cosh(z) ** 2
 
     def velocity(self, f: Any) -> np.ndarray:
         """Return the exact V where the solution is f, which is above zero."""
-        f = finite_array("f", f)
+        f = check.finite_array("f", f)
         if self.background == 0.0:
-            return self.speed - 0.0 * within("f", f, 0.0)
+            return self.speed - 0.0 * check.within("f", f, 0.0)
         with np.errstate(over="ignore"):
             part = (
                 self.background
                 * (self.c + 3.0 * self.background)
-                / within("f", f, 0.0, inside=True)
+                / check.within("f", f, 0.0, inside=True)
             )
-        return finite_result("f", self.speed - part)
+        return check.finite_result("f", self.speed - part)

@@ -12,16 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.arguments import (
-    MOST,
-    SIZES,
-    pair,
-    positive_integer,
-    real_between,
-    sampled,
-    scale,
-)
-from fracparticles.arguments import generator as random_generator
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.profiles import Profile
 
@@ -35,30 +26,23 @@ def uniform(
 ) -> Loading:
     """Return `count` midpoints of equal cells between the ends, with W_j = f(x_j) h.
 
-    Raises
-    ------
-    InvalidInput
-        If the ends do not increase, the count is not a positive whole number, or f is no function of arrays.
+    Raises `InvalidInput` if the ends do not increase, the count is not a positive whole number, or f is no function
+    of arrays.
     """
-    low, high = (real_between("ends", end, -SIZES[1], SIZES[1]) for end in pair("ends", ends))
-    if not low < high:
-        raise InvalidInput("ends", ends, "two increasing numbers", "Mend their order.")
-    h = (high - low) / positive_integer("count", count, most=MOST)
+    low, high = check.pair("ends", ends, rising=True)
+    h = (high - low) / check.positive_integer("count", count, most=check.MOST)
     x = low + h * (np.arange(count) + 0.5)
-    return x, h * sampled("f", f, x)
+    return x, h * check.sampled("f", f, x)
 
 
 def equal_weight(profile: Profile, count: int) -> Loading:
     """Return markers that share the total equally (10).
 
-    Raises
-    ------
-    InvalidInput
-        If the count is not a positive whole number, or the profile none.
+    Raises `InvalidInput` if the count is not a positive whole number, or the profile none.
     """
-    count = positive_integer("count", count, most=MOST)
+    count = check.positive_integer("count", count, most=check.MOST)
     part = _total(profile) / count
-    return sampled("profile", profile.quantile, part * (np.arange(count) + 0.5)), np.full(
+    return check.sampled("profile", profile.quantile, part * (np.arange(count) + 0.5)), np.full(
         count, part
     )
 
@@ -66,19 +50,17 @@ def equal_weight(profile: Profile, count: int) -> Loading:
 def random(profile: Profile, count: int, generator: np.random.Generator) -> Loading:
     """Return markers of equal weight at random, distributed like f, in increasing order.
 
-    Raises
-    ------
-    InvalidInput
-        If the count is not a positive whole number, the profile none, or the generator none of numpy's.
+    Raises `InvalidInput` if the count is not a positive whole number, the profile none, or the generator none of
+    numpy's.
     """
-    count = positive_integer("count", count, most=MOST)
+    count = check.positive_integer("count", count, most=check.MOST)
     total = _total(profile)
-    xi = np.sort(random_generator("generator", generator).random(count))
+    xi = np.sort(check.generator("generator", generator).random(count))
     inside = np.clip(xi, np.finfo(float).tiny, None)  # random() may give 0, never 1
-    return sampled("profile", profile.quantile, total * inside), np.full(count, total / count)
+    return check.sampled("profile", profile.quantile, total * inside), np.full(count, total / count)
 
 
 def _total(profile: Profile) -> float:
     if not callable(getattr(profile, "quantile", None)):
         raise InvalidInput("profile", profile, "a profile, with total and quantile", "Make one.")
-    return scale("profile.total", getattr(profile, "total", None))
+    return check.scale("profile.total", getattr(profile, "total", None))

@@ -25,20 +25,7 @@ from numpy.polynomial import polynomial
 from scipy.integrate import solve_ivp
 from scipy.sparse import diags
 
-from fracparticles.arguments import (
-    check_fields,
-    finite_array,
-    finite_result,
-    instance,
-    operand,
-    places,
-    positive_integer,
-    positive_real,
-    scale,
-    vector,
-    whole_number,
-    within,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = ["Lines", "NonlinearDiffusion"]
@@ -71,7 +58,7 @@ class NonlinearDiffusion:
     x0: float = 0.5
 
     def __post_init__(self) -> None:
-        check_fields(self, d0=scale, alpha=scale, x0=scale)
+        check.fields(self, d0=check.scale, alpha=check.scale, x0=check.scale)
 
     @property
     def largest_diffusivity(self) -> float:
@@ -80,31 +67,35 @@ class NonlinearDiffusion:
 
     def diffusivity(self, f: Any) -> np.ndarray:
         """D(f)."""
-        f = finite_array("f", f)
+        f = check.finite_array("f", f)
         with np.errstate(over="ignore"):
-            return finite_result("f", self._diffusivity(f))
+            return check.finite_result("f", self._diffusivity(f))
 
     def potential(self, f: Any) -> np.ndarray:
         """Phi(f), without cancellation for small f."""
-        f = finite_array("f", f)
+        f = check.finite_array("f", f)
         small = np.clip(f, -_SMALL, _SMALL)
         with np.errstate(over="ignore", invalid="ignore"):
             series = self.d0 * (small * small * polynomial.polyval(small, _SERIES))
-            return finite_result("f", np.where(np.abs(f) < _SMALL, series, self._potential(f)))
+            return check.finite_result(
+                "f", np.where(np.abs(f) < _SMALL, series, self._potential(f))
+            )
 
     def steady(self, x: Any, derivative: int = 0) -> np.ndarray:
         """f_inf (24), or its first or second derivative."""
-        return self._steady(places("x", x), whole_number("derivative", derivative, most=2))
+        return self._steady(
+            check.places("x", x), check.whole_number("derivative", derivative, most=2)
+        )
 
     def source(self, x: Any) -> np.ndarray:
         """Q (21)."""
-        x = places("x", x)
+        x = check.places("x", x)
         f, slope, curvature = (self._steady(x, m) for m in range(3))
         return -self.d0 * np.exp(-f) * (f * curvature + (1.0 - f) * slope * slope)
 
     def cumulative_source(self, x: Any) -> np.ndarray:
         """S^ (23)."""
-        return self._cumulative_source(places("x", x))
+        return self._cumulative_source(check.places("x", x))
 
     def _diffusivity(self, f: np.ndarray) -> np.ndarray:
         return self.d0 * f * np.exp(-f)
@@ -132,7 +123,11 @@ class NonlinearDiffusion:
 
     def step_limit(self, epsilon: float, eta: float) -> float:
         """eta epsilon^2 / max D: the limit of the linear equation (`stability.Extremes.eta`) at the largest D."""
-        return positive_real("eta", eta) * scale("epsilon", epsilon) ** 2 / self.largest_diffusivity
+        return (
+            check.positive_real("eta", eta)
+            * check.scale("epsilon", epsilon) ** 2
+            / self.largest_diffusivity
+        )
 
 
 class Lines:
@@ -159,30 +154,30 @@ class Lines:
     def __init__(
         self, problem: NonlinearDiffusion, half_width: float, cells: int, within: float
     ) -> None:
-        self.problem = instance("problem", problem, NonlinearDiffusion)
+        self.problem = check.instance("problem", problem, NonlinearDiffusion)
         n, half = (
-            positive_integer("cells", cells, most=_MOST_CELLS),
-            scale("half_width", half_width),
+            check.positive_integer("cells", cells, most=_MOST_CELLS),
+            check.scale("half_width", half_width),
         )
         if n < 3:
             raise InvalidInput("cells", n, "3 or more", "Take more.")
         self.h = 2.0 * half / n
         self.x = -half + self.h * (np.arange(n) + 0.5)
         self._steady = problem._potential(problem.steady(self.x))
-        self._inside = np.abs(self.x) < positive_real("within", within)
+        self._inside = np.abs(self.x) < check.positive_real("within", within)
         if not self._inside.any():
             raise InvalidInput("within", within, f"above {np.abs(self.x).min():g}", "Watch a cell.")
 
     def rate(self, t: float, f: Any) -> np.ndarray:
         """df/dt, for f of shape (cells,)."""
-        f = operand("f", f, self.x.shape)
+        f = check.operand("f", f, self.x.shape)
         jump = np.diff(self.problem._potential(f) - self._steady, prepend=np.nan, append=np.nan)
         jump[[0, -1]] = 0.0
         return np.diff(jump) / self.h**2
 
     def jacobian(self, t: float, f: Any) -> Any:
         """The tridiagonal derivative of `rate`."""
-        f = operand("f", f, self.x.shape)
+        f = check.operand("f", f, self.x.shape)
         d = self.problem._diffusivity(f) / self.h**2
         inner = np.full(f.size, -2.0)
         inner[[0, -1]] = -1.0
@@ -205,7 +200,7 @@ class Lines:
         NonFiniteSolution
             If f does not stay positive so long.
         """
-        times = within("times", vector("times", times), 0.0, 1e100)
+        times = check.within("times", check.vector("times", times), 0.0, 1e100)
         if not ((np.diff(times) > 0.0).all() and times[-1] > 0.0):
             raise InvalidInput("times", times, "rising ones, the last above zero", "Sort them.")
         found = self._integrate(self._initial(f), float(times[-1]), times)
@@ -227,7 +222,7 @@ class Lines:
         NonFiniteSolution
             If the integration ends before.
         """
-        found = self._integrate(self._initial(f), scale("until", until), None)
+        found = self._integrate(self._initial(f), check.scale("until", until), None)
         if not found.success:
             raise NonFiniteSolution(
                 f"the integration ends at t = {found.t[-1]:.6g}: {found.message}"
@@ -239,8 +234,8 @@ class Lines:
         return float(found.t_events[0][0]), float(abs(self.x[inside[np.argmin(last[inside])]]))
 
     def _initial(self, f: Any) -> np.ndarray:
-        f = within("f", vector("f", f, self.x.size), 0.0)
-        within("f", f[self._inside], 0.0, inside=True)
+        f = check.within("f", check.vector("f", f, self.x.size), 0.0)
+        check.within("f", f[self._inside], 0.0, inside=True)
         return f
 
     def _integrate(self, f: np.ndarray, until: float, times: np.ndarray | None) -> Any:

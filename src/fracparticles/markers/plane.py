@@ -24,21 +24,7 @@ from typing import Any
 import numpy as np
 from scipy.special import erf, erfc
 
-from fracparticles.arguments import (
-    MOST,
-    check_fields,
-    finite_array,
-    instance,
-    pair,
-    places,
-    positions,
-    positive_integer,
-    real_between,
-    sampled,
-    scale,
-    vector,
-    within,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.shapes import Shape
 
@@ -68,7 +54,7 @@ class TwoBlobs:
     a: float
 
     def __post_init__(self) -> None:
-        check_fields(self, a=partial(real_between, low=0.0, high=1000.0))
+        check.fields(self, a=partial(check.real_between, low=0.0, high=1000.0))
 
     @property
     def total(self) -> float:
@@ -77,17 +63,17 @@ class TwoBlobs:
 
     def value(self, x: Any, y: Any) -> np.ndarray:
         """Return f(x, y)."""
-        (x, y), a = _together(x=places("x", x), y=places("y", y)), self.a
+        (x, y), a = check.together(x=check.places("x", x), y=check.places("y", y)), self.a
         return np.exp(-((x - a) ** 2) - (y - a) ** 2) + np.exp(-((x + a) ** 2) - (y + a) ** 2)
 
     def marginal(self, x: Any) -> np.ndarray:
         """Return <f>_y(x), which is <f>_x too."""
-        x = places("x", x)
+        x = check.places("x", x)
         return math.sqrt(math.pi) * (np.exp(-((x - self.a) ** 2)) + np.exp(-((x + self.a) ** 2)))
 
     def product(self, x: Any, y: Any) -> np.ndarray:
         """Return <f>_y(x) <f>_x(y) / sigma."""
-        _together(x=places("x", x), y=places("y", y))
+        check.together(x=check.places("x", x), y=check.places("y", y))
         return self.marginal(x) * self.marginal(y) / self.total
 
     def quantile(self, xi: Any, right: Any = 0.5) -> np.ndarray:
@@ -95,9 +81,9 @@ class TwoBlobs:
 
         By bisection, to round-off in xi or, for small xi and 1 - xi, in these.
         """
-        xi = within("xi", finite_array("xi", xi), 0.0, 1.0, inside=True)
-        right = within("right", finite_array("right", right), 0.0, 1.0)
-        xi, right = _together(xi=xi, right=right)
+        xi = check.within("xi", check.finite_array("xi", xi), 0.0, 1.0, inside=True)
+        right = check.within("right", check.finite_array("right", right), 0.0, 1.0)
+        xi, right = check.together(xi=xi, right=right)
 
         def part(x: np.ndarray) -> np.ndarray:
             both = right * (1.0 + erf(x - self.a)) + (1.0 - right) * (1.0 + erf(x + self.a))
@@ -123,7 +109,7 @@ class TwoBlobs:
     def right(self, x: Any) -> np.ndarray:
         """Return the part that the blob at (a, a) has of what lies at x."""
         with np.errstate(over="ignore"):  # the part is zero then
-            return 1.0 / (1.0 + np.exp(-4.0 * self.a * places("x", x)))
+            return 1.0 / (1.0 + np.exp(-4.0 * self.a * check.places("x", x)))
 
 
 def decoupled(
@@ -131,14 +117,11 @@ def decoupled(
 ) -> Loading:
     """Return the paper's loading x, y, W, each of shape (n_x n_y,), for equal marginals.
 
-    Raises
-    ------
-    InvalidInput
-        If a count is not a positive whole number, the total not a positive number, or the quantile no function of
-        arrays.
+    Raises `InvalidInput` if a count is not a positive whole number, the total not a positive number, or the quantile
+    no function of arrays.
     """
-    total = scale("total", total)
-    x, y = (sampled("quantile", quantile, part) for part in _midpoints(counts))
+    total = check.scale("total", total)
+    x, y = (check.sampled("quantile", quantile, part) for part in _midpoints(counts))
     x, y = (part.ravel() for part in np.meshgrid(x, y, indexing="ij"))
     return x, y, np.full(x.size, total / x.size)
 
@@ -146,12 +129,10 @@ def decoupled(
 def weighted(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
     """Return the same places with the weights that make the density f.
 
-    Raises
-    ------
-    InvalidInput
-        If a count is not a positive whole number, or the density of another kind. So does `sequential`.
+    Raises `InvalidInput` if a count is not a positive whole number, or the density of another kind. So does
+    `sequential`.
     """
-    density = instance("density", density, TwoBlobs)
+    density = check.instance("density", density, TwoBlobs)
     x, y, w = decoupled(density.quantile, density.total, counts)
     return x, y, w * density.value(x, y) / density.product(x, y)
 
@@ -159,7 +140,7 @@ def weighted(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
 def sequential(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
     """Return markers of equal weight with x by its marginal, and y given x."""
     along_x, along_y = _midpoints(counts)
-    x = instance("density", density, TwoBlobs).quantile(along_x)[:, None]
+    x = check.instance("density", density, TwoBlobs).quantile(along_x)[:, None]
     y = density.quantile(along_y, density.right(x))
     x = np.broadcast_to(x, y.shape).ravel()
     return x, y.ravel(), np.full(x.size, density.total / x.size)
@@ -168,18 +149,19 @@ def sequential(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
 def reconstruct(shape: Shape, epsilon: float, markers: Loading, x: Any, y: Any) -> np.ndarray:
     """Return F = sum_j W_j S_eps(x - x_j) S_eps(y - y_j) on the grid, shape (x, y).
 
-    Raises
-    ------
-    InvalidInput
-        If the arrays are not finite or do not fit together, are too long for memory, or the shape or epsilon does not
-        do.
+    Raises `InvalidInput` if the arrays are not finite or do not fit together, are too long for memory, or the shape
+    or epsilon does not do.
     """
-    instance("shape", shape, Shape)
+    check.instance("shape", shape, Shape)
     if not isinstance(markers, tuple | list) or len(markers) != 3:
         raise InvalidInput("markers", markers, "x, y and W of the markers", "Give three arrays.")
-    xj = positions("markers", markers[0])
-    yj, w = (vector("markers", part, xj.size) for part in markers[1:])
-    x, y, epsilon = positions("x", x), positions("y", y), scale("epsilon", epsilon)
+    xj = check.positions("markers", markers[0])
+    yj, w = (check.vector("markers", part, xj.size) for part in markers[1:])
+    x, y, epsilon = (
+        check.positions("x", x),
+        check.positions("y", y),
+        check.scale("epsilon", epsilon),
+    )
     if (x.size + y.size) * xj.size > _MOST_TERMS:
         raise InvalidInput("x", f"{x.size} points", "fewer for so many markers", "Do it in parts.")
     along_x = shape((x[:, None] - xj) / epsilon) * w
@@ -188,20 +170,12 @@ def reconstruct(shape: Shape, epsilon: float, markers: Loading, x: Any, y: Any) 
 
 
 def _midpoints(counts: tuple[int, int]) -> list[np.ndarray]:
-    numbers = [positive_integer("counts", n, most=MOST) for n in pair("counts", counts)]
-    if numbers[0] * numbers[1] > MOST:
-        raise InvalidInput("counts", counts, f"at most {MOST} markers", "Take fewer.")
+    numbers = [
+        check.positive_integer("counts", n, most=check.MOST) for n in check.pair("counts", counts)
+    ]
+    if numbers[0] * numbers[1] > check.MOST:
+        raise InvalidInput("counts", counts, f"at most {check.MOST} markers", "Take fewer.")
     return [(np.arange(n) + 0.5) / n for n in numbers]
-
-
-def _together(**arrays: np.ndarray) -> list[np.ndarray]:
-    try:
-        return list(np.broadcast_arrays(*arrays.values()))
-    except ValueError as error:
-        name, array = next(iter(arrays.items()))
-        raise InvalidInput(
-            name, f"array of shape {array.shape}", "shapes that fit together", "Mend the shapes."
-        ) from error
 
 
 def _bisected(

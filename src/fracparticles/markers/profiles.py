@@ -24,15 +24,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.special import erf, erfc, erfcinv, erfcx, erfinv
 
-from fracparticles.arguments import (
-    SIZES,
-    finite_array,
-    finite_result,
-    places,
-    real_between,
-    scale,
-    within,
-)
+from fracparticles import arguments as check
 
 __all__ = ["Gaussian", "Profile", "Ramp", "Square", "inside"]
 
@@ -64,7 +56,7 @@ class Square:
 
     def value(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return f(x, t)."""
-        x, t = places("x", x), _time(t)
+        x, t = check.places("x", x), check.not_negative("t", t)
         if t == 0.0:
             return np.where(np.abs(x) <= 1.0, 1.0, 0.0)
         s = 2.0 * math.sqrt(t)
@@ -76,7 +68,7 @@ class Square:
 
     def slope(self, x: Any, t: float) -> np.ndarray:
         """Return f_x(x, t) for t > 0."""
-        x, s = places("x", x), 2.0 * math.sqrt(scale("t", t))
+        x, s = check.places("x", x), 2.0 * math.sqrt(check.scale("t", t))
         if s > _WIDE:
             slope = _over_square(lambda z: -2.0 * z * np.exp(-z * z), x, s)
             return slope * 2.0 / (s * s * math.sqrt(math.pi))
@@ -86,7 +78,7 @@ class Square:
 
     def cumulative(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return int_-inf^x f dx'."""
-        x, t = places("x", x), _time(t)
+        x, t = check.places("x", x), check.not_negative("t", t)
         return np.clip(x + 1.0, 0.0, 2.0) if t == 0.0 else self._cumulative(x, 2.0 * math.sqrt(t))
 
     def _cumulative(self, x: np.ndarray, s: float) -> np.ndarray:
@@ -101,7 +93,7 @@ class Square:
 
     def quantile(self, g: Any, t: float = 0.0) -> np.ndarray:
         """Return x with cumulative(x, t) = g, by bisection; accurate to round-off in g."""
-        g, t = inside(g, self.total), _time(t)
+        g, t = inside(g, self.total), check.not_negative("t", t)
         if t == 0.0:
             return g - 1.0
         # The half with x <= 0, where no digits are lost, gives the other by symmetry.
@@ -148,12 +140,12 @@ class Gaussian:
 
     def value(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return f(x, t)."""
-        width = 1.0 + 4.0 * _time(t)
-        return np.exp(-np.square(places("x", x)) / width) / math.sqrt(width)
+        width = 1.0 + 4.0 * check.not_negative("t", t)
+        return np.exp(-np.square(check.places("x", x)) / width) / math.sqrt(width)
 
     def cumulative(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return int_-inf^x f dx'."""
-        scaled = places("x", x) / math.sqrt(1.0 + 4.0 * _time(t))
+        scaled = check.places("x", x) / math.sqrt(1.0 + 4.0 * check.not_negative("t", t))
         return 0.5 * self.total * np.where(scaled < -4.0, erfc(-scaled), 1.0 + erf(scaled))
 
     def quantile(self, g: Any, t: float = 0.0) -> np.ndarray:
@@ -164,7 +156,7 @@ class Gaussian:
         tail = np.where(2.0 * g < self.total, -1.0, 1.0) * erfcinv(2.0 * end)
         with np.errstate(divide="ignore"):
             z = np.where(end < _ERFINV, tail, erfinv(2.0 * g / self.total - 1.0))
-        return finite_result("g", math.sqrt(1.0 + 4.0 * _time(t)) * z)
+        return check.finite_result("g", math.sqrt(1.0 + 4.0 * check.not_negative("t", t)) * z)
 
 
 @dataclass(frozen=True)
@@ -185,7 +177,7 @@ class Ramp:
     end: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "end", scale("x_0", self.end))
+        object.__setattr__(self, "end", check.scale("x_0", self.end))
 
     @property
     def total(self) -> float:
@@ -194,7 +186,7 @@ class Ramp:
 
     def value(self, x: Any) -> np.ndarray:
         """Return f(x)."""
-        x = places("x", x)
+        x = check.places("x", x)
         return np.where((x >= 0.0) & (x <= self.end), x * np.exp(-x * x), 0.0)
 
     def quantile(self, g: Any) -> np.ndarray:
@@ -205,13 +197,6 @@ class Ramp:
 def inside(g: Any, total: float) -> np.ndarray:
     """Return parts of the total, 0 < g < total, as an array: a marker needs something on each side.
 
-    Raises
-    ------
-    InvalidInput
-        If one is not inside.
+    Raises `InvalidInput` if one is not inside.
     """
-    return within("g", finite_array("g", g), 0.0, total, inside=True)
-
-
-def _time(t: float) -> float:
-    return real_between("t", t, 0.0, SIZES[1])
+    return check.within("g", check.finite_array("g", g), 0.0, total, inside=True)

@@ -89,10 +89,7 @@ class Shape:
 
         At a jump the mean of both sides, for a derivative that is odd: S2'(0) = 0; at |x| = 1 the inner value.
 
-        Raises
-        ------
-        InvalidInput
-            If x is not real, or the derivative is not a bounded function, or above the 24th.
+        Raises `InvalidInput` if x is not real, or the derivative is not a bounded function, or above the 24th.
         """
         x = real_array("x", x)
         r = np.minimum(np.abs(x), 2.0 * self.reach)
@@ -130,11 +127,8 @@ class Shape:
         S8: (1 + k^2/4) exp(-k^2/4). The others by Gauss-Legendre quadrature on [0, 1], which is exact to round-off
         with the k / 2 + 24 nodes taken.
 
-        Raises
-        ------
-        InvalidInput
-            If k, a wavenumber, is not real, finite and, but for S8, at most 1e4 in size; or if there are too many k
-            for memory.
+        Raises `InvalidInput` if k, a wavenumber, is not real, finite and, but for S8, at most 1e4 in size; or if
+        there are too many k for memory.
         """
         k = finite_array("k, a wavenumber,", k)
         if not self.finite:
@@ -202,9 +196,6 @@ SHAPES: Mapping[str, Shape] = MappingProxyType(
 def shape_function(name: str) -> Shape:
     """Return the shape function of that name, S1 to S8.
 
-    Raises
-    ------
-    InvalidInput
-        If there is none.
+    Raises `InvalidInput` if there is none.
     """
     return SHAPES[choice("shape", name, tuple(SHAPES))]

@@ -17,14 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import (
-    function,
-    instance,
-    positions,
-    scale,
-    vector,
-    whole_number,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
 from fracparticles.markers.shapes import Shape
 from fracparticles.markers.stability import extremes
@@ -74,10 +67,13 @@ class MarkerVelocity:
         derivatives: int = 1,
         period: float | None = None,
     ) -> None:
-        self.shape, self.epsilon = instance("shape", shape, Shape), scale("epsilon", epsilon)
-        self.flux = function("flux", flux)
-        self.period = None if period is None else scale("period", period)
-        derivatives = whole_number("derivatives", derivatives)
+        self.shape, self.epsilon = (
+            check.instance("shape", shape, Shape),
+            check.scale("epsilon", epsilon),
+        )
+        self.flux = check.function("flux", flux)
+        self.period = None if period is None else check.scale("period", period)
+        derivatives = check.whole_number("derivatives", derivatives)
         self._reach = shape.reach * self.epsilon
         if self.period is not None and not 2.0 * self._reach < self.period:
             raise InvalidInput(
@@ -95,15 +91,12 @@ class MarkerVelocity:
     def fields(self, x: Any, weights: Any, z: Any = None) -> np.ndarray:
         """Return F and its derivatives, shape (derivatives + 1, M), at z or at the markers themselves.
 
-        Raises
-        ------
-        InvalidInput
-            If the arrays do not fit together or are not finite.
+        Raises `InvalidInput` if the arrays do not fit together or are not finite.
         """
         if self.period is not None:
-            x = positions("x", x)
-            weights = vector("weights", weights, x.size)
-            z = x if z is None else positions("z", z, least=0)
+            x = check.positions("x", x)
+            weights = check.vector("weights", weights, x.size)
+            z = x if z is None else check.positions("z", z, least=0)
             x, weights = self._continued(x, weights)
             z = np.mod(z, self.period)
         return self._scale * self._sums(x, weights, z)
@@ -180,9 +173,9 @@ def run(
         If dt is so large that the markers lose one another: see `warn_of_step`, and a half step that takes most of
         them farther from all others than the shape function reaches. F at such a marker is its own only.
     """
-    instance("velocity", velocity, MarkerVelocity)
-    x = positions("x", x)
-    weights, dt = vector("weights", weights, x.size), scale("dt", dt)
+    check.instance("velocity", velocity, MarkerVelocity)
+    x = check.positions("x", x)
+    weights, dt = check.vector("weights", weights, x.size), check.scale("dt", dt)
     warn_of_step(velocity, dt)
     _warn_of_tearing(x, weights, velocity, dt)
     x, weights, history = advance(

@@ -24,21 +24,7 @@ from typing import Any
 import numpy as np
 from scipy.special import erf, erfc
 
-from fracparticles.arguments import (
-    MOST_STEPS,
-    SIZES,
-    check_fields,
-    finite_real,
-    function,
-    instance,
-    operand,
-    places,
-    positions,
-    positive_integer,
-    real_between,
-    scale,
-    vector,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.markers.profiles import Gaussian
 from fracparticles.markers.solver import Flux, MarkerVelocity, warn_of_step
@@ -55,12 +41,9 @@ Function = Callable[[np.ndarray], np.ndarray]
 def source_flux(cumulative: Function) -> Flux:
     """Return the paper's flux V F = -F_x - S^(x).
 
-    Raises
-    ------
-    InvalidInput
-        If S^ is no function.
+    Raises `InvalidInput` if S^ is no function.
     """
-    cumulative = function("cumulative", cumulative)
+    cumulative = check.function("cumulative", cumulative)
 
     def flux(x: np.ndarray, fields: np.ndarray) -> np.ndarray:
         return -fields[1] - cumulative(x)
@@ -94,10 +77,10 @@ def advance_weights(
     StabilityWarning
         If dt is far too large for these stages: see `solver.warn_of_step`.
     """
-    instance("velocity", velocity, MarkerVelocity)
-    x, source = positions("x", x), function("source", source)
-    weights, dt = vector("weights", weights, x.size), scale("dt", dt)
-    steps = positive_integer("steps", steps, most=MOST_STEPS)
+    check.instance("velocity", velocity, MarkerVelocity)
+    x, source = check.positions("x", x), check.function("source", source)
+    weights, dt = check.vector("weights", weights, x.size), check.scale("dt", dt)
+    steps = check.positive_integer("steps", steps, most=check.MOST_STEPS)
     step = ChebyshevStep(stages)
     warn_of_step(velocity, dt, step.stability_interval)
     sign = np.sign(weights)
@@ -106,7 +89,7 @@ def advance_weights(
         x, w = state
         fields = velocity.fields(x, w)
         v = quotient_velocity(velocity.flux(x, fields), fields[0], x)
-        return np.stack([v, w * operand("source", source(x), x.shape) / fields[0]])
+        return np.stack([v, w * check.operand("source", source(x), x.shape) / fields[0]])
 
     def observe(t: float, state: np.ndarray) -> None:
         turned = np.sign(state[1]) != sign
@@ -140,7 +123,7 @@ class GaussianSource:
     derivative: int = 0
 
     def __post_init__(self) -> None:
-        check_fields(self, q=finite_real, derivative=_zero_or_two)
+        check.fields(self, q=check.finite_real, derivative=_zero_or_two)
 
     @property
     def total(self) -> float:
@@ -149,13 +132,13 @@ class GaussianSource:
 
     def rate(self, x: Any) -> np.ndarray:
         """Q(x)."""
-        x = places("x", x)
+        x = check.places("x", x)
         factor = 1.0 if self.derivative == 0 else 4.0 * x * x - 2.0
         return self.q * factor * np.exp(-x * x)
 
     def cumulative(self, x: Any) -> np.ndarray:
         """S^(x)."""
-        x = places("x", x)
+        x = check.places("x", x)
         if self.derivative == 0:
             return 0.5 * self.total * (1.0 + erf(x))
         return -2.0 * self.q * x * np.exp(-x * x)
@@ -168,7 +151,7 @@ class GaussianSource:
 
             2 int_0^t g ds = [sqrt(w) exp(-x^2 / w) + sqrt(pi) |x| erf(|x| / sqrt(w))] - [the same at w = 1].
         """
-        x, t = places("x", x), real_between("t", t, 0.0, SIZES[1])
+        x, t = check.places("x", x), check.not_negative("t", t)
         g, g0 = Gaussian().value(x, t), Gaussian().value(x, 0.0)
         if self.derivative == 2:
             return g + self.q * (g - g0)

@@ -6,7 +6,7 @@ r"""Diffusion velocity method (DVM), Eqs. (42)-(45):
 
 the diffusion written as an advection by the flux per unit of the field. The particles carry their strengths along,
 so that the total is constant; the particles spread, and are redistributed onto the lattice when they are too far
-apart (`remeshing`). For the fundamental solution the velocity is exactly x / (alpha t).
+apart (`moving.remeshing`). For the fundamental solution the velocity is exactly x / (alpha t).
 
 Stability: in a uniform field a displacement wave xi exp(i k x) of the particles changes at the rate
 -D |k|^alpha eta^(k eps) xi, aliases neglected, which is DD's symbol. So the midpoint rule is stable for
@@ -22,7 +22,16 @@ import numpy as np
 
 from fracparticles.arguments import fractional_order, positive_real, real_array
 from fracparticles.errors import InvalidInput
-from fracparticles.moving.lagrangian import History, Observer, Remeshing, advance, quotient_velocity
+from fracparticles.moving.lagrangian import (
+    REMESH_ABOVE,
+    REMESHING,
+    THRESHOLD,
+    History,
+    Observer,
+    Remeshing,
+    advance,
+    quotient_velocity,
+)
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
 
 LATTICES = ("initial", "extended")
@@ -42,7 +51,7 @@ class DiffusionVelocity:
     diffusivity : float
         D of Eq. (2).
     summation : {"fft", "naive"}
-        See `sums.scattered`.
+        See `moving.scattered`.
     """
 
     def __init__(
@@ -112,10 +121,10 @@ def run(
     overlap: float = 2.0,
     diffusivity: float = 1.0,
     start: float = 0.0,
-    remeshing: str = "M4'",
-    remesh_above: float = 1.5,
+    remeshing: str = REMESHING,
+    remesh_above: float = REMESH_ABOVE,
     lattice: str = "initial",
-    threshold: float = 0.0,
+    threshold: float = THRESHOLD,
     summation: str = "fft",
     observe: Observer | None = None,
 ) -> ParticleRun:
@@ -134,7 +143,7 @@ def run(
         Whether remeshing keeps to the initial lattice, as the paper's does, so that what has left it is lost, or
         goes on as far as the particles need, which conserves the total.
     remesh_above, threshold, start, observe
-        See `lagrangian`.
+        See `moving.lagrangian`.
 
     Raises
     ------

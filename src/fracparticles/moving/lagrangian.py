@@ -3,7 +3,7 @@ r"""Particles of constant strength, carried by a velocity that follows from all 
     dx_i/dt = v(x_i),     U_i constant,                                                           (43)
 
 in steps of the midpoint rule. It serves every conservation law u_t + (v u)_x = 0 whose velocity is a flux divided
-by the field, v = Q / u, both of them sums over the particles (`sums.scattered`).
+by the field, v = Q / u, both of them sums over the particles (`moving.scattered`).
 
 Rules
 - Order does not matter. Particles that coincide are two strengths in one place: they stay together, since the
@@ -21,28 +21,29 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import (
-    MOST_STEPS,
-    choice,
-    finite_real,
-    function,
-    instance,
-    operand,
-    pair,
-    positions,
-    positive_integer,
-    real_between,
-    scale,
-    vector,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
 from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh
 
-__all__ = ["FieldNotPositive", "History", "Remeshing", "advance", "quotient_velocity"]
+__all__ = [
+    "REMESHING",
+    "REMESH_ABOVE",
+    "THRESHOLD",
+    "FieldNotPositive",
+    "History",
+    "Remeshing",
+    "advance",
+    "quotient_velocity",
+]
+
+# What holds if nothing is said: the remeshing kernel, the spacing above which it is used, in h, and the share of the
+# greatest strength up to which particles are left out.
+REMESHING, REMESH_ABOVE, THRESHOLD = "M4'", 1.5, 0.0
 
 Velocity = Callable[[np.ndarray, np.ndarray], np.ndarray]
 Observer = Callable[[float, np.ndarray, np.ndarray], None]
@@ -59,7 +60,7 @@ class Remeshing:
     Attributes
     ----------
     name : {"M4'", "Lambda3"}
-        See `remeshing`.
+        See `moving.remeshing`.
     spacing : float
         Lattice spacing h.
     above : float
@@ -70,20 +71,18 @@ class Remeshing:
 
     name: str
     spacing: float
-    above: float = 1.5
+    above: float = REMESH_ABOVE
     ends: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        choice("remeshing", self.name, REMESHINGS)
-        object.__setattr__(self, "spacing", scale("spacing", self.spacing))
-        object.__setattr__(self, "above", real_between("remesh_above", self.above, 1.0))
-        if self.above == 1.0:
-            raise InvalidInput("remesh_above", self.above, "a number above 1", "Give 1.5.")
+        check.choice("remeshing", self.name, REMESHINGS)
+        check.fields(self, spacing=check.scale, above=_above_one)
         if self.ends is not None:
-            ends = tuple(finite_real("ends", end) for end in pair("ends", self.ends))
-            if not ends[0] < ends[1]:
-                raise InvalidInput("ends", self.ends, "two increasing numbers", "Mend their order.")
-            object.__setattr__(self, "ends", ends)
+            check.fields(self, ends=partial(check.pair, rising=True))
+
+
+def _above_one(_: str, value: Any) -> float:
+    return check.real_between("remesh_above", value, 1.0, inside=True, remedy="Give 1.5.")
 
 
 @dataclass
@@ -147,12 +146,9 @@ def quotient_velocity(flux: Any, u: Any, x: Any, accuracy: float = 0.0) -> np.nd
     NonFiniteSolution
         If the velocity is not finite.
     """
-    u = operand("u", u, np.shape(u) if isinstance(u, np.ndarray) else vector("u", u).shape)
-    if u.ndim != 1 or not u.size:
-        raise InvalidInput(
-            "u", f"array of shape {u.shape}", "a field at the particles", "Give one."
-        )
-    flux, x = operand("flux", flux, u.shape), operand("x", x, u.shape)
+    u = u if isinstance(u, np.ndarray) else check.vector("u", u)
+    u = check.operand("u", u, (max(u.size, 1),))
+    flux, x = check.operand("flux", flux, u.shape), check.operand("x", x, u.shape)
     top = int(np.argmax(np.abs(u)))
     signed = np.copysign(1.0, u[top]) * u
     worst = int(np.argmin(signed))
@@ -179,7 +175,7 @@ def advance(
     steps: int,
     start: float = 0.0,
     remeshing: Remeshing | None = None,
-    threshold: float = 0.0,
+    threshold: float = THRESHOLD,
     observe: Observer | None = None,
 ) -> tuple[np.ndarray, np.ndarray, History]:
     """Advance the particles by `steps` midpoint steps: x* = x + dt/2 v(x), x <- x + dt v(x*).
@@ -212,18 +208,15 @@ def advance(
     NonFiniteSolution
         If the run cannot go on; `FieldNotPositive` if that is for the field. Both with the step and the time.
     """
-    x = positions("x", x).copy()
-    strength = vector("strength", strength, x.size).copy()
-    dt, steps, start = (
-        scale("dt", dt),
-        positive_integer("steps", steps, most=MOST_STEPS),
-        finite_real("start", start),
-    )
-    function("velocity", velocity)
+    x = check.positions("x", x).copy()
+    strength = check.vector("strength", strength, x.size).copy()
+    dt, start = check.scale("dt", dt), check.finite_real("start", start)
+    steps = check.positive_integer("steps", steps, most=check.MOST_STEPS)
+    check.function("velocity", velocity)
     if remeshing is not None:
-        instance("remeshing", remeshing, Remeshing)
+        check.instance("remeshing", remeshing, Remeshing)
     if observe is not None:
-        function("observe", observe)
+        check.function("observe", observe)
     history = History(total_initial=float(strength.sum()))
     x, strength = _keep(x, strength, threshold, history)
     history.particles.append(x.size)
@@ -235,7 +228,9 @@ def advance(
         try:
             halfway = _moved(x, 0.5 * dt, velocity(x, strength))
             moved = _moved(x, dt, velocity(halfway, strength))
-            _require_finite(moved, x)
+            if not np.isfinite(moved).all():
+                lost = x[~np.isfinite(moved)][0]
+                raise NonFiniteSolution(f"the particle from x = {lost:.6g} went to infinity")
             spacing, where, order = _largest_gap(x, moved, order, history)
             if remeshing is not None and spacing > remeshing.above * remeshing.spacing:
                 history.remeshing_times.append(time)
@@ -249,9 +244,8 @@ def advance(
             if isinstance(error, InvalidInput) and error.field == "velocity":
                 raise  # it is not made for particles
             kind = FieldNotPositive if isinstance(error, FieldNotPositive) else NonFiniteSolution
-            raise kind(
-                f"step {n} of {steps}, from t = {time - dt:.6g} to {time:.6g}: {error}"
-            ) from error
+            when = f"step {n} of {steps}, from t = {time - dt:.6g} to {time:.6g}"
+            raise kind(f"{when}: {error}") from error
         x = moved
         if observe is not None:
             observe(time, x, strength)
@@ -281,14 +275,8 @@ def _redistribute(
     return x[inside], strength[inside]
 
 
-def _require_finite(moved: np.ndarray, x: np.ndarray) -> None:
-    finite = np.isfinite(moved)
-    if not finite.all():
-        raise NonFiniteSolution(f"the particle from x = {x[~finite][0]:.6g} went to infinity")
-
-
 def _moved(x: np.ndarray, time: float, velocity: Any) -> np.ndarray:
-    v = operand("velocity", velocity, x.shape)
+    v = check.operand("velocity", velocity, x.shape)
     with np.errstate(over="ignore", invalid="ignore"):
         return x + time * v
 

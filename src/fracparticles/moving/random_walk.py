@@ -12,6 +12,8 @@ With V uniform on (-pi/2, pi/2) and W exponential of mean 1,
     S = sin(alpha V) / cos(V)  (W cos(V) / cos((alpha - 1) V))^((alpha - 1)/alpha),
 
 Chambers, Mallows and Stuck (1976), J. Amer. Statist. Assoc. 71, 340-344, the symmetric case.
+
+All functions raise `InvalidInput` if an argument is outside its range.
 """
 
 from __future__ import annotations
@@ -23,17 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln, xlog1py, xlogy
 
+from fracparticles import arguments as check
 from fracparticles._compiled import njit
-from fracparticles.arguments import (
-    MOST,
-    fractional_order,
-    positions,
-    positive_integer,
-    real_array,
-    scale,
-    within,
-)
-from fracparticles.arguments import generator as random_generator
 from fracparticles.errors import InvalidInput
 from fracparticles.special.stable import tail_mass
 
@@ -50,7 +43,6 @@ __all__ = [
 FloatArray = NDArray[np.float64]
 
 _CHUNK = 2**14  # walkers at a time: their random numbers stay in the cache
-_SCALES = 1e-100, 1e100  # of an increment; nothing made of them overflows
 _MOST_WALKERS = 10**9  # beyond, the logarithms in `expected_deviation` lose digits
 
 
@@ -58,27 +50,9 @@ _MOST_WALKERS = 10**9  # beyond, the logarithms in `expected_deviation` lose dig
 
 
 def stable_variates(alpha: float, size: int, generator: np.random.Generator) -> FloatArray:
-    """Return independent S with the density L_alpha^0.
-
-    Parameters
-    ----------
-    alpha : float
-        Fractional order, 1 < alpha < 2.
-    size : int
-        How many.
-    generator : numpy.random.Generator
-        The source of random numbers.
-
-    Returns
-    -------
-    ndarray, shape (size,)
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
-    """
-    return walk(np.zeros(positive_integer("size", size, most=MOST)), alpha, 1.0, generator)
+    """Return `size` independent S with the density L_alpha^0; parameters and errors as of `walk`."""
+    origin = np.zeros(check.positive_integer("size", size, most=check.MOST))
+    return walk(origin, alpha, 1.0, generator)
 
 
 def walk(
@@ -117,20 +91,17 @@ def walk(
     InvalidInput
         If an argument is outside its range, or (D dt)^(1/alpha) is beyond 1e-100 .. 1e100.
     """
-    position = positions("x", x).copy()
-    alpha = fractional_order(alpha)
-    time, diffusivity = scale("time", time), scale("diffusivity", diffusivity)
-    steps = positive_integer("steps", steps)
-    generator = random_generator("generator", generator)
+    position = check.positions("x", x).copy()
+    alpha = check.fractional_order(alpha)
+    time, diffusivity = check.scale("time", time), check.scale("diffusivity", diffusivity)
+    steps = check.positive_integer("steps", steps)
+    generator = check.generator("generator", generator)
     # The logarithm of the scale, which itself may overflow.
     logarithm = (math.log(time) - math.log(steps) + math.log(diffusivity)) / alpha
-    if not math.log(_SCALES[0]) <= logarithm <= math.log(_SCALES[1]):
-        raise InvalidInput(
-            "time",
-            time,
-            f"a time with (D dt)^(1/alpha) between {_SCALES[0]:g} and {_SCALES[1]:g}",
-            "Change the units of length or time.",
-        )
+    least, most = check.SIZES
+    if not math.log(least) <= logarithm <= math.log(most):
+        allowed = f"a time with (D dt)^(1/alpha) between {least:g} and {most:g}"
+        raise InvalidInput("time", time, allowed, "Change the units of length or time.")
     for first in range(0, position.size, _CHUNK):
         part = position[first : first + _CHUNK]
         uniform, exponential = np.empty_like(part), np.empty_like(part)
@@ -172,20 +143,17 @@ def cell_counts(x: Any, half_width: float, cells: int, ensembles: int = 1) -> ND
     Returns
     -------
     ndarray of int, shape (ensembles, cells)
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
     """
-    x, half_width = positions("x", x), scale("half_width", half_width)
-    cells, ensembles = positive_integer("cells", cells), positive_integer("ensembles", ensembles)
+    x, half_width = check.positions("x", x), check.scale("half_width", half_width)
+    cells, ensembles = (
+        check.positive_integer("cells", cells),
+        check.positive_integer("ensembles", ensembles),
+    )
     if ensembles > x.size:
-        raise InvalidInput(
-            "ensembles", ensembles, f"at most the {x.size} walkers", "Take fewer ensembles."
-        )
-    if cells * ensembles > MOST:
-        raise InvalidInput("cells", cells, f"at most {MOST} of all ensembles", "Take fewer.")
+        allowed = f"at most the {x.size} walkers"
+        raise InvalidInput("ensembles", ensembles, allowed, "Take fewer ensembles.")
+    if cells * ensembles > check.MOST:
+        raise InvalidInput("cells", cells, f"at most {check.MOST} of all ensembles", "Take fewer.")
     counts = np.zeros((ensembles, cells), dtype=np.int64)
     _count(x, half_width, 0.5 * cells / half_width, counts)
     return counts
@@ -217,13 +185,8 @@ def cell_masses(edges: Any, t: float, alpha: float) -> FloatArray:
     Returns
     -------
     ndarray, shape (cells,)
-
-    Raises
-    ------
-    InvalidInput
-        If the edges do not rise, or an argument is outside its range.
     """
-    edges = real_array("edges", edges)
+    edges = check.real_array("edges", edges)
     if edges.ndim != 1 or edges.size < 2 or not (edges[1:] > edges[:-1]).all():
         raise InvalidInput("edges", edges, "two or more rising numbers", "Sort them.")
     beyond = 0.5 * np.asarray(tail_mass(np.abs(edges), t, alpha))
@@ -234,27 +197,15 @@ def cell_masses(edges: Any, t: float, alpha: float) -> FloatArray:
 
 
 def distribution(x: Any, t: float, alpha: float) -> FloatArray:
-    """Return F(x, t), the integral of G from minus infinity to x.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
-    """
-    x = real_array("x", x)
+    """Return F(x, t), the integral of G from minus infinity to x."""
+    x = check.real_array("x", x)
     beyond = 0.5 * np.asarray(tail_mass(np.abs(x), t, alpha))
     return np.where(x < 0.0, beyond, 1.0 - beyond)
 
 
 def kolmogorov_smirnov(x: Any, t: float, alpha: float) -> float:
-    """Return max |F_n(x) - F(x, t)|, F_n the share of the n walkers to the left of x.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
-    """
-    exact = distribution(np.sort(positions("x", x)), t, alpha)
+    """Return max |F_n(x) - F(x, t)|, F_n the share of the n walkers to the left of x."""
+    exact = distribution(np.sort(check.positions("x", x)), t, alpha)
     steps = np.arange(exact.size + 1) / exact.size
     return float(max((steps[1:] - exact).max(), (exact - steps[:-1]).max()))
 
@@ -268,7 +219,7 @@ def expected_deviation(masses: Any, walkers: int) -> FloatArray:
     Parameters
     ----------
     masses : array_like
-        p, any shape.
+        p, within [0, 1], any shape.
     walkers : int
         n, at most 1e9.
 
@@ -276,18 +227,12 @@ def expected_deviation(masses: Any, walkers: int) -> FloatArray:
     -------
     ndarray
         Same shape as the masses.
-
-    Raises
-    ------
-    InvalidInput
-        If a mass is not within [0, 1], or `walkers` is outside its range.
     """
-    p, n = real_array("masses", masses), positive_integer("walkers", walkers)
-    within("masses", p, 0.0, 1.0)
+    p, n = check.real_array("masses", masses), check.positive_integer("walkers", walkers)
+    check.within("masses", p, 0.0, 1.0)
     if n > _MOST_WALKERS:
-        raise InvalidInput(
-            "walkers", n, f"at most {_MOST_WALKERS:g}", "Use the square root of 2 p (1 - p)/(pi n)."
-        )
+        remedy = "Use the square root of 2 p (1 - p)/(pi n)."
+        raise InvalidInput("walkers", n, f"at most {_MOST_WALKERS:g}", remedy)
     m = np.minimum(np.floor(n * p) + 1.0, n)  # p = 1 gives 0 either way
     logarithm = gammaln(n + 1.0) - gammaln(m + 1.0) - gammaln(n - m + 1.0)
     logarithm += xlogy(m, p) + xlog1py(n - m + 1.0, -p)

@@ -22,17 +22,8 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles import arguments as check
 from fracparticles._compiled import njit
-from fracparticles.arguments import (
-    choice,
-    elementwise,
-    finite_result,
-    positions,
-    real_array,
-    real_between,
-    scale,
-    vector,
-)
 from fracparticles.errors import InvalidInput
 
 __all__ = ["REMESHINGS", "Elimination", "eliminate", "interpolation_function", "remesh"]
@@ -65,12 +56,9 @@ class Elimination:
 def interpolation_function(name: str, r: Any) -> np.ndarray:
     """Return W(r) at signed distances r, in spacings.
 
-    Raises
-    ------
-    InvalidInput
-        If there is no interpolation function of that name, or r is not real.
+    Raises `InvalidInput` if there is no interpolation function of that name, or r is not real.
     """
-    return np.asarray(elementwise(_weights, real_array("r", r), _index(name)))
+    return np.asarray(check.elementwise(_weights, check.real_array("r", r), _index(name)))
 
 
 def eliminate(x: Any, strength: Any, threshold: float) -> Elimination:
@@ -78,25 +66,19 @@ def eliminate(x: Any, strength: Any, threshold: float) -> Elimination:
 
     With threshold 0 those of no strength at all, which also means that it underflowed.
 
-    Raises
-    ------
-    InvalidInput
-        If the arrays do not fit together or are not finite, the threshold is not in [0, 1), or no particle has any
-        strength.
+    Raises `InvalidInput` if the arrays do not fit together or are not finite, the threshold is not in [0, 1), or no
+    particle has any strength.
     """
-    x = positions("x", x, least=0)
-    strength = vector("strength", strength, x.size, least=0)
-    if real_between("threshold", threshold, 0.0, 1.0) == 1.0:
-        raise InvalidInput("threshold", threshold, "a number below 1", "Give a small fraction.")
+    x = check.positions("x", x, least=0)
+    strength = check.vector("strength", strength, x.size, least=0)
+    below_one = float(np.nextafter(1.0, 0.0))
+    check.real_between("threshold", threshold, 0.0, below_one, remedy="Give a small fraction.")
     size = np.abs(strength)
     largest = size.max(initial=0.0)
     if not largest > 0.0:
-        raise InvalidInput(
-            "strength",
-            "no particle with a strength",
-            "at least one strength other than zero",
-            "Check the initial data, and whether they underflow.",
-        )
+        allowed = "at least one strength other than zero"
+        remedy = "Check the initial data, and whether they underflow."
+        raise InvalidInput("strength", "no particle with a strength", allowed, remedy)
     kept = size > threshold * largest
     if kept.all():
         return Elimination(x, strength, 0, 0.0)
@@ -124,26 +106,23 @@ def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray
         If there is no such function, the arrays are empty, not finite or do not fit together, or a particle lies so far
         out that the lattice would not fit into memory.
     """
-    which, spacing = _index(name), scale("spacing", spacing)
-    x = positions("x", x)
-    strength = vector("strength", strength, x.size)
+    which, spacing = _index(name), check.scale("spacing", spacing)
+    x = check.positions("x", x)
+    strength = check.vector("strength", strength, x.size)
     cell = x / spacing
     low, high = cell.min(), cell.max()
     if not (abs(low) < _FARTHEST and abs(high) < _FARTHEST and high - low < _MOST_POINTS):
-        raise InvalidInput(
-            "x",
-            f"particles from {x.min():.6g} to {x.max():.6g}",
-            f"finite positions less than {_MOST_POINTS * spacing:.4g} apart",
-            "Look for a particle that ran away.",
-        )
+        shown = f"particles from {x.min():.6g} to {x.max():.6g}"
+        allowed = f"finite positions less than {_MOST_POINTS * spacing:.4g} apart"
+        raise InvalidInput("x", shown, allowed, "Look for a particle that ran away.")
     first = int(np.floor(low)) - 1
     total = np.zeros(int(np.floor(high)) + 3 - first)
     _distribute(cell, strength, first, which, total)
-    return np.arange(first, first + total.size) * spacing, finite_result("strength", total)
+    return np.arange(first, first + total.size) * spacing, check.finite_result("strength", total)
 
 
 def _index(name: str) -> int:
-    return REMESHINGS.index(choice("remeshing", name, REMESHINGS))
+    return REMESHINGS.index(check.choice("remeshing", name, REMESHINGS))
 
 
 @njit(inline="always")

@@ -32,18 +32,8 @@ import numpy as np
 from scipy.fft import next_fast_len
 from scipy.special import erfc
 
+from fracparticles import arguments as check
 from fracparticles._compiled import njit
-from fracparticles.arguments import (
-    SIZES,
-    choice,
-    function,
-    instance,
-    positions,
-    real_between,
-    scale,
-    vector,
-    whole_number,
-)
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import KERNELS, kernel
 
@@ -64,9 +54,8 @@ _GAUSSIAN_REACH = {2: 6.5, 4: 9.2}
 _TOLERANCE = 1e-12  # of the non-uniform transforms
 _OVERSAMPLING = 1.5  # measured: faster than 2, and 1.25 cannot reach the tolerance
 _EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: the cut-off is 1 on one side of this, 0 on the other
-_MARGIN = (
-    1.125  # how much wider than the set the box is made, so that it is not made anew at every step
-)
+# How much wider than the set the box is made, so that it is not made anew at every step.
+_MARGIN = 1.125
 _MOST_MODES = 2**24  # about 1 GiB of buffers
 _LARGEST = float(np.finfo(float).max)
 _PAIRS = 2**14  # pairs evaluated together: they stay in the second-level cache
@@ -96,34 +85,28 @@ class ScatteredKernel:
     reach: float = math.inf
 
     def __post_init__(self) -> None:
-        function("profile", self.profile)
+        check.function("profile", self.profile)
         for name in ("bandwidth", "reach"):
             value = getattr(self, name)
             if not (isinstance(value, float) and value == math.inf):
-                object.__setattr__(self, name, real_between(name, value, 0.0, inside=True))
+                object.__setattr__(self, name, check.real_between(name, value, 0.0, inside=True))
 
 
 def smooth_kernel(name: str, alpha: float, order: int = 2) -> ScatteredKernel:
-    """Return a kernel of `kernels` that is a convolution with the Gaussian of its order: all but E.
+    """Return a kernel of `kernels.families` that is a convolution with the Gaussian of its order: all but E.
 
-    Raises
-    ------
-    InvalidInput
-        If the kernel, its order or alpha does not exist, or the kernel is E.
+    Raises `InvalidInput` if the kernel, its order or alpha does not exist, or the kernel is E.
     """
-    choice("name", name, tuple(KERNELS))
-    order = whole_number("order", order, least=1)
+    check.choice("name", name, [n for n in KERNELS if n != "E"])
+    order = check.whole_number("order", order, least=1)
 
     def profile(r: np.ndarray) -> np.ndarray:
         return np.asarray(kernel(name, r, alpha, order=order))
 
     profile(np.zeros(1))
-    if name == "E":
-        raise InvalidInput("name", name, "a kernel with a Gaussian in it", "Choose another kernel.")
     gaussian = math.isinf(KERNELS[name].decay(alpha))
-    return ScatteredKernel(
-        profile, _GAUSSIAN_BAND, _GAUSSIAN_REACH[order] if gaussian else math.inf
-    )
+    reach = _GAUSSIAN_REACH[order] if gaussian else math.inf
+    return ScatteredKernel(profile, _GAUSSIAN_BAND, reach)
 
 
 class ScatteredSum(Protocol):
@@ -158,7 +141,7 @@ def scattered_sum(
         If there is no such summation, or epsilon is not a positive number, or "fft" is asked for a kernel
         that has neither a finite reach nor a finite bandwidth.
     """
-    if choice("summation", summation, ("fft", "naive")) == "naive":
+    if check.choice("summation", summation, ("fft", "naive")) == "naive":
         return NaiveScatteredSum(kernels, epsilon)
     if all(math.isfinite(k.reach) for k in _kernels(kernels)):
         return NeighbourSum(kernels, epsilon)
@@ -181,15 +164,12 @@ class NonuniformFourierSum:
     accuracy = 1e-11
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        self._kernels, self._epsilon = _kernels(kernels), scale("epsilon", epsilon)
+        self._kernels, self._epsilon = _kernels(kernels), check.scale("epsilon", epsilon)
         for k in self._kernels:
             if not math.isfinite(k.bandwidth):
-                raise InvalidInput(
-                    "bandwidth",
-                    k.bandwidth,
-                    "a finite number for a Fourier sum",
-                    "Take summation='naive', or give the kernel its reach.",
-                )
+                allowed = "a finite number for a Fourier sum"
+                remedy = "Take summation='naive', or give the kernel its reach."
+                raise InvalidInput("bandwidth", k.bandwidth, allowed, remedy)
         self._band = max(k.bandwidth for k in self._kernels) / self._epsilon
         self._low, self._high = math.inf, -math.inf
         self._in_use = threading.Lock()  # box and plans belong to one call at a time
@@ -197,31 +177,21 @@ class NonuniformFourierSum:
     def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
         """Return y, shape (kernels, M), as a new array.
 
-        Raises
-        ------
-        InvalidInput
-            If the arrays do not fit together, a position is not finite, or the set is too wide.
+        Raises `InvalidInput` if the arrays do not fit together, a position is not finite, or the set is too wide.
         """
         x, q, z = _checked(x, q, z)
         points = x if z is None else z
-        low, high = x.min(initial=math.inf), x.max(initial=-math.inf)
-        if z is not None:
-            low, high = z.min(initial=low), z.max(initial=high)
         out = np.zeros((len(self._kernels), points.size))
         if x.size and points.size:
             with self._in_use:
-                self._transform(x, q, z, low, high, out)
+                self._transform(x, q, z, out)
         return out
 
     def _transform(
-        self,
-        x: np.ndarray,
-        q: np.ndarray,
-        z: np.ndarray | None,
-        low: float,
-        high: float,
-        out: np.ndarray,
+        self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None, out: np.ndarray
     ) -> None:
+        ends = [x.min(), x.max(), *(() if z is None else (z.min(), z.max()))]
+        low, high = min(ends), max(ends)
         if not (self._low <= low and high <= self._high):
             self._make_box(min(low, self._low), max(high, self._high))
         angle = (x - self._centre) * self._wavenumber
@@ -245,12 +215,10 @@ class NonuniformFourierSum:
         needed = self._band * period / math.pi
         if not needed <= _MOST_MODES:
             widest = 0.25 * math.pi * _MOST_MODES / self._band / _MARGIN
-            raise InvalidInput(
-                "x",
-                f"particles from {low:.6g} to {high:.6g}",
-                f"a set no wider than {2.0 * widest:.4g}, for this smoothing length",
-                "Look for a particle that ran away, or take summation='naive'.",
-            )
+            shown = f"particles from {low:.6g} to {high:.6g}"
+            allowed = f"a set no wider than {2.0 * widest:.4g}, for this smoothing length"
+            remedy = "Look for a particle that ran away, or take summation='naive'."
+            raise InvalidInput("x", shown, allowed, remedy)
         self._low, self._high = self._centre - half, self._centre + half
         self._wavenumber = 2.0 * math.pi / period
         size = next_fast_len(math.ceil(needed))
@@ -274,15 +242,12 @@ class _PairSum:
     accuracy = 0.0
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        self._kernels, self._epsilon = _kernels(kernels), scale("epsilon", epsilon)
+        self._kernels, self._epsilon = _kernels(kernels), check.scale("epsilon", epsilon)
 
     def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
         """Return y, shape (kernels, M), as a new array.
 
-        Raises
-        ------
-        InvalidInput
-            If the arrays do not fit together, or a position is not finite.
+        Raises `InvalidInput` if the arrays do not fit together, or a position is not finite.
         """
         x, q, z = _checked(x, q, z)
         z = x if z is None else z
@@ -319,19 +284,15 @@ class NaiveScatteredSum(_PairSum):
 class NeighbourSum(_PairSum):
     """The sums over the pairs that are no farther apart than the widest kernel reaches.
 
-    Raises
-    ------
-    InvalidInput
-        If a kernel has no finite reach.
+    Raises `InvalidInput` if a kernel has no finite reach.
     """
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
         super().__init__(kernels, epsilon)
         self._reach = max(k.reach for k in self._kernels) * self._epsilon
         if not math.isfinite(self._reach):
-            raise InvalidInput(
-                "reach", math.inf, "a finite number for a sum over neighbours", "Take another sum."
-            )
+            allowed = "a finite number for a sum over neighbours"
+            raise InvalidInput("reach", math.inf, allowed, "Take another sum.")
 
     def _partners(self, x, q, z):
         order = np.argsort(x, kind="stable")
@@ -341,18 +302,18 @@ class NeighbourSum(_PairSum):
 
 
 def _kernels(kernels: Any) -> list[ScatteredKernel]:
-    listed: Any = instance("kernels", kernels, (list, tuple), "a list of kernels")
+    listed: Any = check.instance("kernels", kernels, (list, tuple), "a list of kernels")
     if not listed:
         raise InvalidInput("kernels", kernels, "one kernel or more", "Give a list of kernels.")
-    return [instance("kernels", k, ScatteredKernel) for k in listed]
+    return [check.instance("kernels", k, ScatteredKernel) for k in listed]
 
 
 def _checked(x: Any, q: Any, z: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-    x = x if _in_range(x, SIZES[1]) else positions("x", x, least=0)
+    x = x if _in_range(x, check.SIZES[1]) else check.positions("x", x, least=0)
     if not (_in_range(q, _LARGEST) and q.shape == x.shape):
-        q = vector("q", q, x.size, least=0)
+        q = check.vector("q", q, x.size, least=0)
     if z is not None:
-        z = z if _in_range(z, SIZES[1]) else positions("z", z, least=0)
+        z = z if _in_range(z, check.SIZES[1]) else check.positions("z", z, least=0)
         z = np.ascontiguousarray(z)
     return np.ascontiguousarray(x), np.ascontiguousarray(q), z
 

@@ -8,16 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fracparticles.arguments import (
-    finite_array,
-    finite_result,
-    positions,
-    real_between,
-    sampled,
-    scale,
-    vector,
-    whole_number,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.moments import nodes_and_weights
 from fracparticles.pse.shapes import Kernel, kernel_of
@@ -35,14 +26,11 @@ _HIGHEST = 24  # order of a derivative
 def lattice(low: float, high: float, h: float) -> FloatArray:
     """Return the particles i h from the last below `low` to the first above `high`.
 
-    Raises
-    ------
-    InvalidInput
-        If h is not positive, `high` is below `low`, or it takes too many particles.
+    Raises `InvalidInput` if h is not positive, `high` is below `low`, or it takes too many particles.
     """
-    h = scale("h", h)
-    low = real_between("low", low, -_FARTHEST * h, _FARTHEST * h)
-    high = real_between("high", high, low, _FARTHEST * h)
+    h = check.scale("h", h)
+    low = check.real_between("low", low, -_FARTHEST * h, _FARTHEST * h)
+    high = check.real_between("high", high, low, _FARTHEST * h)
     if not (high - low) / h < _MOST_PARTICLES:
         raise InvalidInput("h", h, f"at most {_MOST_PARTICLES} particles", "Take a larger h.")
     return h * np.arange(np.floor(low / h), np.ceil(high / h) + 1.0)
@@ -81,9 +69,9 @@ def reconstruct(
         If the arrays do not fit together or are not finite, or epsilon or the kernel does not do.
     """
     weights = _matrix(x, particles, volumes, epsilon, kernel)
-    values = vector("values", values, weights.shape[1], complex_too=True)
+    values = check.vector("values", values, weights.shape[1], complex_too=True)
     with np.errstate(all="ignore"):
-        return finite_result("values", weights @ values)
+        return check.finite_result("values", weights @ values)
 
 
 def derivative(
@@ -116,21 +104,17 @@ def derivative(
     InvalidInput
         As `reconstruct`; or if the order is not a whole number from 1 to 24.
     """
-    divisor = _power(epsilon, whole_number("order", order, least=1, most=_HIGHEST))
+    divisor = _power(epsilon, check.whole_number("order", order, least=1, most=_HIGHEST))
     weights = _matrix(x, particles, volumes, epsilon, kernel)
-    values = vector("values", values, weights.shape[1], complex_too=True)
-    at = vector("at", at, weights.shape[0], least=0, complex_too=True)
+    values = check.vector("values", values, weights.shape[1], complex_too=True)
+    at = check.vector("at", at, weights.shape[0], least=0, complex_too=True)
     with np.errstate(all="ignore"):
         differences = values - at[:, None]
-        return finite_result("values", (weights * differences).sum(axis=1) / divisor)
+        return check.finite_result("values", (weights * differences).sum(axis=1) / divisor)
 
 
 def regularised(
-    f: Callable[[FloatArray], FloatArray],
-    x: ArrayLike,
-    epsilon: float,
-    kernel: Kernel,
-    order: int,
+    f: Callable[[FloatArray], FloatArray], x: ArrayLike, epsilon: float, kernel: Kernel, order: int
 ) -> FloatArray:
     """eps^-beta int [f(x - eps z) - f(x)] eta(z) dz, the integral (18); for beta = 0 the integral of (9).
 
@@ -145,30 +129,30 @@ def regularised(
     InvalidInput
         As `derivative`; or if f does not take arrays, or is not finite.
     """
-    divisor = _power(epsilon, whole_number("order", order, most=_HIGHEST))
-    x = positions("x", x, least=0)
+    divisor = _power(epsilon, check.whole_number("order", order, most=_HIGHEST))
+    x = check.positions("x", x, least=0)
     z, w = nodes_and_weights(kernel)
     _check_pairs(x.size, z.size)
-    shifted = sampled("f", f, x[:, None] - epsilon * z)
+    shifted = check.sampled("f", f, x[:, None] - epsilon * z)
     with np.errstate(all="ignore"):
         if order > 0:
-            shifted = shifted - sampled("f", f, x)[:, None]
-        return finite_result("f", shifted @ (w * kernel(z)) / divisor)
+            shifted = shifted - check.sampled("f", f, x)[:, None]
+        return check.finite_result("f", shifted @ (w * kernel(z)) / divisor)
 
 
 def _matrix(
     x: ArrayLike, particles: ArrayLike, volumes: ArrayLike, epsilon: float, kernel: Kernel
 ) -> FloatArray:
     """V_p eta_eps(x - x_p), shape (M, N)."""
-    epsilon, kernel = scale("epsilon", epsilon), kernel_of(1, kernel)
-    x, particles = positions("x", x, least=0), positions("particles", particles)
-    volumes = finite_array("volumes", volumes)
+    epsilon, kernel = check.scale("epsilon", epsilon), kernel_of(1, kernel)
+    x, particles = check.positions("x", x, least=0), check.positions("particles", particles)
+    volumes = check.finite_array("volumes", volumes)
     if volumes.ndim:
-        volumes = vector("volumes", volumes, particles.size)
+        volumes = check.vector("volumes", volumes, particles.size)
     _check_pairs(x.size, particles.size)
     z = (x[:, None] - particles) / epsilon
     with np.errstate(over="ignore"):
-        return kernel(z) * finite_result("volumes", volumes / epsilon)
+        return kernel(z) * check.finite_result("volumes", volumes / epsilon)
 
 
 def _check_pairs(points: int, particles: int) -> None:
@@ -182,7 +166,7 @@ def _check_pairs(points: int, particles: int) -> None:
 
 
 def _power(epsilon: float, order: int) -> float:
-    epsilon = scale("epsilon", epsilon)
+    epsilon = check.scale("epsilon", epsilon)
     if abs(order * math.log10(epsilon)) > 300.0:
         raise InvalidInput(
             "epsilon",

@@ -41,10 +41,7 @@ _WORST = 1e10  # condition number: beyond it the conditions are met to less than
 def required_moments(derivative: int, accuracy: int) -> dict[int, int]:
     """Return k -> M_k for all conditions of Sec. 2.2; derivative 0 is the function itself, M_0 = 1 by (5).
 
-    Raises
-    ------
-    InvalidInput
-        Unless beta >= 0 and r >= 1 are whole numbers with beta + r <= 24.
+    Raises `InvalidInput` unless beta >= 0 and r >= 1 are whole numbers with beta + r <= 24.
     """
     derivative = whole_number("derivative", derivative)
     accuracy = whole_number("accuracy", accuracy, least=1)
@@ -116,10 +113,7 @@ def construct_laplacian(accuracy: int, dim: int) -> GaussianKernel:
 
     so that I_2 = 2 d and I_4 = ... = I_r = 0. For d = 1 it is `construct(2, r)`.
 
-    Raises
-    ------
-    InvalidInput
-        As `required_moments`; or unless d is 1, 2 or 3.
+    Errors as of `required_moments`; also unless d is 1, 2 or 3.
     """
     dim = dimension(dim)
     conditions = _of_parity(required_moments(2, accuracy), 0)
@@ -133,10 +127,7 @@ def construct_stencil(derivative: int, accuracy: int) -> Stencil:
 
     With (18) it is the centred finite difference of that accuracy; beta = 2, r = 2 gives (31).
 
-    Raises
-    ------
-    InvalidInput
-        As `required_moments`; or for beta = 0, where (9) at a particle is f itself.
+    Errors as of `required_moments`; also for beta = 0, where (9) at a particle is f itself.
     """
     conditions = required_moments(derivative, accuracy)
     if derivative == 0:
@@ -154,10 +145,7 @@ def taylor_constant(kernel: GaussianKernel, derivative: int, accuracy: int) -> F
 
     For an even r, in one dimension. |C| is C_1 of Sec. 2.2, with the norm of f^(beta+r), not f^(r).
 
-    Raises
-    ------
-    InvalidInput
-        As `required_moments`; or if r is odd, or the kernel none of one dimension.
+    Errors as of `required_moments`; also if r is odd, or the kernel none of one dimension.
     """
     required_moments(derivative, accuracy)
     kernel_of(1, instance("kernel", kernel, GaussianKernel))
@@ -175,10 +163,7 @@ def solve_exactly(
 ) -> list[Fraction]:
     """Solve a square linear system by Gauss elimination in fractions.
 
-    Raises
-    ------
-    InvalidInput
-        If it is not square, not of whole numbers and fractions, or singular.
+    Raises `InvalidInput` if it is not square, not of whole numbers and fractions, or singular.
     """
     n = len(_listed("right", right))
     if len(_listed("matrix", matrix)) != n or any(len(_listed("matrix", r)) != n for r in matrix):

@@ -9,15 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
-from fracparticles.arguments import (
-    finite_array,
-    finite_result,
-    operand,
-    places,
-    positions,
-    scale,
-    within,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.shapes import Kernel, kernel_of
 
@@ -69,7 +61,7 @@ class StrengthExchange:
         kernel: Kernel,
         diffusivity: float = 1.0,
     ) -> None:
-        points = places("x", x)
+        points = check.places("x", x)
         points = points[:, None] if points.ndim == 1 else points
         if points.ndim != 2 or not points.size or points.shape[1] > 3:
             raise InvalidInput(
@@ -80,9 +72,12 @@ class StrengthExchange:
             )
         self.size, dim = points.shape
         kernel = kernel_of(dim, kernel)
-        v = finite_array("volumes", volumes, (self.size,))
-        v = within("volumes", v, 0.0, inside=True)
-        epsilon, diffusivity = scale("epsilon", epsilon), scale("diffusivity", diffusivity)
+        v = check.finite_array("volumes", volumes, (self.size,))
+        v = check.within("volumes", v, 0.0, inside=True)
+        epsilon, diffusivity = (
+            check.scale("epsilon", epsilon),
+            check.scale("diffusivity", diffusivity),
+        )
         if abs((2 + dim) * math.log10(epsilon)) > 300.0:
             raise InvalidInput(
                 "epsilon", epsilon, "a number whose power does not overflow", "Change the units."
@@ -104,25 +99,24 @@ class StrengthExchange:
             gain = csr_array((v[i] * eta, (i, p)), shape=(self.size, self.size))
             loss = np.bincount(i, v[p] * eta, self.size)
             self.matrix = (gain - diags_array(loss)).tocsr()
-            self.rate = float(finite_result("volumes", abs(self.matrix).sum(axis=0).max()))
+            self.rate = float(check.finite_result("volumes", abs(self.matrix).sum(axis=0).max()))
 
     def apply(self, u: FloatArray) -> FloatArray:
         """Return A Q, for an array of shape (N,).
 
-        Raises
-        ------
-        InvalidInput
-            If it has another shape. So does `update`.
+        Raises `InvalidInput` if it has another shape. So does `update`.
         """
-        return np.asarray(self.matrix @ operand("u", u, (self.size,), complex_too=True))
+        return np.asarray(self.matrix @ check.operand("u", u, (self.size,), complex_too=True))
 
-    def update(self, u: FloatArray, a: float, b: float, c: float, v: FloatArray) -> None:
-        """Write a (A Q) + b Q + c v into v."""
-        operand("u", u, (self.size,), complex_too=True)
-        operand("v", v, (self.size,), complex_too=True)
-        v *= c
-        v += b * u
-        v += a * (self.matrix @ u)
+    def combine(
+        self, u: FloatArray, out: FloatArray, scale: float, shift: float = 0.0, keep: float = 0.0
+    ) -> None:
+        """Write scale A u + shift u + keep out into `out`."""
+        check.operand("u", u, (self.size,), complex_too=True)
+        check.operand("out", out, (self.size,), complex_too=True)
+        out *= keep
+        out += shift * u
+        out += scale * (self.matrix @ u)
 
 
 def cell_volumes(x: ArrayLike) -> FloatArray:
@@ -130,12 +124,9 @@ def cell_volumes(x: ArrayLike) -> FloatArray:
 
     At the ends a cell is as wide outside as inside.
 
-    Raises
-    ------
-    InvalidInput
-        If there are less than two particles, two in one place, or they are not in rising order.
+    Raises `InvalidInput` if there are less than two particles, two in one place, or they are not in rising order.
     """
-    x = positions("x", x, least=2, rising=True)
+    x = check.positions("x", x, least=2, rising=True)
     middle = 0.5 * (x[1:] + x[:-1])
     edges = np.concatenate([[2.0 * x[0] - middle[0]], middle, [2.0 * x[-1] - middle[-1]]])
     return np.diff(edges)

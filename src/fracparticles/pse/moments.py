@@ -9,24 +9,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fracparticles.arguments import (
-    dimension,
-    finite_array,
-    finite_real,
-    finite_result,
-    whole_number,
-    within,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.shapes import Kernel, kernel_of
 
-__all__ = [
-    "absolute_moment",
-    "gaussian_moment",
-    "lattice_moment",
-    "moment",
-    "nodes_and_weights",
-]
+__all__ = ["absolute_moment", "gaussian_moment", "lattice_moment", "moment", "nodes_and_weights"]
 
 FloatArray = NDArray[np.float64]
 _BEYOND = 4.0
@@ -46,10 +33,7 @@ def nodes_and_weights(
     Beyond its reach a Gaussian is below round-off, but z^k times it is not. The integrand may have more `breaks` than
     the kernel has.
 
-    Raises
-    ------
-    InvalidInput
-        If it is no kernel of one dimension.
+    Raises `InvalidInput` if it is no kernel of one dimension.
     """
     kernel = kernel_of(1, kernel)
     inside = [-kernel.reach, *kernel.breaks, kernel.reach]
@@ -66,12 +50,9 @@ def nodes_and_weights(
 def moment(kernel: Kernel, k: int) -> float:
     """M_k = int z^k eta(z) dz  (16), k <= 60, by a Gauss rule on each piece of the kernel.
 
-    Raises
-    ------
-    InvalidInput
-        If k is no whole number from 0 to 60, or the kernel none of one dimension, known everywhere.
+    Raises `InvalidInput` if k is no whole number from 0 to 60, or the kernel none of one dimension, known everywhere.
     """
-    k = whole_number("k", k, most=_HIGHEST)
+    k = check.whole_number("k", k, most=_HIGHEST)
     z, w = nodes_and_weights(kernel)
     return float(w @ (z**k * kernel(z)))
 
@@ -79,12 +60,9 @@ def moment(kernel: Kernel, k: int) -> float:
 def absolute_moment(kernel: Kernel, k: int) -> float:
     """int |z^k eta(z)| dz, k <= 60: what an error of M_k is to be held against.
 
-    Raises
-    ------
-    InvalidInput
-        As `moment`.
+    Errors as of `moment`.
     """
-    k = whole_number("k", k, most=_HIGHEST)
+    k = check.whole_number("k", k, most=_HIGHEST)
     z, w = nodes_and_weights(kernel, _sign_changes(kernel_of(1, kernel)))
     return float(w @ np.abs(z**k * kernel(z)))
 
@@ -128,9 +106,9 @@ def lattice_moment(
     InvalidInput
         As `moment`; or if an overlap is not positive, or holds too many particles.
     """
-    kernel, k = kernel_of(1, kernel), whole_number("k", k, most=_HIGHEST)
-    s = within("overlap", finite_array("overlap", overlap), 0.0, inside=True)
-    offset = finite_real("offset", offset)
+    kernel, k = kernel_of(1, kernel), check.whole_number("k", k, most=_HIGHEST)
+    s = check.within("overlap", check.finite_array("overlap", overlap), 0.0, inside=True)
+    offset = check.finite_real("offset", offset)
     if abs(offset) > 1.0:
         offset -= round(offset)
     reached = (kernel.reach + _BEYOND) * s.max(initial=0.0)
@@ -143,18 +121,17 @@ def lattice_moment(
         z = (np.arange(-n, n + 1) + offset) / s[..., None]
         # Far beyond the reach z^k may overflow where eta is 0.
         eta = kernel(z)
-        return finite_result("overlap", (np.where(eta == 0.0, 0.0, z) ** k * eta).sum(axis=-1) / s)
+        return check.finite_result(
+            "overlap", (np.where(eta == 0.0, 0.0, z) ** k * eta).sum(axis=-1) / s
+        )
 
 
 def gaussian_moment(k: int, dim: int = 1) -> Fraction:
     """int |z|^k pi^(-d/2) exp(-z^2) dz = (d/2) (d/2 + 1) ... (d/2 + k/2 - 1) for even k; 0 for odd k, as of z^k.
 
-    Raises
-    ------
-    InvalidInput
-        If k is no whole number from 0 to 1000, or the dimension not 1, 2 or 3.
+    Raises `InvalidInput` if k is no whole number from 0 to 1000, or the dimension not 1, 2 or 3.
     """
-    k, dim = whole_number("k", k, most=1000), dimension(dim)
+    k, dim = check.whole_number("k", k, most=1000), check.dimension(dim)
     if k % 2:
         return Fraction(0)
     product = Fraction(1)

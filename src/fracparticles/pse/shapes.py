@@ -16,15 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fracparticles.arguments import (
-    check_fields,
-    dimension,
-    finite_array,
-    finite_real,
-    real_array,
-    real_between,
-    whole_number,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 
 __all__ = [
@@ -64,14 +56,11 @@ class Kernel(Protocol):
 def kernel_of(dim: int, kernel: Any) -> Kernel:
     """Return a kernel of that many dimensions.
 
-    Raises
-    ------
-    InvalidInput
-        If it is no kernel, or one of another dimension.
+    Raises `InvalidInput` if it is no kernel, or one of another dimension.
     """
     if not (callable(kernel) and hasattr(kernel, "reach") and hasattr(kernel, "breaks")):
         raise InvalidInput("kernel", kernel, "a kernel, with a reach and breaks", "Make one first.")
-    dim, of_kernel = dimension(dim), getattr(kernel, "dim", 1)
+    dim, of_kernel = check.dimension(dim), getattr(kernel, "dim", 1)
     if of_kernel != dim:
         raise InvalidInput(
             "kernel",
@@ -79,7 +68,7 @@ def kernel_of(dim: int, kernel: Any) -> Kernel:
             f"a kernel of {dim} dimensions, not of {of_kernel}",
             f"construct_laplacian(accuracy, {dim}) gives one for the Laplacian.",
         )
-    real_between("kernel.reach", kernel.reach, 0.0, _WIDEST)
+    check.real_between("kernel.reach", kernel.reach, 0.0, _WIDEST)
     result: Kernel = kernel
     return result
 
@@ -111,12 +100,12 @@ class GaussianKernel:
     condition: float = 1.0
 
     def __post_init__(self) -> None:
-        check_fields(
+        check.fields(
             self,
             coefficients=_coefficients,
-            parity=partial(whole_number, most=1),
-            dim=lambda _, dim: dimension(dim),
-            condition=finite_real,
+            parity=partial(check.whole_number, most=1),
+            dim=lambda _, dim: check.dimension(dim),
+            condition=check.finite_real,
         )
 
     @property
@@ -136,7 +125,7 @@ class GaussianKernel:
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
-        z = np.clip(real_array("z", z), -_NOTHING, _NOTHING)
+        z = np.clip(check.real_array("z", z), -_NOTHING, _NOTHING)
         square = z * z
         total = np.zeros_like(z)
         for c in reversed(self.coefficients):
@@ -150,7 +139,7 @@ def _coefficients(field: str, value: Any) -> tuple[Fraction | float, ...]:
     ):
         exact = tuple(value)
     else:
-        exact = tuple(np.atleast_1d(finite_array(field, value)).ravel().tolist())
+        exact = tuple(np.atleast_1d(check.finite_array(field, value)).ravel().tolist())
     if not any(exact):
         raise InvalidInput(field, value, "numbers that are not all zero", "Give at least one.")
     return exact
@@ -172,7 +161,7 @@ class Tent:
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
-        return np.maximum(2.0 * (1.0 - 0.5 * np.abs(real_array("z", z))), 0.0)
+        return np.maximum(2.0 * (1.0 - 0.5 * np.abs(check.real_array("z", z))), 0.0)
 
 
 @dataclass(frozen=True)
@@ -186,16 +175,13 @@ class SplineKernel:
 
         q B_q(u) = u B_(q-1)(u) + (q + 1 - u) B_(q-1)(u - 1)     (de Boor).
 
-    Raises
-    ------
-    InvalidInput
-        Unless q is a whole number from 1 to 300.
+    Raises `InvalidInput` unless q is a whole number from 1 to 300.
     """
 
     degree: int
 
     def __post_init__(self) -> None:
-        check_fields(self, degree=partial(whole_number, least=1, most=300))
+        check.fields(self, degree=partial(check.whole_number, least=1, most=300))
 
     @property
     def reach(self) -> float:
@@ -211,7 +197,7 @@ class SplineKernel:
         """Return eta(z), in the shape of z."""
         q = self.degree
         # From the nearer end: fewer terms, no cancellation in the tail.
-        left = self.reach - np.abs(real_array("z", z))
+        left = self.reach - np.abs(check.real_array("z", z))
         if q > _POWERS:
             flat = left.ravel()
             blocks = [_spline(q, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
@@ -253,7 +239,7 @@ class Stencil:
     condition: float = 1.0
 
     def __post_init__(self) -> None:
-        check_fields(self, values=_coefficients, condition=finite_real)
+        check.fields(self, values=_coefficients, condition=check.finite_real)
         if len(self.values) % 2 == 0:
             raise InvalidInput("values", self.values, "an odd number of them", "Give eta(0) too.")
 
@@ -270,13 +256,10 @@ class Stencil:
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta at the lattice points z, in the shape of z.
 
-        Raises
-        ------
-        InvalidInput
-            If a z within the reach is no lattice point, to a millionth.
+        Raises `InvalidInput` if a z within the reach is no lattice point, to a millionth.
         """
         n = len(self.values) // 2
-        z = np.clip(real_array("z", z), -n - 1.0, n + 1.0)
+        z = np.clip(check.real_array("z", z), -n - 1.0, n + 1.0)
         i = np.rint(z)
         if (np.abs(z - i) > 1e-6).any():
             raise InvalidInput(

@@ -118,6 +118,8 @@ class Case(Parameters):
             *([] if self.summation == "fft" else [self.summation]),
             *([] if self.kernel_family is None else [self.kernel_family]),
             *([] if self.kernel_table is None else [f"table{_digits(self.kernel_table)}"]),
+            *([] if self.graded_scale is None else [f"graded{_digits(self.graded_scale)}"]),
+            *([] if self.graded_form is None else [self.graded_form]),
             *([] if self.remeshing is None else [self.remeshing.replace("'", "-")]),
             *([] if self.remesh_above is None else [f"above{_digits(self.remesh_above)}"]),
             *([] if self.threshold is None else [f"threshold{_digits(self.threshold)}"]),

@@ -1,28 +1,34 @@
-"""What a `Case` must fulfil beyond the range of each field: one function a subject, each with a clear complaint."""
+"""What a `Case` must fulfil beyond the range of each field: first which fields go together, then the numbers."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from typing import NamedTuple
 
-from fracparticles.errors import InvalidInput
-from fracparticles.kernels.families import family_of
-from fracparticles.lattice.banded import BandedConvolution
-from fracparticles.run.parameters import OVERLAPS, Parameters
-from fracparticles.schemes import METHODS
+from fracparticles.errors import InvalidInput, one_of, spelled
+from fracparticles.graded.particles import MOST
+from fracparticles.run.parameters import OVERLAPS, SIZES, Parameters
+from fracparticles.schemes import ALL_SCHEMES
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import central_mass
 
 __all__ = ["check"]
 
 # Measured, by dimension: about 20 arrays of float64 at the peak. The open exterior of a square or a cube takes its
-# own for every point where the sums are wanted, which for FPSE go beyond the lattice.
+# own for every point where the sums are wanted, which may be beyond the lattice.
 _BYTES_PER_PARTICLE = {1: 200, 2: 220, 3: 260}
 _OPEN_BYTES = {1: 300, 2: 800, 3: 800}
+_BYTES_PER_PAIR = 60  # of graded particles, whose step is a matrix
+_FEWEST = 8  # intervals on either side
 _MOST_STEPS = 2**53  # more are not told apart in float64
 _FAR_OVERLAPS = 10  # half the lattice in smoothing lengths, at least, and
 _FAR_STIFFEST = 1e6  # T D / h^alpha, at most, for more than one term of the exterior
 _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
 _ROUNDED = 1e-9  # of an overlap that is a quotient
+_OPEN = tuple(name for name, scheme in ALL_SCHEMES.items() if "open" in scheme.exteriors)
+_MOVING = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.moving)
+_SELF_TIMED = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.self_timed)
 
 
 def check(case: Parameters) -> None:
@@ -34,76 +40,174 @@ def check(case: Parameters) -> None:
         With the field, the value, what is allowed and what to do.
     """
     _check_time(case)
-    _check_scheme(case)
-    _check_domain(case)
-    _check_particles(case)
-    _check_integrator(case)
+    case.kind.check(case.dim, case.order, case.kernel_family, "kernel_family")
+    for field, takes, whom, remedy in _rules(case):
+        value = case.method if field == "integrator" else getattr(case, field)
+        if value not in takes:
+            raise one_of(field, value, takes, whom, remedy)
+    _check_width(case)
+    _check_size(case)
+    _check_step(case)
     _check_far_field(case)
     _check_work(case)
 
 
+class Rule(NamedTuple):
+    """What a field takes, None for nothing, in what sort of case, and what else to do."""
+
+    field: str
+    takes: tuple[object, ...]
+    whom: str
+    remedy: str = "Leave it out."
+
+
+def _rules(case: Parameters) -> Iterator[Rule]:
+    """The rules that hold for this case, of fields that go together."""
+    scheme, kind, nothing = case.scheme, case.kind, (None,)
+    closure = f"The far-field closure exists for {spelled(_OPEN, ' and ')}."
+    yield Rule("exterior", kind.exteriors, scheme, closure)
+    if case.exterior != "open" or case.dim != 1:
+        yield Rule("far_terms", nothing, "any other than exterior='open' and dim=1")
+    if not kind.has_kernel:
+        yield Rule("overlap", nothing, f"{scheme}, which has no kernel")
+    if not kind.tabulated:
+        yield Rule("kernel_table", nothing, scheme)
+    if case.is_graded:
+        yield from _graded_rules()
+    else:
+        lattice = "particles on a lattice"
+        yield Rule("graded_form", nothing, lattice, "Leave it out, or give graded_scale.")
+    if kind.moving:
+        yield Rule("integrator", (None, "rk2"), scheme)
+        stepping = f"{scheme}, whose velocity is not linear"
+        yield Rule("evaluation", (None, "stepping", "convolution"), stepping)
+    else:
+        resting = f"{scheme}, whose particles stay where they are"
+        for name in ("remeshing", "remesh_above", "threshold"):
+            yield Rule(name, nothing, resting, f"Leave it out, or take scheme={_MOVING[0]!r}.")
+    if case.remeshing == "none":
+        for name in ("remesh_above", "threshold"):
+            yield Rule(name, nothing, "remeshing='none'")
+    if case.method == "exponential":
+        exponential = "integrator='exponential', which takes no steps"
+        yield Rule("dt", nothing, exponential)
+        yield Rule("evaluation", (None, "series", "convolution"), exponential)
+    if case.evaluation == "convolution":
+        yield from _convolution_rules(kind.self_timed)
+    if kind.self_timed:
+        own = f"{scheme}, whose step is part of the scheme"
+        yield Rule("integrator", (None, "euler"), own)
+
+
+def _graded_rules() -> Iterator[Rule]:
+    """Particles of unequal volumes take one step as a matrix, and need no model of the exterior."""
+    whom = "graded particles, which take one step over the whole time"
+    yield Rule("scheme", _SELF_TIMED, whom, "Take it, or leave graded_scale out.")
+    yield Rule("dim", (1,), whom)
+    yield Rule("exterior", ("truncated",), whom, "Leave it out, and take a wider half-width.")
+    yield Rule("summation", ("fft",), whom)
+    for name in ("dt", "overlap", "kernel_table", "evaluation"):
+        yield Rule(name, (None,), whom)
+
+
+def _convolution_rules(self_timed: bool) -> Iterator[Rule]:
+    """One lattice sum is that of the infinite lattice, of exact kernels; GPSE's steps are exponentials themselves."""
+    whom = "evaluation='convolution'"
+    yield Rule("scheme", _OPEN, whom, "Take one of these.")
+    if self_timed:
+        yield Rule("integrator", ("euler",), whom, "Leave integrator out.")
+    else:
+        yield Rule("integrator", ("exponential",), whom, "Take it.")
+    yield Rule("exterior", ("open",), whom, "Take exterior='open', or evaluation='series'.")
+    yield Rule("dim", (1,), whom, "Take evaluation='series', or GPSE in one step.")
+    yield Rule("summation", ("fft",), whom)
+    yield Rule("kernel_table", (None,), whom)
+
+
+# --- numbers ----------------------------------------------------------------------------------------------
+
+
 def _check_time(case: Parameters) -> None:
     if not 1.0 < case.alpha < 2.0:
-        raise InvalidInput(
-            "beta", case.beta, "a number that makes 1 + beta differ from 1 and 2", "Move it inward."
-        )
+        differs = "a number that makes 1 + beta differ from 1 and 2"
+        raise InvalidInput("beta", case.beta, differs, "Move it inward.")
     if case.t_final <= case.t_initial:
-        raise InvalidInput(
-            "t_final",
-            case.t_final,
-            f"a number > t_initial = {case.t_initial:g}",
-            "Give a later final time.",
-        )
+        later = f"a number > t_initial = {case.t_initial:g}"
+        raise InvalidInput("t_final", case.t_final, later, "Give a later final time.")
 
 
-def _check_domain(case: Parameters) -> None:
+def _check_width(case: Parameters) -> None:
     if (case.truncation is None) == (case.half_width is None):
-        raise InvalidInput(
-            "truncation",
-            case.truncation,
-            "exactly one of truncation and half_width",
-            "Give the factor C of Eq. (46) or the half-width itself.",
-        )
-    if case.spacing > case.domain / 8.0:
-        raise InvalidInput(
-            "spacing",
-            case.spacing,
-            f"at most an eighth of the half-width, {case.domain / 8.0:.6g}",
-            "Take a smaller spacing or a wider domain.",
-        )
+        remedy = "Give the factor C of Eq. (46) or the half-width itself."
+        exactly = "exactly one of truncation and half_width"
+        raise InvalidInput("truncation", case.truncation, exactly, remedy)
+    if case.is_graded and not SIZES[0] <= case.domain <= SIZES[1]:
+        within = f"a factor that makes a half-width from {SIZES[0]:g} to {SIZES[1]:g}"
+        raise InvalidInput("truncation", case.truncation, within, "Take another unit of length.")
+    if case.spacing > case.extent / _FEWEST:
+        what = "L arcsinh(D / L) of graded particles" if case.is_graded else "the half-width"
+        most = f"at most an eighth of {what}, {case.extent / _FEWEST:.6g}"
+        remedy = "Take a smaller spacing or a wider domain."
+        raise InvalidInput("spacing", case.spacing, most, remedy)
+
+
+def _check_size(case: Parameters) -> None:
+    """The arrays of a lattice must fit into half of the memory, and so must the matrix of graded particles."""
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     is_open = case.exterior == "open"
     bytes_each = (_OPEN_BYTES if is_open else _BYTES_PER_PARTICLE)[case.dim]
-    beyond = 0
-    if is_open and case.scheme == "FPSE":
-        beyond = 2 * BandedConvolution.reach(case.epsilon_over_h, case.order, case.kernel_family)
-    side = 2.0 * case.domain / case.spacing
-    particles = side**case.dim
-    needed = bytes_each * (side + beyond) ** case.dim
-    if needed > 0.5 * memory:
-        longest = max((0.5 * memory / bytes_each) ** (1.0 / case.dim) - beyond, 1.0)
+    beyond, power, most = 0, case.dim, float("inf")
+    if is_open:
+        kernels = case.order, case.overlap or 2.0, case.dim, case.kernel_family
+        beyond = 2 * case.kind.padding(*kernels)
+    if case.is_graded:
+        bytes_each, power, most = _BYTES_PER_PAIR, 2, MOST
+    side = 2.0 * case.extent / case.spacing
+    needed = bytes_each * (side + beyond) ** power
+    if needed > 0.5 * memory or side > most:
+        longest = max((0.5 * memory / bytes_each) ** (1.0 / power) - beyond, 1.0)
         raise InvalidInput(
             "spacing",
             case.spacing,
-            f"at least {2.0 * case.domain / longest:.3g} on this domain and this machine: "
-            f"{particles:.3g} particles would take {needed / 2**30:.3g} GiB, "
+            f"at least {2.0 * case.extent / min(longest, most):.3g} on this domain and this machine: "
+            f"{side**case.dim:.3g} particles would take {needed / 2**30:.3g} GiB, "
             f"half of the memory is {memory / 2**31:.3g} GiB",
             "Take a larger spacing or a narrower domain.",
         )
 
 
-def _check_work(case: Parameters) -> None:
-    span = case.t_final - case.t_initial
-    if not case.steps_taken and span * case.setting.rate > _STIFFEST:
-        raise InvalidInput(
-            "t_final",
-            case.t_final,
-            f"at most {case.t_initial + _STIFFEST / case.setting.rate:.6g} with this spacing and diffusivity",
-            "Take a shorter run or a larger spacing.",
+def _check_step(case: Parameters) -> None:
+    if case.kind.self_timed and not case.is_graded:
+        _check_own_step(case)
+    elif case.kind.moving and case.dt is None:
+        raise InvalidInput("dt", None, f"a number > 0 for {case.scheme}", "Give the time step.")
+    elif case.dt is None and not case.is_graded and case.method != "exponential":
+        limit = stability_limit(
+            case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim, case.kernel_family
         )
-    if case.method != "exponential" and span / case.asked_step > _MOST_STEPS:
+        largest = limit * case.particle_spacing**case.alpha / case.diffusivity
+        stable = f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}"
+        remedy = "Give dt, or integrator='exponential', which needs none."
+        raise InvalidInput("dt", None, stable, remedy)
+
+
+def _check_own_step(case: Parameters) -> None:
+    """The step of GPSE is its smoothing length, within what a lattice can sum."""
+    if case.dt is not None and case.overlap is not None:
+        one = f"one of dt and overlap for {case.scheme}, since epsilon = (D dt)^(1/alpha), Eq. (40)"
+        raise InvalidInput("overlap", case.overlap, one, "Leave one of them out.")
+    low, high = OVERLAPS[0] * (1.0 - _ROUNDED), OVERLAPS[1] * (1.0 + _ROUNDED)
+    if not low <= case.epsilon_over_h <= high:
+        least, most = (
+            (s * case.particle_spacing) ** case.alpha / case.diffusivity for s in OVERLAPS
+        )
+        given = "overlap" if case.dt is None else "dt"
         raise InvalidInput(
-            "dt", case.dt, f"at least {span / _MOST_STEPS:.3g}: 2^53 steps", "Take a larger step."
+            given,
+            getattr(case, given),
+            f"for {case.scheme} a step from {least:.4g} to {most:.4g}, so that epsilon / h is from {OVERLAPS[0]:g} to "
+            f"{OVERLAPS[1]:g}; this run takes {case.steps} steps of {case.time_step:.4g}",
+            "Change it, the spacing, or the time of the run.",
         )
 
 
@@ -115,31 +219,24 @@ def _check_far_field(case: Parameters) -> None:
     n / 2 makes modes that grow.
     """
     if case.exterior == "open":
-        _check_width(case)
+        _check_spread(case)
     if case.far_terms in (None, 1) or case.evaluation == "convolution":
         return
     if case.method == "euler" and case.steps == 1:
         return
     if case.n < _FAR_OVERLAPS * case.epsilon_over_h:
         least = _FAR_OVERLAPS * case.epsilon_over_h * case.particle_spacing
-        raise InvalidInput(
-            "far_terms",
-            case.far_terms,
-            f"nothing or 1 on a lattice of half-width {case.domain:.4g}, less than {_FAR_OVERLAPS} smoothing lengths, "
-            f"{least:.4g}",
-            "Leave it out, or take a wider lattice or a smaller spacing.",
-        )
+        short = f"nothing or 1 on a lattice of half-width {case.domain:.4g}, less than {_FAR_OVERLAPS} smoothing lengths"
+        remedy = "Leave it out, or take a wider lattice or a smaller spacing."
+        raise InvalidInput("far_terms", case.far_terms, f"{short}, {least:.4g}", remedy)
     stiffness = (case.t_final - case.t_initial) * case.setting.rate
     if stiffness > _FAR_STIFFEST:
-        raise InvalidInput(
-            "far_terms",
-            case.far_terms,
-            f"nothing or 1 where T D / h^alpha = {stiffness:.3g}, more than {_FAR_STIFFEST:g}",
-            "Leave it out, or take a shorter run or a larger spacing.",
-        )
+        stiff = f"nothing or 1 where T D / h^alpha = {stiffness:.3g}, more than {_FAR_STIFFEST:g}"
+        remedy = "Leave it out, or take a shorter run or a larger spacing."
+        raise InvalidInput("far_terms", case.far_terms, stiff, remedy)
 
 
-def _check_width(case: Parameters) -> None:
+def _check_spread(case: Parameters) -> None:
     """A point mass must not spread beyond the lattice: no power of |x| continues a solution that is flat there."""
     time = case.diffusivity * (case.t_final - case.t_initial)
     inside = float(central_mass(case.domain, time, case.alpha, case.dim))
@@ -155,162 +252,12 @@ def _check_width(case: Parameters) -> None:
         )
 
 
-def _check_scheme(case: Parameters) -> None:
-    scheme = METHODS[case.scheme]
-    if case.dim not in scheme.DIMS:
-        raise InvalidInput(
-            "dim",
-            case.dim,
-            f"{' or '.join(map(str, scheme.DIMS))} for {case.scheme}",
-            "DD, FPSE, KPSE and GPSE exist for 1, 2 and 3 dimensions.",
-        )
-    orders = scheme.ORDERS if case.dim == 1 else scheme.BOX_ORDERS
-    if case.order not in orders:
-        where = "" if case.dim == 1 else f" in {case.dim} dimensions"
-        raise InvalidInput(
-            "order",
-            case.order,
-            f"{' or '.join(map(str, orders))} for {case.scheme}{where}",
-            "Choose one of these.",
-        )
-    if case.kernel_family is not None:
-        if not scheme.FAMILIES:
-            raise InvalidInput(
-                "kernel_family", case.kernel_family, f"nothing for {case.scheme}", "Leave it out."
-            )
-        family_of(case.order, case.kernel_family, field="kernel_family")
-    if case.exterior not in scheme.EXTERIORS:
-        raise InvalidInput(
-            "exterior",
-            case.exterior,
-            f"{' or '.join(scheme.EXTERIORS)} for {case.scheme}",
-            "The far-field closure exists for DD, FPSE, KPSE and GPSE.",
-        )
-    if case.far_terms is not None and (case.exterior != "open" or case.dim != 1):
-        raise InvalidInput(
-            "far_terms",
-            case.far_terms,
-            "nothing, but for exterior='open' and dim=1",
-            "Leave it out.",
-        )
-    if case.scheme == "FD":
-        for name in ("overlap", "kernel_table"):
-            if getattr(case, name) is not None:
-                raise InvalidInput(
-                    name,
-                    getattr(case, name),
-                    "nothing for FD, which has no kernel",
-                    "Leave it out.",
-                )
-    if case.kernel_table is not None and case.scheme not in ("DD", "FPSE", "KPSE", "GPSE"):
-        raise InvalidInput(
-            "kernel_table", case.kernel_table, f"nothing for {case.scheme}", "Leave it out."
-        )
-
-
-def _check_particles(case: Parameters) -> None:
-    """What only DVM takes, whose particles move, and what it does not."""
-    if case.scheme != "DVM":
-        for name in ("remeshing", "remesh_above", "threshold"):
-            if getattr(case, name) is not None:
-                raise InvalidInput(
-                    name,
-                    getattr(case, name),
-                    f"nothing for {case.scheme}, whose particles stay where they are",
-                    "Leave it out, or take scheme='DVM'.",
-                )
-        return
-    if case.method != "rk2":
-        raise InvalidInput("integrator", case.method, "nothing or 'rk2' for DVM", "Leave it out.")
-    if case.evaluation == "series":
-        raise InvalidInput(
-            "evaluation",
-            case.evaluation,
-            "nothing or 'stepping' for DVM, whose velocity is not linear",
-            "Leave it out.",
-        )
-    if case.remeshing == "none":
-        for name in ("remesh_above", "threshold"):
-            if getattr(case, name) is not None:
-                raise InvalidInput(
-                    name, getattr(case, name), "nothing for remeshing='none'", "Leave it out."
-                )
-
-
-def _check_integrator(case: Parameters) -> None:
-    if case.method == "exponential":
-        if case.dt is not None:
-            raise InvalidInput(
-                "dt", case.dt, "nothing for integrator='exponential'", "Leave dt out."
-            )
-        if case.evaluation == "stepping":
-            raise InvalidInput(
-                "evaluation",
-                case.evaluation,
-                "'series' or 'convolution' for integrator='exponential', which takes no steps",
-                "Leave it out.",
-            )
-    if case.evaluation == "convolution":
-        _check_convolution(case)
-    if case.scheme == "GPSE":
-        if case.method != "euler":
-            raise InvalidInput(
-                "integrator",
-                case.method,
-                "nothing or 'euler' for GPSE, whose step is part of the scheme",
-                "Leave it out.",
-            )
-        if case.dt is not None and case.overlap is not None:
-            raise InvalidInput(
-                "overlap",
-                case.overlap,
-                "one of dt and overlap for GPSE, since epsilon = (D dt)^(1/alpha), Eq. (40)",
-                "Leave one of them out.",
-            )
-        low, high = OVERLAPS[0] * (1.0 - _ROUNDED), OVERLAPS[1] * (1.0 + _ROUNDED)
-        if not low <= case.epsilon_over_h <= high:
-            least, most = (
-                (s * case.particle_spacing) ** case.alpha / case.diffusivity for s in OVERLAPS
-            )
-            given = "overlap" if case.dt is None else "dt"
-            raise InvalidInput(
-                given,
-                getattr(case, given),
-                f"for GPSE a step from {least:.4g} to {most:.4g}, so that epsilon / h is from {OVERLAPS[0]:g} to "
-                f"{OVERLAPS[1]:g}; this run takes {case.steps} steps of {case.time_step:.4g}",
-                "Change it, the spacing, or the time of the run.",
-            )
-    elif case.scheme == "DVM" and case.dt is None:
-        raise InvalidInput("dt", None, "a number > 0 for DVM", "Give the time step.")
-    elif case.dt is None and case.method != "exponential":
-        limit = stability_limit(
-            case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim, case.kernel_family
-        )
-        largest = limit * case.particle_spacing**case.alpha / case.diffusivity
-        raise InvalidInput(
-            "dt",
-            None,
-            f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}",
-            "Give dt, or integrator='exponential', which needs none.",
-        )
-
-
-def _check_convolution(case: Parameters) -> None:
-    """One lattice sum is that of the infinite lattice, of exact kernels; GPSE's steps are exponentials themselves."""
-    methods = ("euler",) if case.scheme == "GPSE" else ("exponential",)
-    needed = {
-        "scheme": (case.scheme, ("DD", "FPSE", "KPSE", "GPSE"), "Take one of these."),
-        "integrator": (
-            case.method,
-            methods,
-            "Leave integrator out." if case.scheme == "GPSE" else "Take it.",
-        ),
-        "exterior": (case.exterior, ("open",), "Take exterior='open', or evaluation='series'."),
-        "dim": (case.dim, (1,), "Take evaluation='series', or GPSE in one step."),
-        "summation": (case.summation, ("fft",), "Leave it out."),
-        "kernel_table": (case.kernel_table, (None,), "Leave it out."),
-    }
-    for name, (value, allowed, remedy) in needed.items():
-        if value not in allowed:
-            choice = " or ".join("nothing" if one is None else str(one) for one in allowed)
-            raise InvalidInput(name, value, f"{choice} for evaluation='convolution'", remedy)
+def _check_work(case: Parameters) -> None:
+    span = case.t_final - case.t_initial
+    if not case.steps_taken and span * case.setting.rate > _STIFFEST:
+        latest = case.t_initial + _STIFFEST / case.setting.rate
+        most = f"at most {latest:.6g} with this spacing and diffusivity"
+        raise InvalidInput("t_final", case.t_final, most, "Take a shorter run or a larger spacing.")
+    if case.method != "exponential" and span / case.asked_step > _MOST_STEPS:
+        least = f"at least {span / _MOST_STEPS:.3g}: 2^53 steps"
+        raise InvalidInput("dt", case.dt, least, "Take a larger step.")

@@ -120,12 +120,12 @@ def limit(
         D of Eq. (2).
     """
     from fracparticles.arguments import positive_real
+    from fracparticles.schemes import scheme as find_scheme
     from fracparticles.schemes.stability import stability_limit
 
-    if scheme == "FD" and overlap is not None:
-        raise InvalidInput(
-            "overlap", overlap, "nothing for FD, which has no kernel", "Leave it out."
-        )
+    if overlap is not None and not find_scheme(scheme).has_kernel:
+        allowed = f"nothing for {scheme}, which has no kernel"
+        raise InvalidInput("overlap", overlap, allowed, "Leave it out.")
     numbers = [number_or_text(text) for text in (beta, order, overlap or "2.0", dim)]
     a = stability_limit(scheme, *[*numbers, kernel_family])
     lines = [f"a = {a:.6g}"]
@@ -134,9 +134,9 @@ def limit(
         h = positive_real("spacing", number_or_text(spacing))
         lines.append(f"dt = {a * h ** (1.0 + float(beta)) / rate:.6g}")
     print("\n".join(lines))
-    if scheme == "GPSE":
+    if find_scheme(scheme).self_timed:
         _note(
-            "this binds steps that are repeated; a single step of GPSE, over the whole time, has no limit"
+            f"this binds steps that are repeated; a single step of {scheme}, over the whole time, has no limit"
         )
     if a == 0.0:
         _note("no step is stable, some wave grows: take a larger overlap or a lower order")

@@ -1,16 +1,25 @@
-"""What a model of pydantic complains about, in one line of ours: field, value, what is allowed, what to do."""
+"""What a model of pydantic says of its fields: in a complaint of one line, as a label, in a table."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, one_of, spelled
 
-__all__ = ["allowed", "choices_of", "closest", "first_complaint", "takes_numbers"]
+__all__ = [
+    "allowed",
+    "choices_of",
+    "closest",
+    "field_table",
+    "first_complaint",
+    "label_of",
+    "takes_numbers",
+]
 
 
 def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidInput:
@@ -22,9 +31,7 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
     name, value = str(first["loc"][0]), first["input"]
     fields = model.model_fields
     if first["type"] == "extra_forbidden":
-        return InvalidInput(
-            name, value, f"one of {', '.join(fields)}", closest(name, fields) or "Leave it out."
-        )
+        return one_of(name, value, fields, remedy=closest(name, fields) or "Leave it out.")
     if first["type"] == "missing":
         return InvalidInput(name, None, allowed(fields[name]), f"Give {name}.")
     remedy = closest(value, choices_of(fields[name].annotation)) or "Give such a value."
@@ -35,7 +42,7 @@ def allowed(field: FieldInfo) -> str:
     """Return in words what a field takes: its choices, or a number and its bounds."""
     choices = choices_of(field.annotation)
     if choices:
-        return f"one of {', '.join(map(str, choices))}"
+        return f"one of {spelled(choices, ', ')}"
     if field.annotation is str:
         return "text"
     bounds = {
@@ -70,3 +77,22 @@ def closest(value: object, choices: Iterable[object]) -> str | None:
     names = {str(choice).casefold(): choice for choice in choices}
     close = difflib.get_close_matches(value[:100].casefold(), names, n=1)
     return f"Did you mean {names[close[0]]!r}?" if close else None
+
+
+def label_of(field: FieldInfo) -> str:
+    """Return the first sentence of the description of a field, as a label: "time step"."""
+    words = " ".join((field.description or "").split())
+    first = re.split(r"\.(?= [^(]|$)", words)[0]  # "Eq. (46)" ends no sentence
+    return first[0].lower() + first[1:] if first[1:2].islower() else first
+
+
+def field_table(model: type[BaseModel]) -> str:
+    """Return a table of the fields of a model in Markdown: what each means, its choices and its default."""
+    lines = ["| field | meaning | default |", "|---|---|---|"]
+    for name, field in model.model_fields.items():
+        meaning = " ".join((field.description or "").split()).replace("|", r"\|")
+        choices = spelled(f"`{choice}`" for choice in choices_of(field.annotation))
+        given = not field.is_required() and field.default is not None
+        default = f"`{field.default}`" if given else ""
+        lines.append(f"| `{name}` | {meaning}{f' One of {choices}.' if choices else ''} | {default} |")
+    return "\n".join(lines)

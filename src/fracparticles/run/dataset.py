@@ -142,7 +142,7 @@ def _fields(solution: Solution) -> tuple[dict[str, tuple], dict[str, tuple]]:
         x, u = x[kept], u[kept]
     coordinates = {axis: ((axis,), x, _describe("particle position")) for axis in axes}
     # DVM's particles leave the lattice; there is the field that they make.
-    what = "field u" if case.scheme == "DVM" else "particle strength u"
+    what = "field u" if case.kind.moving else "particle strength u"
     return {"u": (axes, u, _describe(f"{what} at t_final"))}, coordinates
 
 
@@ -327,7 +327,7 @@ def _parameters(case: Case) -> dict[str, object]:
         **({} if case.far_terms is None else {"far_terms": np.int64(case.far_terms)}),
         **({} if case.kernel_family is None else {"kernel_family": case.kernel_family}),
         **({} if case.kernel_table is None else {"kernel_table": case.kernel_table}),
-        **(_particle_parameters(case) if case.scheme == "DVM" else {}),
+        **(_particle_parameters(case) if case.kind.moving else {}),
     }
 
 

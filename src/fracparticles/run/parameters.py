@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from math import ceil
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from fracparticles.schemes import Setting
+from fracparticles.errors import spelled
+from fracparticles.graded.particles import graded_particles
+from fracparticles.moving.lagrangian import REMESH_ABOVE, REMESHING, THRESHOLD
+from fracparticles.schemes import ALL_SCHEMES, Scheme, Setting
 from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.special.stable import mean_radius
 from fracparticles.time import STEP_POLYNOMIALS
@@ -21,13 +25,29 @@ SIZES = 1e-100, 1e100  # lengths and times; nothing made of them overflows
 OVERLAPS = 0.25, 1000.0
 _STEP_SLACK = 1e-9  # a time span of n (1 + 1e-9) steps still takes n steps
 
-SchemeName = Literal["DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM", "FD", "PSE29", "RIESZ"]
+if TYPE_CHECKING:
+    SchemeName = str
+else:
+    SchemeName = Literal[tuple(ALL_SCHEMES)]
+
+
+def _schemes(which: Callable[[Scheme], object]) -> str:
+    return spelled((name for name, scheme in ALL_SCHEMES.items() if which(scheme)), " and ")
+
+
+_REJECTED = _schemes(lambda scheme: scheme.rejected)
+_WITH_FAMILIES = _schemes(lambda scheme: scheme.families)
+_IN_A_BOX = _schemes(lambda scheme: scheme.box_orders)
+_OPEN = _schemes(lambda scheme: "open" in scheme.exteriors)
 
 
 class Parameters(BaseModel):
-    """What a `Case` holds; see there. Not checked here against each other."""
+    """What a `Case` holds; see there. Not checked here against each other.
 
-    # The docstring below a field is its description: in the flags of the command line, too.
+    The docstring or `description` of a field is written once. Its first sentence names the field: it is the label in a
+    data set. All of it is the help of the flag, and stands in the table of the configuration.
+    """
+
     model_config = ConfigDict(
         frozen=True,
         extra="forbid",
@@ -36,55 +56,83 @@ class Parameters(BaseModel):
         use_attribute_docstrings=True,
     )
 
-    scheme: SchemeName
-    """Particle scheme, or one of the rejected PSE29 and RIESZ."""
+    scheme: SchemeName = Field(description=f"Particle scheme. The paper rejects {_REJECTED}.")
     order: Literal[2, 4, 6, 8, 10, 12] = 2
-    """Order of the kernels: 2 or 4; for DD, FPSE (in one dimension) and KPSE up to 12."""
-    kernel_family: Literal["printed", "gamma"] | None = None
-    """Kernels of DD, FPSE and KPSE: the printed ones of orders 2 and 4, or gamma; gamma from order 6 if left out."""
+    """Order of the kernels. 2 or 4; of some schemes up to 12."""
+    kernel_family: Literal["printed", "gamma"] | None = Field(
+        default=None,
+        description=f"Family of the kernels. For {_WITH_FAMILIES}: the paper's, printed for orders 2 and 4, or gamma, "
+        "which has all; printed where there is one if left out.",
+    )
     beta: float = Field(gt=0.0, lt=1.0)
-    """Fractional order beta = alpha - 1, 0 < beta < 1."""
-    dim: Literal[1, 2, 3] = 1
-    """Space dimension; the lattice is a square or a cube for 2 and 3."""
+    """Fractional order beta = alpha - 1. Between 0 and 1 (exclusive)."""
+    dim: Literal[1, 2, 3] = Field(
+        default=1,
+        description=f"Space dimension. For {_IN_A_BOX} also 2 and 3: the lattice is a square or a cube.",
+    )
     truncation: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
-    """C of D = C (D t_f)^(1/alpha) R_alpha, Eq. (46). Either this or half_width."""
+    """Truncation factor C = D / ((diffusivity t_final)^(1/alpha) R_alpha), Eq. (46). Either this or half_width."""
     half_width: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
-    """The half-width of the lattice itself, in each coordinate."""
+    """Half-width D of the lattice in each coordinate. Graded particles end there, too."""
     spacing: float = Field(ge=SIZES[0], le=SIZES[1])
-    """Particle spacing h."""
+    """Particle spacing h. The nearest that divides D is taken. Graded particles have it in the middle."""
     overlap: float | None = Field(default=None, ge=OVERLAPS[0], le=OVERLAPS[1])
-    """epsilon / h; 2 if left out. For GPSE it follows from dt if that is given."""
+    """Overlap epsilon / h. 2 if left out; for GPSE it follows from dt if that is given."""
     dt: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
-    """Time step; needed by the explicit integrators. GPSE takes epsilon^alpha / D if left out."""
+    """Time step. The explicit integrators need it; GPSE takes epsilon^alpha / diffusivity if left out."""
     diffusivity: float = Field(default=1.0, ge=SIZES[0], le=SIZES[1])
-    """D of Eq. (2)."""
+    """Diffusivity D of Eq. (2). A constant."""
     t_initial: float = Field(default=0.5, ge=0.0, le=SIZES[1])
-    """Start of the run."""
+    """Initial time."""
     t_final: float = Field(default=1.5, ge=SIZES[0], le=SIZES[1])
-    """End of the run."""
+    """Final time."""
     initial: str = FUNDAMENTAL
-    """"fundamental" for the fundamental solution at t_initial, or the path of a NetCDF file with u(x)."""
+    """Initial data. "fundamental" for the fundamental solution at t_initial, or the path of a NetCDF file that holds u
+    on the same particles."""
     integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = None
-    """Time integrator; rk2 if left out. GPSE is an Euler step by construction."""
-    evaluation: Literal["series", "stepping", "convolution"] | None = None
-    """How the integrator's polynomial is evaluated: one Chebyshev series (if left out), step by step (always DVM, and
-    a single step), or the whole run as one lattice sum, from the symbol."""
+    """Time integrator. rk2 if left out; GPSE is an Euler step by construction."""
+    evaluation: Literal["series", "stepping", "convolution"] | None = Field(
+        default=None,
+        description="Evaluation of the time integrator. As one Chebyshev series (if left out) or step by step (always "
+        "DVM, and a single step): the same discrete solution to round-off. By convolution the whole run is one lattice "
+        f"sum, from the symbol: {_OPEN} on the line with an open exterior, exponential but for GPSE.",
+    )
     summation: Literal["fft", "naive"] = "fft"
-    """How sums over particles are done; the fast Fourier transform of DVM is a non-uniform one."""
-    exterior: Literal["truncated", "open"] = "truncated"
-    """The papers' truncation of the lattice, or the far-field closure."""
+    """Sum over particles. The fast Fourier transform of DVM is a non-uniform one."""
+    exterior: Literal["truncated", "open"] = Field(
+        default="truncated",
+        description=f"What lies beyond the lattice. The papers' truncation, or the far-field closure: {_OPEN}.",
+    )
     far_terms: Literal[1, 2, 3] | None = None
-    """Terms of the expansion that continues the solution in an open exterior (dim = 1); 1 if left out."""
+    """Terms that continue the solution beyond the lattice. For an open exterior on the line; 1 if left out."""
     kernel_table: float | None = Field(default=None, ge=1e-6, le=1.0)
-    """Step of the table, in units of epsilon, that kernels are interpolated in (paper, Sec. 5); exact if left out."""
-    remeshing: Literal["M4'", "Lambda3", "none"] | None = None
-    """Remeshing kernel of DVM; M4' if left out."""
-    remesh_above: float | None = Field(default=None, gt=1.0, le=100.0)
-    """DVM remeshes when two neighbours are further apart than this many h; 1.5 if left out."""
-    threshold: float | None = Field(default=None, ge=0.0, lt=1.0)
-    """DVM leaves out, when it remeshes, particles weaker than this share of the strongest; zero if left out."""
+    """Step of the kernel table, in units of epsilon. Kernels are interpolated in it (paper, Sec. 5); exact if left
+    out."""
+    graded_scale: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
+    """Length L of particles graded like sinh. They lie at x_j = L sinh(s_j), s_j equally spaced, instead of on a
+    lattice; for one step of GPSE on the line."""
+    graded_form: Literal["exchange", "quadrature", "interpolated"] | None = None
+    """Form of the step on graded particles. The exchange (41), its plain sum, or that of the field between them, which
+    need not resolve the Green's function; interpolated if left out."""
+    remeshing: Literal["M4'", "Lambda3", "none"] | None = Field(
+        default=None, description=f"Remeshing kernel of DVM. {REMESHING} if left out."
+    )
+    remesh_above: float | None = Field(
+        default=None,
+        gt=1.0,
+        le=100.0,
+        description="Spacing between two neighbours above which DVM remeshes, in units of h. "
+        f"{REMESH_ABOVE:g} if left out.",
+    )
+    threshold: float | None = Field(
+        default=None,
+        ge=0.0,
+        lt=1.0,
+        description="Share of the greatest strength up to which DVM leaves a particle out when it remeshes. "
+        f"{THRESHOLD:g} if left out.",
+    )
     store: Literal["field", "profile", "metrics"] = "field"
-    """What a data set keeps: u everywhere; u for |x| <= 5 R_alpha (dim = 1), or along an axis and a diagonal; or
+    """What a data set keeps. u everywhere; u for |x| <= 5 R_alpha, beyond the line along an axis and a diagonal; or
     scalars only."""
 
     # --- what follows from the parameters -------------------------------------------------------------------
@@ -104,9 +152,21 @@ class Parameters(BaseModel):
         return self.truncation * spread * mean_radius(self.alpha)
 
     @property
+    def is_graded(self) -> bool:
+        """Whether the particles are graded like sinh, see `graded`, and not on a lattice."""
+        return self.graded_scale is not None
+
+    @property
+    def extent(self) -> float:
+        """What the spacing divides: the half-width D, or L arcsinh(D / L), the end of graded particles in L s."""
+        if self.graded_scale is None:
+            return self.domain
+        return float(self.graded_scale * np.arcsinh(self.domain / self.graded_scale))
+
+    @property
     def n(self) -> int:
-        """Half the number of lattice intervals: the particles are x_i = i h, i = -n .. n in each coordinate."""
-        return max(1, round(self.domain / self.spacing))
+        """Half the number of intervals: x_i = i h, or x_i = L sinh(i h / L), i = -n .. n in each coordinate."""
+        return max(1, round(self.extent / self.spacing))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -120,13 +180,29 @@ class Parameters(BaseModel):
 
     @property
     def particle_spacing(self) -> float:
-        """The realised spacing h = D / n."""
-        return self.domain / self.n
+        """The realised spacing h = D / n, of graded particles that in the middle."""
+        return self.extent / self.n
 
     @property
     def x(self) -> np.ndarray:
         """The particle positions along one axis, shape (2 n + 1,)."""
+        if self.graded_scale is not None:
+            return graded_particles(self.particles, self.domain, self.graded_scale)[0]
         return np.arange(-self.n, self.n + 1) * self.particle_spacing
+
+    @property
+    def volumes(self) -> np.ndarray | float:
+        """The particle volumes V_i: h^n for all on a lattice, of graded particles one for each."""
+        if self.graded_scale is not None:
+            return graded_particles(self.particles, self.domain, self.graded_scale)[1]
+        return float(self.particle_spacing**self.dim)
+
+    def integral(self, values: np.ndarray, inside: Any = ...) -> float:
+        """Return sum_i V_i f_i from the values at the particles, or at those `inside`; to a few ulp, summed pairwise."""
+        volumes = self.volumes
+        if isinstance(volumes, float):
+            return float(volumes * values.sum())
+        return float((volumes[inside] * values).sum())
 
     @property
     def positions(self) -> list[np.ndarray]:
@@ -150,11 +226,16 @@ class Parameters(BaseModel):
         return min(half * spread, self.domain)
 
     @property
+    def kind(self) -> Scheme:
+        """The scheme itself: what it is, and what it takes."""
+        return ALL_SCHEMES[self.scheme]
+
+    @property
     def method(self) -> str:
         """The integrator, the default resolved."""
         if self.integrator is not None:
             return self.integrator
-        return "euler" if self.scheme == "GPSE" else "rk2"
+        return "euler" if self.kind.self_timed else "rk2"
 
     @cached_property
     def steps(self) -> int:
@@ -170,18 +251,29 @@ class Parameters(BaseModel):
 
     @property
     def asked_step(self) -> float:
-        """The step asked for: dt, or for GPSE the one that its overlap implies, Eq. (40)."""
+        """The step asked for: dt, or for GPSE the one of its overlap, Eq. (40), on graded particles all of the time."""
         if self.dt is not None:
             return self.dt
+        if self.is_graded:
+            return self.t_final - self.t_initial
         return ((self.overlap or 2.0) * self.particle_spacing) ** self.alpha / self.diffusivity
 
     @property
     def epsilon_over_h(self) -> float:
         """The realised overlap s = epsilon / h; for GPSE from the realised step, Eq. (40)."""
-        if self.scheme == "GPSE":
+        if self.kind.self_timed:
             epsilon = (self.diffusivity * self.time_step) ** (1.0 / self.alpha)
             return epsilon / self.particle_spacing
         return 2.0 if self.overlap is None else self.overlap
+
+    @property
+    def redistribution(self) -> dict[str, Any]:
+        """What DVM does with particles that are too far apart or too weak, the defaults resolved."""
+        return {
+            "remeshing": self.remeshing or REMESHING,
+            "remesh_above": self.remesh_above or REMESH_ABOVE,
+            "threshold": self.threshold or THRESHOLD,
+        }
 
     @property
     def setting(self) -> Setting:
@@ -206,7 +298,7 @@ class Parameters(BaseModel):
         """Whether the steps are taken one by one; a single Euler step has nothing to gain from a series."""
         if self.evaluation is None and self.method == "euler" and self.steps == 1:
             return True
-        return self.evaluation == "stepping" or self.scheme == "DVM"
+        return self.evaluation == "stepping" or self.kind.moving
 
     @property
     def _series_by_default(self) -> bool:
@@ -215,8 +307,8 @@ class Parameters(BaseModel):
 
     @cached_property
     def largest_stable_step(self) -> float:
-        """The largest dt inside the stability interval; infinite for the exponential."""
-        if self.method == "exponential":
+        """The largest dt inside the stability interval; infinite for the exponential and on graded particles."""
+        if self.method == "exponential" or self.is_graded:
             return float("inf")
         limit = stability_limit(*self._of_the_symbol)
         reach = STEP_POLYNOMIALS[self.method].stability_interval / 2.0
@@ -229,7 +321,6 @@ class Parameters(BaseModel):
 
     @property
     def _of_the_symbol(self) -> tuple[str, float, int, float, int, str | None]:
-        # A displacement wave of DVM's particles in a uniform field decays by DD's symbol.
-        scheme = "DD" if self.scheme == "DVM" else self.scheme
+        scheme = self.kind.symbol_of or self.scheme
         overlap = self.epsilon_over_h
         return scheme, self.beta, self.order, overlap, self.dim, self.kernel_family

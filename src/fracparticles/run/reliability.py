@@ -41,7 +41,7 @@ import numpy as np
 from fracparticles.errors import AccuracyWarning
 from fracparticles.lattice.exterior import continuation
 from fracparticles.lattice.exterior_box import box_continuation
-from fracparticles.schemes import METHODS, SCHEMES
+from fracparticles.schemes import SCHEMES
 from fracparticles.special.stable import central_mass
 from fracparticles.time import STEP_POLYNOMIALS
 
@@ -73,7 +73,8 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
     u0, u : array, shape `case.shape`
         Initial and final strengths.
     """
-    smoothing = 1.0 if case.scheme in ("GPSE", "FD") else case.epsilon_over_h
+    smooths = case.kind.has_kernel and not case.kind.self_timed
+    smoothing = case.epsilon_over_h if smooths else 1.0
     found = {
         "resolution": (
             smoothing * wavenumber(u0),
@@ -84,7 +85,13 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
             "greatest |u| over that at t_initial",
         ),
     }
-    if case.scheme == "DVM":  # its particles spread with the solution
+    if case.kind.moving:  # its particles spread with the solution
+        return found
+    outside = max(outside_share(case, u0), outside_share(case, u))
+    if case.exterior == "truncated":
+        outside = max(outside, _beyond(case, case.domain))
+    found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
+    if case.is_graded:  # no lattice, no symbol
         return found
     span = case.t_final - case.t_initial
     low, high = (span * case.setting.rate * value for value in case.symbol_range)
@@ -105,10 +112,6 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
             table_error(case, u0, u),
             "error of the interpolated kernels over the run",
         )
-    outside = max(outside_share(case, u0), outside_share(case, u))
-    if case.exterior == "truncated":
-        outside = max(outside, _beyond(case, case.domain))
-    found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
     if case.exterior == "open":
         misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
         found["tail_misfit"] = (misfit, "relative misfit of the powers that continue u")
@@ -162,7 +165,8 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
             "scheme: take a wider lattice. Elsewhere the scheme is unstable: take a larger overlap or a smaller step."
         )
     if value.get("outside_share", 0.0) > _OUTSIDE:
-        could_open = case.exterior != "open" and "open" in METHODS[case.scheme].EXTERIORS
+        could_open = case.exterior != "open" and "open" in case.kind.exteriors
+        could_open = could_open and not case.is_graded
         remedy = "take a wider lattice" + (" or exterior='open'" if could_open else "")
         complaints.append(
             f"the solution does not fit on |x| <= {case.domain:.4g}: about {value['outside_share']:.2g} of it lies "
@@ -227,7 +231,7 @@ def outside_share(case: Case, u: np.ndarray) -> float:
     # c in units of L^(n+alpha), the mean over the boundary.
     c = np.mean([np.mean(strength * radius ** (dim + alpha)) for strength, radius in edges])
     beyond = c * _SURFACE[dim] * half**dim / alpha
-    return float(beyond / (beyond + case.particle_spacing**dim * lattice.sum()))
+    return float(beyond / (beyond + case.integral(lattice)))
 
 
 def tail_misfit(case: Case, u: np.ndarray) -> float:
@@ -242,16 +246,12 @@ def tail_misfit(case: Case, u: np.ndarray) -> float:
 
 def wave_error(case: Case, u: np.ndarray) -> float:
     """Return the greatest error in the amplitude of some waves that u holds, along an axis; see the module."""
-    scheme = SCHEMES[case.scheme]
     tau = case.setting.rate * (case.t_final - case.t_initial)
     # The wavenumber of data that vary along every axis alike.
     theta = np.sqrt(case.dim) * wavenumber(u) * np.array([1.0, 0.5, 0.25])
     theta = np.unique(np.append(theta, min(theta[0], tau ** (-1.0 / case.alpha))))
-    family = {} if case.kernel_family is None else {"family": case.kernel_family}
-    along, dim = theta, {}
-    if case.dim > 1:
-        along, dim = theta[:, None] * np.eye(case.dim)[0], {"dim": case.dim}
-    symbol = scheme.symbol(along, case.alpha, case.order, case.epsilon_over_h, **dim, **family)
+    along = theta if case.dim == 1 else theta[:, None] * np.eye(case.dim)[0]
+    symbol = SCHEMES[case.scheme].symbol(along, case.setting)
     with np.errstate(over="ignore"):
         if case.steps:
             z = symbol * tau / case.steps

@@ -54,5 +54,5 @@ def relative_l1_error(case: Case, u: np.ndarray) -> float:
     inside = radius <= case.error_radius * (1.0 + 1e-12)
     time = case.diffusivity * case.t_final
     exact = green(radius[inside], time, case.alpha, case.dim)
-    deviation = case.particle_spacing**case.dim * np.abs(u[inside] - exact).sum()
+    deviation = case.integral(np.abs(u[inside] - exact), inside)
     return float(deviation / central_mass(case.error_radius, time, case.alpha, case.dim))

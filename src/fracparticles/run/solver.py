@@ -16,8 +16,10 @@ from fracparticles.errors import (
     NonFiniteSolution,
     StabilityWarning,
 )
-from fracparticles.lattice.operators import LatticeOperator
+from fracparticles.graded.field import INTERPOLATED, graded_step
+from fracparticles.lattice.operators import LatticeOperator, MatrixOperator
 from fracparticles.moving import dvm
+from fracparticles.moving.lagrangian import Observer
 from fracparticles.run.case import Case
 from fracparticles.run.initial import Initial, bare_strengths, initial_strengths, refuse_non_finite
 from fracparticles.run.reliability import estimates, warn_if_doubtful
@@ -28,10 +30,9 @@ from fracparticles.schemes.stability import grows
 from fracparticles.time import (
     STEP_POLYNOMIALS,
     Flow,
-    applied,
-    euler_step,
     exponential_flow,
     power_flow,
+    single_pass,
     step,
 )
 from fracparticles.time.propagator import propagator
@@ -105,7 +106,7 @@ def compute(case: Case, initial: Initial | None = None) -> Solution:
     """
     u0, origin = initial_strengths(case, initial)
     particles = None
-    if case.scheme == "DVM":
+    if case.kind.moving:
         warn_if_unstable(case)
         particles = advect(case, u0)
         u, applications = particles.field(case.x), particles.history.velocity_evaluations
@@ -116,7 +117,7 @@ def compute(case: Case, initial: Initial | None = None) -> Solution:
     return Solution(case, case.x, u0, u, applications, origin, particles, found)
 
 
-def advect(case: Case, u0: np.ndarray) -> ParticleRun:
+def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> ParticleRun:
     """Run DVM, whose particles move, and return them.
 
     Parameters
@@ -125,11 +126,13 @@ def advect(case: Case, u0: np.ndarray) -> ParticleRun:
         Of scheme "DVM".
     u0 : array, shape `case.shape`
         Initial strengths.
+    observe : callable, optional
+        See `lagrangian.advance`.
 
     Raises
     ------
     NonFiniteSolution
-        If the run blows up.
+        If the run blows up; `FieldNotPositive` if that is for the field.
     """
     try:
         return dvm.run(
@@ -143,10 +146,9 @@ def advect(case: Case, u0: np.ndarray) -> ParticleRun:
             start=case.t_initial,
             dt=case.time_step,
             steps=case.steps,
-            remeshing=case.remeshing or "M4'",
-            remesh_above=1.5 if case.remesh_above is None else case.remesh_above,
-            threshold=case.threshold or 0.0,
             summation=case.summation,
+            observe=observe,
+            **case.redistribution,
         )
     except NonFiniteSolution as error:
         raise _named(case, error) from None
@@ -161,7 +163,7 @@ def warn_if_unstable(case: Case) -> None:
     -----
     StabilityWarning
     """
-    if case.scheme == "GPSE" and case.steps == 1:
+    if case.kind.self_timed and case.steps == 1:
         return
     low, high = case.symbol_range
     exponent = (case.t_final - case.t_initial) * case.setting.rate * high
@@ -194,7 +196,7 @@ class Prepared:
     ----------
     case : Case
     operator : LatticeOperator
-        A; for the convolution in time the whole run.
+        A; for a run as one sum its propagator, on graded particles the matrix of the step.
     operator_applications : int
         How often a solve applies it, unless the data ask for more pieces (`integrators.pieces`).
     advance : callable
@@ -285,20 +287,20 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     Raises
     ------
     InvalidInput
-        For DVM.
+        If the particles move.
     NonFiniteSolution
         If the time steps would overflow.
     """
-    if case.scheme == "DVM":
+    if case.kind.moving:
         raise InvalidInput(
             "scheme",
             case.scheme,
             "a scheme whose particles stay on the lattice",
             "Use solve: DVM's operator depends on the solution.",
         )
-    if case.evaluation == "convolution":
-        operator = _lattice_sum(case)
-        return Prepared(case, operator, 1, partial(applied, operator))
+    if case.is_graded or case.evaluation == "convolution":
+        whole = _graded_step(case) if case.is_graded else _lattice_sum(case)
+        return Prepared(case, whole, 1, partial(single_pass, whole, 1.0, 0.0))
     if operator is None:
         operator = SCHEMES[case.scheme].operator(case.setting)
     warn_if_unstable(case)
@@ -306,7 +308,7 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         polynomial, dt, steps = STEP_POLYNOMIALS[case.method], case.time_step, case.steps
         applications = steps * polynomial.stages
         if applications == 1:
-            return Prepared(case, operator, 1, partial(euler_step, operator, dt))
+            return Prepared(case, operator, 1, partial(single_pass, operator, dt, 1.0))
         return Prepared(
             case, operator, applications, partial(step, operator, polynomial, dt, steps)
         )
@@ -333,13 +335,10 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
 def _lattice_sum(case: Case) -> LatticeOperator:
     """Return the run on the infinite lattice as one lattice sum: exp(A t), or the steps of GPSE."""
     setting = case.setting
-    family = {} if setting.family is None else {"family": setting.family}
     scaled_time = (case.t_final - case.t_initial) * setting.rate
 
     def amplification(theta: np.ndarray) -> np.ndarray:
-        symbol = SCHEMES[case.scheme].symbol(
-            theta, case.alpha, setting.order, setting.overlap, **family
-        )
+        symbol = SCHEMES[case.scheme].symbol(theta, setting)
         if case.method == "exponential":
             return np.exp(scaled_time * symbol)
         return (1.0 + scaled_time / case.steps * symbol) ** case.steps
@@ -349,5 +348,15 @@ def _lattice_sum(case: Case) -> LatticeOperator:
     )
 
 
+def _graded_step(case: Case) -> LatticeOperator:
+    """Return the run on graded particles, one step, as an operator."""
+    assert case.graded_scale is not None
+    time = case.diffusivity * (case.t_final - case.t_initial)
+    form = case.graded_form or INTERPOLATED
+    return MatrixOperator(
+        graded_step(case.particles, case.domain, case.graded_scale, case.alpha, time, form)
+    )
+
+
 def _named(case: Case, error: NonFiniteSolution) -> NonFiniteSolution:
-    return NonFiniteSolution(f"{case.scheme} (order {case.order}): {error}")
+    return type(error)(f"{case.scheme} (order {case.order}): {error}")

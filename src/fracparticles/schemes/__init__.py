@@ -1,39 +1,29 @@
-"""The particle schemes: one module each, with the formula, the operator and the Fourier symbol.
+"""The particle schemes: one module each, with the formula, the weights and the Fourier symbol.
 
-A scheme module offers what `base.Scheme` lists. On a lattice x_i = i h all schemes have the form
-
-    du_i/dt = (D / h^alpha) sum_j a_{i-j} u_j + boundary terms,
-
-with weights a_m that depend on alpha, the order and the overlap s = epsilon / h alone. Its Fourier symbol is
-A(theta) = (D / h^alpha) symbol(theta), theta = k h. The particles of DVM move: it has neither operator nor symbol.
+A scheme is a class of its module: a `Sum` or an `Exchange`, which give their kernel only; a `LatticeScheme` with an
+operator and a symbol of its own; or a `Scheme` whose particles move. It is found by its file, see `discovery`.
 """
 
 from __future__ import annotations
 
-from fracparticles.errors import InvalidInput
-from fracparticles.schemes import dd, dpse, dvm, fd, fpse, gpse, kpse, pse29, riesz
-from fracparticles.schemes.base import Method, Scheme, Setting
+from fracparticles.schemes.base import Exchange, LatticeScheme, Scheme, Sum
+from fracparticles.schemes.discovery import all_schemes, scheme
+from fracparticles.schemes.setting import Setting
 
-__all__ = ["METHODS", "SCHEMES", "Method", "Scheme", "Setting", "scheme"]
+__all__ = [
+    "ALL_SCHEMES",
+    "SCHEMES",
+    "Exchange",
+    "LatticeScheme",
+    "Scheme",
+    "Setting",
+    "Sum",
+    "scheme",
+]
 
-SCHEMES: dict[str, Scheme] = {
-    module.NAME: module for module in (dd, dpse, fpse, kpse, gpse, fd, pse29, riesz)
+ALL_SCHEMES: dict[str, Scheme] = all_schemes()
+
+# Those with an operator on a lattice.
+SCHEMES: dict[str, LatticeScheme] = {
+    name: one for name, one in ALL_SCHEMES.items() if isinstance(one, LatticeScheme)
 }
-
-METHODS: dict[str, Method] = {**SCHEMES, dvm.NAME: dvm}
-
-
-def scheme(name: str) -> Scheme:
-    """Return the scheme of that name, one with an operator on a lattice.
-
-    Raises
-    ------
-    InvalidInput
-        If there is none.
-    """
-    try:
-        return SCHEMES[name]
-    except (KeyError, TypeError):
-        raise InvalidInput(
-            "scheme", name, f"one of {', '.join(SCHEMES)}", "Choose one of these names."
-        ) from None

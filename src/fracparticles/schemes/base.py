@@ -1,280 +1,246 @@
-"""What a scheme is, and what the schemes share."""
+"""What a scheme is, and the two kinds with a single sum, which give their weights and their transform only."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
-from typing import Protocol
 
 import numpy as np
 
-from fracparticles.kernels.families import KERNELS, family_of, kernel, kernel_transform
-from fracparticles.kernels.high_order import wavenumber_reach
-from fracparticles.kernels.tabulated import KernelValues, tabulated
-from fracparticles.lattice.box import BOX_SUMMATIONS
+from fracparticles.errors import InvalidInput
+from fracparticles.kernels.families import family_of
 from fracparticles.lattice.exterior import far_field
 from fracparticles.lattice.exterior_box import box_far_field
-from fracparticles.lattice.operators import ConvolutionOperator, LatticeOperator
-from fracparticles.lattice.sums import SUMMATIONS
+from fracparticles.lattice.operators import ConvolutionOperator, FarField, LatticeOperator
+from fracparticles.lattice.sums import BOX_SUMMATIONS, SUMMATIONS, sums_of_weights
+from fracparticles.schemes.setting import Setting
+from fracparticles.schemes.transform import lattice_transform
 
-__all__ = ["Method", "Scheme", "Setting", "lattice_transform", "one_pass_operator"]
+__all__ = ["Exchange", "LatticeScheme", "OnePass", "Scheme", "Sum", "one_pass_operator", "radius"]
 
 Weights = Callable[[np.ndarray], np.ndarray]
 
 
-@dataclass(frozen=True)
-class Setting:
-    """One scheme on one lattice x_i = i h, i = -n .. n in each of `dim` coordinates.
+class Scheme:
+    """What every scheme says of itself; one is a class with a `name`, in a module of this folder."""
 
-    Attributes
-    ----------
-    n : int
-        Half the number of lattice intervals; there are N = 2 n + 1 particles in each direction.
-    spacing : float
-        Particle spacing h; the particle volume is h^dim.
-    alpha : float
-        Fractional order, alpha = 1 + beta.
-    order : {2, 4, 6, 8, 10, 12}
-        Order of the kernels.
-    overlap : float
-        s = epsilon / h.
-    diffusivity : float
-        D of Eq. (2).
-    summation : {"fft", "naive"}
-        See `sums`.
-    exterior : {"truncated", "open"}
-        See `exterior`.
-    dim : {1, 2, 3}
-        Space dimension.
-    kernel_table : float, optional
-        Step of the table that the kernels are interpolated in; exact kernels without it.
-    family : {"printed", "gamma"}, optional
-        Family of the kernels, see `kernels.kernel`.
-    far_terms : {1, 2, 3}
-        Terms that continue the solution in an open exterior, dim = 1.
+    name: str  # in tables the abbreviation,
+    title: str  # the words,
+    equation: str  # the equation of the paper,
+    kernel: str = "-"  # and that of the kernel
+    place: int = 100  # in lists; those without one come last
+    rejected: bool = False  # the paper only mentions it
+    orders: tuple[int, ...] = (2,)  # of the kernels in one dimension,
+    box_orders: tuple[int, ...] = ()  # and in two and three
+    families: tuple[str, ...] = ()  # of kernels, where there is a choice
+    exteriors: tuple[str, ...] = ("truncated",)
+    conservative: bool  # total strength invariant (18)
+    moving: bool = False  # the particles move: there is no operator on the lattice
+    symbol_of: str = ""  # the scheme by whose symbol its waves decay, if that is not its own
+    has_kernel: bool = True  # there is a smoothing length epsilon
+    tabulated: bool = False  # the kernels may be interpolated in a table
+    self_timed: bool = False  # a step of Euler's, to which epsilon = (D dt)^(1/alpha) is tied
+    colour: str = "#000000"  # in figures
+    marker: str = "."
+
+    @property
+    def dims(self) -> tuple[int, ...]:
+        """Space dimensions."""
+        return (1, 2, 3) if self.box_orders else (1,)
+
+    def check(self, dim: int, order: int, family: str | None, field: str = "family") -> None:
+        """Refuse what the scheme does not exist for; `field` is what the caller calls the family of kernels.
+
+        Raises
+        ------
+        InvalidInput
+            With the field, the value, and what is allowed.
+        """
+        _choose("dim", dim, self.dims, self.name)
+        if dim == 1:
+            _choose("order", order, self.orders, self.name)
+        else:
+            _choose("order", order, self.box_orders, f"{self.name} in {dim} dimensions")
+        if family is not None:
+            if not self.families:
+                raise InvalidInput(field, family, f"nothing for {self.name}", "Leave it out.")
+            family_of(order, family, field)
+
+    def padding(self, order: int, overlap: float, dim: int, family: str | None) -> int:
+        """Return how many lattice points beyond each end an open exterior needs sums at."""
+        return 0
+
+
+def _choose(field: str, value: object, choices: tuple[int, ...], where: str) -> None:
+    if not (is_number(value) and value in choices):
+        allowed = f"{' or '.join(map(str, choices))} for {where}"
+        raise InvalidInput(field, value, allowed, "Choose one of these, or another scheme.")
+
+
+def is_number(value: object) -> bool:
+    """Return whether a value is a real number, of Python's or of NumPy's, and no bool."""
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+class LatticeScheme(Scheme, ABC):
+    """A scheme whose particles stay on the lattice x_i = i h. All have the form
+
+        du_i/dt = (D / h^alpha) sum_j a_{i-j} u_j + boundary terms,
+
+    with weights a_m that depend on alpha, the order and the overlap s = epsilon / h alone.
     """
 
-    n: int
-    spacing: float
-    alpha: float
-    order: int = 2
-    overlap: float = 2.0
-    diffusivity: float = 1.0
-    summation: str = "fft"
-    exterior: str = "truncated"
-    dim: int = 1
-    kernel_table: float | None = None
-    family: str | None = None
-    far_terms: int = 1
+    # No eigenvalue of a bounded lattice lies above the range of the symbol.
+    dissipative: bool = True
 
-    @property
-    def size(self) -> int:
-        """The number N of particles in each direction."""
-        return 2 * self.n + 1
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The shape of the lattice."""
-        return (self.size,) * self.dim
-
-    @property
-    def kernel(self) -> KernelValues:
-        """The function that gives the kernels' values: exact, or interpolated."""
-        if self.kernel_table is None:
-            return partial(kernel, family=self.family)
-        return tabulated(self.kernel_table, self.family)
-
-    @property
-    def rate(self) -> float:
-        """D / h^alpha, the unit of the operator."""
-        return self.diffusivity / self.spacing**self.alpha
-
-
-class Method(Protocol):
-    """The names that every scheme module defines."""
-
-    NAME: str
-    TITLE: str
-    EQUATION: str
-    KERNEL: str
-    ORDERS: tuple[int, ...]
-    BOX_ORDERS: tuple[int, ...]  # in two and three dimensions
-    FAMILIES: tuple[str, ...]  # of kernels, where there is a choice
-    DIMS: tuple[int, ...]
-    EXTERIORS: tuple[str, ...]
-    CONSERVATIVE: bool  # total strength invariant (18)
-
-
-class Scheme(Method, Protocol):
-    """The names that a module defines whose particles stay on the lattice."""
-
-    DISSIPATIVE: bool  # no eigenvalue above the range of the symbol
-
+    @abstractmethod
     def operator(self, setting: Setting) -> LatticeOperator:
         """Return A of du/dt = A u on the lattice."""
 
-    # (theta, alpha, order, overlap), and `dim` and `family` if there are several: A(theta) h^alpha / D on the infinite
-    # lattice, theta = k h in [0, pi]; for dim > 1 the last axis of theta is the vector.
-    symbol: Callable[..., np.ndarray]
+    @abstractmethod
+    def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return A(theta) h^alpha / D on the infinite lattice, theta = k h in [0, pi].
+
+        For dim > 1 the last axis of theta is the vector.
+        """
+
+    def ends_amplify(self, setting: Setting) -> bool:
+        """Return whether the ends of a bounded lattice, of any size, make eigenvalues a little above zero."""
+        return False
+
+    def closed_form_limit(self, beta: float, overlap: float) -> float:
+        """Return the stability limit a for order II in closed form, the aliases of the lattice neglected.
+
+        Raises
+        ------
+        InvalidInput
+            If there is no closed form.
+        """
+        raise InvalidInput(
+            "scheme", self.name, "one with a closed form", "Use stability_limit for the others."
+        )
+
+
+class OnePass(LatticeScheme):
+    """A scheme with a single even sum, (c D / epsilon^alpha) sum_j V_j u_j K_epsilon(x_i - x_j) or its exchange form.
+
+    A subclass names K, or gives `values` and `transform` of a kernel of its own.
+    """
+
+    kernel_name: str  # K, see `kernels.kernel`
+
+    def factor(self, setting: Setting) -> float:
+        """Return c."""
+        return 1.0
+
+    def values(self, r: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return K(r), r in units of epsilon."""
+        return setting.kernel(self.kernel_name, r)
+
+    def transform(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return sum_m K(m / s) e^{-i m.theta} / s^n; see `lattice_transform`."""
+        return lattice_transform(self.kernel_name, theta, setting)
+
+    def weights(self, m: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return a_m = c s^(-n-alpha) K(|m| / s)."""
+        s = setting.overlap
+        scale = self.factor(setting) * s ** (-setting.dim - setting.alpha)
+        return scale * self.values(m / s, setting)
+
+    def scaled_transform(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return the transform of the weights, c s^(-alpha) times that of the kernel."""
+        return self._scale(setting) * self.transform(theta, setting)
+
+    def _scale(self, setting: Setting) -> float:
+        return self.factor(setting) * setting.overlap**-setting.alpha
+
+
+class Sum(OnePass):
+    """du_i/dt = (c D / epsilon^alpha) sum_j V_j u_j K_epsilon(x_i - x_j)."""
+
+    def operator(self, setting: Setting) -> LatticeOperator:
+        """Return A."""
+        return one_pass_operator(setting, lambda m: self.weights(m, setting))
+
+    def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return A(theta) h^alpha / D = c s^(-alpha) sum_l K^(s (theta + 2 pi l))."""
+        return self.scaled_transform(theta, setting)
+
+
+class Exchange(OnePass):
+    """du_i/dt = (c D / epsilon^alpha) sum_j V_j (u_j - u_i) K_epsilon(x_j - x_i): conservative."""
+
+    conservative = True
+
+    def operator(self, setting: Setting) -> LatticeOperator:
+        """Return A."""
+        total = self.scaled_transform(np.zeros((1, setting.dim)), setting).flat[0]
+        return one_pass_operator(setting, lambda m: self.weights(m, setting), float(total))
+
+    def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return A(theta) h^alpha / D = c s^(-alpha) sum_l [K^(s (theta + 2 pi l)) - K^(2 pi l s)]."""
+        at_zero = self.transform(np.zeros((1, setting.dim)), setting).flat[0]
+        return self._scale(setting) * (self.transform(theta, setting) - at_zero)
 
 
 def one_pass_operator(
-    setting: Setting, weights: Weights, exchange_sum: float | None = None, decay: float = 0.0
+    setting: Setting, weights: Weights, exchange_sum: float | None = None
 ) -> ConvolutionOperator:
-    """Return the operator of a scheme with a single even sum, du_i/dt = sum_j w_{i-j} (u_j - [u_i]).
+    """Return the operator of a single even sum, du_i/dt = sum_j w_{i-j} (u_j - [u_i]).
 
     Parameters
     ----------
     setting : Setting
     weights : callable
-        a_m of the scheme as a function of the offset |m|, in units of D / h^alpha.
+        a_m of the scheme as a function of the offset |m|, in units of D / h^alpha; for an open exterior
+        a_m ~ |m|^(-n-alpha).
     exchange_sum : float, optional
         For a particle strength exchange, sum_j a_j (u_j - u_i): the sum of a_m over the infinite lattice, from
         the transform. None if the scheme has no - u_i.
-    decay : float
-        a_m ~ |m|^(-decay), for the open exterior.
     """
+    size, dim = setting.size, setting.dim
+    decay = dim + setting.alpha
+    far: FarField | None = None
 
     def scaled(m: np.ndarray) -> np.ndarray:
         return setting.rate * weights(m)
 
-    infinite = None if exchange_sum is None else -setting.rate * exchange_sum
-    if setting.dim > 1:
-        return _box_operator(setting, scaled, infinite, decay)
-    size = setting.size
-    w = scaled(np.arange(size, dtype=float))
-    far = None
-    if setting.exterior == "open":
-        far = far_field(scaled, decay, setting.alpha, setting.n, terms=setting.far_terms)
-    convolve = SUMMATIONS[setting.summation](w, size)
-    if infinite is None:
-        return ConvolutionOperator(convolve, np.zeros(size), far)
-    if setting.exterior == "open":
-        return ConvolutionOperator(convolve, np.full(size, infinite), far)
-    return ConvolutionOperator(convolve, -present_sum(w, parity=1), far, infinite)
+    def scaled_vector(*m: np.ndarray) -> np.ndarray:
+        return scaled(radius(m))
+
+    convolve: Callable[[np.ndarray], np.ndarray]
+    if dim == 1:
+        w = scaled(np.arange(size, dtype=float))
+        convolve = SUMMATIONS[setting.summation](w, size)
+        if setting.is_open:
+            far = far_field(scaled, decay, setting.alpha, setting.n, terms=setting.far_terms)
+    else:
+        w = scaled(lattice_radii(size, dim))
+        sums = BOX_SUMMATIONS[setting.summation]([w], [None], size, size)
+
+        def convolve(u: np.ndarray) -> np.ndarray:
+            return sums(u.reshape(setting.shape)).reshape(-1)
+
+        if setting.is_open:
+            far = box_far_field([scaled_vector], [None], decay, setting.alpha, setting.n, dim)
+    particles = size**dim
+    if exchange_sum is None:
+        return ConvolutionOperator(convolve, np.zeros(particles), far, dim=dim)
+    infinite = -setting.rate * exchange_sum
+    if setting.is_open:
+        diagonal = np.full(particles, infinite)
+    elif dim == 1:
+        diagonal = -sums_of_weights(w, parity=1, size=size)
+    else:
+        diagonal = -convolve(np.ones(particles))
+    return ConvolutionOperator(convolve, diagonal, far, infinite, dim)
 
 
-def _box_operator(
-    setting: Setting, scaled: Weights, infinite: float | None, decay: float
-) -> ConvolutionOperator:
-    size, shape = setting.size, setting.shape
-    w = scaled(lattice_radii(size, setting.dim))
-    sums = BOX_SUMMATIONS[setting.summation]([w], [None], size, size)
-
-    def convolve(u: np.ndarray) -> np.ndarray:
-        return sums(u.reshape(shape)).reshape(-1)
-
-    far = None
-    if setting.exterior == "open":
-        far = box_far_field(
-            [lambda *m: scaled(np.sqrt(sum(np.square(part) for part in m)))],
-            [None],
-            decay,
-            setting.alpha,
-            setting.n,
-            setting.dim,
-        )
-    particles = size**setting.dim
-    if infinite is None:
-        return ConvolutionOperator(convolve, np.zeros(particles), far, dim=setting.dim)
-    if setting.exterior == "open":
-        return ConvolutionOperator(convolve, np.full(particles, infinite), far, dim=setting.dim)
-    diagonal = -convolve(np.ones(particles))
-    return ConvolutionOperator(convolve, diagonal, far, infinite, setting.dim)
+def radius(m: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Return |m| from its coordinates."""
+    return np.sqrt(sum(np.square(part) for part in m))
 
 
 def lattice_radii(count: int, dim: int) -> np.ndarray:
     """Return |m| for m = 0 .. count - 1 in each coordinate, shape (count,) * dim."""
-    squares = np.arange(count, dtype=float) ** 2
-    total = squares
-    for _ in range(dim - 1):
-        total = total[..., None] + squares
-    return np.sqrt(total)
-
-
-def present_sum(w: np.ndarray, parity: int, size: int | None = None) -> np.ndarray:
-    """Return sum_j w_{i-j} over the particles present, for each of the N particles.
-
-    By cumulative sums from the small far weights to the large near ones.
-    """
-    size = w.size if size is None else size
-    tail = np.zeros(size)
-    tail[1 : w.size] = w[1:size]
-    one_sided = np.cumsum(tail)
-    return w[0] * (1 + parity) / 2 + parity * one_sided[::-1] + one_sided
-
-
-def lattice_transform(
-    name: str,
-    theta: np.ndarray,
-    alpha: float,
-    order: int,
-    overlap: float,
-    parity: int = 1,
-    dim: int = 1,
-    family: str | None = None,
-) -> np.ndarray:
-    """Return sum_m K(m / s) e^{-i m.theta} / s^n = sum_l K^(s (theta + 2 pi l)), Poisson's summation formula.
-
-    For an odd kernel the imaginary part, sum_l (k_l / |k_l|) g(|k_l|): for dim = 1 with the sign of k_l, for
-    dim > 1 a vector along the last axis. The aliases l fall like a Gaussian, those of E like exp(-|k|^alpha);
-    they are summed until they are nil.
-
-    Parameters
-    ----------
-    theta : array
-        Any shape for dim = 1; for dim > 1 the last axis is the vector.
-    """
-    theta = np.asarray(theta, dtype=float)
-    if dim > 1:
-        return _box_transform(name, theta, alpha, order, overlap, dim, family)
-    last = _last_alias(_nil_beyond(name, alpha, order, family), overlap)
-    total = np.zeros_like(theta)
-    for alias in range(-last, last + 1):
-        k = overlap * (theta + 2.0 * np.pi * alias)
-        sign = 1.0 if parity > 0 else np.sign(k)
-        total += sign * kernel_transform(name, np.abs(k), alpha, order=order, family=family)
-    return total
-
-
-def _box_transform(
-    name: str,
-    theta: np.ndarray,
-    alpha: float,
-    order: int,
-    overlap: float,
-    dim: int,
-    family: str | None,
-) -> np.ndarray:
-    nil = _nil_beyond(name, alpha, order, family)
-    even = KERNELS[name].parity == "even"
-    total = np.zeros(theta.shape[:-1] if even else theta.shape)
-    last = _last_alias(nil, overlap)
-    # Aliases that stay beyond `nil` for all theta are left out.
-    nearest = 2.0 * np.pi * np.maximum(np.abs(np.arange(-last, last + 1)) - 0.5, 0.0)
-    for alias in np.ndindex(*(2 * last + 1,) * dim):
-        if overlap * np.sqrt(np.square(nearest[list(alias)]).sum()) > nil:
-            continue
-        k = overlap * (theta + 2.0 * np.pi * (np.array(alias) - last))
-        size = np.sqrt(np.square(k).sum(axis=-1))
-        value = kernel_transform(name, size, alpha, dim=dim, order=order, family=family)
-        if even:
-            total += value
-        else:
-            total += k * (value / np.where(size > 0.0, size, 1.0))[..., None]
-    return total
-
-
-def _last_alias(nil: float, overlap: float) -> int:
-    """The last l for which s |theta + 2 pi l| <= `nil` for any |theta| <= pi."""
-    return int(nil / (2.0 * np.pi * overlap) + 0.5)
-
-
-def _nil_beyond(name: str, alpha: float, order: int, family: str | None) -> float:
-    """The wavenumber beyond which the transform is nil."""
-    if name == "E":
-        return float(44.0 ** (1.0 / alpha))
-    if order > 2 and family_of(order, family) == "gamma":
-        return wavenumber_reach(order)
-    return 14.0  # k^alpha exp(-k^2 / 4) < 1e-19
+    return radius(np.meshgrid(*(np.arange(count, dtype=float),) * dim, indexing="ij", sparse=True))

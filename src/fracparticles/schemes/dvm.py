@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-NAME = "DVM"
-TITLE = "Diffusion velocity method"
-EQUATION = "Eqs. (42)-(45)"
-KERNEL = "Eqs. (8), (9), (20), (21)"
-ORDERS: tuple[int, ...] = (2, 4)
-BOX_ORDERS: tuple[int, ...] = ()
-FAMILIES: tuple[str, ...] = ()
-DIMS: tuple[int, ...] = (1,)
-EXTERIORS: tuple[str, ...] = ("truncated",)
-CONSERVATIVE = True
+from fracparticles.schemes.base import Scheme
+
+
+class DiffusionVelocityMethod(Scheme):
+    """DVM. A displacement wave of its particles in a uniform field decays by DD's symbol."""
+
+    name, place = "DVM", 6
+    title = "Diffusion velocity method"
+    equation, kernel = "Eqs. (42)-(45)", "Eqs. (8), (9), (20), (21)"
+    orders = (2, 4)
+    conservative = True
+    moving = True
+    symbol_of = "DD"
+    colour, marker = "#7F3C8D", "p"  # none of Okabe & Ito's, whose yellow is too pale for lines

@@ -17,35 +17,54 @@ from math import factorial, gamma
 import numpy as np
 from scipy.special import bernoulli, poch, zeta
 
-from fracparticles.lattice.operators import LatticeOperator
-from fracparticles.schemes.base import Setting, one_pass_operator
-
-NAME = "FD"
-TITLE = "Finite differences (reconstruction)"
-EQUATION = "Ref. [41]"
-KERNEL = "-"
-ORDERS = (2,)
-BOX_ORDERS: tuple[int, ...] = ()
-FAMILIES: tuple[str, ...] = ()
-DIMS = (1,)
-EXTERIORS = ("truncated",)
-CONSERVATIVE = False
-DISSIPATIVE = True
+from fracparticles.schemes.base import Sum
+from fracparticles.schemes.setting import Setting
 
 _CLOSE = 0.005  # of beta or 1 - beta: closer, omega is nearly z or 1, and its differences are taken of the rest
 _ZETA_TERMS = 10  # and as many corrections: the next is below round-off
 _FAR = 200.0  # the next Taylor term, omega^(9), is below 1e-16 of the first there
 
 
-def weights(m: np.ndarray, alpha: float) -> np.ndarray:
-    """a_m, even: half the second differences of g_m = omega(m + 1) - omega(m), divided by |cos(pi alpha/2)|.
+class FiniteDifferences(Sum):
+    """FD."""
 
-    L_i = h^(-beta) sum_{m >= 0} g_m (u_{i-m} - u_{i-m-1}); the two one-sided sums overlap at |m| <= 1.
-    """
-    m = np.abs(np.asarray(m, dtype=float))
-    one_sided = _one_sided(m, alpha)
-    mirrored = np.where(m <= 1.0, _one_sided(-m, alpha), 0.0)
-    return 0.5 * (one_sided + mirrored) / _cosine(alpha)
+    name, place = "FD", 7
+    title = "Finite differences (reconstruction)"
+    equation = "Ref. [41]"
+    conservative = False
+    has_kernel = False
+    colour, marker = "#56B4E9", "v"
+
+    def weights(self, m: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return a_m, even: half the second differences of g_m = omega(m + 1) - omega(m), over |cos(pi alpha/2)|.
+
+        L_i = h^(-beta) sum_{m >= 0} g_m (u_{i-m} - u_{i-m-1}); the two one-sided sums overlap at |m| <= 1.
+        """
+        m, alpha = np.abs(np.asarray(m, dtype=float)), setting.alpha
+        one_sided = _one_sided(m, alpha)
+        mirrored = np.where(m <= 1.0, _one_sided(-m, alpha), 0.0)
+        return np.asarray(0.5 * (one_sided + mirrored) / _cosine(alpha))
+
+    def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return A(theta) h^alpha / D = Re[(e^{i theta} - 1) L^(theta)] / |cos(pi alpha / 2)|.
+
+        L^ = -|1 - e^{i theta}|^2 sum_l (i (theta + 2 pi l))^(beta-2), the flux of the piecewise linear interpolant;
+        the sum over the aliases is a pair of Hurwitz zeta functions.
+        """
+        theta, alpha = np.asarray(theta, dtype=float), setting.alpha
+        out = np.zeros_like(theta)
+        t = theta[theta != 0.0]
+        power = 3.0 - alpha
+        turns = t / (2.0 * np.pi)
+        if 2.0 - alpha < _CLOSE:
+            aliases = _aliases_near_the_pole(2.0 - alpha, turns)
+        else:
+            quarter = np.exp(-0.5j * np.pi * power)
+            aliases = quarter * zeta(power, turns) + np.conj(quarter) * zeta(power, 1.0 - turns)
+        aliases = (2.0 * np.pi) ** -power * aliases
+        flux = -4.0 * np.sin(0.5 * t) ** 2 * aliases
+        out[theta != 0.0] = ((np.exp(1j * t) - 1.0) * flux).real / _cosine(alpha)
+        return out
 
 
 def _cosine(alpha: float) -> float:
@@ -93,33 +112,6 @@ def _third_difference(m: np.ndarray, alpha: float) -> np.ndarray:
 
     difference = rest(m + 2.0) - 3.0 * rest(m + 1.0) + 3.0 * rest(m) - rest(m - 1.0)
     return difference / gamma(2.0 - beta)
-
-
-def operator(setting: Setting) -> LatticeOperator:
-    """Return A of the module's formula, Dirichlet conditions beyond the last particles."""
-    return one_pass_operator(setting, lambda m: weights(m, setting.alpha))
-
-
-def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
-    """A(theta) h^alpha / D = Re[(e^{i theta} - 1) L^(theta)] / |cos(pi alpha / 2)|,
-
-    L^ = -|1 - e^{i theta}|^2 sum_l (i (theta + 2 pi l))^(beta-2), the flux of the piecewise linear interpolant;
-    the sum over the aliases is a pair of Hurwitz zeta functions.
-    """
-    theta = np.asarray(theta, dtype=float)
-    out = np.zeros_like(theta)
-    t = theta[theta != 0.0]
-    power = 3.0 - alpha
-    turns = t / (2.0 * np.pi)
-    if 2.0 - alpha < _CLOSE:
-        aliases = _aliases_near_the_pole(2.0 - alpha, turns)
-    else:
-        quarter = np.exp(-0.5j * np.pi * power)
-        aliases = quarter * zeta(power, turns) + np.conj(quarter) * zeta(power, 1.0 - turns)
-    aliases = (2.0 * np.pi) ** -power * aliases
-    flux = -4.0 * np.sin(0.5 * t) ** 2 * aliases
-    out[theta != 0.0] = ((np.exp(1j * t) - 1.0) * flux).real / _cosine(alpha)
-    return out
 
 
 def _aliases_near_the_pole(delta: float, t: np.ndarray) -> np.ndarray:

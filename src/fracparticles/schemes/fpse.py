@@ -11,90 +11,108 @@ Stable for D dt / h^alpha <= a; order II, aliases neglected: a = 2 (s/2)^alpha (
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import e
 
 import numpy as np
 
 from fracparticles.kernels.families import kernel
-from fracparticles.kernels.tabulated import KernelValues
 from fracparticles.lattice.banded import BandedConvolution
-from fracparticles.lattice.box import BOX_SUMMATIONS
 from fracparticles.lattice.exterior import far_field
 from fracparticles.lattice.exterior_box import box_far_field
 from fracparticles.lattice.operators import FluxDivergenceOperator, LatticeOperator, TwoPassOperator
-from fracparticles.lattice.sums import SUMMATIONS
-from fracparticles.schemes.base import Setting, lattice_transform, present_sum
-
-NAME = "FPSE"
-TITLE = "Flux particle strength exchange"
-EQUATION = "Eq. (25)"
-KERNEL = "Eqs. (20), (23)"
-ORDERS = (2, 4, 6, 8, 10, 12)
-BOX_ORDERS = (2, 4)  # eta1 as a sum of products, see _Divergence
-FAMILIES = ("printed", "gamma")
-DIMS = (1, 2, 3)
-EXTERIORS = ("truncated", "open")
-CONSERVATIVE = True
-DISSIPATIVE = True
+from fracparticles.lattice.sums import BOX_SUMMATIONS, SUMMATIONS, sums_of_weights
+from fracparticles.schemes.base import LatticeScheme, radius
+from fracparticles.schemes.setting import Setting
+from fracparticles.schemes.transform import lattice_transform
 
 
-def flux_weights(
-    m: np.ndarray,
-    alpha: float,
-    order: int,
-    overlap: float,
-    dim: int = 1,
-    values: KernelValues = kernel,
-) -> np.ndarray:
+def flux_weights(m: np.ndarray, setting: Setting) -> np.ndarray:
     """Q_i = h^(-beta) sum_j b_{i-j} u_j with b_m = -s^(-n-beta) F(m / s), Eq. (19), along m / |m|."""
-    return -(overlap ** (1.0 - dim - alpha)) * values("F", m / overlap, alpha, dim=dim, order=order)
+    s = setting.overlap
+    return -(s ** (1.0 - setting.dim - setting.alpha)) * setting.kernel("F", m / s)
 
 
-def divergence_weights(
-    m: np.ndarray, alpha: float, order: int, overlap: float, family: str | None = None
-) -> np.ndarray:
+def divergence_weights(m: np.ndarray, setting: Setting) -> np.ndarray:
     """du_i/dt = (D / h) sum_j c_{i-j} (Q_j + Q_i) with c_m = -s^(-2) eta1(m / s), Eq. (25), n = 1."""
-    return -(overlap**-2.0) * kernel("eta1", m / overlap, alpha, order=order, family=family)
+    s = setting.overlap
+    return np.asarray(-(s**-2.0) * kernel("eta1", m / s, setting.alpha, **setting.kernels))
 
 
-def operator(setting: Setting) -> LatticeOperator:
-    """Return A of Eqs. (19), (25).
+class FluxExchange(LatticeScheme):
+    """FPSE."""
 
-    With the open exterior, the flux is also taken at the lattice points next to the ends, as far as the
-    divergence reaches; then the sum of eta1 over all neighbours vanishes and with it the term Q_i.
-    """
-    return _line_operator(setting) if setting.dim == 1 else _box_operator(setting)
+    name, place = "FPSE", 3
+    title = "Flux particle strength exchange"
+    equation, kernel = "Eq. (25)", "Eqs. (20), (23)"
+    orders = (2, 4, 6, 8, 10, 12)
+    box_orders = (2, 4)  # eta1 as a sum of products, see _Divergence
+    families = ("printed", "gamma")
+    exteriors = ("truncated", "open")
+    conservative = True
+    tabulated = True
+    colour, marker = "#D55E00", "s"
+
+    def operator(self, setting: Setting) -> LatticeOperator:
+        """Return A of Eqs. (19), (25).
+
+        With the open exterior, the flux is also taken at the lattice points next to the ends, as far as the
+        divergence reaches; then the sum of eta1 over all neighbours vanishes and with it the term Q_i.
+        """
+        pad = 0
+        if setting.is_open:
+            pad = self.padding(setting.order, setting.overlap, setting.dim, setting.family)
+        return (_line_operator if setting.dim == 1 else _box_operator)(setting, pad)
+
+    def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return A(theta) h^alpha / D = -s^(-alpha) f(theta) . e(theta).
+
+        f and e are the sums over the aliases of F^ = i (k / |k|) |k|^beta eta^(k) and of eta1^.
+        """
+        product = lattice_transform("F", theta, setting) * lattice_transform("eta1", theta, setting)
+        if setting.dim > 1:
+            product = product.sum(axis=-1)
+        return -(setting.overlap**-setting.alpha) * product
+
+    def padding(self, order: int, overlap: float, dim: int, family: str | None) -> int:
+        """Return the reach of the divergence."""
+        # In a box the divergence is that of the printed kernel: eta1 of order IV is the same in both families.
+        return BandedConvolution.reach(overlap, order, family if dim == 1 else None)
+
+    def ends_amplify(self, setting: Setting) -> bool:
+        """Return whether the order is 6 or more."""
+        return setting.dim == 1 and setting.order >= 6
+
+    def closed_form_limit(self, beta: float, overlap: float) -> float:
+        """Return a, see the module."""
+        alpha = 1.0 + beta
+        return 2.0 * (overlap / 2.0) ** alpha * (4.0 * e / alpha) ** (alpha / 2.0)
 
 
-def _line_operator(setting: Setting) -> LatticeOperator:
-    alpha, order, overlap = setting.alpha, setting.order, setting.overlap
-    size, is_open = setting.size, setting.exterior == "open"
-    reach = BandedConvolution.reach(overlap, order, setting.family)
-    pad = reach if is_open else 0
+def _line_operator(setting: Setting, pad: int) -> LatticeOperator:
+    alpha, size = setting.alpha, setting.size
+    reach = BandedConvolution.reach(setting.overlap, setting.order, setting.family)
 
     def flux(m: np.ndarray) -> np.ndarray:
-        return setting.rate * flux_weights(m, alpha, order, overlap, values=setting.kernel)
+        return setting.rate * flux_weights(m, setting)
 
-    convolve = SUMMATIONS[setting.summation](
-        flux(np.arange(size + pad, dtype=float)), size, parity=-1, pad=pad
-    )
-    c = divergence_weights(np.arange(reach + 1, dtype=float), alpha, order, overlap, setting.family)
+    b = flux(np.arange(size + pad, dtype=float))
+    convolve = SUMMATIONS[setting.summation](b, size, parity=-1, pad=pad)
+    c = divergence_weights(np.arange(reach + 1, dtype=float), setting)
     far, diagonal = None, np.zeros(size)
-    if is_open:
+    if setting.is_open:
         far = far_field(flux, alpha, alpha, setting.n, -1, pad, setting.far_terms)
     else:
-        diagonal = present_sum(c, parity=-1, size=size)
+        diagonal = sums_of_weights(c, parity=-1, size=size)
     return TwoPassOperator(convolve, BandedConvolution(c, parity=-1), diagonal, far)
 
 
-def _box_operator(setting: Setting) -> LatticeOperator:
-    alpha, order, overlap, dim = setting.alpha, setting.order, setting.overlap, setting.dim
-    size, is_open = setting.size, setting.exterior == "open"
-    pad = BandedConvolution.reach(overlap, order) if is_open else 0
+def _box_operator(setting: Setting, pad: int) -> LatticeOperator:
+    alpha, dim, size = setting.alpha, setting.dim, setting.size
 
     def component(axis: int) -> Callable[..., np.ndarray]:
         def flux(*m: np.ndarray) -> np.ndarray:
-            r = np.sqrt(sum(np.square(part) for part in m))
-            radial = setting.rate * flux_weights(r, alpha, order, overlap, dim, setting.kernel)
+            r = radius(m)
+            radial = setting.rate * flux_weights(r, setting)
             return radial * (m[axis] / np.where(r > 0.0, r, 1.0))
 
         return flux
@@ -102,12 +120,11 @@ def _box_operator(setting: Setting) -> LatticeOperator:
     weights = [component(axis) for axis in range(dim)]
     offsets = np.arange(size + pad, dtype=float)
     grid = np.meshgrid(*(offsets,) * dim, indexing="ij", sparse=True)
-    convolve = BOX_SUMMATIONS[setting.summation](
-        [flux(*grid) for flux in weights], range(dim), size, size + 2 * pad
-    )
-    divergence = _Divergence(order, overlap, dim, size)
+    b = [flux(*grid) for flux in weights]
+    convolve = BOX_SUMMATIONS[setting.summation](b, range(dim), size, size + 2 * pad)
+    divergence = _Divergence(setting.order, setting.overlap, dim, size)
     far, diagonal = None, None
-    if is_open:
+    if setting.is_open:
         far = box_far_field(weights, range(dim), dim + alpha - 1.0, alpha, setting.n, dim, pad=pad)
     else:
         diagonal = np.array([divergence.part(np.ones(setting.shape), axis) for axis in range(dim)])
@@ -160,21 +177,3 @@ class _Divergence:
             p += square.along(q, other, size)
             q = self._even.along(q, other, size)
         return p
-
-
-def symbol(
-    theta: np.ndarray,
-    alpha: float,
-    order: int = 2,
-    overlap: float = 2.0,
-    dim: int = 1,
-    family: str | None = None,
-) -> np.ndarray:
-    """A(theta) h^alpha / D = -s^(-alpha) f(theta) . e(theta).
-
-    f and e are the sums over the aliases of F^ = i (k / |k|) |k|^beta eta^(k) and of eta1^.
-    """
-    f = lattice_transform("F", theta, alpha, order, overlap, parity=-1, dim=dim, family=family)
-    e = lattice_transform("eta1", theta, alpha, order, overlap, parity=-1, dim=dim, family=family)
-    product = f * e if dim == 1 else (f * e).sum(axis=-1)
-    return -(overlap**-alpha) * product

@@ -9,65 +9,33 @@ a = 2 s^alpha / (alpha 2^beta gamma(alpha/2, (pi s / 2)^2)) with the lower incom
 
 from __future__ import annotations
 
-import numpy as np
+from math import pi
 
-from fracparticles.kernels.families import kernel
-from fracparticles.kernels.tabulated import KernelValues
-from fracparticles.lattice.operators import LatticeOperator
-from fracparticles.schemes.base import Setting, lattice_transform, one_pass_operator
+from scipy.special import gamma, gammainc
 
-NAME = "KPSE"
-TITLE = "Kernel particle strength exchange"
-EQUATION = "Eq. (34)"
-KERNEL = "Eq. (31)"
-ORDERS = (2, 4, 6, 8, 10, 12)
-BOX_ORDERS = ORDERS
-FAMILIES = ("printed", "gamma")
-DIMS = (1, 2, 3)
-EXTERIORS = ("truncated", "open")
-CONSERVATIVE = True
-DISSIPATIVE = True
+from fracparticles.schemes.base import Exchange
+from fracparticles.schemes.setting import Setting
 
 
-def weights(
-    m: np.ndarray,
-    alpha: float,
-    order: int,
-    overlap: float,
-    dim: int = 1,
-    values: KernelValues = kernel,
-) -> np.ndarray:
-    """a_m = alpha s^(-n-alpha) K(|m| / s)."""
-    k = values("K", m / overlap, alpha, dim=dim, order=order)
-    return alpha * overlap ** (-dim - alpha) * k
+class KernelExchange(Exchange):
+    """KPSE."""
 
+    name, place = "KPSE", 4
+    title = "Kernel particle strength exchange"
+    equation, kernel = "Eq. (34)", "Eq. (31)"
+    kernel_name = "K"
+    orders = box_orders = (2, 4, 6, 8, 10, 12)
+    families = ("printed", "gamma")
+    exteriors = ("truncated", "open")
+    tabulated = True
+    colour, marker = "#009E73", "^"
 
-def operator(setting: Setting) -> LatticeOperator:
-    """Return A of Eq. (34)."""
-    alpha, order, overlap, dim = setting.alpha, setting.order, setting.overlap, setting.dim
-    total = lattice_transform(
-        "K", np.zeros((1, dim)), alpha, order, overlap, dim=dim, family=setting.family
-    )
-    return one_pass_operator(
-        setting,
-        lambda m: weights(m, alpha, order, overlap, dim, setting.kernel),
-        exchange_sum=float(alpha * overlap**-alpha * total.flat[0]),
-        decay=dim + alpha,
-    )
+    def factor(self, setting: Setting) -> float:
+        """Return alpha."""
+        return setting.alpha
 
-
-def symbol(
-    theta: np.ndarray,
-    alpha: float,
-    order: int = 2,
-    overlap: float = 2.0,
-    dim: int = 1,
-    family: str | None = None,
-) -> np.ndarray:
-    """A(theta) h^alpha / D = alpha s^(-alpha) sum_l [K^(s (theta + 2 pi l)) - K^(2 pi l s)]."""
-    theta = np.asarray(theta, dtype=float)
-    at_theta = lattice_transform("K", theta, alpha, order, overlap, dim=dim, family=family)
-    at_zero = lattice_transform(
-        "K", np.zeros((1, dim)), alpha, order, overlap, dim=dim, family=family
-    )
-    return alpha * overlap**-alpha * (at_theta - at_zero.flat[0])
+    def closed_form_limit(self, beta: float, overlap: float) -> float:
+        """Return a, see the module."""
+        alpha = 1.0 + beta
+        incomplete = gamma(alpha / 2.0) * gammainc(alpha / 2.0, (pi * overlap / 2.0) ** 2)
+        return float(2.0 * overlap**alpha / (alpha * 2.0**beta * incomplete))

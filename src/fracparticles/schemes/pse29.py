@@ -10,35 +10,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles.lattice.operators import LatticeOperator
-from fracparticles.schemes import dd
-from fracparticles.schemes.base import Setting, one_pass_operator
-
-NAME = "PSE29"
-TITLE = "Scheme (29), rejected"
-EQUATION = "Eq. (29)"
-KERNEL = "Eq. (11)"
-ORDERS = (2, 4)
-BOX_ORDERS: tuple[int, ...] = ()
-FAMILIES: tuple[str, ...] = ()
-DIMS = (1,)
-EXTERIORS = ("truncated",)
-CONSERVATIVE = True
-DISSIPATIVE = False
+from fracparticles.schemes.base import Exchange
+from fracparticles.schemes.setting import Setting
 
 
-def operator(setting: Setting) -> LatticeOperator:
-    """Return A of Eq. (29)."""
-    alpha, order, overlap = setting.alpha, setting.order, setting.overlap
-    at_zero = dd.symbol(np.zeros(1), alpha, order, overlap)
-    return one_pass_operator(
-        setting, lambda m: dd.weights(m, alpha, order, overlap), exchange_sum=float(at_zero[0])
-    )
+class Scheme29(Exchange):
+    """PSE29."""
 
+    name, place = "PSE29", 8
+    title = "Scheme (29), rejected"
+    equation, kernel = "Eq. (29)", "Eq. (11)"
+    kernel_name = "G"
+    orders = (2, 4)
+    rejected = True
+    dissipative = False
+    colour, marker = "#999999", "X"
 
-def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
-    """A(theta) h^alpha / D: that of DD less its value at theta = 0."""
-    theta = np.asarray(theta, dtype=float)
-    return dd.symbol(theta, alpha, order, overlap) - dd.symbol(
-        np.zeros_like(theta), alpha, order, overlap
-    )
+    def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return A(theta) h^alpha / D: that of DD less its value at theta = 0."""
+        at_zero = self.scaled_transform(np.zeros(1), setting)
+        return self.scaled_transform(theta, setting) - at_zero

@@ -15,20 +15,8 @@ from math import gamma, pi, sqrt
 import numpy as np
 from scipy.special import kv
 
-from fracparticles.lattice.operators import LatticeOperator
-from fracparticles.schemes.base import Setting, one_pass_operator
-
-NAME = "RIESZ"
-TITLE = "Regularised Riesz potential, rejected"
-EQUATION = "Sec. 3.2.3, second remark"
-KERNEL = "K*, see the module"
-ORDERS = (2,)
-BOX_ORDERS: tuple[int, ...] = ()
-FAMILIES: tuple[str, ...] = ()
-DIMS = (1,)
-EXTERIORS = ("truncated",)
-CONSERVATIVE = True
-DISSIPATIVE = True
+from fracparticles.schemes.base import Exchange
+from fracparticles.schemes.setting import Setting
 
 
 def potential_constant(alpha: float) -> float:
@@ -53,29 +41,33 @@ def kernel_star_transform(k: np.ndarray, alpha: float) -> np.ndarray:
     return amplitude * shape
 
 
-def weights(m: np.ndarray, alpha: float, overlap: float) -> np.ndarray:
-    """a_m = alpha s^(-1-alpha) K*(m / s)."""
-    return alpha * overlap ** (-1.0 - alpha) * kernel_star(m / overlap, alpha)
+class RieszExchange(Exchange):
+    """RIESZ."""
 
+    name, place = "RIESZ", 9
+    title = "Regularised Riesz potential, rejected"
+    equation, kernel = "Sec. 3.2.3, second remark", "K*, see the module"
+    rejected = True
+    colour, marker = "#8A6D3B", "*"
 
-def operator(setting: Setting) -> LatticeOperator:
-    """Return A of the module's formula."""
-    alpha, overlap = setting.alpha, setting.overlap
-    return one_pass_operator(
-        setting, lambda m: weights(m, alpha, overlap), exchange_sum=_alias_sum(0.0, alpha, overlap)
-    )
+    def factor(self, setting: Setting) -> float:
+        """Return alpha."""
+        return setting.alpha
 
+    def values(self, r: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return K*(r)."""
+        return kernel_star(r, setting.alpha)
 
-def symbol(theta: np.ndarray, alpha: float, order: int = 2, overlap: float = 2.0) -> np.ndarray:
-    """A(theta) h^alpha / D = alpha s^(-alpha) sum_l [K*^(s (theta + 2 pi l)) - K*^(2 pi l s)]."""
-    theta = np.asarray(theta, dtype=float)
-    return _alias_sum(theta, alpha, overlap) - _alias_sum(0.0, alpha, overlap)
+    def transform(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return sum_l K*^(s (theta + 2 pi l))."""
+        s, theta = setting.overlap, np.asarray(theta, dtype=float)
+        last = 1 + int(np.ceil(44.0 / (2.0 * pi * s)))  # K_nu(k) ~ exp(-k)
+        total = np.zeros_like(theta)
+        for alias in range(-last, last + 1):
+            total += kernel_star_transform(s * (theta + 2.0 * pi * alias), setting.alpha)
+        return total
 
-
-def _alias_sum(theta, alpha, overlap):
-    last = 1 + int(np.ceil(44.0 / (2.0 * pi * overlap)))  # K_nu(k) ~ exp(-k)
-    total = sum(
-        kernel_star_transform(overlap * (theta + 2.0 * pi * alias), alpha)
-        for alias in range(-last, last + 1)
-    )
-    return alpha * overlap**-alpha * total
+    def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return A(theta) h^alpha / D: the transform of the weights less its value at theta = 0."""
+        at_zero = self.scaled_transform(np.zeros(1), setting)
+        return self.scaled_transform(theta, setting) - at_zero

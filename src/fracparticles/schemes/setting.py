@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -79,10 +80,14 @@ class Setting:
         """D / h^alpha, the unit of the operator."""
         return self.diffusivity / self.spacing**self.alpha
 
+    @property
+    def kernels(self) -> dict[str, Any]:
+        """Which kernels, in the words of `kernels.kernel`."""
+        return {"dim": self.dim, "order": self.order, "family": self.family}
+
     def kernel(self, name: str, r: np.ndarray) -> np.ndarray:
         """Return the values of a kernel, exact or interpolated, at distances in units of epsilon."""
-        if self.kernel_table is not None:
-            values = tabulated(self.kernel_table, self.family)
-            return np.asarray(values(name, r, self.alpha, dim=self.dim, order=self.order))
-        given = {"dim": self.dim, "order": self.order, "family": self.family}
-        return np.asarray(kernel(name, r, self.alpha, **given))
+        if self.kernel_table is None:
+            return np.asarray(kernel(name, r, self.alpha, **self.kernels))
+        table = tabulated(self.kernel_table, self.family)
+        return np.asarray(table(name, r, self.alpha, dim=self.dim, order=self.order))

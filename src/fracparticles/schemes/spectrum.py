@@ -9,7 +9,8 @@ import numpy as np
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.operators import LatticeOperator, Operator
-from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes.discovery import scheme
+from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.stability import grows, range_in
 
 __all__ = ["dense_matrix", "largest_degree", "power_iteration", "spectral_interval"]
@@ -19,7 +20,7 @@ _ROOM = 1e-6
 _ROOM_OF_A_TABLE = 1e-2  # interpolated kernels have eigenvalues of their own
 # Where the eigenvalues are not proved to be real and in the interval, T_k of the operator may grow like exp(g k). The
 # coefficients of a series of degree K fall like exp(-74 (k / K)^2), so that its terms grow by exp((g K)^2 / 300) at
-# most. Measured (tests/test_stiff.py): on the line with exact kernels, but for FPSE from order 6, g < 0.001 and
+# most. Measured (tests/test_stiff.py): on the line with exact kernels, unless the ends amplify, g < 0.001 and
 # K = 10000, else g < 0.1 and K = 400.
 _LARGEST_DEGREE = {"line": 10_000, "other": 400}
 # Half the intervals of a small lattice: some reaches of the kernels, of which eigenvalues take milliseconds.
@@ -31,6 +32,18 @@ def spectral_interval(
 ) -> tuple[float, float]:
     """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
 
+    Parameters
+    ----------
+    name : str
+        The scheme.
+    setting : Setting
+    operator : LatticeOperator
+        A of the scheme in this setting.
+    steps : int
+        The number of time steps that the series stands for; 0 for the exponential.
+
+    Notes
+    -----
     A truncated convolution (DD, FD) is a compression of the operator on the infinite lattice: its eigenvalues lie
     in the range of the symbol. A truncated exchange is the compression plus a diagonal, the weights that lead out
     of the lattice: positive weights only raise the eigenvalues, to zero at most, and where weights change sign (KPSE
@@ -41,23 +54,25 @@ def spectral_interval(
     The rest is not proved: that exchanges whose weights change sign stay below zero, and that the eigenvalues of DPSE,
     FPSE and of the open exterior lie in the range of the symbol, and are real on the line, was found by computation
     (tests/test_spectrum.py). `largest_degree` keeps the series short enough for the deviations that are known, and
-    the evaluation looks at the size of its terms. For truncated FPSE from order 6 on the greatest eigenvalue, up to
-    3e-4 of the range above zero, is that of a small lattice, on whose size it does not depend. Where
+    the evaluation looks at the size of its terms. Where the ends amplify (FPSE from order 6 on) the greatest
+    eigenvalue, up to 3e-4 of the range above zero, is that of a small lattice, on whose size it does not depend. Where
     there are positive eigenvalues, for scheme (29) or an overlap too small for the order, the greatest is computed.
     """
     low, high = range_in(name, setting)
-    scheme, rate = SCHEMES[name], setting.rate
+    one, rate = scheme(name), setting.rate
     share = _ROOM if setting.kernel_table is None else _ROOM_OF_A_TABLE
     room = share * (max(high, 0.0) - low)
-    if not scheme.DISSIPATIVE or grows(low, high):
+    if not one.dissipative or grows(low, high):
         high = max(high, _greatest_eigenvalue(operator, rate * high) / rate) + room
-    elif name == "FPSE" and setting.dim == 1 and setting.order >= 6:
-        high = max(0.0, _greatest_of_a_small_lattice(setting))
+    elif one.ends_amplify(setting):
+        few = min(setting.n, _FEW, int(np.ceil(_FEW_OVERLAPS * setting.overlap)))
+        small = replace(setting, n=few, spacing=1.0, diffusivity=1.0)
+        high = max(0.0, _greatest_by_matrix(name, small))
     else:
         high = max(0.0, high)
     if steps:  # the polynomial of a step grows below its interval: by exp(8) over the run at most
         room = min(room, -low / steps)
-    return rate * (low - room) + operator.least_excess, rate * high
+    return rate * (low - room) + operator.diagonal_shift[0], rate * high
 
 
 def largest_degree(name: str, setting: Setting, operator: LatticeOperator) -> int | None:
@@ -65,7 +80,7 @@ def largest_degree(name: str, setting: Setting, operator: LatticeOperator) -> in
     exact = setting.kernel_table is None
     if operator.symmetric and exact:
         return None
-    on_the_line = setting.dim == 1 and exact and not (name == "FPSE" and setting.order >= 6)
+    on_the_line = setting.dim == 1 and exact and not scheme(name).ends_amplify(setting)
     return _LARGEST_DEGREE["line" if on_the_line else "other"]
 
 
@@ -87,7 +102,7 @@ def power_iteration(
     w = np.zeros_like(v)
     before = 0.0
     for iteration in range(1, most + 1):
-        operator.update(v, 1.0, 0.0, 0.0, w)
+        operator.combine(v, w, 1.0)
         estimate = float(v @ w)
         v, w = w / np.linalg.norm(w), v
         if iteration % 10 == 0:
@@ -115,16 +130,11 @@ def _greatest_eigenvalue(operator: LatticeOperator, of_the_symbol: float) -> flo
         else:
             value = eigs(matrix, k=1, which="LR", v0=start, return_eigenvectors=False, tol=1e-6)
     except ArpackError:  # Weyl, for a symmetric operator
-        return max(of_the_symbol, 0.0) + operator.greatest_excess
+        return max(of_the_symbol, 0.0) + operator.diagonal_shift[1]
     return float(value[0].real)
 
 
-def _greatest_of_a_small_lattice(setting: Setting) -> float:
-    few = min(setting.n, _FEW, int(np.ceil(_FEW_OVERLAPS * setting.overlap)))
-    return _greatest_of_fpse(replace(setting, n=few, spacing=1.0, diffusivity=1.0))
-
-
 @lru_cache(maxsize=64)
-def _greatest_of_fpse(setting: Setting) -> float:
-    matrix = dense_matrix(SCHEMES["FPSE"].operator(setting))
+def _greatest_by_matrix(name: str, setting: Setting) -> float:
+    matrix = dense_matrix(scheme(name).operator(setting))
     return float(np.linalg.eigvals(matrix).real.max())

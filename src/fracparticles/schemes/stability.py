@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from scipy.special import gamma, gammainc
 
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels.families import family_of
-from fracparticles.schemes import Setting, scheme
+from fracparticles.schemes.base import is_number
+from fracparticles.schemes.discovery import scheme
+from fracparticles.schemes.setting import Setting
 
-__all__ = ["closed_form_limit", "grows", "range_in", "stability_limit", "symbol_range"]
+__all__ = ["grows", "range_in", "stability_limit", "symbol_range"]
 
 # By dimension: samples in each coordinate, then closer and closer looks at the neighbourhood of an extreme, with so
 # many samples from neighbour to neighbour. In one dimension each is 16 times as close: 256 times as exact.
@@ -50,7 +50,7 @@ def stability_limit(
     dim : {1, 2, 3}
         Space dimension.
     family : {"printed", "gamma"}, optional
-        Family of the kernels of DD, FPSE and KPSE, see `kernels.kernel`.
+        Family of the kernels, where there is a choice, see `kernels.kernel`.
 
     Raises
     ------
@@ -75,54 +75,36 @@ def symbol_range(
     family: str | None = None,
 ) -> tuple[float, float]:
     """Return the least and the greatest value of A(theta) h^alpha / D."""
-    module = scheme(name)
-    if not (_is_number(beta) and 1.0 < 1.0 + beta < 2.0):
+    one = scheme(name)
+    if not (is_number(beta) and 1.0 < 1.0 + beta < 2.0):
         raise InvalidInput(
             "beta", beta, "a number between 0 and 1 (exclusive)", "Give such a value."
         )
-    if not (_is_number(overlap) and 0.25 * (1.0 - _SLACK) <= overlap <= 1000.0 * (1.0 + _SLACK)):
+    if not (is_number(overlap) and 0.25 * (1.0 - _SLACK) <= overlap <= 1000.0 * (1.0 + _SLACK)):
         raise InvalidInput("overlap", overlap, "a number from 0.25 to 1000", "Give such a value.")
-    if not (_is_number(dim) and dim in module.DIMS):
-        allowed = f"{' or '.join(map(str, module.DIMS))} for {name}"
-        raise InvalidInput("dim", dim, allowed, "Choose one of these.")
-    orders = module.ORDERS if dim == 1 else module.BOX_ORDERS
-    if not (_is_number(order) and order in orders):
-        where = "" if dim == 1 else f" in {dim} dimensions"
-        allowed = f"{' or '.join(map(str, orders))} for {name}{where}"
-        raise InvalidInput("order", order, allowed, "Choose one of these.")
-    if family is not None:
-        if not module.FAMILIES:
-            raise InvalidInput("family", family, f"nothing for {name}", "Leave it out.")
-        family_of(order, family)
-    return _symbol_range(name, float(beta), int(order), float(overlap), int(dim), family)
+    one.check(dim, order, family)
+    alpha, order, dim = 1.0 + float(beta), int(order), int(dim)
+    kernels = Setting(alpha=alpha, order=order, overlap=float(overlap), dim=dim, family=family)
+    return _symbol_range(name, kernels)
 
 
 def range_in(name: str, setting: Setting) -> tuple[float, float]:
-    """Return the `symbol_range` of a scheme in its setting."""
-    s = setting
-    return symbol_range(name, s.alpha - 1.0, s.order, s.overlap, s.dim, s.family)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+    """Return the `symbol_range` of a scheme in a setting, whose lattice does not matter."""
+    kernels = Setting(alpha=setting.alpha, overlap=setting.overlap, **setting.kernels)
+    return _symbol_range(name, kernels)
 
 
 @lru_cache(maxsize=256)
-def _symbol_range(
-    name: str, beta: float, order: int, overlap: float, dim: int, family: str | None
-) -> tuple[float, float]:
-    module = scheme(name)
-    alpha, samples = 1.0 + beta, _SAMPLES[dim]
-    given = {} if family is None else {"family": family}  # where there is a choice
+def _symbol_range(name: str, setting: Setting) -> tuple[float, float]:
+    one, dim = scheme(name), setting.dim
 
     def symbol(axes: Sequence[np.ndarray]) -> np.ndarray:
-        if dim == 1:
-            return module.symbol(axes[0], alpha, order, overlap, **given)
-        theta = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-        return module.symbol(theta, alpha, order, overlap, dim, **given)
+        theta = axes[0] if dim == 1 else np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+        return one.symbol(theta, setting)
 
     # The extremes lie near theta ~ 2 / s: sample evenly in theta as well as in theta s.
-    near = np.linspace(0.0, min(np.pi, 16.0 / overlap), samples)
+    samples = _SAMPLES[dim]
+    near = np.linspace(0.0, min(np.pi, 16.0 / setting.overlap), samples)
     coarse = np.union1d(near, np.linspace(0.0, np.pi, samples))
     everywhere = symbol([coarse] * dim)
     extremes = []
@@ -137,25 +119,3 @@ def _symbol_range(
             values = symbol(axes)
         extremes.append(float(values.reshape(-1)[int(pick(values))]))
     return extremes[0], extremes[1]
-
-
-def closed_form_limit(scheme: str, beta: float, overlap: float = 2.0) -> float:
-    """Return a of DD, FPSE or KPSE, order II, in closed form, the aliases of the lattice neglected.
-
-    DD:   a = 2 (s/2)^alpha (2 e / alpha)^(alpha/2)
-    FPSE: a = 2 (s/2)^alpha (4 e / alpha)^(alpha/2)
-    KPSE: a = 2 s^alpha / (alpha 2^beta gamma(alpha/2, (pi s / 2)^2))
-
-    Raises
-    ------
-    InvalidInput
-        For any other scheme.
-    """
-    alpha = 1.0 + beta
-    if scheme in ("DD", "FPSE"):
-        factor = 2.0 if scheme == "DD" else 4.0
-        return 2.0 * (overlap / 2.0) ** alpha * (factor * np.e / alpha) ** (alpha / 2.0)
-    if scheme == "KPSE":
-        incomplete = gamma(alpha / 2.0) * gammainc(alpha / 2.0, (np.pi * overlap / 2.0) ** 2)
-        return 2.0 * overlap**alpha / (alpha * 2.0**beta * incomplete)
-    raise InvalidInput("scheme", scheme, "DD, FPSE or KPSE", "Use stability_limit for the others.")

@@ -28,7 +28,6 @@ def lattice_transform(name: str, theta: np.ndarray, setting: Setting) -> np.ndar
     """
     theta = np.asarray(theta, dtype=float)
     dim, overlap, even = setting.dim, setting.overlap, KERNELS[name].parity == "even"
-    given = {"dim": dim, "order": setting.order, "family": setting.family}
     reach = _reach(name, setting)
     last = int(reach / (2.0 * np.pi * overlap) + 0.5)  # s |theta + 2 pi l| <= reach, |theta| <= pi
     if dim == 1:
@@ -36,7 +35,7 @@ def lattice_transform(name: str, theta: np.ndarray, setting: Setting) -> np.ndar
         for alias in range(-last, last + 1):
             k = overlap * (theta + 2.0 * np.pi * alias)
             sign = 1.0 if even else np.sign(k)
-            total += sign * kernel_transform(name, np.abs(k), setting.alpha, **given)
+            total += sign * kernel_transform(name, np.abs(k), setting.alpha, **setting.kernels)
         return total
     total = np.zeros(theta.shape[:-1] if even else theta.shape)
     # Aliases that stay beyond the reach for all theta are left out.
@@ -46,7 +45,7 @@ def lattice_transform(name: str, theta: np.ndarray, setting: Setting) -> np.ndar
             continue
         k = overlap * (theta + 2.0 * np.pi * (np.array(place) - last))
         size = np.sqrt(np.square(k).sum(axis=-1))
-        value = kernel_transform(name, size, setting.alpha, **given)
+        value = kernel_transform(name, size, setting.alpha, **setting.kernels)
         if even:
             total += value
         else:

@@ -117,12 +117,9 @@ def _table(c: float, b: float) -> _Table:
 
 def _checked(c: float, b: float, z: Any) -> tuple[_Table, NDArray[np.float64]]:
     if not (-1.0 < c < b <= 4.0 and b - c <= 4.0 and c != 0.0):
-        raise InvalidInput(
-            "(b - a, b)",
-            (c, b),
-            "-1 < b - a < b <= 4, b - a not 0, and a <= 4",
-            "The kernels of the fractional operators lie inside this range.",
-        )
+        allowed = "-1 < b - a < b <= 4, b - a not 0, and a <= 4"
+        remedy = "The kernels of the fractional operators lie inside this range."
+        raise InvalidInput("(b - a, b)", (c, b), allowed, remedy)
     z = real_array("z", z)
     if (z < 0.0).any():
         raise InvalidInput("z", float(z.min()), "z >= 0", "Give the squared distance.")
@@ -130,24 +127,9 @@ def _checked(c: float, b: float, z: Any) -> tuple[_Table, NDArray[np.float64]]:
 
 
 def kummer(a: float, b: float, z: Any) -> NDArray[np.float64] | float:
-    """Return 1F1(a; b; -z) for z >= 0.
+    """Return 1F1(a; b; -z) for z >= 0, 0 < a <= 4, 0 < b <= 4, b - a > -1 and b not a.
 
-    Parameters
-    ----------
-    a, b : float
-        0 < a <= 4, 0 < b <= 4, b - a > -1 and b not a.
-    z : array_like
-        Non-negative arguments, any shape.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as z; accuracy as of `kummer_transformed`.
-
-    Raises
-    ------
-    InvalidInput
-        If a parameter is outside its range, or z is negative, nan or not numeric.
+    z, accuracy and errors as of `kummer_transformed`.
     """
     return kummer_transformed(b - a, b, z)
 
@@ -183,22 +165,8 @@ def kummer_transformed(c: float, b: float, z: Any) -> NDArray[np.float64] | floa
 def kummer_order_four(c: float, b: float, z: Any) -> NDArray[np.float64] | float:
     """Return 2 M(z) - 2^-a M(z/2), M(z) = 1F1(a; b; -z), a = b - c: the order-IV rule (B.18).
 
-    (B.18) of Lucchesi et al. (2020) prints z/sqrt(2); (12), (15) and (21) have z/2.
-
-    Parameters
-    ----------
-    c, b, z
-        As for `kummer_transformed`.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as z; relative accuracy 1e-13, next to a zero relative to the two terms.
-
-    Raises
-    ------
-    InvalidInput
-        If a parameter is outside its range, or z is negative, nan or not numeric.
+    (B.18) of Lucchesi et al. (2020) prints z/sqrt(2); (12), (15) and (21) have z/2. Parameters and errors as of
+    `kummer_transformed`; relative accuracy 1e-13, next to a zero relative to the two terms.
     """
     table, z = _checked(c, b, z)
     return elementwise(_evaluate_order_four, z, table)

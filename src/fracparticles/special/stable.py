@@ -8,6 +8,9 @@ functions of x and t, and the partial sums (A.1), (A.2) that the paper's figures
 
 All but the masses take signed positions: G and its rate are even functions of x, its slope and its
 flux are odd. For n > 1, x is the radius, or a position on an axis.
+
+What is a function of x has the shape of x, and is a float for a single number. `InvalidInput` says which argument is
+outside its range, or that t is so short that the result would be too large for a float64.
 """
 
 from __future__ import annotations
@@ -19,14 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gamma, gammaln, xlogy
 
-from fracparticles.arguments import (
-    dimension,
-    elementwise,
-    fractional_order,
-    positive_integer,
-    positive_real,
-    real_array,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.special import radial
 from fracparticles.special.radial import radial_table, tail_sine
@@ -60,11 +56,11 @@ def _sum_of_exponentials(logarithms: FloatArray, factors: FloatArray) -> FloatAr
 
 
 def _checked(x: Any, alpha: Any, terms: Any) -> tuple[FloatArray, float, FloatArray]:
-    size = np.abs(real_array("x", x))
+    size = np.abs(check.real_array("x", x))
     if np.isinf(size).any():
         raise InvalidInput("x", x, "finite numbers", "Remove the infinite entries.")
-    count = positive_integer("terms", terms)
-    return size[..., None], fractional_order(alpha), np.arange(1.0, count + 1.0)
+    count = check.positive_integer("terms", terms)
+    return size[..., None], check.fractional_order(alpha), np.arange(1.0, count + 1.0)
 
 
 def green_series(x: Any, alpha: float, terms: int) -> FloatArray | float:
@@ -75,10 +71,7 @@ def green_series(x: Any, alpha: float, terms: int) -> FloatArray | float:
     (the terms of even m are zero and not counted). Far from 0 a partial sum loses all digits; it
     overflows to +-inf, never to nan.
 
-    Raises
-    ------
-    InvalidInput
-        If x is not finite and numeric, alpha outside (1, 2), or `terms` not a positive integer.
+    Raises `InvalidInput` if x is not finite and numeric, alpha outside (1, 2), or `terms` not a positive integer.
     """
     size, alpha, j = _checked(x, alpha, terms)
     m = 2.0 * j - 1.0
@@ -92,12 +85,7 @@ def green_asymptotic(x: Any, alpha: float, terms: int) -> FloatArray | float:
     L_alpha^0(x) ~ (1/pi) sum_{m=1}^{terms} (-1)^(m+1) Gamma(1 + alpha m) / m!
     sin(pi alpha m/2) |x|^(-alpha m - 1)
 
-    Close to 0 it overflows to +-inf, never to nan.
-
-    Raises
-    ------
-    InvalidInput
-        If x is not finite and numeric, alpha outside (1, 2), or `terms` not a positive integer.
+    Close to 0 it overflows to +-inf, never to nan. Errors as of `green_series`.
     """
     size, alpha, m = _checked(x, alpha, terms)
     log_size = np.log(np.maximum(size, np.finfo(float).tiny))
@@ -109,12 +97,12 @@ def green_asymptotic(x: Any, alpha: float, terms: int) -> FloatArray | float:
 
 
 def _reduced(x: FloatArray, alpha: float, n: int) -> FloatArray | float:
-    return elementwise(radial.density, x, radial_table(alpha, n))
+    return check.elementwise(radial.density, x, radial_table(alpha, n))
 
 
 def _similarity(t: Any, alpha: Any) -> float:
     """Return t^(-1/alpha)."""
-    t, power = positive_real("t", t), -1.0 / fractional_order(alpha)
+    t, power = check.positive_real("t", t), -1.0 / check.fractional_order(alpha)
     try:
         return t**power
     except OverflowError:
@@ -122,12 +110,8 @@ def _similarity(t: Any, alpha: Any) -> float:
 
 
 def _too_short(t: float) -> InvalidInput:
-    return InvalidInput(
-        "t",
-        t,
-        "a time at which the solution is below 1e308",
-        "Take another unit of time or length.",
-    )
+    allowed = "a time at which the solution is below 1e308"
+    return InvalidInput("t", t, allowed, "Take another unit of time or length.")
 
 
 def _finite(t: float, value: FloatArray | float) -> FloatArray | float:
@@ -140,7 +124,7 @@ def _finite(t: float, value: FloatArray | float) -> FloatArray | float:
 def _scaled(x: Any, scale: float) -> FloatArray:
     """Return x t^(-1/alpha); what overflows is in the far field, where the functions vanish."""
     with np.errstate(over="ignore"):
-        return real_array("x", x) * scale
+        return check.real_array("x", x) * scale
 
 
 def _product(x: FloatArray, value: FloatArray | float) -> FloatArray:
@@ -154,10 +138,6 @@ def _times_power(scale: float, n: int, value: FloatArray | float) -> FloatArray 
         for _ in range(n):
             value = scale * np.asarray(value)
     return value
-
-
-def _like(x: FloatArray, value: FloatArray | float) -> FloatArray | float:
-    return float(value) if x.ndim == 0 else value
 
 
 def reduced_green(x: Any, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -185,7 +165,7 @@ def reduced_green(x: Any, alpha: float, dim: int = 1) -> FloatArray | float:
     InvalidInput
         If x is nan or not numeric, alpha outside (1, 2), or dim not 1, 2 or 3.
     """
-    return _reduced(real_array("x", x), fractional_order(alpha), dimension(dim))
+    return _reduced(check.real_array("x", x), check.fractional_order(alpha), check.dimension(dim))
 
 
 def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -214,62 +194,34 @@ def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     InvalidInput
         If an argument is outside its range.
     """
-    scale, n = _similarity(t, alpha), dimension(dim)
-    x = real_array("x", x)
+    scale, n = _similarity(t, alpha), check.dimension(dim)
+    x = check.real_array("x", x)
     value = _times_power(scale, n, reduced_green(_scaled(x, scale), alpha, n))
-    return _like(x, _finite(t, value))
+    return check.like(x, _finite(t, value))
 
 
 def green_slope(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     """Return the radial derivative dG/dr, from Phi_n'(r) = -2 pi r Phi_{n+2}(r).
 
-    Parameters
-    ----------
-    x, t, alpha, dim
-        As for `green`.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as x; an odd function of x, of relative accuracy better than 1e-12.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
+    Parameters and errors as of `green`; an odd function of x, of relative accuracy better than 1e-12.
     """
-    scale, n = _similarity(t, alpha), dimension(dim)
+    scale, n = _similarity(t, alpha), check.dimension(dim)
     r = _scaled(x, scale)
     slope = -2.0 * math.pi * _product(r, _reduced(r, float(alpha), n + 2))
-    return _like(r, _finite(t, _times_power(scale, n + 1, slope)))
+    return check.like(r, _finite(t, _times_power(scale, n + 1, slope)))
 
 
 def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     """Return the radial component of the fractional flux (2) of the fundamental solution.
 
     Q = -grad^beta G = (r G / (alpha t)) e_r: by self-similarity this is the flux, regular at 0, of
-    which the divergence is -dG/dt.
-
-    Parameters
-    ----------
-    x, t, alpha, dim
-        As for `green`.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as x; an odd function of x, accuracy as of `green`.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
+    which the divergence is -dG/dt. Parameters, errors and accuracy as of `green`; an odd function of x.
     """
     value = green(x, t, alpha, dim)
-    x = real_array("x", x)
+    x = check.real_array("x", x)
     with np.errstate(over="ignore"):
         flux = _product(x, value) / (alpha * t)
-    return _like(x, _finite(t, flux))
+    return check.like(x, _finite(t, flux))
 
 
 def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -277,39 +229,20 @@ def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
 
     Delta^alpha G = dG/dt = -(n G + r dG/dr) / (alpha t)
 
-    Parameters
-    ----------
-    x, t, alpha, dim
-        As for `green`.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as x; relative accuracy better than 1e-12, next to its only zero relative to
-        n G / (alpha t).
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
+    Parameters and errors as of `green`; relative accuracy better than 1e-12, next to its only zero relative to
+    n G / (alpha t).
     """
-    scale, n = _similarity(t, alpha), dimension(dim)
+    scale, n = _similarity(t, alpha), check.dimension(dim)
     r = _scaled(x, scale)
     growth = 2.0 * math.pi * _product(r, _product(r, _reduced(r, float(alpha), n + 2)))
     with np.errstate(over="ignore"):
         rate = (growth - n * _reduced(r, float(alpha), n)) / (alpha * t)
-    return _like(r, _finite(t, _times_power(scale, n, rate)))
+    return check.like(r, _finite(t, _times_power(scale, n, rate)))
 
 
 def mean_radius(alpha: float) -> float:
-    """Return R_alpha = int |x| L_alpha^0(x) dx = (2/pi) Gamma(1 - 1/alpha)  (A.3), in closed form.
-
-    Raises
-    ------
-    InvalidInput
-        If alpha is outside (1, 2).
-    """
-    alpha = fractional_order(alpha)
+    """Return R_alpha = int |x| L_alpha^0(x) dx = (2/pi) Gamma(1 - 1/alpha)  (A.3), 1 < alpha < 2, in closed form."""
+    alpha = check.fractional_order(alpha)
     return float(2.0 / math.pi * gamma((alpha - 1.0) / alpha))
 
 
@@ -317,7 +250,9 @@ def _mass_of(x: Any, t: Any, alpha: Any, dim: Any, inside: bool) -> FloatArray |
     r = _scaled(x, _similarity(t, alpha))
     if (r < 0.0).any():
         raise InvalidInput("x", float(r.min()), "x >= 0", "Give the radius (half-width for n = 1).")
-    return elementwise(radial.mass, r, radial_table(float(alpha), dimension(dim)), inside)
+    return check.elementwise(
+        radial.mass, r, radial_table(float(alpha), check.dimension(dim)), inside
+    )
 
 
 def central_mass(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -350,19 +285,6 @@ def central_mass(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | f
 def tail_mass(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     """Return the integral of G(y, t) over |y| > x: 1 - `central_mass`, without its cancellation.
 
-    Parameters
-    ----------
-    x, t, alpha, dim
-        As for `central_mass`.
-
-    Returns
-    -------
-    ndarray or float
-        Same shape as x; relative accuracy better than 1e-13.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
+    Parameters, errors and accuracy as of `central_mass`.
     """
     return _mass_of(x, t, alpha, dim, False)

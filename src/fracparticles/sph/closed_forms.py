@@ -33,19 +33,7 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma, hyp1f1
 
-from fracparticles.arguments import (
-    SIZES,
-    check_fields,
-    finite_array,
-    finite_real,
-    finite_result,
-    places,
-    positive_integer,
-    real_between,
-    scale,
-    within,
-)
-from fracparticles.errors import InvalidInput
+from fracparticles import arguments as check
 from fracparticles.sph.one_f_two import one_f_two
 
 __all__ = ["FUNCTIONS", "Cosine", "Exponential", "Function", "ShiftedPower", "Sine"]
@@ -59,31 +47,28 @@ _NEAR = 1e3, 1e-50, 1e50  # for x below so many |beta|, and |beta| between these
 class Function(ABC):
     """A function with its closed forms; x is any array of numbers, for `caputo` and `rl` of zero or more.
 
-    Raises
-    ------
-    InvalidInput
-        If x or alpha is outside its range, the shapes do not fit together, or the values overflow.
+    Raises `InvalidInput` if x or alpha is outside its range, the shapes do not fit together, or the values overflow.
     """
 
     def value(self, x: Any) -> np.ndarray:
         """f(x)."""
-        x = places("x", x)
+        x = check.places("x", x)
         with np.errstate(over="ignore"):
-            return finite_result("x", np.asarray(self._value(x)))
+            return check.finite_result("x", np.asarray(self._value(x)))
 
     def caputo(self, x: Any, alpha: Any) -> np.ndarray:
         """C D^alpha f, 0 < alpha < 1."""
         x, alpha = _arguments(x, alpha)
-        within("alpha", np.asarray(alpha), 0.0, 1.0, inside=True)
+        check.within("alpha", np.asarray(alpha), 0.0, 1.0, inside=True)
         with np.errstate(over="ignore", invalid="ignore"):
-            return finite_result("x", np.asarray(self._caputo(x, alpha)))
+            return check.finite_result("x", np.asarray(self._caputo(x, alpha)))
 
     def rl(self, x: Any, alpha: Any) -> np.ndarray:
         """RL D^alpha f, -1 < alpha < 1; infinite at x = 0 for alpha > 0 and f(0) != 0."""
         x, alpha = _arguments(x, alpha)
         with np.errstate(over="ignore", invalid="ignore"):
             values = np.asarray(self._rl(x, alpha))
-        finite_result("x", np.where(x > 0.0, values, 0.0))
+        check.finite_result("x", np.where(x > 0.0, values, 0.0))
         return values
 
     @abstractmethod
@@ -107,7 +92,7 @@ class Sine(Function):
     beta: float
 
     def __post_init__(self) -> None:
-        check_fields(self, beta=scale)
+        check.fields(self, beta=check.scale)
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         """sin(beta x)."""
@@ -124,7 +109,7 @@ class Sine(Function):
 
     def mirrored(self, b: float) -> list[tuple[float, Function]]:
         """sin(beta b) cos(beta x) - cos(beta b) sin(beta x)."""
-        b = finite_real("b", b)
+        b = check.finite_real("b", b)
         return [(sin(self.beta * b), Cosine(self.beta)), (-cos(self.beta * b), self)]
 
 
@@ -135,7 +120,7 @@ class Cosine(Function):
     beta: float
 
     def __post_init__(self) -> None:
-        check_fields(self, beta=scale)
+        check.fields(self, beta=check.scale)
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         """cos(beta x)."""
@@ -152,7 +137,7 @@ class Cosine(Function):
 
     def mirrored(self, b: float) -> list[tuple[float, Function]]:
         """cos(beta b) cos(beta x) + sin(beta b) sin(beta x)."""
-        b = finite_real("b", b)
+        b = check.finite_real("b", b)
         return [(cos(self.beta * b), self), (sin(self.beta * b), Sine(self.beta))]
 
 
@@ -163,7 +148,7 @@ class Exponential(Function):
     beta: float
 
     def __post_init__(self) -> None:
-        check_fields(self, beta=partial(real_between, low=-SIZES[1], high=SIZES[1]))
+        check.fields(self, beta=check.place)
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         """exp(beta x)."""
@@ -181,7 +166,7 @@ class Exponential(Function):
     def mirrored(self, b: float) -> list[tuple[float, Function]]:
         """exp(beta b) exp(-beta x)."""
         with np.errstate(over="ignore"):
-            factor = float(finite_result("b", np.exp(self.beta * finite_real("b", b))))
+            factor = float(check.finite_result("b", np.exp(self.beta * check.finite_real("b", b))))
         return [(factor, Exponential(-self.beta))]
 
 
@@ -193,8 +178,8 @@ class ShiftedPower(Function):
     n: int
 
     def __post_init__(self) -> None:
-        check_fields(self, beta=finite_real, n=partial(positive_integer, most=1000))
-        scale("|beta|", abs(self.beta))
+        check.fields(self, beta=check.finite_real, n=partial(check.positive_integer, most=1000))
+        check.scale("|beta|", abs(self.beta))
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         """(x + beta)^n."""
@@ -232,7 +217,7 @@ class ShiftedPower(Function):
 
     def mirrored(self, b: float) -> list[tuple[float, Function]]:
         """(-1)^n (x - b - beta)^n."""
-        b = finite_real("b", b)
+        b = check.finite_real("b", b)
         return [((-1.0) ** self.n, ShiftedPower(-b - self.beta, self.n))]
 
     def _few_terms(self, x: np.ndarray) -> bool:
@@ -263,14 +248,9 @@ FUNCTIONS: dict[str, Function] = {
 
 
 def _arguments(x: Any, alpha: Any) -> tuple[np.ndarray, Order]:
-    x = within("x", finite_array("x", x), 0.0, SIZES[1])
-    alpha = within("alpha", finite_array("alpha", alpha), -1.0, 1.0, inside=True)
-    try:
-        np.broadcast_shapes(x.shape, alpha.shape)
-    except ValueError as error:
-        raise InvalidInput(
-            "alpha", f"array of shape {alpha.shape}", f"one that fits {x.shape}", "Mend the shapes."
-        ) from error
+    x = check.within("x", check.finite_array("x", x), 0.0, check.SIZES[1])
+    alpha = check.within("alpha", check.finite_array("alpha", alpha), -1.0, 1.0, inside=True)
+    check.together(x=x, alpha=alpha)
     return x, float(alpha) if alpha.ndim == 0 else alpha
 
 

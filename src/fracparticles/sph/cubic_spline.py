@@ -29,10 +29,7 @@ SUPPORT = 2.0  # radius of the support in units of h, the paper's kappa
 def spline(x: Any, h: float) -> np.ndarray | float:
     """W(x, h), Eq. (22); any shape of `x`, smoothing length `h`.
 
-    Raises
-    ------
-    InvalidInput
-        If `x` is not real or `h` not from 1e-100 to 1e100. So do the other two.
+    Raises `InvalidInput` if `x` is not real or `h` not from 1e-100 to 1e100; so do the other two.
     """
     return _evaluate(_w_all, x, h)
 

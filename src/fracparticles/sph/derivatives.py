@@ -17,17 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles import arguments as check
 from fracparticles._compiled import njit
-from fracparticles.arguments import (
-    finite_array,
-    finite_result,
-    flag,
-    positions,
-    real_between,
-    scale,
-    vector,
-    within,
-)
 from fracparticles.errors import InvalidInput
 from fracparticles.sph.cubic_spline import SUPPORT, dw
 
@@ -39,13 +30,10 @@ BROOKSHAW_ETA = 1.0e-4  # eta / h^2
 def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
     """L_i of (19) at the points z, shape (M,), from the particles x, shape (N,). One dimension: a number each.
 
-    Raises
-    ------
-    InvalidInput
-        As `gradient`.
+    Errors as of `gradient`.
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
-    return finite_result("volumes", _correction_at(z, x, volumes, h))
+    return check.finite_result("volumes", _correction_at(z, x, volumes, h))
 
 
 def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = True) -> np.ndarray:
@@ -75,7 +63,7 @@ def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = T
         not positive, or, corrected, no particle lies within 2 h of a point.
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
-    f = vector("f", f, x.size, complex_too=True)
+    f = check.vector("f", f, x.size, complex_too=True)
     out = np.empty(z.size, dtype=f.dtype)
     with np.errstate(all="ignore"):
         _gradient(z, x, volumes * f, h, *_neighbours(z, x, h), out)
@@ -96,16 +84,13 @@ def second_derivative(
 
     `eta` is that of the formula, zero or more, by default 0.0001 h^2.
 
-    Raises
-    ------
-    InvalidInput
-        As `gradient`.
+    Errors as of `gradient`.
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
-    f = vector("f", f, x.size, complex_too=True)
-    f_z = vector("f_z", f_z, z.size, least=0, complex_too=True)
+    f = check.vector("f", f, x.size, complex_too=True)
+    f_z = check.vector("f_z", f_z, z.size, least=0, complex_too=True)
     f, f_z = (a.astype(np.result_type(f, f_z), copy=False) for a in (f, f_z))
-    eta = BROOKSHAW_ETA * h * h if eta is None else real_between("eta", eta, 0.0)
+    eta = BROOKSHAW_ETA * h * h if eta is None else check.real_between("eta", eta, 0.0)
     out = np.empty(z.size, dtype=f.dtype)
     _brookshaw(z, f_z, x, volumes, f, h, eta, *_neighbours(z, x, h), out)
     return _divided(out, z, x, volumes, h, corrected)
@@ -114,26 +99,25 @@ def second_derivative(
 def _particles(
     z: Any, x: Any, volumes: Any, h: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    z, x = positions("z", z, least=0), positions("x", x, rising=True, equal=True)
-    volumes = within("volumes", finite_array("volumes", volumes, x.shape), 0.0, inside=True)
-    return z, x, np.ascontiguousarray(volumes), scale("h", h)
+    z, x = check.positions("z", z, least=0), check.positions("x", x, rising=True, equal=True)
+    volumes = check.within(
+        "volumes", check.finite_array("volumes", volumes, x.shape), 0.0, inside=True
+    )
+    return z, x, np.ascontiguousarray(volumes), check.scale("h", h)
 
 
 def _divided(
     sums: np.ndarray, z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float, corrected: bool
 ) -> np.ndarray:
-    if flag("corrected", corrected):
+    if check.flag("corrected", corrected):
         factor = _correction_at(z, x, volumes, h)
         if not (factor > 0.0).all():
-            raise InvalidInput(
-                "z",
-                float(z[~(factor > 0.0)][0]),
-                "only points with a particle nearer than 2 h, besides one that they coincide with",
-                "Take a larger h, or leave the point out.",
-            )
+            lonely = float(z[~(factor > 0.0)][0])
+            allowed = "only points with a particle nearer than 2 h, and not in the same place"
+            raise InvalidInput("z", lonely, allowed, "Take a larger h, or leave the point out.")
         with np.errstate(all="ignore"):
             sums = sums / factor
-    return finite_result("f", sums)
+    return check.finite_result("f", sums)
 
 
 def _correction_at(z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float) -> np.ndarray:

@@ -28,16 +28,8 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles import arguments as check
 from fracparticles._compiled import njit
-from fracparticles.arguments import (
-    choice,
-    finite_array,
-    finite_result,
-    instance,
-    positions,
-    scale,
-    vector,
-)
 from fracparticles.sph.cubic_spline import iw
 from fracparticles.sph.particles import ParticleLine
 
@@ -70,9 +62,9 @@ def power_integral(
     InvalidInput
         If there is no such method, or the arrays do not fit together or are not finite.
     """
-    line = instance("line", line, ParticleLine)
-    f = vector("f", f, line.count, complex_too=True)
-    choice("method", method, (*METHODS, COMPLETED))
+    line = check.instance("line", line, ParticleLine)
+    f = check.vector("f", f, line.count, complex_too=True)
+    check.choice("method", method, (*METHODS, COMPLETED))
     x = line.x
     if method == "modified":
         x, strengths = line.midpoints, line.spacing * 0.5 * (f[:-1] + f[1:])
@@ -95,17 +87,14 @@ def power_sum(z: Any, x: Any, strengths: Any, power: Any, h: float) -> np.ndarra
 
     The points z have the shape (M,), the powers (M,) or ().
 
-    Raises
-    ------
-    InvalidInput
-        If the arrays do not fit together or are not finite, or the powers overflow.
+    Raises `InvalidInput` if the arrays do not fit together or are not finite, or the powers overflow.
     """
-    z, x, h = positions("z", z, least=0), positions("x", x), scale("h", h)
-    strengths = vector("strengths", strengths, x.size, complex_too=True)
-    power = np.ascontiguousarray(finite_array("power", power, z.shape))
+    z, x, h = check.positions("z", z, least=0), check.positions("x", x), check.scale("h", h)
+    strengths = check.vector("strengths", strengths, x.size, complex_too=True)
+    power = np.ascontiguousarray(check.finite_array("power", power, z.shape))
     out = np.empty(z.size, dtype=complex)
     _power_sum(z, x, strengths, power, h, out)
-    return finite_result("power", out)
+    return check.finite_result("power", out)
 
 
 @njit()

@@ -22,10 +22,8 @@ __all__ = ["r2_score", "relative_l2"]
 def relative_l2(exact: Any, ours: Any) -> float:
     """(39), for two arrays of shape (N,), real or complex.
 
-    Raises
-    ------
-    InvalidInput
-        If they are not finite or do not fit together, or the exact values have no size to compare with.
+    Raises `InvalidInput` if they are not finite or do not fit together, or the exact values have no size to compare
+    with.
     """
     exact, ours = _values(exact, ours)
     return float(np.linalg.norm(exact - ours) / _size(exact, np.linalg.norm(exact)))

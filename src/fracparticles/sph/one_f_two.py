@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma
 
-from fracparticles.arguments import finite_array, within
-from fracparticles.errors import InvalidInput
+from fracparticles.arguments import finite_array, together, within
 
 __all__ = ["one_f_two"]
 
@@ -34,19 +33,11 @@ def one_f_two(b: Any, y: Any) -> np.ndarray:
 
     The error is about 1e-14 of 1 or, if larger, of the amplitude Gamma(b) y^(1-b) of the oscillation.
 
-    Raises
-    ------
-    InvalidInput
-        If b or y is outside its range, or their shapes do not fit together.
+    Raises `InvalidInput` if b or y is outside its range, or their shapes do not fit together.
     """
     b = within("b", within("b", finite_array("b", b), 0.0, inside=True), 0.0, 3.0)
     y = within("y", finite_array("y", y), 0.0, 1e100)
-    try:
-        b, y = np.broadcast_arrays(b, y)
-    except ValueError as error:
-        raise InvalidInput(
-            "y", f"array of shape {y.shape}", f"a shape that fits {b.shape}", "Mend the shapes."
-        ) from error
+    b, y = together(b=b, y=y)
     near = y <= _NEAR
     out = np.empty(b.shape)
     out[near] = _series(b[near], y[near])

@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma
 
-from fracparticles.arguments import choice, finite_array, instance, within
+from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning
 from fracparticles.sph.derivatives import gradient, second_derivative
 from fracparticles.sph.integrals import COMPLETED, METHODS, power_integral
@@ -38,18 +38,12 @@ __all__ = ["caputo_derivative", "rl_derivative", "rl_integral", "singular_integr
 
 Left = Callable[[ParticleLine, np.ndarray, np.ndarray, str], np.ndarray]
 
-_SLOW = (
-    0.6  # (h/(b-a))^(1-alpha): beyond, ten times as many particles leave four fifths of the error
-)
+# (h/(b-a))^(1-alpha): beyond, ten times as many particles leave four fifths of the error.
+_SLOW = 0.6
 
 
 def rl_integral(
-    line: ParticleLine,
-    f: Any,
-    order: Any,
-    *,
-    side: str = "left",
-    method: str = "standard",
+    line: ParticleLine, f: Any, order: Any, *, side: str = "left", method: str = "standard"
 ) -> np.ndarray:
     """The Riemann-Liouville integral (33) on the real particles, shape (N,), complex.
 
@@ -75,12 +69,7 @@ def rl_integral(
 
 
 def rl_derivative(
-    line: ParticleLine,
-    f: Any,
-    order: Any,
-    *,
-    side: str = "left",
-    method: str = "standard",
+    line: ParticleLine, f: Any, order: Any, *, side: str = "left", method: str = "standard"
 ) -> np.ndarray:
     """The Riemann-Liouville derivative (35), or (34) for a variable order. Parameters as in `rl_integral`.
 
@@ -106,12 +95,7 @@ def rl_derivative(
 
 
 def caputo_derivative(
-    line: ParticleLine,
-    f: Any,
-    order: Any,
-    *,
-    side: str = "left",
-    method: str = "standard",
+    line: ParticleLine, f: Any, order: Any, *, side: str = "left", method: str = "standard"
 ) -> np.ndarray:
     """The Caputo derivative (36). Parameters as in `rl_integral`."""
     return _apply(_left_caputo, line, f, order, side, method)
@@ -121,7 +105,7 @@ def singular_integral(
     line: ParticleLine, f: Any, order: Any, *, method: str = "standard"
 ) -> np.ndarray:
     """The left-handed integral by the singular sum (23), (24), whose infinite term j = i is left out."""
-    line = instance("line", line, ParticleLine)
+    line = check.instance("line", line, ParticleLine)
     f = line.field("f", f)[line.inside]
     alpha = _orders(line, order)[line.inside]
     return power_integral(line, f, line.x, alpha - 1.0, method) / gamma(alpha)
@@ -130,18 +114,17 @@ def singular_integral(
 def _apply(
     left: Left, line: ParticleLine, f: Any, order: Any, side: str, method: str
 ) -> np.ndarray:
-    line = instance("line", line, ParticleLine)
+    line = check.instance("line", line, ParticleLine)
     f, alpha = line.field("f", f), _orders(line, order)
-    choice("method", method, (*METHODS, COMPLETED))
-    if choice("side", side, ("left", "right")) == "left":
+    check.choice("method", method, (*METHODS, COMPLETED))
+    if check.choice("side", side, ("left", "right")) == "left":
         return left(line, f, alpha, method)
     return left(line, f[::-1], alpha[::-1], method)[::-1]
 
 
 def _orders(line: ParticleLine, order: Any) -> np.ndarray:
-    alpha = finite_array("order", order)
-    alpha = np.full(line.x_all.size, alpha[()]) if alpha.ndim == 0 else line.field("order", alpha)
-    return within("order", alpha, 0.0, 1.0, inside=True)
+    alpha = check.finite_array("order", order, line.x_all.shape)
+    return check.within("order", alpha, 0.0, 1.0, inside=True)
 
 
 def _left_integral(line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str) -> np.ndarray:
@@ -175,13 +158,9 @@ def _left_caputo(line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: s
 
 def _slope(line: ParticleLine, f: np.ndarray) -> np.ndarray:
     """(16), (18) on the real particles, from all."""
-    return gradient(line.x, line.x_all, _volumes(line), f, line.smoothing)
+    return gradient(line.x, line.x_all, line.spacing, f, line.smoothing)
 
 
 def _curvature(line: ParticleLine, f: np.ndarray) -> np.ndarray:
     """(37) on the real particles, from all."""
-    return second_derivative(line.x, f[line.inside], line.x_all, _volumes(line), f, line.smoothing)
-
-
-def _volumes(line: ParticleLine) -> np.ndarray:
-    return np.full(line.x_all.size, line.spacing)
+    return second_derivative(line.x, f[line.inside], line.x_all, line.spacing, f, line.smoothing)

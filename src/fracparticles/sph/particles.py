@@ -9,21 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import (
-    MOST,
-    SIZES,
-    check_fields,
-    finite_array,
-    real_between,
-    whole_number,
-)
+from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.sph.cubic_spline import SUPPORT
 
 __all__ = ["ParticleLine"]
 
 _FINEST = 1e-8  # of the farthest position: the spacing is then the same everywhere to eight digits
-_WIDEST = 1000.0
+_LEAST, _WIDEST = float(np.nextafter(1.0 / SUPPORT, 1.0)), 1000.0  # h / s
+
+
+def _ratio(field: str, value: Any) -> float:
+    words = "a number above 1/2, at most 1000", "The paper has 1.1."
+    return check.real_between(field, value, _LEAST, _WIDEST, allowed=words[0], remedy=words[1])
 
 
 @dataclass(frozen=True)
@@ -51,22 +49,14 @@ class ParticleLine:
     smoothing_ratio: float = 1.1
 
     def __post_init__(self) -> None:
-        place = partial(real_between, low=-SIZES[1], high=SIZES[1])
-        check_fields(self, a=place, b=place, count=partial(whole_number, least=3, most=MOST))
+        count = partial(check.whole_number, least=3, most=check.MOST)
+        check.fields(self, a=check.place, b=check.place, count=count, smoothing_ratio=_ratio)
         if not self.a < self.b:
             raise InvalidInput("b", self.b, "a finite number above a", "Give a < b.")
         # Positions are rounded to the last digit of the farthest.
-        if not self.spacing >= max(_FINEST * max(abs(self.a), abs(self.b)), SIZES[0]):
-            raise InvalidInput(
-                "count",
-                self.count,
-                f"particles that are more than {_FINEST:g} of their distance from zero apart",
-                "Take fewer, or move the origin.",
-            )
-        ratio = real_between("smoothing_ratio", self.smoothing_ratio, 0.0, _WIDEST)
-        if ratio <= 1.0 / SUPPORT:
-            raise InvalidInput("smoothing_ratio", ratio, "a number above 1/2", "The paper has 1.1.")
-        object.__setattr__(self, "smoothing_ratio", ratio)
+        if not self.spacing >= max(_FINEST * max(abs(self.a), abs(self.b)), check.SIZES[0]):
+            allowed = f"particles more than {_FINEST:g} of their distance from zero apart"
+            raise InvalidInput("count", self.count, allowed, "Take fewer, or move the origin.")
 
     @property
     def spacing(self) -> float:
@@ -106,17 +96,7 @@ class ParticleLine:
     def field(self, name: str, values: Any) -> np.ndarray:
         """Return a field on all particles, virtual ones included, as a float array.
 
-        Raises
-        ------
-        InvalidInput
-            If it has another shape, or is not real and finite.
+        Raises `InvalidInput` if it has another shape, or is not real and finite.
         """
-        array = finite_array(name, values)
-        if array.shape != self.x_all.shape:
-            raise InvalidInput(
-                name,
-                f"array of shape {array.shape}",
-                f"finite numbers on all {self.x_all.size} particles, the virtual ones included",
-                "Evaluate the function at ParticleLine.x_all.",
-            )
-        return array
+        each = "a number on all particles, the virtual ones included (`ParticleLine.x_all`)"
+        return check.of_shape(name, check.finite_array(name, values), self.x_all.shape, each)

@@ -11,18 +11,17 @@ from __future__ import annotations
 from fracparticles.time.chebyshev import ChebyshevSeries, exponential, power
 from fracparticles.time.pieces import Flow, exponential_flow, power_flow
 from fracparticles.time.polynomial import STEP_POLYNOMIALS, StepPolynomial
-from fracparticles.time.stepping import applied, euler_step, step
+from fracparticles.time.stepping import single_pass, step
 
 __all__ = [
     "STEP_POLYNOMIALS",
     "ChebyshevSeries",
     "Flow",
     "StepPolynomial",
-    "applied",
-    "euler_step",
     "exponential",
     "exponential_flow",
     "power",
     "power_flow",
+    "single_pass",
     "step",
 ]

@@ -131,17 +131,17 @@ class ChebyshevSeries:
         if self.degree == 0:
             return c[0] * even
         largest = abs(c[0]) * _size(even)
-        operator.update(even, scale, shift, 0.0, odd)
+        operator.combine(even, odd, scale, shift)
         total = np.zeros_like(even)
         _add_terms(total, c[0], even, c[1], odd)
         for k in range(2, self.degree, 2):
-            operator.update(odd, 2.0 * scale, 2.0 * shift, -1.0, even)
-            operator.update(even, 2.0 * scale, 2.0 * shift, -1.0, odd)
+            operator.combine(odd, even, 2.0 * scale, 2.0 * shift, -1.0)
+            operator.combine(even, odd, 2.0 * scale, 2.0 * shift, -1.0)
             _add_terms(total, c[k], even, c[k + 1], odd)
             if k % _LOOK_EVERY == 0:
                 largest = max(largest, abs(c[k]) * _size(even))
         if self.degree % 2 == 0:
-            operator.update(odd, 2.0 * scale, 2.0 * shift, -1.0, even)
+            operator.combine(odd, even, 2.0 * scale, 2.0 * shift, -1.0)
             _add_terms(total, c[self.degree], even, 0.0, odd)
         self._look_at(largest, total)
         return total

@@ -121,11 +121,8 @@ def exponential_flow(
     largest_degree: int | None = None,
 ) -> Flow:
     """Return exp(A time)."""
-
-    def series_of(units: int) -> ChebyshevSeries:
-        return exponential(time * (units / _UNITS), low, high)
-
-    return Flow(operator, series_of, _UNITS, largest_degree)
+    unit = time / _UNITS  # exact
+    return Flow(operator, lambda n: exponential(n * unit, low, high), _UNITS, largest_degree)
 
 
 def power_flow(
@@ -138,8 +135,4 @@ def power_flow(
     largest_degree: int | None = None,
 ) -> Flow:
     """Return p(A dt)^steps."""
-
-    def series_of(units: int) -> ChebyshevSeries:
-        return power(polynomial, dt, units, low, high)
-
-    return Flow(operator, series_of, steps, largest_degree)
+    return Flow(operator, lambda n: power(polynomial, dt, n, low, high), steps, largest_degree)

@@ -1,12 +1,12 @@
-"""A whole run as one lattice sum, where the Fourier symbol of the operator is known.
+"""The propagator: a whole run as one lattice sum, where the Fourier symbol of the operator is known.
 
 On the infinite lattice an operator with the symbol A(theta) is a Toeplitz matrix, and so is any function of it. With
 tau = D t / h^alpha, the symbol in units of D / h^alpha and f = exp(tau A), or what n time steps make of it,
 
     u_i(t) = sum_j e_{i-j} u_j(0),    e_m = (1 / 2 pi) int_{-pi}^{pi} f(theta) e^(i m theta) dtheta.
 
-One sum takes u from 0 to t, whatever t is. On a bounded lattice the initial data beyond its ends are the far field
-(`exterior`), or nil; either is used once, not at every operator application, so that the result differs from the
+The propagator takes u from 0 to t, whatever t is. On a bounded lattice the initial data beyond its ends are the far
+field (`exterior`), or zero; either is used once, not at every operator application, so that the result differs from the
 function of the bounded operator by what leaves the lattice and comes back.
 """
 
@@ -46,12 +46,12 @@ def propagator(
     exterior: str,
     terms: int = 1,
 ) -> ConvolutionOperator:
-    """Return u(0) -> u(t) on the lattice -n .. n.
+    """Return the propagator u(0) -> u(t) on the lattice -n .. n.
 
     Parameters
     ----------
     amplification : callable
-        f(theta) for theta in [0, pi]; even, and exp(-tau |theta|^alpha) near nil.
+        f(theta) for theta in [0, pi]; even, and exp(-tau |theta|^alpha) near zero.
     alpha : float
         Fractional order.
     scaled_time : float
@@ -97,7 +97,7 @@ def tail_amplitude(j: int, alpha: float, scaled_time: float) -> float:
 def propagator_weights(
     amplification: Amplification, alpha: float, scaled_time: float, count: int
 ) -> np.ndarray:
-    """Return e_m, m = 0 .. count - 1.
+    """Return e_m, m = 0 .. count - 1, the weights of the propagator.
 
     The sum over P points of the circle gives sum_l e_{m + l P}; the images l = +-1, +-2, .. of a power of m are Hurwitz
     zeta functions, and those of the first terms of the expansion are taken off. P is much larger than the width of e_m.

@@ -9,37 +9,21 @@ from fracparticles.errors import NonFiniteSolution
 from fracparticles.lattice.operators import Operator
 from fracparticles.time.polynomial import StepPolynomial
 
-__all__ = ["all_finite", "applied", "euler_step", "step"]
+__all__ = ["all_finite", "single_pass", "step"]
 
 _CHECK_EVERY = 16  # steps between two looks at the solution
 
 
-def euler_step(operator: Operator, dt: float, u: np.ndarray) -> np.ndarray:
-    """Return u + dt A u, the one step of GPSE over the whole time: a single pass.
+def single_pass(operator: Operator, scale: float, shift: float, u: np.ndarray) -> np.ndarray:
+    """Return scale A u + shift u: u + dt A u is the one step of GPSE over the whole time, P u a run by its propagator.
 
     Raises
     ------
     NonFiniteSolution
         If a particle strength is not finite.
     """
-    return _single_pass(operator, dt, 1.0, u)
-
-
-def applied(operator: Operator, u: np.ndarray) -> np.ndarray:
-    """Return P u, where P is a whole run.
-
-    Raises
-    ------
-    NonFiniteSolution
-        If a particle strength is not finite.
-    """
-    return _single_pass(operator, 1.0, 0.0, u)
-
-
-def _single_pass(operator: Operator, a: float, b: float, u: np.ndarray) -> np.ndarray:
-    """a (A u) + b u, checked."""
     out = np.zeros(u.size)
-    operator.update(np.ascontiguousarray(u, dtype=float), a, b, 0.0, out)
+    operator.combine(np.ascontiguousarray(u, dtype=float), out, scale, shift)
     if not all_finite(out):
         raise NonFiniteSolution(
             "the particle strengths are not finite after the one pass that takes them to the final time. "
@@ -68,7 +52,7 @@ def step(
         for k in range(polynomial.stages, 0, -1):
             target = spare[0] if v is not spare[0] else spare[1]
             np.copyto(target, u)
-            operator.update(v, dt / k, 0.0, 1.0, target)
+            operator.combine(v, target, dt / k, keep=1.0)
             v = target
         kept = [w for w in spare if w is not v]
         u, spare = v, [u, *kept]

@@ -1,35 +1,35 @@
-"""What a peer is, and the number of its points."""
+"""What a peer is, what it is asked for, what it gives, and the number of its points."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from threading import Lock
 from typing import Protocol
 
 import numpy as np
 
-from fracparticles.arguments import positive_integer, positive_real
+from fracparticles.arguments import (
+    fractional_order,
+    positive_integer,
+    positive_real,
+    real_array,
+)
 from fracparticles.errors import InvalidInput
 
-__all__ = ["Peer", "Solver", "check_choice", "half_intervals"]
+__all__ = ["Peer", "PlaneSolver", "Solver", "Task", "half_intervals"]
 
 
 class Solver(Protocol):
-    """A peer made ready for one grid, one alpha and one time.
-
-    Attributes
-    ----------
-    x : array, shape (N,)
-        Positions, in ascending order.
-    volumes : array, shape (N,)
-        The length that each position stands for: sum_i volumes_i f(x_i) is the integral of f.
-    """
+    """A peer made ready for one grid, one alpha and one time."""
 
     @property
     def x(self) -> np.ndarray:
-        """Positions, shape (N,)."""
+        """Positions in ascending order, shape (N,)."""
 
     @property
     def volumes(self) -> np.ndarray:
-        """Quadrature weights, shape (N,)."""
+        """The length that each stands for, shape (N,): sum_i volumes_i f(x_i) is the integral of f."""
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return the approximation of -(-Laplacian)^(alpha/2) u at x, shape (N,)."""
@@ -38,10 +38,97 @@ class Solver(Protocol):
         """Return u at the time prepared for from u0 at time 0, shape (N,)."""
 
 
-class Preparation(Protocol):
-    """The call of `prepare`, the same for all peers."""
+@dataclass(frozen=True)
+class PlaneSolver:
+    """A peer made ready for one square lattice, one alpha and one time. Threads may share it: they take turns.
 
-    def __call__(
+    Attributes
+    ----------
+    x : array, shape (N,)
+        The coordinates along either axis, in ascending order.
+    volumes : float
+        The area that each point stands for.
+    advance : callable
+        u(0) -> u(t), unchecked.
+    """
+
+    x: np.ndarray
+    volumes: float
+    advance: Callable[[np.ndarray], np.ndarray]
+    _lock: Lock = field(init=False, repr=False, default_factory=Lock)
+
+    def solve(self, u0: np.ndarray) -> np.ndarray:
+        """Return u at the time prepared for from u0 at time 0, both of shape (N, N).
+
+        Raises
+        ------
+        InvalidInput
+            If u0 is not of that shape, not real, or holds a nan.
+        """
+        u0, size = real_array("u0", u0), self.x.size
+        if u0.shape != (size, size):
+            allowed = f"the shape ({size}, {size})"
+            raise InvalidInput("u0", u0.shape, allowed, "Give a value at each lattice point.")
+        with self._lock:
+            return self.advance(u0)
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a peer is asked for, checked: see `Peer.prepare`."""
+
+    alpha: float
+    half_width: float
+    time: float
+    spacing: float | None = None
+    count: int | None = None
+    exterior: str = ""
+    propagation: str = ""
+
+    def __post_init__(self) -> None:
+        fractional_order(self.alpha)
+        positive_real("half_width", self.half_width)
+        positive_real("time", self.time)
+
+
+@dataclass(frozen=True)
+class Peer:
+    """A method of the literature.
+
+    Attributes
+    ----------
+    name, label, reference : str
+        Its name, the name in figures, and where it was published.
+    place : int
+        Where it stands among the others.
+    colour, marker : str
+        Of its lines in figures.
+    exteriors, propagations : tuple of str
+        What there is beyond the half-width; how the solution gets from 0 to t.
+    make : callable
+        From the task to the solver on the line.
+    make_plane : callable, optional
+        From the task to the solver in the plane.
+    group : {"peers", "limit"}
+        What it is compared as.
+    scaled : bool
+        Whether the half-width is the scale of a grid without ends.
+    """
+
+    name: str
+    label: str
+    reference: str
+    place: int
+    colour: str
+    marker: str
+    exteriors: tuple[str, ...]
+    propagations: tuple[str, ...]
+    make: Callable[[Task], Solver]
+    make_plane: Callable[[Task], PlaneSolver] | None = None
+    group: str = "peers"
+    scaled: bool = False
+
+    def prepare(
         self,
         *,
         alpha: float,
@@ -49,10 +136,10 @@ class Preparation(Protocol):
         time: float,
         spacing: float | None = None,
         count: int | None = None,
-        exterior: str = ...,
-        propagation: str = ...,
+        exterior: str | None = None,
+        propagation: str | None = None,
     ) -> Solver:
-        """Return the peer made ready.
+        """Return the peer made ready: all that does not depend on the initial data is done.
 
         Parameters
         ----------
@@ -64,60 +151,62 @@ class Preparation(Protocol):
             The time to go.
         spacing, count : float or int
             The distance of the points, or their number: just one of the two.
-        exterior, propagation : str
-            One of the peer's EXTERIORS and PROPAGATIONS; the first if left out.
+        exterior, propagation : str, optional
+            One of the peer's; the first if left out.
 
         Raises
         ------
         InvalidInput
             If an argument is outside its range.
         """
+        exterior = _chosen("exterior", exterior, self.exteriors)
+        propagation = _chosen("propagation", propagation, self.propagations)
+        return self.make(Task(alpha, half_width, time, spacing, count, exterior, propagation))
+
+    def prepare_plane(
+        self, *, alpha: float, half_width: float, time: float, spacing: float
+    ) -> PlaneSolver:
+        """Return the peer made ready in the plane, on a square of that half-width.
+
+        The realised spacing is half_width / n; that of a periodic square may be smaller.
+
+        Raises
+        ------
+        InvalidInput
+            If an argument is outside its range, or the peer does not exist in the plane.
+        """
+        if self.make_plane is None:
+            raise InvalidInput("peer", self.name, "one that exists in the plane", "Take another.")
+        spacing = positive_real("spacing", spacing)
+        return self.make_plane(Task(alpha, half_width, time, spacing))
 
 
-class Peer(Protocol):
-    """The names that every peer module defines."""
-
-    NAME: str
-    TITLE: str
-    REFERENCE: str
-    EXTERIORS: tuple[str, ...]  # what there is beyond the half-width
-    PROPAGATIONS: tuple[str, ...]  # how the solution gets from 0 to t
-
-    @property
-    def prepare(self) -> Preparation:
-        """Set-up, all that does not depend on the initial data."""
-
-
-def check_choice(field: str, value: str, allowed: tuple[str, ...]) -> None:
-    """Refuse what a peer does not have.
-
-    Raises
-    ------
-    InvalidInput
-        If value is not one of those allowed.
-    """
+def _chosen(field: str, value: str | None, allowed: tuple[str, ...]) -> str:
+    if value is None:
+        return allowed[0]
     if value not in allowed:
-        raise InvalidInput(
-            field, value, f"one of {', '.join(allowed)} for this peer", "Choose one."
-        )
+        allowed_here = f"one of {', '.join(allowed)} for this peer"
+        raise InvalidInput(field, value, allowed_here, "Choose one.")
+    return value
 
 
-def half_intervals(
-    half_width: float, spacing: float | None, count: int | None, points: int = 1
-) -> int:
-    """Return n for a grid of 2 n + `points` positions, 2 n intervals or as many positions as `count` says.
+def half_intervals(task: Task, points: int = 1, stretch: float = 1.0) -> int:
+    """Return n for a grid of 2 n + `points` positions, 2 n intervals or as many positions as `task.count` says.
+
+    A grid whose points lie apart at its middle by 1 / `stretch` of their mean distance has as many more.
 
     Raises
     ------
     InvalidInput
         If not just one of spacing and count is given, or it is outside its range.
     """
+    spacing, count = task.spacing, task.count
     if (spacing is None) == (count is None):
         raise InvalidInput(
             "spacing and count", (spacing, count), "just one of the two", "Leave the other out."
         )
     if spacing is not None:
-        return max(1, round(half_width / positive_real("spacing", spacing)))
+        return max(1, round(stretch * task.half_width / positive_real("spacing", spacing)))
     given = positive_integer("count", count)
     if given < 2 or (given - points) % 2:
         parity = "odd" if points % 2 else "even"

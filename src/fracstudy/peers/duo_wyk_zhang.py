@@ -20,14 +20,9 @@ from __future__ import annotations
 import numpy as np
 
 from fracparticles.special.tails import tail_constant
-from fracstudy.peers.lattice import EXTERIORS, SERIES, LatticeSolver, prepare_lattice
+from fracstudy.peers.lattice import lattice_peer
 
-__all__ = ["EXTERIORS", "NAME", "PROPAGATIONS", "REFERENCE", "TITLE", "prepare", "weights"]
-
-NAME = "duo-wyk-zhang"
-TITLE = "Weighted trapezoidal method"
-PROPAGATIONS = SERIES
-REFERENCE = "Duo, van Wyk & Zhang (2018), J. Comput. Phys. 355, 233"
+__all__ = ["PEER", "weights"]
 
 
 def weights(alpha: float, count: int) -> np.ndarray:
@@ -45,24 +40,12 @@ def weights(alpha: float, count: int) -> np.ndarray:
     return a
 
 
-def prepare(
-    *,
-    alpha: float,
-    half_width: float,
-    time: float,
-    spacing: float | None = None,
-    count: int | None = None,
-    exterior: str = "truncated",
-    propagation: str = "series",
-) -> LatticeSolver:
-    """Return the solver; see `lattice.prepare_lattice`."""
-    return prepare_lattice(
-        weights,
-        alpha=alpha,
-        half_width=half_width,
-        time=time,
-        spacing=spacing,
-        count=count,
-        exterior=exterior,
-        propagation=propagation,
-    )
+PEER = lattice_peer(
+    weights,
+    name="duo-wyk-zhang",
+    label="Duo-van Wyk-Zhang",
+    reference="Duo, van Wyk & Zhang (2018), J. Comput. Phys. 355, 233",
+    place=2,
+    colour="#A0522D",
+    marker="v",
+)

@@ -12,23 +12,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import gamma
 
-from fracstudy.peers.lattice import EXTERIORS, SERIES_OR_CONVOLUTION, LatticeSolver, prepare_lattice
+from fracstudy.peers.lattice import lattice_peer
 
-__all__ = [
-    "EXTERIORS",
-    "NAME",
-    "PROPAGATIONS",
-    "REFERENCE",
-    "TITLE",
-    "prepare",
-    "symbol",
-    "weights",
-]
-
-NAME = "fractional-centred"
-TITLE = "Fractional centred differences"
-PROPAGATIONS = SERIES_OR_CONVOLUTION
-REFERENCE = "Ortigueira (2006); Celik & Duman (2012), J. Comput. Phys. 231, 1743"
+__all__ = ["PEER", "squares", "symbol", "weights"]
 
 
 def weights(alpha: float, count: int) -> np.ndarray:
@@ -43,25 +29,22 @@ def symbol(theta: np.ndarray, alpha: float) -> np.ndarray:
     return -((2.0 * np.sin(0.5 * theta)) ** alpha)
 
 
-def prepare(
-    *,
-    alpha: float,
-    half_width: float,
-    time: float,
-    spacing: float | None = None,
-    count: int | None = None,
-    exterior: str = "truncated",
-    propagation: str = "series",
-) -> LatticeSolver:
-    """Return the solver; see `lattice.prepare_lattice`."""
-    return prepare_lattice(
-        weights,
-        alpha=alpha,
-        half_width=half_width,
-        time=time,
-        spacing=spacing,
-        count=count,
-        exterior=exterior,
-        propagation=propagation,
-        symbol=symbol,
-    )
+def squares(theta: np.ndarray) -> np.ndarray:
+    """Return 4 sin^2(theta/2), the part of one coordinate in the symbol of the five-point Laplacian."""
+    return 4.0 * np.sin(0.5 * theta) ** 2
+
+
+PEER = lattice_peer(
+    weights,
+    symbol,
+    squares,
+    name="fractional-centred",
+    label="fractional centred",
+    reference=(
+        "Ortigueira (2006); Celik & Duman (2012), J. Comput. Phys. 231, 1743; in the plane Hao, Zhang & Du (2021), "
+        "J. Comput. Phys. 424, 109851"
+    ),
+    place=3,
+    colour="#666666",
+    marker="^",
+)

@@ -22,14 +22,9 @@ from numpy.polynomial.polynomial import polyval
 from scipy.special import gamma, poch
 
 from fracparticles.special.tails import tail_constant
-from fracstudy.peers.lattice import EXTERIORS, SERIES, LatticeSolver, prepare_lattice
+from fracstudy.peers.lattice import lattice_peer
 
-__all__ = ["EXTERIORS", "NAME", "PROPAGATIONS", "REFERENCE", "TITLE", "prepare", "weights"]
-
-NAME = "huang-oberman"
-TITLE = "Finite difference-quadrature, quadratic interpolation"
-PROPAGATIONS = SERIES
-REFERENCE = "Huang & Oberman (2014), SIAM J. Numer. Anal. 52, 3056"
+__all__ = ["PEER", "weights"]
 
 # From here the differences of G, which lose j^3 ulp, are summed as a Taylor series in 1/j.
 _FAR = 8
@@ -52,9 +47,8 @@ def weights(alpha: float, count: int) -> np.ndarray:
     a[1] = c / (2.0 - alpha) - second - 0.5 * (g1(3.0) + 3.0 * g1(1.0)) + g(3.0) - g(1.0)
     even, odd = np.arange(2.0, _FAR, 2.0), np.arange(3.0, _FAR, 2.0)
     a[2:_FAR:2] = 2.0 * (g1(even + 1.0) + g1(even - 1.0) - g(even + 1.0) + g(even - 1.0))
-    a[3:_FAR:2] = (
-        -0.5 * (g1(odd + 2.0) + 6.0 * g1(odd) + g1(odd - 2.0)) + g(odd + 2.0) - g(odd - 2.0)
-    )
+    a[3:_FAR:2] = -0.5 * (g1(odd + 2.0) + 6.0 * g1(odd) + g1(odd - 2.0))
+    a[3:_FAR:2] += g(odd + 2.0) - g(odd - 2.0)
     j = np.arange(float(_FAR), a.size)
     a[_FAR:] = _far_weights(alpha, c, j)
     return a[:count]
@@ -73,24 +67,12 @@ def _far_weights(alpha: float, c: float, j: np.ndarray) -> np.ndarray:
     return np.where(j % 2.0 == 1.0, odd, even) * j ** (-1.0 - alpha)
 
 
-def prepare(
-    *,
-    alpha: float,
-    half_width: float,
-    time: float,
-    spacing: float | None = None,
-    count: int | None = None,
-    exterior: str = "truncated",
-    propagation: str = "series",
-) -> LatticeSolver:
-    """Return the solver; see `lattice.prepare_lattice`."""
-    return prepare_lattice(
-        weights,
-        alpha=alpha,
-        half_width=half_width,
-        time=time,
-        spacing=spacing,
-        count=count,
-        exterior=exterior,
-        propagation=propagation,
-    )
+PEER = lattice_peer(
+    weights,
+    name="huang-oberman",
+    label="Huang-Oberman",
+    reference="Huang & Oberman (2014), SIAM J. Numer. Anal. 52, 3056",
+    place=1,
+    colour="#8A6D3B",
+    marker="s",
+)

@@ -12,23 +12,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from scipy.fft import next_fast_len, rfft
 
-from fracparticles.arguments import fractional_order, positive_real
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.special.tails import tail_constant
 from fracparticles.time import Flow, exponential_flow
 from fracparticles.time.propagator import propagator, tabulated_operator
-from fracstudy.peers.base import check_choice, half_intervals
+from fracstudy.peers.base import Peer, Task, half_intervals
+from fracstudy.peers.plane import Squares, truncated_plane
 
-__all__ = ["EXTERIORS", "SERIES", "SERIES_OR_CONVOLUTION", "LatticeSolver", "prepare_lattice"]
-
-EXTERIORS = ("truncated", "open")
-SERIES = ("series",)
-SERIES_OR_CONVOLUTION = ("series", "convolution")
+__all__ = ["LatticeSolver", "lattice_peer"]
 
 Weights = Callable[[float, int], np.ndarray]  # (alpha, count) -> a_m, m = 0 .. count - 1
 Symbol = Callable[[np.ndarray, float], np.ndarray]  # (theta, alpha) -> a(theta)
@@ -58,8 +55,8 @@ class LatticeSolver:
     x: np.ndarray
     volumes: np.ndarray
     make_operator: Callable[[], ConvolutionOperator]
-    series: Flow | None
-    propagator: ConvolutionOperator | None
+    series: Flow | None = None
+    propagator: ConvolutionOperator | None = None
     interval: tuple[float, float] | None = None
 
     @cached_property
@@ -84,68 +81,59 @@ class LatticeSolver:
         return self.propagator.apply(u0)
 
 
-def prepare_lattice(
-    weights: Weights,
-    *,
-    alpha: float,
-    half_width: float,
-    time: float,
-    spacing: float | None,
-    count: int | None,
-    exterior: str,
-    propagation: str,
-    symbol: Symbol | None = None,
-) -> LatticeSolver:
-    """Return a Toeplitz peer made ready.
+def lattice_peer(
+    weights: Weights, symbol: Symbol | None = None, squares: Squares | None = None, **facts: Any
+) -> Peer:
+    """Return a peer on a lattice.
 
     Parameters
     ----------
     weights : callable
         (alpha, count) -> a_m for m = 0 .. count - 1.
-    alpha, half_width, time, spacing, count
-        As of `Peer.prepare`; count is odd.
-    exterior : {"truncated", "open"}
-        u beyond the lattice.
-    propagation : {"series", "convolution"}
-        How exp(A t) is done.
     symbol : callable, optional
         (theta, alpha) -> a(theta), without which there is no convolution in time.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
+    squares : callable, optional
+        The part of one coordinate in the symbol in the plane, see `plane`.
+    **facts
+        The attributes of the peer that are left.
     """
-    alpha = fractional_order(alpha)
-    half_width, time = positive_real("half_width", half_width), positive_real("time", time)
-    check_choice("exterior", exterior, EXTERIORS)
-    check_choice("propagation", propagation, SERIES if symbol is None else SERIES_OR_CONVOLUTION)
-    n = half_intervals(half_width, spacing, count)
-    size, h = 2 * n + 1, half_width / n
+    return Peer(
+        exteriors=("truncated", "open"),
+        propagations=("series",) if symbol is None else ("series", "convolution"),
+        make=partial(_prepared, weights, symbol),
+        make_plane=None if squares is None else partial(truncated_plane, squares),
+        **facts,
+    )
+
+
+def _prepared(weights: Weights, symbol: Symbol | None, task: Task) -> LatticeSolver:
+    alpha, n = task.alpha, half_intervals(task)
+    size, h = 2 * n + 1, task.half_width / n
     last = 4 * n + 1  # M, odd: there a panel of Huang & Oberman's rule ends
     rate = h**-alpha
     amplitude = rate * tail_constant(alpha)
 
-    def row() -> np.ndarray:
-        return rate * weights(alpha, size if exterior == "truncated" else last + 1)
-
     x, volumes = np.arange(-n, n + 1) * h, np.full(size, h)
-    if propagation == "series":
+
+    def row() -> np.ndarray:
+        return rate * weights(alpha, size if task.exterior == "truncated" else last + 1)
+
+    def operator(a: np.ndarray) -> ConvolutionOperator:
+        return tabulated_operator(a, n, alpha, [amplitude], task.exterior)
+
+    if task.propagation == "series":
         a = row()
-        operator = tabulated_operator(a, n, alpha, [amplitude], exterior)
-        interval = _spectral_interval(a[:size])
-        series = exponential_flow(operator, time, *interval)
-        return LatticeSolver(x, volumes, lambda: operator, series, None, interval)
+        made, interval = operator(a), _spectral_interval(a[:size])
+        series = exponential_flow(made, task.time, *interval)
+        return LatticeSolver(x, volumes, lambda: made, series, interval=interval)
     assert symbol is not None
-    tau = time * rate
-    one_sum = propagator(lambda theta: np.exp(tau * symbol(theta, alpha)), alpha, tau, n, exterior)
-    return LatticeSolver(
-        x,
-        volumes,
-        lambda: tabulated_operator(row(), n, alpha, [amplitude], exterior),
-        None,
-        one_sum,
-    )
+    tau = task.time * rate
+
+    def amplification(theta: np.ndarray) -> np.ndarray:
+        return np.exp(tau * symbol(theta, alpha))
+
+    one_sum = propagator(amplification, alpha, tau, n, task.exterior)
+    return LatticeSolver(x, volumes, lambda: operator(row()), propagator=one_sum)
 
 
 def _spectral_interval(a: np.ndarray) -> tuple[float, float]:
@@ -155,8 +143,7 @@ def _spectral_interval(a: np.ndarray) -> tuple[float, float]:
     the infinite row that is the symbol, nowhere positive for any peer: zero is the upper end, with no room above it,
     where the series would be that of a function that grows.
     """
-    length = 2 * next_fast_len(
-        _OVERSAMPLING * a.size // 2, real=True
-    )  # even, so that theta = pi is there
+    # Even, so that theta = pi is there.
+    length = 2 * next_fast_len(_OVERSAMPLING * a.size // 2, real=True)
     low = float((2.0 * rfft(a, length).real - a[0]).min())
     return low * (1.0 + _MARGIN), 0.0

@@ -35,26 +35,10 @@ from scipy.fft import ifft, irfft, rfft
 from scipy.linalg import eigh, toeplitz
 from scipy.special import poch
 
-from fracparticles.arguments import fractional_order, positive_real
 from fracparticles.errors import InvalidInput
-from fracstudy.peers.base import check_choice, half_intervals
+from fracstudy.peers.base import Peer, Task, half_intervals
 
-__all__ = [
-    "EXTERIORS",
-    "NAME",
-    "PROPAGATIONS",
-    "REFERENCE",
-    "TITLE",
-    "MappedFourierSolver",
-    "galerkin_matrix",
-    "prepare",
-]
-
-NAME = "mapped-fourier"
-TITLE = "Fourier pseudospectral method with x = L cot s"
-REFERENCE = "Cayama, Cuesta & de la Hoz (2021), Appl. Math. Comput. 389, 125577"
-EXTERIORS = ("line",)
-PROPAGATIONS = ("dense",)
+__all__ = ["PEER", "MappedFourierSolver", "galerkin_matrix"]
 
 _MOST = 8001  # points: the dense matrices then take 128 MB each
 
@@ -122,45 +106,10 @@ def galerkin_matrix(alpha: float, size: int) -> np.ndarray:
     return np.asarray(product / np.sqrt(np.outer(k, k)))
 
 
-def prepare(
-    *,
-    alpha: float,
-    half_width: float,
-    time: float,
-    spacing: float | None = None,
-    count: int | None = None,
-    exterior: str = "line",
-    propagation: str = "dense",
-) -> MappedFourierSolver:
-    """Return the solver.
-
-    Parameters
-    ----------
-    alpha : float
-        Fractional order, 1 < alpha < 2.
-    half_width : float
-        L: half of the points lie within |x| <= L.
-    time : float
-        The time to go.
-    spacing : float, optional
-        The distance of the points at x = 0, pi L / N.
-    count : int, optional
-        N instead, odd, at most 8001.
-    exterior : {"line"}
-        There is only one.
-    propagation : {"dense"}
-        There is only one.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
-    """
-    check_choice("exterior", exterior, EXTERIORS)
-    check_choice("propagation", propagation, PROPAGATIONS)
-    alpha = fractional_order(alpha)
-    scale, time = positive_real("half_width", half_width), positive_real("time", time)
-    modes = half_intervals(0.5 * np.pi * scale, spacing, count)
+def _prepared(task: Task) -> MappedFourierSolver:
+    """L is the half-width: half of the points lie within |x| <= L; the spacing is that at x = 0, pi L / N."""
+    alpha, scale = task.alpha, task.half_width
+    modes = half_intervals(task, stretch=0.5 * np.pi)
     points = 2 * modes + 1
     if points > _MOST:
         raise InvalidInput("count", points, f"at most {_MOST} points", "Take fewer points.")
@@ -168,7 +117,7 @@ def prepare(
     x = scale / np.tan(s)
     x[modes] = 0.0
     eigenvalues, vectors = eigh(galerkin_matrix(alpha, modes))
-    decay = np.exp(-time * (2.0 * scale) ** -alpha * eigenvalues)
+    decay = np.exp(-task.time * (2.0 * scale) ** -alpha * eigenvalues)
     root = np.sqrt(np.arange(1.0, modes + 1.0))
     return MappedFourierSolver(
         x=x,
@@ -178,3 +127,17 @@ def prepare(
         propagator=(vectors * decay) @ vectors.T * (root / root[:, None]),
         _shift=np.exp(-1j * np.pi / points * np.arange(modes + 1)),
     )
+
+
+PEER = Peer(
+    name="mapped-fourier",
+    label="mapped Fourier",
+    reference="Cayama, Cuesta & de la Hoz (2021), Appl. Math. Comput. 389, 125577",
+    place=5,
+    colour="#4B5D8C",
+    marker="D",
+    exteriors=("line",),
+    propagations=("dense",),
+    make=_prepared,
+    scaled=True,
+)

@@ -1,10 +1,6 @@
-"""Methods of the literature for u_t = -(-Laplacian)^(alpha/2) u in the plane: one transform or one lattice sum.
+"""What the peers on a square lattice share: a run in the plane as one lattice sum.
 
-The exact symbol on the periodic square of period 2 D is, as on the line,
-
-    u^_k(t) = exp(-t |k|^alpha) u^_k(0),    k = pi m / D,  m in {-N/2, .., N/2}^2.
-
-The others live on the square lattice x_ij = (i h, j h), i, j = -n .. n, and take u for zero beyond it. Their symbol is
+Those on a lattice live on the square lattice x_ij = (i h, j h), i, j = -n .. n, and take u for zero beyond it. Their symbol is
 a(theta) = -s^(alpha/2) h^(-alpha), where s stands for |theta|^2. On the infinite lattice its exponential is Toeplitz,
 and with tau = t / h^alpha one sum takes u from 0 to t, whatever t is:
 
@@ -20,29 +16,19 @@ The data beyond the square, missing once, leave an error of the order D^(-2-2 al
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import partial
 from math import ceil
-from threading import Lock
-from typing import NamedTuple
 
 import numpy as np
-import pyfftw
 from scipy.fft import dct
 from scipy.special import factorial, gamma, rgamma, zeta
 
-from fracparticles.arguments import fractional_order, positive_real, real_array
-from fracparticles.errors import InvalidInput
-from fracparticles.lattice.box import BOX_SUMMATIONS
 from fracparticles.lattice.fourier import transform_length
-from fracstudy.peers import exact_symbol, fractional_centred, sinc_lattice
-from fracstudy.peers.base import check_choice, half_intervals
+from fracparticles.lattice.sums import BOX_SUMMATIONS
+from fracstudy.peers.base import PlaneSolver, Task, half_intervals
 
-__all__ = ["PLANE_PEERS", "PlanePeer", "PlaneSolver", "plane_weights", "prepare_plane"]
+__all__ = ["Squares", "plane_weights", "truncated_plane"]
 
 Squares = Callable[[np.ndarray], np.ndarray]  # theta_1 in [0, pi] -> its part of s
-
-_PLAN = ("FFTW_ESTIMATE",)  # the same plan every time, as in `sums.fourier`
 
 # As on the line, e_m comes from a circle of this many times its length, and of its images these many terms are taken
 # off. It has at least this many spreads tau^(1/alpha) of the exponential too: closer the terms are no expansion.
@@ -51,85 +37,13 @@ _IMAGE_TERMS = 3
 _SPREADS = 40
 
 
-@dataclass(frozen=True)
-class PlaneSolver:
-    """A peer made ready for one lattice, one alpha and one time. Threads may share it: they take turns.
-
-    Attributes
-    ----------
-    axis : array, shape (N,)
-        The coordinates along either axis, in ascending order.
-    spacing : float
-        The realised h.
-    advance : callable
-        u(0) -> u(t), unchecked.
-    """
-
-    axis: np.ndarray
-    spacing: float
-    advance: Callable[[np.ndarray], np.ndarray]
-    _lock: Lock = field(init=False, repr=False, default_factory=Lock)
-
-    def solve(self, u0: np.ndarray) -> np.ndarray:
-        """Return u at the time prepared for from u0 at time 0, both of shape (N, N).
-
-        Raises
-        ------
-        InvalidInput
-            If u0 is not of that shape, not real, or holds a nan.
-        """
-        u0, size = real_array("u0", u0), self.axis.size
-        if u0.shape != (size, size):
-            raise InvalidInput(
-                "u0", u0.shape, f"the shape ({size}, {size})", "Give a value at each lattice point."
-            )
-        with self._lock:
-            return self.advance(u0)
-
-
-class PlanePeer(NamedTuple):
-    """A peer in the plane; `prepare` takes alpha, half_width, n (half the number of intervals), time."""
-
-    title: str
-    reference: str
-    prepare: Callable[[float, float, int, float], PlaneSolver]
-
-
-def _periodic(alpha: float, half_width: float, n: int, time: float) -> PlaneSolver:
-    points = transform_length(2 * n)
-    real = pyfftw.empty_aligned((points, points))
-    spectrum = pyfftw.empty_aligned((points, points // 2 + 1), dtype=complex)
-    forward = pyfftw.FFTW(real, spectrum, axes=(0, 1), flags=_PLAN)
-    backward = pyfftw.FFTW(
-        spectrum,
-        real,
-        axes=(0, 1),
-        direction="FFTW_BACKWARD",
-        flags=(*_PLAN, "FFTW_DESTROY_INPUT"),
-    )
-    h = 2.0 * half_width / points
-    rows = 2.0 * np.pi * np.fft.fftfreq(points, h)
-    columns = 2.0 * np.pi * np.fft.rfftfreq(points, h)
-    rate = (rows[:, None] ** 2 + columns**2) ** (0.5 * alpha)
-    decay = np.exp(-time * rate) / points**2
-
-    def advance(u0: np.ndarray) -> np.ndarray:
-        np.copyto(real, u0)
-        forward.execute()
-        np.multiply(spectrum, decay, out=spectrum)
-        backward.execute()
-        return real.copy()
-
-    return PlaneSolver((np.arange(points) - points // 2) * h, h, advance)
-
-
-def _truncated(
-    squares: Squares, alpha: float, half_width: float, n: int, time: float
-) -> PlaneSolver:
-    size, h = 2 * n + 1, half_width / n
-    e = plane_weights(squares, alpha, time * h**-alpha, size)
+def truncated_plane(squares: Squares, task: Task) -> PlaneSolver:
+    """Return the solver on the square lattice, u zero beyond it; `squares` as of `plane_weights`."""
+    n = half_intervals(task)
+    size, h = 2 * n + 1, task.half_width / n
+    e = plane_weights(squares, task.alpha, task.time * h**-task.alpha, size)
     convolve = BOX_SUMMATIONS["fft"]([e], [None], size, size)
-    return PlaneSolver(np.arange(-n, n + 1) * h, h, lambda u0: convolve(u0)[0].copy())
+    return PlaneSolver(np.arange(-n, n + 1) * h, h * h, lambda u0: convolve(u0)[0].copy())
 
 
 def plane_weights(squares: Squares, alpha: float, scaled_time: float, count: int) -> np.ndarray:
@@ -182,50 +96,3 @@ def _lattice_zeta(p: float) -> float:
     """Return Z(p) = sum_{l != 0} |l|^-p over the square lattice: 4 zeta(p/2) beta(p/2), with Dirichlet's beta."""
     s = 0.5 * p
     return float(4.0 * zeta(s) * (zeta(s, 0.25) - zeta(s, 0.75)) / 4.0**s)
-
-
-PLANE_PEERS: dict[str, PlanePeer] = {
-    exact_symbol.NAME: PlanePeer(
-        "Exact symbol on a periodic square", exact_symbol.REFERENCE, _periodic
-    ),
-    sinc_lattice.NAME: PlanePeer(
-        sinc_lattice.TITLE,
-        "Antil, Dondl & Striet (2020), arXiv:2010.06509; Zhou & Zhang (2023), arXiv:2311.07814",
-        partial(_truncated, np.square),
-    ),
-    fractional_centred.NAME: PlanePeer(
-        fractional_centred.TITLE,
-        "Hao, Zhang & Du (2021), J. Comput. Phys. 424, 109851",
-        partial(_truncated, lambda theta: 4.0 * np.sin(0.5 * theta) ** 2),
-    ),
-}
-
-
-def prepare_plane(
-    name: str, *, alpha: float, half_width: float, time: float, spacing: float
-) -> PlaneSolver:
-    """Return a peer made ready: all that does not depend on the initial data is done.
-
-    Parameters
-    ----------
-    name : str
-        One of PLANE_PEERS.
-    alpha : float
-        Fractional order, 1 < alpha < 2.
-    half_width : float
-        D: the lattice goes from -D to D along either axis; "exact-symbol" has the period 2 D and leaves D itself out.
-    time : float
-        The time to go.
-    spacing : float
-        h; the realised one is half_width / n, and for "exact-symbol" at most this, for a size that transforms fast.
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range.
-    """
-    check_choice("name", name, tuple(PLANE_PEERS))
-    alpha = fractional_order(alpha)
-    half_width, time = positive_real("half_width", half_width), positive_real("time", time)
-    n = half_intervals(half_width, positive_real("spacing", spacing), None)
-    return PLANE_PEERS[name].prepare(alpha, half_width, n, time)

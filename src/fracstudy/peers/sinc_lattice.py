@@ -13,23 +13,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import gamma, roots_jacobi
 
-from fracstudy.peers.lattice import EXTERIORS, SERIES_OR_CONVOLUTION, LatticeSolver, prepare_lattice
+from fracstudy.peers.lattice import lattice_peer
 
-__all__ = [
-    "EXTERIORS",
-    "NAME",
-    "PROPAGATIONS",
-    "REFERENCE",
-    "TITLE",
-    "prepare",
-    "symbol",
-    "weights",
-]
-
-NAME = "sinc-lattice"
-TITLE = "Sinc scheme, exact symbol on the lattice"
-PROPAGATIONS = SERIES_OR_CONVOLUTION
-REFERENCE = "Stenger (1993), Numerical Methods Based on Sinc and Analytic Functions"
+__all__ = ["PEER", "symbol", "weights"]
 
 # From here the asymptotic series falls below round-off, with terms of the size (2 j)! / (pi m)^(2 j).
 _FAR = 16
@@ -53,10 +39,8 @@ def weights(alpha: float, count: int) -> np.ndarray:
     for j in range(_TERMS):
         alternating += (-1) ** j * derivative / m ** (2 * j + 2)
         derivative *= (alpha - 2 * j - 1) * (alpha - 2 * j - 2) / np.pi**2
-    sign = 1.0 - 2.0 * (m % 2.0)
-    far = sign * alternating - gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) * m ** (
-        -1.0 - alpha
-    )
+    tail = gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) * m ** (-1.0 - alpha)
+    far = (1.0 - 2.0 * (m % 2.0)) * alternating - tail
     return -np.concatenate([near, far]) / np.pi
 
 
@@ -65,25 +49,17 @@ def symbol(theta: np.ndarray, alpha: float) -> np.ndarray:
     return -(theta**alpha)
 
 
-def prepare(
-    *,
-    alpha: float,
-    half_width: float,
-    time: float,
-    spacing: float | None = None,
-    count: int | None = None,
-    exterior: str = "truncated",
-    propagation: str = "series",
-) -> LatticeSolver:
-    """Return the solver; see `lattice.prepare_lattice`."""
-    return prepare_lattice(
-        weights,
-        alpha=alpha,
-        half_width=half_width,
-        time=time,
-        spacing=spacing,
-        count=count,
-        exterior=exterior,
-        propagation=propagation,
-        symbol=symbol,
-    )
+PEER = lattice_peer(
+    weights,
+    symbol,
+    np.square,
+    name="sinc-lattice",
+    label="sinc lattice",
+    reference=(
+        "Stenger (1993), Numerical Methods Based on Sinc and Analytic Functions; in the plane Antil, Dondl & Striet "
+        "(2020), arXiv:2010.06509; Zhou & Zhang (2023), arXiv:2311.07814"
+    ),
+    place=4,
+    colour="#B22222",
+    marker="o",
+)

@@ -1,4 +1,4 @@
-"""What the SPH scenes share: the three operators, the order alpha(x), and how functions and sums are named and drawn."""
+"""What the SPH scenes share: the operators, the order alpha(x), and how functions and sums are named and drawn."""
 
 from __future__ import annotations
 

@@ -1,7 +1,95 @@
-"""See `dvm_figures`."""
+"""What remeshing does to the error of DVM."""
 
 from __future__ import annotations
 
-from scenes.lucchesi.dvm_figures import dvm_remeshing as figure
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fracstudy.style import axes_row, entry, log_log, name_ticks, note, panel_title, slope_triangle
 
 __all__ = ["figure"]
+
+_REMESHINGS = {  # colour, marker, label
+    "M4'": ("#0072B2", "o", "$M_4'$"),
+    "Lambda3": ("#D55E00", "s", r"$\Lambda_3$"),
+    "none": ("#009E73", "^", "none"),
+}
+_KINDS = {"II, field (7)": "-", "II, strengths": ":", "IV, field (7)": "--"}
+_BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 2}
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: float) -> Figure:
+    """Draw (a) the error against h, (b) the deviation along x, (c) the error in time against the step."""
+    drawn, axes = axes_row(3, width=3.5, height=3.9)
+    panels = dict(tuple(series.sort_values("x", kind="stable").groupby("panel")))
+    _errors(axes[0], panels["spacing"])
+    _deviations(axes[1], panels["profile"])
+    panel_title(axes[1], "b", rf"near the peak, $h = {shown:.3g}$")
+    _steps(axes[2], panels["time"])
+    return drawn
+
+
+def _look(remeshing: str, kind: str = "field", order: int = 2) -> dict[str, Any]:
+    colour, marker, _ = _REMESHINGS[remeshing]
+    style = ":" if kind == "strengths" else "--" if order == 4 else "-"
+    face = colour if kind == "field" and order == 2 else "none"
+    return {"color": colour, "marker": marker, "linestyle": style, "markerfacecolor": face}
+
+
+def _errors(ax: Axes, series: pd.DataFrame) -> None:
+    for (kind, order, name), part in series.groupby(["kind", "order", "remeshing"]):
+        if (kind, order) != ("strengths", 4):  # those of order II again
+            ax.plot(part["x"], part["y"], **_look(name, kind, order))
+    log_log(ax, xlabel="particle spacing $h$")
+    ax.set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
+    panel_title(ax, "a", "error")
+    names = [
+        entry(label, color=colour, marker=marker, linestyle="none")
+        for colour, marker, label in _REMESHINGS.values()
+    ]
+    lines = [entry(label, color="0.3", linestyle=style) for label, style in _KINDS.items()]
+    spacings = sorted(series["x"].unique())
+    if len(spacings) > 1:
+        x = spacings[-2]
+        slope_triangle(ax, x, 0.2 * series.loc[series["x"] == x, "y"].min(), 2.0)
+    _plain_ticks(ax, [0.01, 0.02, 0.05, 0.1, 0.2, 0.5])
+    ax.legend(handles=names + lines, **_BELOW)
+
+
+def _deviations(ax: Axes, series: pd.DataFrame) -> None:
+    here = series[(series["order"] == 2) & (series["remeshing"] != "none")]
+    looks: dict[str, dict[str, Any]] = {
+        "field": {"linestyle": "-", "marker": ""},
+        "strengths": {"linestyle": ":", "marker": ".", "markersize": 3.5, "linewidth": 0.8},
+    }
+    for (kind, name), part in here.groupby(["kind", "remeshing"]):
+        label = f"{_REMESHINGS[name][2]}, {'field (7)' if kind == 'field' else 'strengths'}"
+        ax.plot(part["x"], 100.0 * part["y"], label=label, **{**_look(name, kind), **looks[kind]})
+    ax.set_yscale("symlog", linthresh=0.1, linscale=0.6)
+    name_ticks(ax, (-10.0, -1.0, -0.1, 0.0, 0.1, 1.0, 10.0), "y")
+    ax.set(xlabel="position $x$", ylabel="deviation from the exact solution, %")
+    ax.legend(**_BELOW)
+
+
+def _steps(ax: Axes, series: pd.DataFrame) -> None:
+    finer = {"linestyle": ":", "markerfacecolor": "none"}
+    for (h, name), part in series.groupby(["h", "remeshing"]):
+        look = _look(name) if h == series["h"].max() else {**_look(name), **finer}
+        ax.plot(part["x"], part["y"], label=rf"{_REMESHINGS[name][2]}, $h = {h:.3g}$", **look)
+    ax.axhline(1e-3, color="0.5", linewidth=0.8, linestyle=":")
+    place = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "bottom"}
+    note(ax, "a thousandth", (1.0, 1e-3), (0, 2), color="0.35", **place)
+    log_log(ax, xlabel=r"time step $\Delta t$")
+    ax.set_ylabel("change from the smallest step / error (48)")
+    _plain_ticks(ax, sorted(series["x"].unique()))
+    panel_title(ax, "c", "what the step adds")
+    ax.legend(**_BELOW)
+
+
+def _plain_ticks(ax: Axes, ticks: list[float]) -> None:
+    """Those of the ticks of a logarithmic x axis that are in view, as plain numbers."""
+    low, high = ax.get_xlim()
+    name_ticks(ax, [tick for tick in ticks if low <= tick <= high])

@@ -1,7 +1,59 @@
-"""See `fundamental`."""
+"""How accurate our evaluation of the fundamental solution is, and scipy's."""
 
 from __future__ import annotations
 
-from scenes.lucchesi.fundamental import fundamental_solution as study
+from time import perf_counter
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.special import reduced_green
+from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
+
+_TIMED_POINTS = 100_000
+_REPEATS = 5
+
+
+def study(inputs: Inputs, *, reference: str) -> Result:
+    """Compare `reduced_green` and scipy's `levy_stable` with reference values of 25 digits.
+
+    `reference` is a CSV file with alpha, x and density; tools/make_stable_reference.py writes it. Times are given as
+    an order of magnitude only.
+    """
+    from scipy.stats import levy_stable
+
+    rows, series = [], []
+    for alpha, points in pd.read_csv(reference).groupby("alpha"):
+        x, exact = points["x"].to_numpy(), points["density"].to_numpy()
+        ours = np.abs(reduced_green(x, alpha) / exact - 1.0)
+        start = perf_counter()
+        theirs = np.abs(levy_stable.pdf(x, alpha, 0.0) / exact - 1.0)
+        slow = (perf_counter() - start) / x.size
+        rows.append(
+            {
+                "alpha": alpha,
+                "points": x.size,
+                # The next power of ten: of an error at round-off only its size is reproducible.
+                "ours, error below": 10.0 ** np.ceil(np.log10(max(ours.max(), 2.0**-53))),
+                "scipy, largest error": theirs.max(),
+                "scipy's, at x": x[theirs.argmax()],
+                "scipy, median error": np.median(theirs),
+                "time, scipy / ours": f"10^{int(np.log10(slow / _time_of_ours(alpha)))}",
+            }
+        )
+        for name, error in (("ours", ours), ("scipy", theirs)):
+            series.append(pd.DataFrame({"alpha": alpha, "series": name, "x": x, "y": error}))
+    return Result(pd.DataFrame(rows), series=pd.concat(series, ignore_index=True))
+
+
+def _time_of_ours(alpha: float) -> float:
+    """Least time per point of some runs over many points, the table of alpha already made."""
+    x = np.linspace(0.0, 100.0, _TIMED_POINTS)
+    times = []
+    for _ in range(_REPEATS):
+        start = perf_counter()
+        reduced_green(x, alpha)
+        times.append(perf_counter() - start)
+    return min(times) / _TIMED_POINTS

@@ -9,44 +9,39 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, legend_below, slope_triangle
+from fracstudy.style import COLOURS, MARKERS, axes_row, legend_below, log_log, slope_triangle
 
 __all__ = ["figure"]
 
 _SHADES = mpl.colormaps["viridis_r"]
 _STYLES = ("-", "--", ":")
+_FLOOR: dict[str, Any] = {"color": "0.35", "marker": MARKERS["GPSE"], "markersize": 3.5}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw a panel a scheme: a shade an order, a line style an overlap, and GPSE in one step as the floor."""
-    schemes = [scheme for scheme in ("DD", "FPSE", "KPSE") if scheme in set(series["scheme"])]
-    figure, axes = axes_row(len(schemes), height=4.6, sharey=True)
-    floor = series[series["scheme"] == "GPSE"].sort_values("h")
-    orders = sorted(series.loc[series["scheme"] != "GPSE", "order"].unique())
-    for ax, scheme in zip(axes, schemes, strict=True):
-        _panel(ax, series[series["scheme"] == scheme], scheme, orders)
-        ax.plot(
-            floor["h"], floor["error"], color="0.35", marker=MARKERS["GPSE"], markersize=3.5,
-            label="GPSE, one step",
-        )  # fmt: skip
-        ax.set(xscale="log", yscale="log", xlabel="particle spacing $h$")
+    by_scheme = dict(tuple(series.sort_values("h").groupby("scheme")))
+    floor = by_scheme.pop("GPSE", series.iloc[:0])
+    drawn, axes = axes_row(len(by_scheme), height=4.6, sharey=True)
+    orders = sorted({order for part in by_scheme.values() for order in part["order"]})
+    for ax, (scheme, part) in zip(axes, by_scheme.items(), strict=True):
+        _panel(ax, part, scheme, orders)
+        ax.plot(floor["h"], floor["error"], label="GPSE, one step", **_FLOOR)
+        log_log(ax, xlabel="particle spacing $h$")
         ax.set_title(scheme, loc="right", color=COLOURS[scheme])
     axes[0].set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
-    legend_below(figure, axes[0], columns=5)
-    return figure
+    legend_below(drawn, axes[0], columns=5)
+    return drawn
 
 
 def _panel(ax: Axes, part: pd.DataFrame, scheme: str, orders: list[int]) -> None:
     overlaps = sorted(part["overlap"].unique())
+    look: dict[str, Any] = {"marker": MARKERS[scheme], "markersize": 3.0, "linewidth": 1.2}
     for (order, overlap), points in part.groupby(["order", "overlap"]):
-        place = orders.index(order) / max(len(orders) - 1, 1)
-        points = points.sort_values("h")
-        ax.plot(
-            points["h"], points["error"], color=_SHADES(0.08 + 0.9 * place),
-            linestyle=_STYLES[overlaps.index(overlap) % len(_STYLES)],
-            marker=MARKERS[scheme], markersize=3.0, linewidth=1.2,
-            label=rf"order {order}, $\epsilon / h = {overlap:g}$",
-        )  # fmt: skip
+        colour = _SHADES(0.08 + 0.9 * orders.index(order) / max(len(orders) - 1, 1))
+        style = _STYLES[overlaps.index(overlap) % len(_STYLES)]
+        label = rf"order {order}, $\epsilon / h = {overlap:g}$"
+        ax.plot(points["h"], points["error"], style, color=colour, label=label, **look)
     finest = part[(part["order"] == orders[0]) & (part["overlap"] == overlaps[0])]
-    h, error = finest.sort_values("h").iloc[0][["h", "error"]]
+    h, error = finest.iloc[0][["h", "error"]]
     slope_triangle(ax, h, 2.5 * error, float(orders[0]), above=True)

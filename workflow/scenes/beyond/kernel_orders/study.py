@@ -7,10 +7,13 @@ error and shows what the first and the last leave.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
-from fracstudy.inputs import Inputs, Result, observed_order
+from fracparticles.run.orders import observed_order
+from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
 
@@ -27,17 +30,17 @@ def study(inputs: Inputs) -> Result:
     runs["overlap"] = runs["overlap"].where(runs["scheme"] != "GPSE", np.nan).round(6)
     rows = []
     for (scheme, overlap, order), part in runs.groupby(_KEY, dropna=False):
-        part = part.sort_values("h", ascending=False)
-        between = observed_order(part["h"], part["error"]) if len(part) > 1 else np.array([np.nan])
+        h, error = part.sort_values("h", ascending=False)[["h", "error"]].to_numpy().T
+        between: Any = [] if scheme == "GPSE" else observed_order(h, error)
         rows.append(
             {
                 "scheme": scheme,
                 "overlap": overlap,
                 "order": "one step" if scheme == "GPSE" else order,
-                "largest order in h": np.nan if scheme == "GPSE" else np.max(between),
-                "least error": part["error"].min(),
-                "at h": part["h"].iloc[int(np.argmin(part["error"]))],
-                **{f"h = {h:.3g}": e for h, e in zip(part["h"], part["error"], strict=True)},
+                "largest order in h": max(between, default=np.nan),
+                "least error": error.min(),
+                "at h": h[np.argmin(error)],
+                **{f"h = {one:.3g}": e for one, e in zip(h, error, strict=True)},
             }
         )
     series = runs[[*_KEY, "h", "error"]].sort_values([*_KEY, "h"])

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
 
-from fracstudy.style import axes_row, slope_triangle
+from fracstudy.style import axes_row, entry, legend_below, log_log, slope_triangle
+from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
 
 __all__ = ["figure"]
 
 _PANELS = (("rl_integral", "sin"), ("caputo", "cos"), ("rl_derivative", "sin"))
-_FAINT = {"color": SUMS["modified"][1], "alpha": 0.35}
+_FAINT: dict[str, Any] = {"color": SUMS["modified"][1], "alpha": 0.35}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -28,7 +29,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             ax.plot(curve["x"], curve["y"], line, color=colour, marker=marker)
             if method == "modified":
                 ax.plot(curve["x"], curve["real"], line, linewidth=1.0, **_FAINT)
-        ax.set(xscale="log", yscale="log", xlabel="particle spacing $s$")
+        log_log(ax, xlabel="particle spacing $s$")
         title = f"{ax.get_title(loc='left')} {OPERATORS[operator].axis}, {TITLES[name]}"
         ax.set_title(title, loc="left")
         ticks = sorted(shown["x"].unique())
@@ -38,8 +39,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         y = float(np.interp(ticks[1], top["x"][::-1], top["y"][::-1]))
         slope_triangle(ax, ticks[1], 0.45 * y, 1.0)
     axes[0].set_ylabel("relative error $L_2$ (39)")
-    entries = [Line2D([], [], color=c, marker=m, label=label) for label, c, m in SUMS.values()]
-    entries.append(Line2D([], [], color="0.3", linestyle="--", label=r"variable $\alpha(x)$"))
-    entries.append(Line2D([], [], label="its real part", **_FAINT))
-    drawn.legend(handles=entries, loc="outside lower center", ncols=len(entries))
+    entries = [entry(label, color=colour, marker=marker) for label, colour, marker in SUMS.values()]
+    entries.append(entry(r"variable $\alpha(x)$", color="0.3", linestyle="--"))
+    entries.append(entry("its real part", **_FAINT))
+    legend_below(drawn, entries)
     return drawn

@@ -6,13 +6,14 @@ from itertools import product
 
 import numpy as np
 import pandas as pd
-from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
 
+from fracparticles.run.orders import observed_order
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
 from fracparticles.sph.integrals import METHODS
 from fracparticles.sph.norms import relative_l2
-from fracstudy.inputs import Inputs, Result, observed_order
+from fracstudy.inputs import Inputs, Result
+from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
 
 __all__ = ["study"]
 

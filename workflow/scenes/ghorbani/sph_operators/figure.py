@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+
+from fracstudy.style import entry, legend_below
 from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
 
 __all__ = ["figure"]
 
 _LEAST = 1e-9  # a smaller error, where a curve happens to cross zero, is not drawn
-_HOLLOW = {"color": SUMS["standard"][1], "marker": "o", "linestyle": "", "markerfacecolor": "none"}
+_HOLLOW: dict[str, Any] = {
+    "color": SUMS["standard"][1],
+    "marker": "o",
+    "linestyle": "",
+    "markerfacecolor": "none",
+}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, operator: str) -> Figure:
     """Draw, a column for each function, the operator and the absolute error (38) of the three sums."""
     names = list(dict.fromkeys(series["function"]))
     drawn = Figure(figsize=(2.5 * len(names), 4.9), layout="constrained")
-    grid = {"sharex": True, "squeeze": False, "gridspec_kw": {"height_ratios": (1.0, 1.15)}}
-    axes = drawn.subplots(2, len(names), **grid)
+    axes = drawn.subplots(2, len(names), sharex=True, squeeze=False, height_ratios=(1.0, 1.15))
     for (upper, lower), name in zip(axes.T, names, strict=True):
         curves = dict(tuple(series[series["function"] == name].groupby("method")))
         standard = curves["standard"]
@@ -41,11 +48,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, operator: str) -> Figur
     axes[0, 0].set_ylabel(OPERATORS[operator].axis)
     axes[1, 0].set_ylabel("absolute error (38)")
     entries = [
-        Line2D([], [], color="black", label="closed form"),
-        Line2D([], [], markersize=3.5, label="SPH, standard", **_HOLLOW),
-        *(Line2D([], [], color=colour, label=label) for label, colour, _ in SUMS.values()),
+        entry("closed form", color="black"),
+        entry("SPH, standard", markersize=3.5, **_HOLLOW),
+        *(entry(label, color=colour) for label, colour, _ in SUMS.values()),
     ]
-    drawn.legend(handles=entries, loc="outside lower center", ncols=len(entries))
+    legend_below(drawn, entries)
     return drawn
 
 

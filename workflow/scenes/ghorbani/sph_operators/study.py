@@ -8,7 +8,6 @@ from typing import Literal
 
 import numpy as np
 import pandas as pd
-from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
 
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
@@ -16,6 +15,7 @@ from fracparticles.sph.integrals import METHODS
 from fracparticles.sph.norms import r2_score, relative_l2
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement, value
+from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
 
 __all__ = ["study"]
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,8 +14,8 @@ from fracparticles.sph.derivatives import correction, gradient
 from fracparticles.sph.norms import relative_l2
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
-from scenes.ghorbani.sph_operators.study import OPERATORS, order_at, particles
-from scenes.ghorbani.sph_sums import Reading, approximate
+from scenes.ghorbani.operators import OPERATORS, Order, order_at
+from scenes.ghorbani.sph_readings.sums import Reading, approximate
 
 __all__ = ["CASES", "READINGS", "study"]
 
@@ -53,33 +52,37 @@ CASES = {
 }
 
 
-def study(inputs: Inputs) -> Result:
+def study(
+    inputs: Inputs,
+    *,
+    order: float,
+    variable: dict[str, float],
+    length: float,
+    count: int,
+    smoothing_ratio: float,
+) -> Result:
     """Change one choice at a time, and look at the equations that as printed cannot be meant.
 
-    Parameters of the scene: `order`, `variable` (`mean`, `amplitude`, `waves`), `length`, `count`, `smoothing_ratio`.
     A row of the table agrees in the figures whose six decimals it does not change. An equation is refuted if L2 is
     larger with it than without it, or above one half.
     """
-    parameters = inputs.parameters
-    line = particles(parameters)
-    errors = {name: _errors(line, parameters, reading) for name, reading in READINGS.items()}
+    line = ParticleLine(0.0, length, count, smoothing_ratio)
+    orders: list[Order] = [order, variable]
+    errors = {name: _errors(line, orders, reading) for name, reading in READINGS.items()}
     # In whole millionths: six decimals are printed.
     table = 1e6 * pd.DataFrame.from_dict(errors, orient="index")
     table = table.round().astype(int).rename(columns="{}, L2 × 10⁶".format)
     table["figures with the same digits"] = (table == table.iloc[0]).sum(axis=1)
     table = table.reset_index(names="reading")
-    findings = [*_gradients(line), _double_sum(line, parameters), *_orders(line, parameters)]
+    findings = [*_gradients(line), _double_sum(line, order), *_orders(line, variable)]
     findings.append(_eta(line, errors))
-    return Result(table, findings)
+    return Result(table, findings if "S-EQ" in inputs.items else ())
 
 
-def _errors(
-    line: ParticleLine, parameters: Mapping[str, Any], reading: Reading
-) -> dict[str, float]:
+def _errors(line: ParticleLine, orders: list[Order], reading: Reading) -> dict[str, float]:
     errors = {}
     for case, (operator, name, varies, modified) in CASES.items():
-        alpha = order_at(parameters["variable" if varies else "order"], line.x_all)
-        kind = OPERATORS[operator]
+        alpha, kind = order_at(orders[varies], line.x_all), OPERATORS[operator]
         judged = slice(0 if reading.first else kind.first, None)
         exact = kind.exact(FUNCTIONS[name], line.x, alpha[line.inside])[judged]
         ours = approximate(line, name, operator, alpha, modified, reading)[judged]
@@ -87,44 +90,37 @@ def _errors(
     return errors
 
 
-def _gradients(line: ParticleLine) -> list[Finding]:
+def _gradients(line: ParticleLine) -> Iterator[Finding]:
     """(18), (19) on f = 1 and f = x."""
-    volumes, h = np.full(line.x_all.size, line.spacing), line.smoothing
-    ones = np.ones_like(line.x_all)
-    regular = [
-        gradient(line.x, line.x_all, volumes, f, h, corrected=False) for f in (ones, line.x_all)
-    ]
-    factor = correction(line.x, line.x_all, volumes, h)
-    zeroth = np.abs(regular[0]).max() * h
-    first = np.abs(regular[1] / factor - 1.0).max()
-    plain = np.abs(regular[1] - 1.0).max()
-    printed = np.abs(regular[1] * factor - 1.0).max()
-    return [
-        statement(
-            "S-EQ.consistency",
-            max(zeroth, first) <= _ROUNDOFF < plain,
-            f"Of f = 1 the regular gradient is {zeroth:.0e} / h; of f = x it is 1 to {plain:.2e}, the corrected one "
-            f"1 to {first:.0e}.",
-            "Their orders of consistency are others.",
-        ),
-        statement(
-            "S-EQ.L_inverse",
-            printed <= plain,
-            f"With the sum of (19) as the factor of (18), the gradient of f = x is off by {printed:.2e}, against "
-            f"{plain:.2e} without a correction and {first:.0e} if divided by it.",
-            "The sum is L, not its inverse: as printed the correction doubles the error that it should remove.",
-        ),
-    ]
+    x, volume, h = line.x_all, line.spacing, line.smoothing
+    of_one, of_x = (
+        gradient(line.x, x, volume, f, h, corrected=False) for f in (np.ones_like(x), x)
+    )
+    factor = correction(line.x, x, volume, h)
+    zeroth = np.abs(of_one).max() * h
+    first, plain, printed = (np.abs(g - 1.0).max() for g in (of_x / factor, of_x, of_x * factor))
+    yield statement(
+        "S-EQ.consistency",
+        max(zeroth, first) <= _ROUNDOFF < plain,
+        f"Of f = 1 the regular gradient is {zeroth:.0e} / h; of f = x it is 1 to {plain:.2e}, the corrected one "
+        f"1 to {first:.0e}.",
+        "Their orders of consistency are others.",
+    )
+    yield statement(
+        "S-EQ.L_inverse",
+        printed <= plain,
+        f"With the sum of (19) as the factor of (18), the gradient of f = x is off by {printed:.2e}, against "
+        f"{plain:.2e} without a correction and {first:.0e} if divided by it.",
+        "The sum is L, not its inverse: as printed the correction doubles the error that it should remove.",
+    )
 
 
-def _double_sum(line: ParticleLine, parameters: Mapping[str, Any]) -> Finding:
+def _double_sum(line: ParticleLine, order: float) -> Finding:
     """(25), (31): with the integral at x_i inside the sum over j, it is a factor of sum_j V_j dW_ij = 0."""
-    alpha = order_at(parameters["order"], line.x_all)
+    alpha, ones = order_at(order, line.x_all), np.ones_like(line.x_all)
     exact = FUNCTIONS["sin"].rl(line.x, alpha[line.inside])
     inner = approximate(line, "sin", "rl_integral", 1.0 - alpha, False, _OURS)
-    volumes = np.full(line.x_all.size, line.spacing)
-    ones = np.ones_like(line.x_all)
-    literal = inner * gradient(line.x, line.x_all, volumes, ones, line.smoothing)
+    literal = inner * gradient(line.x, line.x_all, line.spacing, ones, line.smoothing)
     error = relative_l2(exact, literal)
     return statement(
         "S-EQ.double_sum",
@@ -134,30 +130,28 @@ def _double_sum(line: ParticleLine, parameters: Mapping[str, Any]) -> Finding:
     )
 
 
-def _orders(line: ParticleLine, parameters: Mapping[str, Any]) -> list[Finding]:
+def _orders(line: ParticleLine, variable: Order) -> Iterator[Finding]:
     """The left side of (32), and the range of alpha(x)."""
-    alpha = order_at(parameters["variable"], line.x_all)
+    alpha = order_at(variable, line.x_all)
     ours = approximate(line, "cos", "caputo", alpha, False, replace(_OURS, halved=True))
     order = alpha[line.inside]
     printed, meant = (
         relative_l2(FUNCTIONS["cos"].caputo(line.x, a), ours) for a in (1.0 - order, order)
     )
     low, high = order.min(), order.max()
-    return [
-        statement(
-            "S-EQ.caputo_order",
-            printed < meant,
-            f"For cos πx, with half volumes at the ends, the sum is {meant:.6f} (L2) from the derivative of order α(x) "
-            f"and {printed:.6f} from that of order 1 - α(x).",
-            "The right side of (32) is the derivative of order α(x).",
-        ),
-        statement(
-            "S-EQ.order_range",
-            low < 0.01 and high > 0.99,
-            f"On the particles α(x) runs from {low:.4f} to {high:.4f}.",
-            "The amplitude of 0.3 about the mean of 0.5 does not reach 0 and 1.",
-        ),
-    ]
+    yield statement(
+        "S-EQ.caputo_order",
+        printed < meant,
+        f"For cos πx, with half volumes at the ends, the sum is {meant:.6f} (L2) from the derivative of order α(x) "
+        f"and {printed:.6f} from that of order 1 - α(x).",
+        "The right side of (32) is the derivative of order α(x).",
+    )
+    yield statement(
+        "S-EQ.order_range",
+        low < 0.01 and high > 0.99,
+        f"On the particles α(x) runs from {low:.4f} to {high:.4f}.",
+        "The amplitude of 0.3 about the mean of 0.5 does not reach 0 and 1.",
+    )
 
 
 def _eta(line: ParticleLine, errors: Mapping[str, Mapping[str, float]]) -> Finding:

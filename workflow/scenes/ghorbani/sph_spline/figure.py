@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row
+from fracstudy.style import axes_row, note
 
 __all__ = ["figure"]
 
@@ -16,7 +16,6 @@ _KERNEL = {
     "integral": (r"$\widetilde{W}$", "#009E73", (0.95, 0.82)),
 }
 _SUMS = {"sum": (r"$\sum s\,W_{ij}$", "#0072B2"), "L": (r"$L_i$ of (19)", "#D55E00")}
-_NOTE = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points", "fontsize": 8}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, smoothing_ratio: float) -> Figure:
@@ -32,7 +31,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, smoothing_ratio: float)
     sums.axhline(1.0, color="0.4", linewidth=0.8)
     sums.axvline(smoothing_ratio, color="0.4", linewidth=0.8, linestyle=":")
     chosen = f"$h = {smoothing_ratio:g}\\,s$"
-    sums.annotate(chosen, (smoothing_ratio, 0.0), xytext=(4, 6), color="0.25", **_NOTE)
+    note(sums, chosen, (smoothing_ratio, 0.0), (4, 6), xycoords=("data", "axes fraction"))
     sums.set(xlabel="smoothing ratio $h / s$", ylabel="sum over the particles", ylim=(0.9, 1.1))
     sums.legend(loc="upper right")
     return drawn

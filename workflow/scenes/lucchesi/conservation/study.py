@@ -9,7 +9,8 @@ import pandas as pd
 
 from fracparticles.lattice.banded import BandedConvolution
 from fracparticles.moving.remeshing import REMESHINGS, remesh
-from fracparticles.schemes import dd, dpse, fd, fpse, gpse, kpse
+from fracparticles.schemes import SCHEMES, Setting, Sum, dpse, fpse
+from fracparticles.schemes.base import OnePass
 from fracparticles.special.stable import central_mass
 from fracstudy.claims import Finding
 from fracstudy.inputs import ORDERS, Inputs, Result, statement
@@ -78,23 +79,15 @@ def weight_sum(
     m = np.arange(2.0 * n + 1.0)
     near = m[: BandedConvolution.reach(overlap, order) + 1]
     rate = spacing**-alpha
-    if scheme == "FD":
-        return rate * _both_sides(fd.weights(m, alpha))
-    if scheme == "GPSE":
-        return 2.0 * rate * _both_sides(gpse.weights(m, alpha, overlap))
-    if scheme in ("DD", "KPSE"):
-        weights, passes = {"DD": (dd.weights, 1.0), "KPSE": (kpse.weights, 2.0)}[scheme]
-        return passes * rate * _both_sides(weights(m, alpha, order, overlap))
+    kind, setting = SCHEMES[scheme], Setting(alpha=alpha, order=order, overlap=overlap)
+    if isinstance(kind, OnePass):
+        passes = 1.0 if isinstance(kind, Sum) else 2.0
+        return passes * rate * _both_sides(kind.weights(m, setting))
     first, second = {
         "DPSE": (dpse.potential_weights, dpse.laplacian_weights),
         "FPSE": (fpse.flux_weights, fpse.divergence_weights),
     }[scheme]
-    return (
-        2.0
-        * rate
-        * _both_sides(first(m, alpha, order, overlap))
-        * _both_sides(second(near, alpha, order, overlap))
-    )
+    return 2.0 * rate * _both_sides(first(m, setting)) * _both_sides(second(near, setting))
 
 
 def _both_sides(weights: np.ndarray) -> float:

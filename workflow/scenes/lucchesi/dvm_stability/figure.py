@@ -1,7 +1,76 @@
-"""See `dvm_figures`."""
+"""The stability of DVM and GPSE against the limit of DD."""
 
 from __future__ import annotations
 
-from scenes.lucchesi.dvm_figures import dvm_stability as figure
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fracstudy.style import COLOURS, MARKERS, axes_row, log_log, name_ticks, panel_title
 
 __all__ = ["figure"]
+
+_STOPPED = 3.0  # where the marks of runs that stop are drawn
+_DVM: dict[str, Any] = {"color": COLOURS["DVM"], "marker": MARKERS["DVM"]}
+_LOOKS: dict[str, dict[str, Any]] = {
+    "DVM, no remeshing": {**_DVM, "markerfacecolor": "none", "linestyle": "--"},
+    "DVM, M4'": _DVM,
+    "GPSE, open exterior": {"color": COLOURS["GPSE"], "marker": MARKERS["GPSE"]},
+}
+_CROSS: dict[str, Any] = {"marker": "x", "linestyle": "", "markersize": 6, "markeredgewidth": 1.5}
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+    """Draw (a) the factor of a wave in a step and (b) the error of runs, against the step over DD's limit."""
+    drawn, (growth, error) = axes_row(2, width=4.5, height=3.9)
+    _factors(growth, series[series["panel"] == "growth"])
+    _errors(error, series[series["panel"] == "error"])
+    for ax in (growth, error):
+        right = ax.get_xlim()[1]
+        ax.axvspan(1.0, right, color="0.95", zorder=0)
+        ax.set_xlim(right=right)
+        ax.axvline(1.0, color="0.5", linewidth=0.8)
+        ax.set_xlabel(r"step over the limit of DD, $D\,\Delta t / (a\,h^\alpha)$")
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
+    return drawn
+
+
+def _factors(ax: Axes, series: pd.DataFrame) -> None:
+    waves = series[series["run"] == "DVM"]
+    largest = waves["factor"].max()
+    hollow = {"color": COLOURS["DVM"], "linestyle": "", "markerfacecolor": "none"}
+    looks = {2: ("II", "p", 6), 4: ("IV", "h", 9)}
+    for order, (name, marker, size) in looks.items():
+        part = waves[waves["order"] == order].sort_values("factor")
+        label = f"DVM {name}, measured"
+        look: dict[str, Any] = {"marker": marker, "markersize": size, "label": label, **hollow}
+        ax.plot(part["factor"], part["measured"], **look)
+        if order == 2:
+            fine = np.linspace(0.0, largest, 200)
+            z = -2.0 * fine
+            predicted = r"$1 + z + z^2/2$, $z = \Delta t\,A_\mathrm{DD}$"
+            ax.plot(fine, 1.0 + z + 0.5 * z * z, color=COLOURS["DD"], label=predicted)
+    part = series[(series["run"] == "GPSE") & (series["factor"] <= 1.05 * largest)]
+    ax.plot(part["factor"], part["predicted"], color=COLOURS["GPSE"], label="GPSE, short waves")
+    ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle=":")
+    ax.set(xlim=(0.0, 1.03 * largest), ylim=(0.0, None), ylabel="factor of a wave in a step")
+    panel_title(ax, "a", "growth of the worst wave")
+
+
+def _errors(ax: Axes, series: pd.DataFrame) -> None:
+    for name, part in series.groupby("run"):
+        part = part.sort_values("factor")
+        label = name.replace("M4'", "$M_4'$")
+        ax.plot(part["factor"], part["error"], label=label, **_LOOKS[name])
+        stopped = part.loc[part["stopped"].notna(), "factor"]
+        if len(stopped):
+            marks, label = [_STOPPED] * len(stopped), "stopped: $u$ changes sign"
+            ax.plot(stopped, marks, color=_LOOKS[name]["color"], label=label, **_CROSS)
+    log_log(ax)
+    low, high = ax.get_xlim()
+    name_ticks(ax, [tick for tick in (0.25, 0.5, 1.0, 2.0, 4.0) if low <= tick <= high])
+    ax.set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
+    panel_title(ax, "b", "error of runs")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from math import pi, sqrt
 
 import numpy as np
@@ -11,7 +12,8 @@ import pandas as pd
 from fracparticles import time as integrators
 from fracparticles.kernels.families import kernel
 from fracparticles.schemes import Setting, dpse
-from fracparticles.schemes.base import lattice_transform, one_pass_operator
+from fracparticles.schemes.base import one_pass_operator
+from fracparticles.schemes.transform import lattice_transform
 from fracparticles.special import mean_radius
 from fracstudy.claims import Finding
 from fracstudy.inputs import ORDERS, Inputs, Result, observed_order, statement
@@ -46,10 +48,9 @@ def fickian_error(
     """
     n = round(half_width / spacing)
     setting = Setting(n=n, spacing=half_width / n, alpha=2.0, order=order, overlap=overlap)
-    operator = one_pass_operator(
-        setting, lambda m: dpse.laplacian_weights(m, _ANY, order, overlap), exchange_sum=0.0
-    )
-    at_zero, at_pi = lattice_transform("Phi", np.array([0.0, pi]), _ANY, order, overlap)
+    kernels = replace(setting, alpha=_ANY)
+    operator = one_pass_operator(setting, lambda m: dpse.laplacian_weights(m, kernels), 0.0)
+    at_zero, at_pi = lattice_transform("Phi", np.array([0.0, pi]), kernels)
     low = setting.rate * 2.0 / overlap**2 * (at_pi - at_zero)
     x = np.arange(-n, n + 1) * setting.spacing
     u = integrators.exponential(t_final - t_initial, low, 0.0)(operator, heat_kernel(x, t_initial))

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from fracparticles.kernels.families import kernel
-from fracparticles.kernels.tabulated import tabulated
 from fracparticles.run.case import Case
 from fracparticles.schemes.base import lattice_radii
-from fracparticles.schemes.dd import weights
+from fracparticles.schemes.dd import DirectDifferentiation
 from fracstudy.inputs import Inputs, Result, observed_order, statement
 from scenes.beyond.solution_map_2d.study import with_count
 
@@ -30,10 +29,10 @@ def spurious_rate(case: Case, step: float) -> float:
     chords is not, and by Euler and Maclaurin the difference is near (step^2 / 12) int G'' = pi step^2 G(0) / 6 < 0,
     over epsilon^alpha: it grows when h falls.
     """
-    n, alpha, order, overlap = case.n, case.alpha, case.order, case.epsilon_over_h
+    n, dd = case.n, DirectDifferentiation()
     radii = lattice_radii(n + 1, 2)
-    error = weights(radii, alpha, order, overlap, 2, tabulated(step))
-    error -= weights(radii, alpha, order, overlap, 2, kernel)
+    error = dd.weights(radii, replace(case.setting, kernel_table=step))
+    error -= dd.weights(radii, replace(case.setting, kernel_table=None))
     # The quadrant m >= 0: points on an axis stand for two, the others for four.
     copies = np.where(np.arange(n + 1) > 0, 2.0, 1.0)
     return float(-case.setting.rate * copies @ error @ copies)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from fracparticles.lattice.box import BOX_SUMMATIONS
+from fracparticles.lattice.sums import BOX_SUMMATIONS
 from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.fpse import flux_weights
@@ -34,7 +34,7 @@ def flux_along_axis(case: Case, u: np.ndarray) -> np.ndarray:
     """
     offsets = np.arange(2 * case.n + 1.0)
     r = np.hypot(offsets[:, None], offsets[None, :])
-    radial = flux_weights(r, case.alpha, case.order, case.epsilon_over_h, 2)
+    radial = flux_weights(r, case.setting)
     along_x = radial * offsets[:, None] / np.where(r > 0.0, r, 1.0)
     count = offsets.size
     sums = BOX_SUMMATIONS["fft"]([along_x], [0], count, count)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import product
+from collections import defaultdict
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from fracparticles.run.dataset import read_run
+from fracparticles.run.orders import observed_order, self_convergence_order
+from fracparticles.run.strengths import lattice_strengths
 from fracparticles.special.stable import green, mean_radius
 from fracstudy.claims import Finding
-from fracstudy.inputs import ORDERS, Inputs, Result, observed_order, statement, value
-from scenes.beyond.dvm_particles.study import lattice_strengths
+from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result, statement, value
 
 __all__ = ["self_convergence_order", "study"]
 
@@ -23,181 +24,147 @@ _NEAR = 0.3  # of the expected order
 Levels = dict[float, tuple[np.ndarray, np.ndarray]]  # x and u by spacing
 
 
-def self_convergence_order(levels: list[np.ndarray]) -> float:
-    """Return p of Eq. (49) from the strengths of three nested lattices on their common points.
-
-    p = log2( sum_i |u_i^l - u_i^{l+1}| / sum_i |u_i^{l+1} - u_i^{l+2}| ), i over the coarsest lattice.
-    """
-    coarse, middle, fine = levels
-    return float(np.log2(np.abs(coarse - middle).sum() / np.abs(middle - fine).sum()))
-
-
-def study(inputs: Inputs) -> Result:
+def study(inputs: Inputs, *, judged_remeshing: str, printed_spacing: dict[float, float]) -> Result:
     """Table 2: the printed orders, ours in the reading that comes nearest, and the other readings.
 
-    Parameters: `schemes` on the lattice, `remeshings` of DVM, `spacing`, the printed h by beta. What the print
-    leaves open is read alike for all: h is the middle level, (49) compares strengths, over |x| <= 5 R_alpha. DVM has
-    strengths on common points after one last remeshing; its claims are judged by the first of `remeshings`.
+    What the print leaves open is read alike for all: `printed_spacing`, the printed h by beta, is the middle level,
+    (49) compares strengths, over |x| <= 5 R_alpha. DVM has strengths on common points after one last remeshing; its
+    claims are judged by those with `judged_remeshing`.
     """
-    target = {float(beta): h for beta, h in inputs.parameters["spacing"].items()}
-    rows, findings = [], []
-    for beta, scheme, order in product(target, inputs.parameters["schemes"], (2, 4)):
-        runs = inputs.select(beta=beta, scheme=scheme, order=order)
-        row, readings = _row(inputs, beta, _strengths(runs), scheme, order)
-        rows.append(row)
-        findings.append(_finding(row, readings, runs))
-    names = list(inputs.parameters["remeshings"])
-    for beta in target:
-        dvm_rows: list[dict[str, Any]] = []
-        every: dict[str, float] = {}
-        for name in names:
-            runs = inputs.select(beta=beta, scheme="DVM", order=2, remeshing=name)
-            row, readings = _row(inputs, beta, _remeshed_strengths(runs), "DVM", 2)
-            half = 5.0 * mean_radius(1.0 + beta)
-            row["field (7)"] = _readings(_strengths(runs), target[beta], half)["middle"]
-            dvm_rows.append(row)
-            every |= {f"{reading} level and {name}": p for reading, p in readings.items()}
-        runs = inputs.select(beta=beta, scheme="DVM", order=2)
-        findings.append(
-            _finding(dvm_rows[0], every, runs, " after a last remeshing by " + names[0])
-        )
-        rows += [
-            {**row, "scheme": f"DVM, {name}"} for row, name in zip(dvm_rows, names, strict=True)
-        ]
+    runs = inputs.scalars.assign(remeshing=inputs.scalars.get("remeshing"))  # of DVM only
+    # DVM comes last, and of its rows the judged ones first.
+    runs = runs.assign(moving=runs["scheme"] == "DVM", other=runs["remeshing"] != judged_remeshing)
+    key = ["moving", "beta", "scheme", "order", "other", "remeshing"]
+    rows, rates = [], defaultdict(list)
+    readings: dict[str, dict[str, float]] = defaultdict(dict)
+    for (moving, beta, scheme, order, _, remeshing), part in runs.groupby(key, dropna=False):
+        levels = _strengths(part, remeshed=moving)
+        target, half = printed_spacing.get(beta, np.nan), 5.0 * mean_radius(1.0 + beta)
+        claim = f"L-T2.{scheme}.{NUMERALS[order]}.beta{beta:g}"
+        ours = _readings(levels, target, half)
+        printed = float(inputs.printed.get(claim, np.nan))
+        row = {
+            "beta": beta,
+            "h": _nearest(levels, target),
+            "scheme": f"DVM, {remeshing}" if moving else scheme,
+            "order": NUMERALS[order],
+            "printed": printed,
+            "ours": ours["middle"],
+            "deviation": ours["middle"] - printed,
+            "h as coarse level": ours["coarse"],
+            "h as fine level": ours["fine"],
+            "all particles": _readings(levels, target, np.inf)["middle"],
+        }
+        if moving:
+            field = _strengths(part)
+            row["field (7)"] = _readings(field, target, half)["middle"]
+            for kind, of_kind in (("field (7)", field), ("strengths", levels)):
+                time = float(part["t_final"].iloc[0])
+                rates[remeshing, kind].append(_rate(of_kind, beta, time))
+        rows.append(row | {"claim": claim})
+        level = f"level and {remeshing}" if moving else "level"
+        readings[claim] |= {f"{name} {level}": p for name, p in ours.items()}
     table = pd.DataFrame(rows)
-    judged = table[~table["scheme"].isin([f"DVM, {name}" for name in names[1:]])]
-    deviation = judged.groupby("order")["ours"].agg(["min", "max"])
-    expected = {"II": 2.0, "IV": 4.0}
-    off = (judged["ours"] - judged["order"].map(expected)).abs()
-    findings.append(
-        statement(
-            "L-T2.expected",
-            bool((off < _NEAR).all()),
-            "Ours: "
-            + "; ".join(
-                f"order {order}: {row['min']:.2f} to {row['max']:.2f}"
-                for order, row in deviation.iterrows()
-            )
-            + ", |x| <= 5 R.",
-            "At the printed h some fourth-order results are not yet, or no longer, in the asymptotic range.",
-        )
+    judged = table.drop_duplicates("claim").set_index("claim")
+    table = table.drop(columns="claim")
+    if not inputs.items:
+        return Result(table)
+    findings = []
+    for (_, beta, scheme, order), part in runs.groupby(key[:4]):
+        claim = f"L-T2.{scheme}.{NUMERALS[order]}.beta{beta:g}"
+        how = f" after a last remeshing by {judged_remeshing}" if scheme == "DVM" else ""
+        findings.append(_finding(claim, judged.loc[claim], readings[claim], how, part["run"]))
+    findings.append(_expected(judged))
+    if rates:
+        findings.append(_dvm_rate(rates, judged_remeshing, runs.loc[runs["moving"], "run"]))
+    return Result(table, findings)
+
+
+def _expected(judged: pd.DataFrame) -> Finding:
+    expected = judged["order"].map({name: order for order, name in ORDERS.items()})
+    ranges = judged.groupby("order")["ours"].agg(["min", "max"])
+    each = "; ".join(f"order {p}: {low:.2f} to {high:.2f}" for p, low, high in ranges.itertuples())
+    return statement(
+        "L-T2.expected",
+        ((judged["ours"] - expected).abs() < _NEAR).all(),
+        f"Ours: {each}, |x| <= 5 R.",
+        "At the printed h some fourth-order results are not yet, or no longer, in the asymptotic range.",
     )
-    return Result(table, [*findings, _dvm_rate(inputs, names)])
-
-
-def _row(
-    inputs: Inputs, beta: float, strengths: Levels, scheme: str, order: int
-) -> tuple[dict[str, Any], dict[str, float]]:
-    """One row of the table, and the order in each reading."""
-    claim = f"L-T2.{scheme}.{ORDERS[order]}.beta{beta:g}"
-    printed = float(inputs.printed[claim])
-    target = float(inputs.parameters["spacing"][f"{beta:g}"])
-    readings = _readings(strengths, target, 5.0 * mean_radius(1.0 + beta))
-    row = {
-        "beta": beta,
-        "h": _nearest(strengths, target),
-        "scheme": scheme,
-        "order": ORDERS[order],
-        "printed": printed,
-        "ours": readings["middle"],
-        "deviation": readings["middle"] - printed,
-        "h as coarse level": readings["coarse"],
-        "h as fine level": readings["fine"],
-        "all particles": _readings(strengths, target, np.inf)["middle"],
-    }
-    return row, readings
 
 
 def _finding(
-    row: dict[str, Any], readings: dict[str, float], runs: pd.DataFrame, how: str = ""
+    claim: str, row: pd.Series, readings: dict[str, float], how: str, files: pd.Series
 ) -> Finding:
     """Our order for a printed one, and which reading comes nearest."""
     off, nearest = min(
-        (abs(number - row["printed"]), name)
-        for name, number in readings.items()
-        if not np.isnan(number)
+        (abs(p - row["printed"]), name) for name, p in readings.items() if not np.isnan(p)
     )
-    nearest = nearest if "level" in nearest else f"{nearest} level"
-    return value(
-        f"L-T2.{row['scheme']}.{row['order']}.beta{row['beta']:g}",
-        row["ours"],
+    reason = (
         "The print names neither the level of its h nor the particles of (49); ours: h as middle level, raw "
-        f"strengths{how}, |x| <= 5 R. The nearest reading, h as {nearest}, is {off:.3f} off.",
-        list(runs["run"]),
+        f"strengths{how}, |x| <= 5 R. The nearest reading, h as {nearest}, is {off:.3f} off."
+    )
+    return value(claim, row["ours"], reason, files)
+
+
+def _dvm_rate(rates: dict[tuple[str, str], list[float]], judged: str, files: pd.Series) -> Finding:
+    """Does the error of DVM fall with the order of its kernel, II? Between the two finest levels of each beta."""
+    each = "; ".join(
+        f"{name}, {kind}: {min(orders):.2f} to {max(orders):.2f}"
+        for (name, kind), orders in rates.items()
+    )
+    first = np.array([orders for (name, _), orders in rates.items() if name == judged])
+    return statement(
+        "L-T2.DVM.rate",
+        (np.abs(first - 2.0) < _NEAR).all(),
+        f"Order of the error against the exact solution, |x| <= 5 R, between the two finest levels: {each}. Lambda3 "
+        "leaves a spike at x = 0 in the strengths, whatever their self-convergence says.",
+        "The error does not fall like h^2.",
+        files,
     )
 
 
-def _nearest(strengths: Levels, target: float) -> float:
-    return min(strengths, key=lambda h: abs(np.log(h / target)))
+def _rate(levels: Levels, beta: float, time: float) -> float:
+    """The order of the sum of |u - exact| over |x| <= 5 R_alpha, times h, between the two finest levels."""
+    half = 5.0 * mean_radius(1.0 + beta) * (1.0 + 1e-12)
+    h = sorted(levels, reverse=True)[-2:]
+    error = []
+    for x, u in (levels[spacing] for spacing in h):
+        off = np.abs(u - green(x, time, 1.0 + beta))
+        error.append((x[1] - x[0]) * off[np.abs(x) <= half].sum())
+    return float(observed_order(h, error)[0]) if len(h) > 1 else np.nan
 
 
-def _readings(strengths: Levels, target: float, half_width: float) -> dict[str, float]:
-    """The order with the printed h as each of the three levels, nan where there are not three."""
-    h = sorted(strengths, reverse=True)
-    place = h.index(_nearest(strengths, target))
+def _nearest(levels: Levels, target: float) -> float:
+    """The spacing nearest to the printed one; without a print the middle one."""
+    if np.isnan(target):
+        return sorted(levels)[len(levels) // 2]
+    return min(levels, key=lambda h: abs(np.log(h / target)))
+
+
+def _readings(levels: Levels, target: float, half_width: float) -> dict[str, float]:
+    """The order (49) with the printed h as each of the three levels, nan where there are not three nested ones.
+
+    It sums over the points of the coarsest lattice with |x| <= half_width: every other point from level to level.
+    """
+    h = sorted(levels, reverse=True)
+    place = h.index(_nearest(levels, target))
     readings = {}
     for reading, shift in _READINGS.items():
-        levels = [strengths[spacing] for spacing in h[max(place - shift, 0) : place - shift + 3]]
-        readings[reading] = _order(levels, half_width) if len(levels) == 3 else np.nan
+        three = [levels[spacing] for spacing in h[max(place - shift, 0) : place - shift + 3]]
+        x = three[0][0]
+        inside = np.abs(x) <= half_width
+        common = [u[:: 2**level] for level, (_, u) in enumerate(three)]
+        nested = len(common) == 3 and {len(u) for u in common} == {len(x)}
+        order = self_convergence_order([u[inside] for u in common]) if nested else np.nan
+        readings[reading] = order
     return readings
 
 
-def _dvm_rate(inputs: Inputs, names: list[str]) -> Finding:
-    """Does the error of DVM fall with the order of its kernel, II? Between the two finest levels of each beta."""
-    found: dict[tuple[str, str], list[float]] = {}
-    for beta, name in product(map(float, inputs.parameters["spacing"]), names):
-        runs = inputs.select(beta=beta, scheme="DVM", order=2, remeshing=name)
-        for kind, levels in (
-            ("field (7)", _strengths(runs)),
-            ("strengths", _remeshed_strengths(runs)),
-        ):
-            h = np.array(sorted(levels, reverse=True)[-2:])
-            error = [_exact_error(*levels[spacing], beta, inputs) for spacing in h]
-            found.setdefault((name, kind), []).append(float(observed_order(h, np.array(error))[0]))
-    spelled = "; ".join(
-        f"{name}, {kind}: {min(orders):.2f} to {max(orders):.2f}"
-        for (name, kind), orders in found.items()
-    )
-    first = [order for (name, _), orders in found.items() if name == names[0] for order in orders]
-    return statement(
-        "L-T2.DVM.rate",
-        bool((np.abs(np.array(first) - 2.0) < _NEAR).all()),
-        f"Order of the error against the exact solution, |x| <= 5 R, between the two finest levels: {spelled}. Lambda3 "
-        "leaves a spike at x = 0 in the strengths, whatever their self-convergence says.",
-        "The error does not fall like h^2.",
-        inputs.select(scheme="DVM")["run"],
-    )
-
-
-def _exact_error(x: np.ndarray, u: np.ndarray, beta: float, inputs: Inputs) -> float:
-    """Sum of |u - exact| over |x| <= 5 R_alpha, times h."""
-    time = float(inputs.scalars["t_final"].iloc[0])
-    inside = np.abs(x) <= 5.0 * mean_radius(1.0 + beta) * (1.0 + 1e-12)
-    return float((x[1] - x[0]) * np.abs(u - green(x, time, 1.0 + beta))[inside].sum())
-
-
-def _remeshed_strengths(runs: pd.DataFrame) -> Levels:
-    """x and U_p / h of each run of DVM after a last remeshing, by its realised spacing."""
+def _strengths(runs: pd.DataFrame, remeshed: bool = False) -> Levels:
+    """x and u of each run by its realised spacing; for DVM u is the field (7), or U_p / h after a last remeshing."""
     found = {}
     for path in runs["run"]:
-        run = read_run(path)
-        found[float(run["particle_spacing"])] = (run["x"].values, lattice_strengths(run))
+        run: Any = read_run(path)
+        u = lattice_strengths(run) if remeshed else run["u"].values
+        found[float(run["particle_spacing"])] = (run["x"].values, u)
     return found
-
-
-def _strengths(runs: pd.DataFrame) -> Levels:
-    """x and u of each run by its realised spacing; u is the field (7) for DVM."""
-    import netCDF4
-
-    found = {}
-    for path, h in zip(runs["run"], runs["particle_spacing"], strict=True):
-        with netCDF4.Dataset(path) as file:
-            found[float(h)] = (np.asarray(file["x"][:]), np.asarray(file["u"][:]))
-    return found
-
-
-def _order(levels: list[tuple[np.ndarray, np.ndarray]], half_width: float) -> float:
-    """(49) over the points of the coarsest lattice with |x| <= half_width; every other point from level to level."""
-    x, _ = levels[0]
-    inside = np.abs(x) <= half_width
-    return self_convergence_order([u[:: 2**level][inside] for level, (_, u) in enumerate(levels)])

@@ -80,7 +80,7 @@ def _rate_at_the_edge(run: Any) -> dict[str, float]:
     exact = -(sides[1] - sides[0]) / (2.0 * h)
 
     reach = BandedConvolution.reach(s, order)
-    c = dpse.laplacian_weights(np.arange(reach + 1.0), alpha, order, s)
+    c = dpse.laplacian_weights(np.arange(reach + 1.0), setting)
     mass = central_mass(run.half_width, run.t_initial, alpha)
     slope = mass * run.beta * riesz.potential_constant(alpha) * run.half_width**-alpha
     return {
@@ -95,7 +95,7 @@ def _rate_with_continued_potential(setting: Setting, u: np.ndarray, c: np.ndarra
     """(16) at x = D with v of (13) on `reach` particles beyond the end as well."""
     reach, h = c.size - 1, setting.spacing
     offsets = np.arange(-2 * setting.n - reach, 2 * setting.n + reach + 1.0)
-    b = dpse.potential_weights(offsets, setting.alpha, setting.order, setting.overlap)
+    b = dpse.potential_weights(offsets, setting)
     v = h ** (2.0 - setting.alpha) * valid_convolution(u, b)[-2 * reach - 1 :]
     stencil = np.concatenate([c[:0:-1], c])
     return float(stencil @ (v - v[reach])) / h**2

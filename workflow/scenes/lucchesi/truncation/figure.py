@@ -1,7 +1,28 @@
-"""See `errors_figures`."""
+"""Figs. 3a, 4a, 5a: error (48) against the truncation factor C."""
 
 from __future__ import annotations
 
-from scenes.lucchesi.errors_figures import truncation as figure
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fracstudy.style import guide, name_ticks, scheme_legend
+from scenes.lucchesi.exteriors import exterior_panels
 
 __all__ = ["figure"]
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+    """Draw the errors; a dotted guide falls like C^-alpha."""
+    figure, axes = exterior_panels(series)
+    for ax in axes:
+        ax.set_xlabel(r"truncation factor $C = D / (t_f^{1/\alpha} R_\alpha)$")
+        name_ticks(ax, sorted(series["x"].unique()))
+    # Above GPSE, whose step has no other error; without it, above the largest of the others.
+    truncated = series[series["exterior"] == "truncated"].sort_values("x")
+    gpse = truncated[truncated["scheme"] == "GPSE"]
+    points = truncated.loc[truncated.groupby("x")["y"].idxmax()] if gpse.empty else gpse
+    middle = points.iloc[len(points) // 2]
+    through = (middle["x"], 4.0 * middle["y"])
+    guide(axes[0], points["x"], through, -(1.0 + middle["beta"]), r"$C^{-\alpha}$")
+    scheme_legend(figure, series)
+    return figure

@@ -30,7 +30,9 @@ def _table(runs: pd.DataFrame) -> pd.DataFrame:
     beta = float(runs["beta"].iloc[0])
     key = ["scheme", "order", "C"]
     errors = runs.set_index([*key, "exterior"])["relative_l1_error"].unstack().reset_index()
-    widths, spacings = (runs.groupby("C")[name].first() for name in ("half_width", "particle_spacing"))
+    widths, spacings = (
+        runs.groupby("C")[name].first() for name in ("half_width", "particle_spacing")
+    )
     time = float((runs["t_final"] - runs["t_initial"]).iloc[0])
     predicted = exchange_truncation_error(errors["C"].map(widths), 1.0 + beta, time)
     exchange = errors["scheme"].isin(["KPSE", "GPSE"])

@@ -1,7 +1,27 @@
-"""See `pse_note_figures`."""
+"""Kernels from moment conditions."""
 
 from __future__ import annotations
 
-from scenes.particle_note.pse_note_figures import note_kernels as figure
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fracstudy.style import axes_row, legend_below, panel_title
+from scenes.particle_note.waves import LINES
 
 __all__ = ["figure"]
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[int]) -> Figure:
+    """The kernels of some derivatives, with each accuracy, over their largest value."""
+    drawn, axes = axes_row(len(shown), height=2.8, width=9.6 / len(shown), sharey=True)
+    for letter, ax, beta in zip("abcdefgh", axes, shown, strict=False):
+        for r, curve in series[series["beta"] == beta].groupby("r"):
+            scaled = curve["y"] / curve["y"].abs().max()
+            ax.plot(curve["x"], scaled, label=f"$r$ = {r}", **LINES[r])
+        ax.axhline(0.0, color="0.6", linewidth=0.6)
+        shape = "symmetric" if beta % 2 == 0 else "antisymmetric"
+        panel_title(ax, letter, rf"$\beta$ = {beta}, {shape}")
+        ax.set(xlabel="$z$", xlim=(-4.0, 4.0))
+    axes[0].set_ylabel(r"kernel $\eta(z)\, /\, \max|\eta|$")
+    legend_below(drawn, axes[0])
+    return drawn

@@ -199,5 +199,5 @@ def _set_up(case: Case, repeats: int, seconds: float) -> tuple[Timing, Prepared]
 
 def _application_time(ready: Prepared, u: np.ndarray, repeats: int, seconds: float) -> float:
     flat, v = u.reshape(-1), np.zeros(u.size)
-    timing, _ = measure(partial(ready.operator.update, flat, 1.0, 0.0, 0.0, v), repeats, seconds)
+    timing, _ = measure(partial(ready.operator.combine, flat, v, 1.0), repeats, seconds)
     return timing.minimum

@@ -23,17 +23,17 @@ __all__ = ["PARTS", "benchmark"]
 
 # The parts of a set-up, each by the functions where a caller looks them up; a part within a part counts for itself.
 PARTS = {
-    "kernel values": ("schemes.base.kernel", "schemes.fpse.kernel"),
+    "kernel values": ("schemes.setting.kernel", "schemes.fpse.kernel"),
     "far field": (
         "schemes.base.far_field",
         "schemes.fpse.far_field",
         "schemes.base.box_far_field",
         "schemes.fpse.box_far_field",
-        "propagator.tabulated_far_field",
+        "time.propagator.tabulated_far_field",
     ),
-    "range of the symbol": ("solver.spectral_interval",),
-    "time series": ("solver.exponential_flow", "solver.power_flow"),
-    "weights from the symbol": ("propagator.propagator_weights",),
+    "range of the symbol": ("run.solver.spectral_interval",),
+    "time series": ("run.solver.exponential_flow", "run.solver.power_flow"),
+    "weights from the symbol": ("time.propagator.propagator_weights",),
 }
 _OTHER = "plans and the rest"
 _SOLVES = 10  # solves for every set-up

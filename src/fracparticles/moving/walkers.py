@@ -1,0 +1,69 @@
+"""How many walkers a density takes: what `random_walk` must spend to equal a scheme, and where too few are left."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fracparticles.arguments import positive_integer, real_array, scale, within
+from fracparticles.special.stable import green
+
+__all__ = ["few_walkers_beyond", "walkers_to_equal"]
+
+
+def walkers_to_equal(masses: Any, error: float) -> float:
+    """Return the n at which sum_k E |N_k/n - p_k| / sum_k p_k = error, E |...| = (2 p_k (1 - p_k) / (pi n))^(1/2).
+
+    Parameters
+    ----------
+    masses : array_like
+        p_k, the mass of each cell, see `random_walk.cell_masses`.
+    error : float
+        Relative error, as (48), of the scheme that is to be equalled.
+
+    Raises
+    ------
+    InvalidInput
+        If a mass is not within [0, 1], or the error not positive.
+    """
+    p = within("masses", real_array("masses", masses), 0.0, 1.0)
+    root = np.sqrt(p * (1.0 - p)).sum() / p.sum()
+    return float(2.0 / math.pi * (root / scale("error", error)) ** 2)
+
+
+def few_walkers_beyond(
+    walkers: int, width: float, t: float, alpha: float, few: float = 10.0
+) -> float:
+    """Return the |x| beyond which a cell expects fewer than `few` of the walkers: n width G(x, t) = few.
+
+    Parameters
+    ----------
+    walkers : int
+        n.
+    width : float
+        Width of a cell.
+    t, alpha : float
+        Of the fundamental solution G.
+    few : float
+        The number of walkers; with 10 the density is uncertain by a third.
+
+    Returns
+    -------
+    float
+        Zero if there are fewer everywhere.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+    level = scale("few", few) / (positive_integer("walkers", walkers) * scale("width", width))
+    if green(0.0, t, alpha) <= level:
+        return 0.0
+    far = 1.0
+    while green(far, t, alpha) > level:
+        far *= 2.0
+    return float(brentq(lambda x: green(x, t, alpha) - level, 0.0, far))

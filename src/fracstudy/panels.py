@@ -1,0 +1,34 @@
+"""What a figure draws, in long form: one row a point, with its panel and its series."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+__all__ = ["Panels", "pick"]
+
+
+class Panels:
+    """Collects the points of a figure: columns panel, series, x, y, and what else is given."""
+
+    def __init__(self) -> None:
+        self._parts: list[pd.DataFrame] = []
+
+    def add(self, panel: str, series: Any, x: Any, y: Any, **more: Any) -> None:
+        """Add points: all but `x` is one value, or one for each of them."""
+        columns = {"panel": panel, "series": series, "x": np.atleast_1d(x), "y": y, **more}
+        self._parts.append(pd.DataFrame(columns))
+
+    @property
+    def frame(self) -> pd.DataFrame:
+        """All points."""
+        return pd.concat(self._parts, ignore_index=True)
+
+
+def pick(frame: pd.DataFrame, /, **values: Any) -> pd.DataFrame:
+    """Return the rows of a frame that have these values in these columns."""
+    for column, value in values.items():
+        frame = frame[frame[column] == value]
+    return frame

@@ -1,0 +1,38 @@
+"""How many walkers a density takes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fracparticles.errors import InvalidInput
+from fracparticles.moving.random_walk import cell_masses, expected_deviation
+from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
+from fracparticles.special.stable import green
+
+
+def test_walkers_to_equal_an_error():
+    """Inverse of the expected deviation, up to 1 / (n p)."""
+    masses = cell_masses(np.linspace(-8.0, 8.0, 33), 1.5, 1.5)
+    error = expected_deviation(masses, 10**7).sum() / masses.sum()
+    assert walkers_to_equal(masses, error) == pytest.approx(1e7, rel=1e-4)
+
+
+def test_few_walkers():
+    x = few_walkers_beyond(10**6, 0.25, 1.5, 1.5)
+    assert 10**6 * 0.25 * green(x, 1.5, 1.5) == pytest.approx(10.0, rel=1e-9)
+    assert few_walkers_beyond(10, 0.25, 1.5, 1.5) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("field", "call"),
+    [
+        ("masses", lambda: walkers_to_equal([0.5, 1.5], 0.1)),
+        ("error", lambda: walkers_to_equal([0.5], 0.0)),
+        ("walkers", lambda: few_walkers_beyond(0, 0.25, 1.5, 1.5)),
+        ("width", lambda: few_walkers_beyond(10, -1.0, 1.5, 1.5)),
+    ],
+)
+def test_what_is_refused(field, call):
+    with pytest.raises(InvalidInput, match=field):
+        call()

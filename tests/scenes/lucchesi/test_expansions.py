@@ -1,0 +1,30 @@
+"""The partial sums of Figs A.10-A.12."""
+
+from __future__ import annotations
+
+import pytest
+from matplotlib.figure import Figure
+
+from fracstudy.inputs import Inputs
+from scenes.lucchesi.expansions.figure import figure
+from scenes.lucchesi.expansions.study import study
+
+
+@pytest.mark.parametrize(("alpha", "item"), [(1.1, "L-FA10"), (1.9, "L-FA12")])
+def test_expansions(alpha, item):
+    shown = {"series_terms": [5, 80], "asymptotic_terms": [1, 20]}
+    result = study(Inputs("a", [item]), alpha=alpha, terms=[1, 5, 20, 80, 320], **shown)
+    assert [f.claim for f in result.findings] == [
+        f"{item}.{n}" for n in ("series", "asymptotic", "overlap")
+    ]
+    assert all(finding.verdict for finding in result.findings)
+    drawn = figure(result.series, result.table, alpha=alpha)
+    assert isinstance(drawn, Figure)
+    drawn.draw_without_rendering()
+
+
+def test_too_few_terms_do_not_overlap():
+    shown = {"series_terms": [1], "asymptotic_terms": [1]}
+    overlap = study(Inputs("a", ["L-FA11"]), alpha=1.5, terms=[1, 2, 3], **shown).findings[-1]
+    assert not overlap.verdict
+    assert overlap.reason

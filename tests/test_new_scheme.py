@@ -1,0 +1,131 @@
+"""A new scheme is one new file: dropped into a copy of the package, it can be run, checked and judged at once."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import fracparticles
+from fracparticles.schemes import ALL_SCHEMES
+
+# K(r) = exp(-r^2 / 4) / sqrt(4 pi), K^(k) = exp(-k^2): an exchange, but of no fractional operator.
+MODULE = '''"""Smeared jumps (SMEAR): du_i/dt = (D / epsilon^alpha) sum_j V_j (u_j - u_i) K_epsilon(x_j - x_i)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fracparticles.schemes.base import Exchange
+from fracparticles.schemes.setting import Setting
+
+
+class Smeared(Exchange):
+    """SMEAR."""
+
+    name = "SMEAR"
+    title = "Smeared jumps"
+    equation = "none"
+
+    def values(self, r: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return K(r)."""
+        return np.exp(-0.25 * r * r) / np.sqrt(4.0 * np.pi)
+
+    def transform(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
+        """Return the sum of K^ over the aliases."""
+        s, theta = setting.overlap, np.asarray(theta, dtype=float)
+        return sum(np.exp(-np.square(s * (theta + 2.0 * np.pi * k))) for k in range(-3, 4))
+'''
+
+PROGRAM = """
+import json, warnings
+import numpy as np
+import fracparticles as fp
+from fracparticles.run.case import Case
+from fracparticles.run.solver import compute
+from fracparticles.schemes import SCHEMES, Setting
+
+warnings.simplefilter("ignore")
+fields = {"beta": 0.5, "half_width": 40.0, "spacing": 0.25, "integrator": "exponential"}
+data = fp.solve(Case(scheme="SMEAR", **fields))
+again = compute(Case(scheme="SMEAR", evaluation="stepping", **{**fields, "integrator": "rk2", "dt": 0.005}))
+try:
+    Case(scheme="SMEAT", **fields)
+except fp.InvalidInput as error:
+    refused = str(error)
+m, s = np.arange(2000.0), Setting(alpha=1.5)
+w = SCHEMES["SMEAR"].weights(m, s)
+theta = np.array([0.3, 1.0, 3.0])
+sums = 2.0 * (w[1:, None] * (np.cos(m[1:, None] * theta) - 1.0)).sum(axis=0)
+print(json.dumps({
+    "file": fp.__file__,
+    "names": list(SCHEMES),
+    "limit": fp.stability_limit("SMEAR", 0.5),
+    "symbol": float(np.abs(SCHEMES["SMEAR"].symbol(theta, s) - sums).max()),
+    "mass": float(data.mass_final / data.mass_initial),
+    "error": float(data.relative_l1_error),
+    "difference": float(np.abs(again.u - data.u.values).max()),
+    "greatest": float(np.abs(data.u).max()),
+    "refused": refused,
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory) -> dict:
+    """What a program says that runs with a copy of the sources and one file more."""
+    copy = tmp_path_factory.mktemp("copy")
+    sources = Path(fracparticles.__file__).parents[1]
+    for package in ("fracparticles", "fracstudy"):
+        shutil.copytree(
+            sources / package, copy / package, ignore=shutil.ignore_patterns("__pycache__")
+        )
+    (copy / "fracparticles" / "schemes" / "smear.py").write_text(MODULE, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(copy), "NUMBA_CACHE_DIR": str(copy / "cache")}
+    run = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env=environment, cwd=copy, capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    answer = json.loads(run.stdout.splitlines()[-1])
+    assert Path(answer["file"]).is_relative_to(copy)
+    return answer
+
+
+def test_it_is_found_and_comes_last(found):
+    assert found["names"][-1] == "SMEAR"
+    assert len(found["names"]) == len(set(found["names"])) == 9
+
+
+def test_its_symbol_is_derived_from_its_transform(found):
+    assert found["symbol"] < 1e-12
+    # The lowest value, -s^-alpha (K^(0) - K^(pi)) with s = 2: a = 2 s^alpha.
+    assert found["limit"] == pytest.approx(2.0 * 2.0**1.5, rel=1e-3)
+
+
+def test_a_case_is_solved_with_it(found):
+    assert found["mass"] == pytest.approx(1.0, abs=1e-12)
+    assert 0.01 < found["error"] < 1.0  # it is no fractional Laplacian
+    assert found["difference"] < 1e-4 * found["greatest"]
+
+
+def test_a_misspelt_name_is_told_of_it(found):
+    assert "one of DD, DPSE, " in found["refused"]
+    assert "Did you mean 'SMEAR'?" in found["refused"]
+
+
+def test_no_other_file_of_the_library_lists_schemes():
+    """Nothing to register: a name stands in the module of its scheme, and is read from there."""
+    library = Path(fracparticles.__file__).parent
+    for path in library.rglob("*.py"):
+        if path.parent.name == "schemes":
+            continue
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        texts = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+        assert not texts & set(ALL_SCHEMES), path.name

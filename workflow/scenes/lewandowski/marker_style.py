@@ -1,0 +1,103 @@
+"""How the figures of the marker method look."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import NullLocator
+
+from fracstudy.style import COLOURS
+
+__all__ = [
+    "EXACT",
+    "LOADING_LOOKS",
+    "SHAPE_COLOURS",
+    "decimals",
+    "draw",
+    "entry",
+    "note",
+    "shape_panels",
+    "strokes",
+    "symbol",
+]
+
+# One colour for each shape function in all figures of the marker method.
+SHAPE_COLOURS = {
+    "S1": "#999999",
+    "S2": "#E69F00",
+    "S3": "#CC79A7",
+    "S4": "#D55E00",
+    "S5": "#56B4E9",
+    "S6": "#8A6D3B",
+    "S7": "#0072B2",
+    "S8": "#009E73",
+}
+# Label, colour and marker of where the markers of the square profile start.
+LOADING_LOOKS = {
+    "midpoints": ("midpoints of [−1, 1]", "#0072B2", "o"),
+    "random": ("random in [−1, 1]", "#D55E00", "s"),
+    "wide": ("uniform in [−L, L]", "#E69F00", "^"),
+}
+EXACT = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
+
+
+def symbol(shape: str) -> str:
+    """Return the symbol of a shape function."""
+    return f"$S_{shape[1]}$"
+
+
+def draw(ax: Axes, frame: pd.DataFrame, *line: str, **style: Any) -> None:
+    """Draw y against x."""
+    ax.plot(frame["x"], frame["y"], *line, **style)
+
+
+def entry(label: str, **style: Any) -> Line2D:
+    """Return an entry of a legend."""
+    return Line2D([], [], label=label, **style)
+
+
+def note(
+    ax: Axes, text: str, at: tuple[float, float], shift: tuple[float, float], **style: Any
+) -> None:
+    """Write a text, `shift` points from a place."""
+    style = {"fontsize": 8, **style}
+    ax.annotate(text, at, xytext=shift, textcoords="offset points", **style)
+
+
+def decimals(ax: Axes, *values: float) -> None:
+    """Put plain numbers on a logarithmic axis of about a decade."""
+    ax.set_yticks(values, [f"{value:g}" for value in values])
+    ax.yaxis.set_minor_locator(NullLocator())
+
+
+def strokes(ax: Axes, x: pd.Series, colour: str) -> None:
+    """Draw the markers as strokes below the axis."""
+    style = {"markersize": 6, "markeredgewidth": 0.6, "alpha": 0.8}
+    ax.plot(x, np.full(len(x), -0.025), "|", color=colour, **style)
+
+
+def shape_panels(
+    shapes: list[str], loadings: tuple[str, ...], first: int, more: bool = False
+) -> tuple[Figure, list[tuple[Axes, str, str]], list[Axes]]:
+    """Return a row of panels a start, a column a shape function, from Fig. `first`; with `more` one row below."""
+    rows = len(loadings) + more
+    figure = Figure(figsize=(8.8, 2.05 * rows + 0.5), layout="constrained")
+    grid = figure.subplots(rows, len(shapes), sharey="row", squeeze=False)
+    for column, shape in enumerate(shapes):
+        grid[0, column].set_title(f"Fig. {first + column}: {symbol(shape)}", loc="left")
+        grid[len(loadings) - 1, column].set_xlabel("$x$")
+        for ax in grid[: len(loadings) - 1, column]:
+            ax.tick_params(labelbottom=False)
+    for row, loading in enumerate(loadings):
+        grid[row, 0].set_ylabel(f"{LOADING_LOOKS[loading][0]}\n$F$")
+    panels = [
+        (grid[row, column], shape, loading)
+        for row, loading in enumerate(loadings)
+        for column, shape in enumerate(shapes)
+    ]
+    return figure, panels, list(grid[len(loadings)]) if more else []

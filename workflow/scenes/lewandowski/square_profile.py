@@ -1,0 +1,252 @@
+"""Runs of the square profile (12), and what is measured of their markers.
+
+The text leaves open where the markers start. Each of `LOADINGS` is run, the random one with several seeds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from pydantic import BaseModel, ConfigDict
+from scipy.optimize import minimize_scalar
+
+from fracparticles.markers import (
+    MarkerRun,
+    MarkerVelocity,
+    Square,
+    equal_weight,
+    random,
+    run,
+    shape_function,
+    uniform,
+)
+from fracparticles.markers.clusters import emptiness
+from fracparticles.moving.lagrangian import FieldNotPositive
+
+__all__ = ["CLOSE", "LOADINGS", "SHAPES", "SQUARE", "SquareRuns", "Starts", "Trace", "delay", "load"]
+
+SQUARE = Square()
+LOADINGS = {
+    "midpoints": "midpoints of [-1, 1]",
+    "random": "random in [-1, 1]",
+    "wide": "uniform in [-L, L]",
+}
+SHAPES = ("S4", "S7", "S8")  # of Figs. 8-16
+CLOSE = 0.05  # "good": an error of at most 5 % of the norm of f
+_GAP, _WITHIN = 0.2, 3.0  # in units of eps: where gaps between the markers are looked for, and how wide
+_CLUSTERED = 0.1  # of |x| < within empty: independent markers give a hundredth, clusters nearly all
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A run with its error norm.
+
+    Attributes
+    ----------
+    shape, loading : str
+    seed : int
+    x0, weights : array, shape (N,)
+        The markers at the start.
+    t, error : array
+        Times, and E(t) then: all, or the last only.
+    last : tuple of float and array
+        The last time that the run reached, and the markers then.
+    run : MarkerRun or None
+        The end of the run; None if it stopped.
+    stopped : str
+        Why, when and where it stopped; empty if it did not.
+    """
+
+    shape: str
+    loading: str
+    seed: int
+    x0: np.ndarray
+    weights: np.ndarray
+    t: np.ndarray
+    error: np.ndarray
+    last: tuple[float, np.ndarray]
+    run: MarkerRun | None
+    stopped: str
+
+    @property
+    def end(self) -> MarkerRun:
+        """The end of a run that did not stop."""
+        if self.run is None:
+            raise FieldNotPositive(f"{self.shape}, {LOADINGS[self.loading]}: {self.stopped}")
+        return self.run
+
+
+class SquareRuns(BaseModel):
+    """What the runs of a scene share.
+
+    Attributes
+    ----------
+    support, dt, t_final : float
+        eps, the time step, and the end.
+    markers : int
+        N, of which the start "wide" leaves out those of no weight.
+    half_width, grid : float, int
+        L and N_g of the fixed grid X_g = -L + (g - 1) 2 L / (N_g - 1).
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    support: float = 1.0
+    dt: float
+    t_final: float
+    markers: int
+    half_width: float
+    grid: int
+
+    @cached_property
+    def z(self) -> np.ndarray:
+        """The fixed grid."""
+        return np.linspace(-self.half_width, self.half_width, self.grid)
+
+    @cached_property
+    def exact(self) -> np.ndarray:
+        """f on the fixed grid at the end."""
+        return SQUARE.value(self.z, self.t_final)
+
+    def having(self, **changes: Any) -> SquareRuns:
+        """Return other runs, with some values changed."""
+        return SquareRuns(**{**self.model_dump(), **changes})
+
+    def relative_error(self, f: np.ndarray) -> float:
+        """Return the distance of f from the exact solution on the fixed grid, as part of its norm."""
+        return float(np.linalg.norm(f - self.exact) / np.linalg.norm(self.exact))
+
+    def peak(self, f: np.ndarray) -> float:
+        """Return f(0), as part of that of the exact solution."""
+        return float(np.interp(0.0, self.z, f) / np.interp(0.0, self.z, self.exact))
+
+    def trace(
+        self, shape: str, loading: str, seed: int = 0, *, follow: bool = True, printed: bool = False
+    ) -> Trace:
+        """Run and measure E(t) on the fixed grid, at every time or (`follow` false) at the end.
+
+        With `printed` the shape function has its printed constant.
+        """
+        x0, weights = load(loading, self.markers, seed, self.half_width)
+        s = shape_function(shape).as_printed() if printed else shape_function(shape)
+        velocity = MarkerVelocity(s, self.support)
+        field = MarkerVelocity(s, self.support, derivatives=0)
+        steps = round(self.t_final / self.dt)
+        times: list[float] = []
+        errors: list[float] = []
+        latest = (0.0, x0)
+
+        def observe(t: float, x: np.ndarray, w: np.ndarray) -> None:
+            nonlocal latest
+            latest = (t, x)
+            if follow or t > (steps - 0.5) * self.dt:
+                gap = SQUARE.value(self.z, t) - field.fields(x, w, self.z)[0]
+                times.append(t)
+                errors.append(float(np.sqrt((self.z[1] - self.z[0]) * np.sum(gap * gap))))
+
+        end, stopped = None, ""
+        try:
+            end = run(x0, weights, velocity, dt=self.dt, steps=steps, observe=observe)
+        except FieldNotPositive as error:
+            stopped = str(error)
+        followed = (np.array(times), np.array(errors))
+        return Trace(shape, loading, seed, x0, weights, *followed, latest, end, stopped)
+
+
+def load(
+    loading: str, count: int, seed: int = 0, half_width: float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and weights of the square profile in one of `LOADINGS`, those of no weight left out."""
+    if loading == "midpoints":
+        return equal_weight(SQUARE, count)
+    if loading == "random":
+        return random(SQUARE, count, np.random.default_rng(seed))
+    x, weights = uniform(SQUARE.value, (-half_width, half_width), count)
+    return x[weights > 0.0], weights[weights > 0.0]
+
+
+def delay(z: np.ndarray, f: np.ndarray, t: float) -> tuple[float, float]:
+    """Return the tau with which the exact f(z, t - tau) is nearest to F, and the part of the error that is left."""
+
+    def distance(tau: float) -> float:
+        return float(np.linalg.norm(f - SQUARE.value(z, t - tau)))
+
+    found = minimize_scalar(distance, bounds=(-0.5 * t, 0.9 * t), method="bounded")
+    return float(found.x), float(found.fun / distance(0.0))
+
+
+class Starts:
+    """The runs with some shape functions from all starts, and what is measured of those that did not stop.
+
+    Attributes
+    ----------
+    runs, stopped : list of Trace
+    measured : DataFrame
+        One row a run of `runs`.
+    clustered : Series
+        Whether its markers form clusters: over a tenth of |x| < 3 eps lies in gaps wider than eps / 5.
+    """
+
+    def __init__(
+        self, runs: SquareRuns, shapes: Iterable[str], seeds: range, follow: bool = False
+    ) -> None:
+        self.gap, self.within = _GAP * runs.support, _WITHIN * runs.support
+        traces = [
+            runs.trace(shape, loading, seed, follow=follow)
+            for shape in shapes
+            for loading in LOADINGS
+            for seed in (seeds if loading == "random" else seeds[:1])
+        ]
+        self.runs = [trace for trace in traces if trace.run]
+        self.stopped = [trace for trace in traces if not trace.run]
+        self.measured = pd.DataFrame([self._row(runs, trace) for trace in self.runs])
+        self.clustered = self.measured["empty"] > _CLUSTERED
+
+    def _row(self, runs: SquareRuns, trace: Trace) -> dict[str, Any]:
+        f = trace.end.field(runs.z)
+        inner = f[np.abs(runs.z) < self.within]
+        return {
+            "S": trace.shape,
+            "loading": trace.loading,
+            "seed": trace.seed,
+            "relative error": runs.relative_error(f),
+            "F(0) / f(0)": runs.peak(f),
+            "maxima": int(np.sum((inner[1:-1] > inner[:-2]) & (inner[1:-1] >= inner[2:]))),
+            "empty": emptiness(trace.end.x, self.gap, self.within),
+        }
+
+    def random(self, shape: str) -> pd.Series:
+        """Return which runs have this shape function and start at random."""
+        return (self.measured["S"] == shape) & (self.measured["loading"] == "random")
+
+    def share(self, shape: str) -> float:
+        """Return the part of the random starts that form clusters."""
+        return float(self.clustered[self.random(shape)].mean())
+
+    def mean(self, shape: str, column: str = "relative error") -> float:
+        """Return the mean over the random starts."""
+        return float(self.measured.loc[self.random(shape), column].mean())
+
+    @property
+    def first(self) -> list[Trace]:
+        """Every shape function and start once, the random one with the first seed that ran to the end."""
+        shown: dict[tuple[str, str], Trace] = {}
+        for trace in self.runs:
+            shown.setdefault((trace.shape, trace.loading), trace)
+        return list(shown.values())
+
+    def table(self, columns: list[str], counted: tuple[str, ...] = ()) -> pd.DataFrame:
+        """Return one row a shape function and start: medians over the seeds, and how many runs have what is counted."""
+        rows = []
+        for (shape, loading), part in self.measured.groupby(["S", "loading"], sort=False):
+            row = {"S": shape, "loading": LOADINGS[loading], "runs": len(part)}
+            row["with clusters"] = int(self.clustered[part.index].sum())
+            row |= {column: part[column].median() for column in columns}
+            row |= {column: int(part[column].sum()) for column in counted}
+            rows.append(row)
+        return pd.DataFrame(rows)
