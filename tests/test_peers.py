@@ -29,13 +29,14 @@ from fracstudy.peers import (
 from fracstudy.peers.lattice import _spectral_interval
 
 ALPHAS = [1.1, 1.5, 1.9]
-LATTICE = {p.NAME: p for p in (huang_oberman, duo_wyk_zhang, fractional_centred, sinc_lattice)}
+MODULES = (huang_oberman, duo_wyk_zhang, fractional_centred, sinc_lattice)
+LATTICE = {module.PEER.name: module for module in MODULES}
 OFFSETS = [0, 1, 2, 3, 4, 5, 14, 15, 16, 17, 100, 101, 1000, 100_001]
 VARIANTS = [
     pytest.param(name, exterior, propagation, id=f"{name}-{exterior}-{propagation}")
     for name, p in LATTICE.items()
-    for exterior in p.EXTERIORS
-    for propagation in p.PROPAGATIONS
+    for exterior in p.PEER.exteriors
+    for propagation in p.PEER.propagations
 ]
 
 
@@ -75,8 +76,8 @@ def test_the_registry():
     }
     for name, p in PEERS.items():
         assert peer(name) is p
-        assert p.TITLE
-        assert p.REFERENCE
+        assert p.label
+        assert p.reference
 
 
 @pytest.mark.parametrize("name", ["sinc", None, []])
@@ -109,15 +110,15 @@ def test_invalid_input(name, field, changes):
 def test_what_a_peer_does_not_have():
     given = {"alpha": 1.5, "half_width": 5.0, "time": 1.0}
     with pytest.raises(InvalidInput, match="exterior"):
-        sinc_lattice.prepare(**given, count=21, exterior="periodic")
+        sinc_lattice.PEER.prepare(**given, count=21, exterior="periodic")
     with pytest.raises(InvalidInput, match="propagation"):
-        sinc_lattice.prepare(**given, count=21, propagation="dense")
+        sinc_lattice.PEER.prepare(**given, count=21, propagation="dense")
     with pytest.raises(InvalidInput, match="an odd number"):
-        sinc_lattice.prepare(**given, count=20)
+        sinc_lattice.PEER.prepare(**given, count=20)
     with pytest.raises(InvalidInput, match="an even number"):
         peer("exact-symbol").prepare(**given, count=21)
     with pytest.raises(InvalidInput, match="at most 8001"):
-        mapped_fourier.prepare(**given, count=8003)
+        mapped_fourier.PEER.prepare(**given, count=8003)
 
 
 @pytest.mark.parametrize("name", PEERS)

@@ -12,7 +12,8 @@ from scipy.special import factorial, gamma, poch
 from fracparticles.errors import InvalidInput
 from fracparticles.special import green
 from fracstudy.inputs import observed_order
-from fracstudy.peers.plane import PLANE_PEERS, plane_weights, prepare_plane
+from fracstudy.peers import PLANE_PEERS, peer
+from fracstudy.peers.plane import plane_weights
 
 ALPHAS = [1.1, 1.5, 1.9]
 SQUARES = {
@@ -55,13 +56,17 @@ def room_for_images(alpha: float, tau: float, circle: float, distance: np.ndarra
     return 1.25 * (near + 5.0 * later)
 
 
+def prepare_plane(name: str, **given):
+    return peer(name).prepare_plane(**given)
+
+
 def radius(axis: np.ndarray) -> np.ndarray:
     return np.hypot(axis[:, None], axis)
 
 
 def deviation(solver) -> np.ndarray:
     """u - exact for the fundamental solution taken from t = 0.5 to 1.5, at alpha = 1.5."""
-    r = radius(solver.axis)
+    r = radius(solver.x)
     return solver.solve(green(r, 0.5, 1.5, 2)) - green(r, 1.5, 1.5, 2)
 
 
@@ -71,7 +76,7 @@ def deviation(solver) -> np.ndarray:
 def test_the_names():
     assert set(PLANE_PEERS) == {"exact-symbol", *SQUARES}
     for described in PLANE_PEERS.values():
-        assert described.title
+        assert described.label
         assert described.reference
 
 
@@ -93,16 +98,23 @@ def test_invalid_input(name, field, value):
     assert caught.value.field == field
 
 
-@pytest.mark.parametrize("name", ["huang-oberman", None, []])
-def test_an_unknown_peer(name):
-    with pytest.raises(InvalidInput, match="one of exact-symbol"):
+@pytest.mark.parametrize(
+    ("name", "allowed"),
+    [
+        ("huang-oberman", "exists in the plane"),
+        (None, "one of huang-oberman"),
+        ([], "exact-symbol"),
+    ],
+)
+def test_an_unknown_peer(name, allowed):
+    with pytest.raises(InvalidInput, match=allowed):
         prepare_plane(name, **GIVEN)
 
 
 @pytest.mark.parametrize("name", PLANE_PEERS)
 def test_invalid_data(name):
     solver = prepare_plane(name, **GIVEN)
-    size = solver.axis.size
+    size = solver.x.size
     for u0 in (np.zeros(size), np.zeros((size, size + 1)), np.full((size, size), np.nan), 1j):
         with pytest.raises(InvalidInput) as caught:
             solver.solve(u0)
@@ -115,16 +127,16 @@ def test_the_lattice(name):
         name, **{**GIVEN, "spacing": 0.22}
     )  # 5 / 0.22 = 22.7; 46 has the factor 23
     intervals = 48 if name == "exact-symbol" else 46
-    assert solver.spacing == pytest.approx(10.0 / intervals, rel=1e-15)
-    assert solver.axis.size == intervals + (name != "exact-symbol")
-    assert solver.axis[0] == pytest.approx(-5.0, rel=1e-15)
-    assert np.diff(solver.axis) == pytest.approx(solver.spacing, rel=1e-13)
+    assert np.sqrt(solver.volumes) == pytest.approx(10.0 / intervals, rel=1e-15)
+    assert solver.x.size == intervals + (name != "exact-symbol")
+    assert solver.x[0] == pytest.approx(-5.0, rel=1e-15)
+    assert np.diff(solver.x) == pytest.approx(np.sqrt(solver.volumes), rel=1e-13)
 
 
 @pytest.mark.parametrize("name", PLANE_PEERS)
 def test_a_solution_is_the_caller_s(name):
     solver = prepare_plane(name, **GIVEN)
-    u0 = np.exp(-(radius(solver.axis) ** 2))
+    u0 = np.exp(-(radius(solver.x) ** 2))
     kept = u0.copy()
     u = solver.solve(u0)
     first = u.copy()
@@ -140,7 +152,7 @@ def test_a_solution_is_the_caller_s(name):
 @pytest.mark.parametrize("waves", [(0, 0), (5, -3), (0, 7), (30, 30), (30, 2)])
 def test_a_plane_wave_of_the_box(alpha, waves):
     solver = prepare_plane("exact-symbol", alpha=alpha, half_width=3.0, time=0.01, spacing=0.1)
-    x, y = solver.axis[:, None], solver.axis
+    x, y = solver.x[:, None], solver.x
     first, second = (np.pi * m / 3.0 for m in waves)
     wave = np.cos(first * x + second * y + 0.3)
     decay = np.exp(-0.01 * np.hypot(first, second) ** alpha)
@@ -216,7 +228,7 @@ def test_the_sinc_lattice_is_left_with_the_truncation():
             "sinc-lattice", alpha=1.5, half_width=half_width, time=1.0, spacing=h
         )
         u = deviation(solver)
-        errors.append(np.abs(u[radius(solver.axis) <= 2.0]).max())
+        errors.append(np.abs(u[radius(solver.x) <= 2.0]).max())
         a = half_width + 0.5 * h
         left_out = [0.0, 0.0, 0.0]
         for i in (1, 2, 3):
@@ -224,7 +236,7 @@ def test_the_sinc_lattice_is_left_with_the_truncation():
                 (b, p), (c, q) = tail(1.5, 1.0, i), tail(1.5, 0.5, j)
                 left_out[i + j - 2] += b * c * outside(a, p + q)
         # A fourth order follows, and the sum is for an integral: as much again as the third is room enough.
-        n = solver.axis.size // 2
+        n = solver.x.size // 2
         assert -u[n, n] == pytest.approx(sum(left_out), rel=0, abs=abs(left_out[2]))
     # The second order is 5 % of the first at D = 20 and 2 % at 40, the distance |x| <= 2 is 2 % and 0.5 %.
     assert observed_order(1.0 / widths, np.array(errors))[-1] == pytest.approx(5.0, abs=0.1)
@@ -240,8 +252,8 @@ def test_the_centred_differences_are_of_second_order():
             "fractional-centred", alpha=alpha, half_width=10.0, time=1.0, spacing=h
         )
         u = deviation(solver)
-        errors.append(np.abs(u[radius(solver.axis) <= 2.0]).max())
-        n = solver.axis.size // 2
+        errors.append(np.abs(u[radius(solver.x) <= 2.0]).max())
+        n = solver.x.size // 2
         leading = alpha / 32.0 * h**2 / (2.0 * np.pi) * gamma(power) / (alpha * t**power)
         # The terms of order h^4 k^4 over those of h^2 k^2 in G: h^2 times a number of order one.
         assert u[n, n] == pytest.approx(leading, rel=h**2)
@@ -259,7 +271,7 @@ def test_the_box_is_left_with_its_images():
         solver = prepare_plane(
             "exact-symbol", alpha=1.5, half_width=half_width, time=1.0, spacing=0.25
         )
-        errors.append(np.abs(deviation(solver)[radius(solver.axis) <= 2.0]).max())
+        errors.append(np.abs(deviation(solver)[radius(solver.x) <= 2.0]).max())
     # The second term of G is 4.2 t / r^1.5 of the first, r = 2 D: 0.6 % at D = 40, 0.2 % at 80; the data beyond D, of
     # mass 2 pi A t / (alpha D^alpha), are as much; and |x| <= 2 adds (p / 2)^2 |x / r|^2 = 0.2 % and less.
     assert errors[-1] == pytest.approx(amplitude * images * 160.0**-p, rel=0.02)
@@ -269,7 +281,7 @@ def test_the_box_is_left_with_its_images():
 @pytest.mark.parametrize("name", PLANE_PEERS)
 def test_threads_may_share_a_solver(name):
     solver = prepare_plane(name, alpha=1.5, half_width=5.0, time=1.0, spacing=0.2)
-    data = np.random.default_rng(5).normal(size=(24, solver.axis.size, solver.axis.size))
+    data = np.random.default_rng(5).normal(size=(24, solver.x.size, solver.x.size))
     expected = [solver.solve(u0) for u0 in data]
     with ThreadPoolExecutor(8) as threads:
         for ours, right in zip(threads.map(solver.solve, data), expected, strict=True):

@@ -24,7 +24,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, one_of
 
 FloatArray = NDArray[np.float64]
 Shape = tuple[int, ...]
@@ -91,7 +91,7 @@ def vector(
 
 def places(field: str, value: Any) -> FloatArray:
     """Return points of any shape, none beyond 1e100."""
-    return within(field, finite_array(field, value), -SIZES[1], SIZES[1])
+    return within(field, value, -SIZES[1], SIZES[1])
 
 
 def positions(
@@ -107,16 +107,18 @@ def positions(
 
 def within(
     field: str,
-    array: NDArray[Any],
+    value: Any,
     low: float = -np.inf,
     high: float = np.inf,
     *,
     inside: bool = False,
+    shape: Shape | None = None,
 ) -> NDArray[Any]:
-    """Return a real array whose entries lie between low and high; strictly between them with `inside`."""
+    """Return a `finite_array` with real entries from low to high; strictly between them with `inside`."""
+    array = finite_array(field, value, shape)
     good = (array > low) & (array < high) if inside else (array >= low) & (array <= high)
     if not good.all():
-        worst = float(np.asarray(array)[~good].flat[0])
+        worst = float(array[~good].flat[0])
         allowed = f"only numbers with {_interval(field, low, high, inside)}"
         raise InvalidInput(field, worst, allowed, "Mend the data.")
     return array
@@ -278,7 +280,7 @@ def flag(field: str, value: Any) -> bool:
 def choice(field: str, value: Any, names: Sequence[str]) -> str:
     """Return one of these names."""
     if not isinstance(value, str) or value not in names:
-        raise InvalidInput(field, value, f"one of {', '.join(names)}", "Choose one of these.")
+        raise one_of(field, value, names)
     return value
 
 

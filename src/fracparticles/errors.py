@@ -48,7 +48,7 @@ class InvalidInput(FracparticlesError, ValueError):
 
 
 def spelled(values: Iterable[object], last: str = " or ") -> str:
-    """Return the values as a list in words: "2, 4 or 6"; with none among them as "nothing", and texts in quotes then."""
+    """Return a list in words: "2, 4 or 6"; None is "nothing" there, and texts beside it are in quotes."""
     values = list(values)
     words = [str(one) for one in values]
     if None in values:

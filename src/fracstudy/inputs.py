@@ -143,7 +143,11 @@ def value(claim: str, ours: float, reason: str = "", runs: Iterable[str] = ()) -
 
 
 def statement(
-    claim: str, holds: bool | None, evidence: str, reason: str = "", runs: Iterable[str] = ()
+    claim: str,
+    holds: bool | np.bool_ | None,
+    evidence: str,
+    reason: str = "",
+    runs: Iterable[str] = (),
 ) -> Finding:
     """Return our verdict on a statement; `reason` is kept only if the statement does not hold."""
     verdict = None if holds is None else bool(holds)

@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 from fracparticles.arguments import choice
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, one_of
 from fracparticles.kernels.high_order import GAMMA, ORDERS
 from fracparticles.kernels.printed import PRINTED
 from fracparticles.kernels.rules import FloatArray, KernelFamily
@@ -161,7 +161,7 @@ def _family(name: str, order: int, family: str | None) -> KernelFamily:
     """The family that has the kernel in this order; of the two that have order 2, the printed one."""
     entry = KERNELS[choice("name", name, tuple(KERNELS))]
     if order not in entry.orders:
-        raise InvalidInput("order", order, f"one of {entry.orders} for {name}", "Choose an order.")
+        raise one_of("order", order, entry.orders, name)
     if family is not None and len(entry.orders) == 1:
         raise InvalidInput("family", family, f"nothing for {name}", "Leave it out.")
     return GAMMA if family_of(order, family) == "gamma" and order > 2 else PRINTED

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.special import gamma
 
 from fracparticles.arguments import choice, dimension, fractional_order, like, real_array
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, one_of
 
 __all__ = ["KernelFamily", "gamma_nb"]
 
@@ -137,7 +137,7 @@ class KernelFamily(ABC):
     def check_order(self, order: Any) -> None:
         """Refuse an order that the family does not have."""
         if isinstance(order, bool) or order not in self.orders:
-            raise InvalidInput("order", order, f"one of {self.orders}", "Choose an order.")
+            raise one_of("order", order, self.orders)
 
     def _checked(self, name: str, alpha: Any, dim: Any, order: Any) -> float:
         choice("name", name, self.names)

@@ -51,15 +51,12 @@ def burgers(mu: float) -> Flux:
 class PointSource:
     """The solution from a point source.
 
+    Raises `InvalidInput` if a value is outside its range; so do the methods; they take any shape.
+
     Attributes
     ----------
     mu, total : float
         Positive, with R = M / (2 mu) up to 1e8.
-
-    Raises
-    ------
-    InvalidInput
-        If a value is outside its range. So do the methods; they take any shape.
     """
 
     mu: float
@@ -68,12 +65,10 @@ class PointSource:
     def __post_init__(self) -> None:
         check.fields(self, mu=check.scale, total=check.scale)
         if not self.reynolds <= _SHARPEST:
-            raise InvalidInput(
-                "mu",
-                self.mu,
-                f"at least total / {2.0 * _SHARPEST:g}: the shock is not resolved by the digits of x",
-                "Take a larger mu, or the limit f = x / t up to x = sqrt(2 M t).",
-            )
+            least = f"at least total / {2.0 * _SHARPEST:g}"
+            allowed = f"{least}: the shock is not resolved by the digits of x"
+            remedy = "Take a larger mu, or the limit f = x / t up to x = sqrt(2 M t)."
+            raise InvalidInput("mu", self.mu, allowed, remedy)
 
     @property
     def reynolds(self) -> float:

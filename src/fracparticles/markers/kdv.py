@@ -31,15 +31,12 @@ def kdv(x: np.ndarray, fields: np.ndarray) -> np.ndarray:
 class Soliton:
     """A soliton.
 
+    Raises `InvalidInput` if a value is outside its range; so do the methods; they take any shape.
+
     Attributes
     ----------
     c, background : float
         c > 0 and b >= 0: markers need f > 0.
-
-    Raises
-    ------
-    InvalidInput
-        If a value is outside its range. So do the methods; they take any shape.
     """
 
     c: float
@@ -62,13 +59,9 @@ class Soliton:
 
     def velocity(self, f: Any) -> np.ndarray:
         """Return the exact V where the solution is f, which is above zero."""
-        f = check.finite_array("f", f)
         if self.background == 0.0:
             return self.speed - 0.0 * check.within("f", f, 0.0)
+        f = check.within("f", f, 0.0, inside=True)
         with np.errstate(over="ignore"):
-            part = (
-                self.background
-                * (self.c + 3.0 * self.background)
-                / check.within("f", f, 0.0, inside=True)
-            )
+            part = self.background * (self.c + 3.0 * self.background) / f
         return check.finite_result("f", self.speed - part)

@@ -42,15 +42,12 @@ _MOST_CELLS = 10**6
 class NonlinearDiffusion:
     """Equations (20)-(24).
 
+    Raises `InvalidInput` if a value is outside its range; so do the methods; they take arrays of any shape.
+
     Attributes
     ----------
     d0, alpha, x0 : float
         D_0, a and x_0, positive.
-
-    Raises
-    ------
-    InvalidInput
-        If a value is outside its range. So do the methods; they take arrays of any shape.
     """
 
     d0: float = 10.0
@@ -123,17 +120,16 @@ class NonlinearDiffusion:
 
     def step_limit(self, epsilon: float, eta: float) -> float:
         """eta epsilon^2 / max D: the limit of the linear equation (`stability.Extremes.eta`) at the largest D."""
-        return (
-            check.positive_real("eta", eta)
-            * check.scale("epsilon", epsilon) ** 2
-            / self.largest_diffusivity
-        )
+        eta, epsilon = check.positive_real("eta", eta), check.scale("epsilon", epsilon)
+        return eta * epsilon**2 / self.largest_diffusivity
 
 
 class Lines:
     """(20) by finite volumes on |x| < L and scipy's BDF formulae: a reference without markers.
 
         df_i/dt = (g_(i+1) - 2 g_i + g_(i-1)) / h^2,     g = Phi(f) - Phi(f_inf),     no flux through the ends.
+
+    Raises `InvalidInput` if a value is outside its range, or no cell is watched.
 
     Parameters
     ----------
@@ -144,23 +140,14 @@ class Lines:
         From 3 to 1e6.
     within : float
         Where f is watched: |x| < within. It may be less than L, since f is round-off in the far tail.
-
-    Raises
-    ------
-    InvalidInput
-        If a value is outside its range, or no cell is watched.
     """
 
     def __init__(
         self, problem: NonlinearDiffusion, half_width: float, cells: int, within: float
     ) -> None:
         self.problem = check.instance("problem", problem, NonlinearDiffusion)
-        n, half = (
-            check.positive_integer("cells", cells, most=_MOST_CELLS),
-            check.scale("half_width", half_width),
-        )
-        if n < 3:
-            raise InvalidInput("cells", n, "3 or more", "Take more.")
+        n = check.whole_number("cells", cells, 3, _MOST_CELLS)
+        half = check.scale("half_width", half_width)
         self.h = 2.0 * half / n
         self.x = -half + self.h * (np.arange(n) + 0.5)
         self._steady = problem._potential(problem.steady(self.x))
@@ -224,9 +211,8 @@ class Lines:
         """
         found = self._integrate(self._initial(f), check.scale("until", until), None)
         if not found.success:
-            raise NonFiniteSolution(
-                f"the integration ends at t = {found.t[-1]:.6g}: {found.message}"
-            )
+            end = found.t[-1]
+            raise NonFiniteSolution(f"the integration ends at t = {end:.6g}: {found.message}")
         if not found.t_events[0].size:
             return math.inf, math.nan
         last = found.y_events[0][0]

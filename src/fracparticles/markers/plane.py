@@ -26,6 +26,7 @@ from scipy.special import erf, erfc
 
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
+from fracparticles.markers.profiles import bisected
 from fracparticles.markers.shapes import Shape
 
 __all__ = ["TwoBlobs", "decoupled", "reconstruct", "sequential", "weighted"]
@@ -40,15 +41,13 @@ _MOST_TERMS = 2**27  # of markers and points along one axis
 class TwoBlobs:
     """f = exp(-(x - a)^2 - (y - a)^2) + exp(-(x + a)^2 - (y + a)^2); a product only for a = 0.
 
+    Raises `InvalidInput` if a is anything else; so do the methods, of values outside their range or shapes that do
+    not fit.
+
     Attributes
     ----------
     a : float
         From 0 to 1000.
-
-    Raises
-    ------
-    InvalidInput
-        If a is anything else. So do the methods, of values outside their range or shapes that do not fit.
     """
 
     a: float
@@ -81,30 +80,33 @@ class TwoBlobs:
 
         By bisection, to round-off in xi or, for small xi and 1 - xi, in these.
         """
-        xi = check.within("xi", check.finite_array("xi", xi), 0.0, 1.0, inside=True)
-        right = check.within("right", check.finite_array("right", right), 0.0, 1.0)
-        xi, right = check.together(xi=xi, right=right)
+        xi = check.within("xi", xi, 0.0, 1.0, inside=True)
+        xi, right = check.together(xi=xi, right=check.within("right", right, 0.0, 1.0))
 
         def part(x: np.ndarray) -> np.ndarray:
             both = right * (1.0 + erf(x - self.a)) + (1.0 - right) * (1.0 + erf(x + self.a))
             return 0.5 * both
 
-        x = _bisected(lambda x: part(x) < xi, xi.shape, self.a + 7.0)  # erfc(7) is 4e-23
+        x = self._bisected(lambda x: part(x) < xi, xi.shape, 7.0)  # erfc(7) is 4e-23
         low, high = xi < _TAIL, xi > 1.0 - _TAIL
         if (low | high).any():
             # What lies to the left, or to the right, without the 1 in which it would drown.
             end, sign = np.where(low, xi, 1.0 - xi), np.where(low, -1.0, 1.0)
 
-            def outside(x: np.ndarray) -> np.ndarray:
-                return 0.5 * (
-                    right * erfc(sign * (x - self.a)) + (1.0 - right) * erfc(sign * (x + self.a))
-                )
+            def too_low(x: np.ndarray) -> np.ndarray:
+                near, far = erfc(sign * (x - self.a)), erfc(sign * (x + self.a))
+                outside = 0.5 * (right * near + (1.0 - right) * far)
+                return np.where(low, outside < end, outside > end)
 
-            far = _bisected(
-                lambda x: np.where(low, outside(x) < end, outside(x) > end), xi.shape, self.a + 28.0
-            )
-            x = np.where(low | high, far, x)
+            x = np.where(low | high, self._bisected(too_low, xi.shape, 28.0), x)
         return x
+
+    def _bisected(
+        self, too_low: Callable[[np.ndarray], Any], shape: tuple[int, ...], beyond: float
+    ) -> np.ndarray:
+        """The x, no farther than that beyond the blobs, where `too_low` turns false."""
+        reach = np.full(shape, self.a + beyond)
+        return bisected(too_low, -reach, reach, 60)
 
     def right(self, x: Any) -> np.ndarray:
         """Return the part that the blob at (a, a) has of what lies at x."""
@@ -157,11 +159,8 @@ def reconstruct(shape: Shape, epsilon: float, markers: Loading, x: Any, y: Any) 
         raise InvalidInput("markers", markers, "x, y and W of the markers", "Give three arrays.")
     xj = check.positions("markers", markers[0])
     yj, w = (check.vector("markers", part, xj.size) for part in markers[1:])
-    x, y, epsilon = (
-        check.positions("x", x),
-        check.positions("y", y),
-        check.scale("epsilon", epsilon),
-    )
+    x, y = check.positions("x", x), check.positions("y", y)
+    epsilon = check.scale("epsilon", epsilon)
     if (x.size + y.size) * xj.size > _MOST_TERMS:
         raise InvalidInput("x", f"{x.size} points", "fewer for so many markers", "Do it in parts.")
     along_x = shape((x[:, None] - xj) / epsilon) * w
@@ -170,22 +169,7 @@ def reconstruct(shape: Shape, epsilon: float, markers: Loading, x: Any, y: Any) 
 
 
 def _midpoints(counts: tuple[int, int]) -> list[np.ndarray]:
-    numbers = [
-        check.positive_integer("counts", n, most=check.MOST) for n in check.pair("counts", counts)
-    ]
+    numbers = [check.positive_integer("counts", n) for n in check.pair("counts", counts)]
     if numbers[0] * numbers[1] > check.MOST:
         raise InvalidInput("counts", counts, f"at most {check.MOST} markers", "Take fewer.")
     return [(np.arange(n) + 0.5) / n for n in numbers]
-
-
-def _bisected(
-    too_low: Callable[[np.ndarray], Any], shape: tuple[int, ...], reach: float
-) -> np.ndarray:
-    """The x between -reach and reach where `too_low` turns false."""
-    low = np.full(shape, -reach)
-    high = -low
-    for _ in range(60):
-        x = 0.5 * (low + high)
-        below = too_low(x)
-        low, high = np.where(below, x, low), np.where(below, high, x)
-    return 0.5 * (low + high)

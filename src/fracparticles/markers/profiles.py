@@ -29,9 +29,8 @@ from fracparticles import arguments as check
 __all__ = ["Gaussian", "Profile", "Ramp", "Square", "inside"]
 
 _WIDE = 20.0  # s, against the square's half-width of 1
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(
-    12
-)  # exact for exp((x - y)^2 / s^2) with y / s below 1/20
+# Exact for exp((x - y)^2 / s^2) with y / s below 1/20.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _FAR = 5.0  # erfc(5) = 2e-12: as far the difference of two erf keeps four digits
 _TAIL = 1e-10  # of the total: the plain formulae keep six digits of it
 _ERFINV = 1e-4  # of the total: the same for erfinv, with twelve digits
@@ -98,9 +97,12 @@ class Square:
             return g - 1.0
         # The half with x <= 0, where no digits are lost, gives the other by symmetry.
         mirrored, s = np.minimum(g, 2.0 - g), 2.0 * math.sqrt(t)
-        x = _bisected(lambda x: self._cumulative(x, s), mirrored, -(1.0 + 16.0 * math.sqrt(t)))
+        zero = np.zeros_like(g)
+        left = zero - (1.0 + 16.0 * math.sqrt(t))
+        x = bisected(lambda x: self._cumulative(x, s) < mirrored, left, zero, 64)
         if (mirrored < _TAIL).any():
-            far = _bisected(lambda x: self._tail(x, s), mirrored, -(1.0 + 27.5 * s))
+            left = zero - (1.0 + 27.5 * s)
+            far = bisected(lambda x: self._tail(x, s) < mirrored, left, zero, 64)
             x = np.where(mirrored < _TAIL, far, x)
         return np.where(g <= 1.0, 1.0, -1.0) * x
 
@@ -122,14 +124,13 @@ def _over_square(function: Any, x: np.ndarray, s: float) -> np.ndarray:
     return np.asarray(0.5 * function((x[..., None] - _NODES) / s) @ _WEIGHTS)
 
 
-def _bisected(function: Any, wanted: np.ndarray, low: float) -> np.ndarray:
-    """The x from `low` to 0 where a rising function takes the values wanted."""
-    lows, highs = np.full_like(wanted, low), np.zeros_like(wanted)
-    for _ in range(64):
-        middle = 0.5 * (lows + highs)
-        left = function(middle) < wanted
-        lows, highs = np.where(left, middle, lows), np.where(left, highs, middle)
-    return 0.5 * (lows + highs)
+def bisected(too_low: Any, low: np.ndarray, high: np.ndarray, halvings: int) -> np.ndarray:
+    """Return the x between low and high where `too_low` turns false."""
+    for _ in range(halvings):
+        x = 0.5 * (low + high)
+        below = too_low(x)
+        low, high = np.where(below, x, low), np.where(below, high, x)
+    return 0.5 * (low + high)
 
 
 @dataclass(frozen=True)
@@ -163,15 +164,12 @@ class Gaussian:
 class Ramp:
     """f = x exp(-x^2) on [0, x_0]; total sigma = (1 - exp(-x_0^2)) / 2.
 
+    Raises `InvalidInput` if it is not positive.
+
     Attributes
     ----------
     end : float
         x_0.
-
-    Raises
-    ------
-    InvalidInput
-        If it is not positive.
     """
 
     end: float
@@ -199,4 +197,4 @@ def inside(g: Any, total: float) -> np.ndarray:
 
     Raises `InvalidInput` if one is not inside.
     """
-    return check.within("g", check.finite_array("g", g), 0.0, total, inside=True)
+    return check.within("g", g, 0.0, total, inside=True)

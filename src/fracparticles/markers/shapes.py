@@ -101,7 +101,7 @@ class Shape:
         return np.where(r <= self.reach, value, 0.0)
 
     def kernel(self, derivative: int = 0) -> ScatteredKernel:
-        """The derivative as a kernel of `sums.scattered`."""
+        """The derivative as a kernel of `moving.scattered`."""
         p = self._factor(derivative)
         coefficients, odd = p.convert(domain=[-1, 1], window=[-1, 1]).coef[::-1], derivative % 2
 
@@ -138,9 +138,8 @@ class Shape:
         within("k", k, -_FASTEST, _FASTEST)
         nodes = 24 + math.ceil(0.5 * float(np.abs(k).max(initial=0.0)))
         if k.size * nodes > _MOST_TERMS:
-            raise InvalidInput(
-                "k", f"{k.size} wavenumbers", "fewer of this size", "Do it in parts."
-            )
+            shown = f"{k.size} wavenumbers"
+            raise InvalidInput("k", shown, "fewer of this size", "Do it in parts.")
         x, w = np.polynomial.legendre.leggauss(nodes)
         x, w = 0.5 * (1.0 + x), 0.5 * w
         return np.asarray(2.0 * np.cos(k[..., None] * x) @ (w * self(x)))
@@ -149,12 +148,10 @@ class Shape:
         """Return c P_m with S^(m) = c P_m(|x|) exp(-g x^2) (times sgn x): P_(m+1) = P_m' - 2 g r P_m."""
         derivative = whole_number("derivative", derivative, most=_HIGHEST)
         if self.smoothness is not None and derivative > self.smoothness:
-            raise InvalidInput(
-                "derivative",
-                derivative,
-                f"from 0 to {self.smoothness} for {self.name}, whose next derivative is not a function",
-                "Choose a smoother shape function: S8 has all derivatives.",
-            )
+            most = f"from 0 to {self.smoothness} for {self.name}"
+            allowed = f"{most}, whose next derivative is not a function"
+            remedy = "Choose a smoother shape function: S8 has all derivatives."
+            raise InvalidInput("derivative", derivative, allowed, remedy)
         p = self.polynomial
         for _ in range(derivative):
             p = p.deriv() - (2.0 * Polynomial([0.0, 1.0]) * p if self.gaussian else 0.0)

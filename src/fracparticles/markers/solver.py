@@ -3,9 +3,9 @@ r"""The marker method: dx_j/dt = V(x_j, t), W_j constant, Eqs. (5)-(7), for any 
     F(x, t) = sum_j W_j S_eps(x - x_j),     f_t + (V f)_x = 0.                                   (6), (2)
 
 The flux V F is a function of x and of F and its derivatives there. `diffusion` is that of (1), V = -F_x / F (3), with
-which V is Eq. (7). It is the classical cousin of the diffusion velocity method (`schemes.dvm`), and moves by the same
-midpoint steps, the second-order Runge-Kutta method of the paper (`lagrangian`). A run whose F is not positive at a
-marker ends with `FieldNotPositive`, which says when and where.
+which V is Eq. (7). It is the classical cousin of the diffusion velocity method (`moving.dvm`), and moves by the same
+midpoint steps, the second-order Runge-Kutta method of the paper (`moving.lagrangian`). A run whose F is not positive
+at a marker ends with `FieldNotPositive`, which says when and where.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarn
 from fracparticles.markers.shapes import Shape
 from fracparticles.markers.stability import extremes
 from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
-from fracparticles.moving.scattered import NeighbourSum
+from fracparticles.moving.scattered import NeighbourSum, ScatteredSum
 
 __all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run", "warn_of_step"]
 
@@ -40,6 +40,9 @@ def diffusion(x: np.ndarray, fields: np.ndarray) -> np.ndarray:
 class MarkerVelocity:
     """V(x_j) = flux / F, with F by (6).
 
+    Raises `InvalidInput` if the shape function does not have these derivatives, the flux is no function, or epsilon
+    or the period does not do.
+
     Parameters
     ----------
     shape : Shape
@@ -51,12 +54,6 @@ class MarkerVelocity:
         The highest derivative that the flux needs.
     period : float or None
         If given, the markers are continued periodically; it must exceed twice the reach of the shape function.
-
-    Raises
-    ------
-    InvalidInput
-        If the shape function does not have these derivatives, the flux is no function, or epsilon or the period does
-        not do.
     """
 
     def __init__(
@@ -67,26 +64,22 @@ class MarkerVelocity:
         derivatives: int = 1,
         period: float | None = None,
     ) -> None:
-        self.shape, self.epsilon = (
-            check.instance("shape", shape, Shape),
-            check.scale("epsilon", epsilon),
-        )
+        self.shape = check.instance("shape", shape, Shape)
+        self.epsilon = check.scale("epsilon", epsilon)
         self.flux = check.function("flux", flux)
         self.period = None if period is None else check.scale("period", period)
         derivatives = check.whole_number("derivatives", derivatives)
         self._reach = shape.reach * self.epsilon
         if self.period is not None and not 2.0 * self._reach < self.period:
-            raise InvalidInput(
-                "period", period, f"a length above {2.0 * self._reach:g}", "Take a longer period."
-            )
+            allowed = f"a length above {2.0 * self._reach:g}"
+            raise InvalidInput("period", period, allowed, "Take a longer period.")
         kernels = [shape.kernel(m) for m in range(derivatives + 1)]
-        self._sums = NeighbourSum(kernels, self.epsilon)
+        self._sums: ScatteredSum = NeighbourSum(kernels, self.epsilon)
         with np.errstate(over="ignore"):
             self._scale = self.epsilon ** -np.arange(derivatives + 1.0)[:, None]
         if not np.isfinite(self._scale / self.epsilon).all():
-            raise InvalidInput(
-                "epsilon", epsilon, "one whose powers do not overflow", "Change the units."
-            )
+            allowed = "one whose powers do not overflow"
+            raise InvalidInput("epsilon", epsilon, allowed, "Change the units.")
 
     def fields(self, x: Any, weights: Any, z: Any = None) -> np.ndarray:
         """Return F and its derivatives, shape (derivatives + 1, M), at z or at the markers themselves.

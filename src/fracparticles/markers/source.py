@@ -107,16 +107,14 @@ def advance_weights(
 class GaussianSource:
     """Q = q exp(-x^2), or its second derivative.
 
+    Raises `InvalidInput` if q is not finite, or the derivative another; so do the methods, of x and t outside their
+    range.
+
     Attributes
     ----------
     q : float
     derivative : int
         0 or 2. A source of derivative 2 has no total.
-
-    Raises
-    ------
-    InvalidInput
-        If q is not finite, or the derivative another. So do the methods, of x and t outside their range.
     """
 
     q: float

@@ -20,8 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fracparticles.arguments import fractional_order, positive_real, real_array
-from fracparticles.errors import InvalidInput
+from fracparticles.arguments import choice, fractional_order, positive_real, real_array
 from fracparticles.moving.lagrangian import (
     REMESH_ABOVE,
     REMESHING,
@@ -154,8 +153,7 @@ def run(
     """
     spacing, overlap = positive_real("spacing", spacing), positive_real("overlap", overlap)
     x = real_array("x", x)
-    if lattice not in LATTICES:
-        raise InvalidInput("lattice", lattice, f"one of {', '.join(LATTICES)}", "Choose one.")
+    choice("lattice", lattice, LATTICES)
     if remeshing == "none":
         redistribution = None
     else:

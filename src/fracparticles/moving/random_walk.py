@@ -67,6 +67,8 @@ def walk(
 
     Walkers at 0 end with the density G(x, D time). The same generator state gives the same walk.
 
+    Raises `InvalidInput` if an argument is outside its range, or (D dt)^(1/alpha) is beyond 1e-100 .. 1e100.
+
     Parameters
     ----------
     x : array_like, shape (walkers,)
@@ -85,11 +87,6 @@ def walk(
     Returns
     -------
     ndarray, shape (walkers,)
-
-    Raises
-    ------
-    InvalidInput
-        If an argument is outside its range, or (D dt)^(1/alpha) is beyond 1e-100 .. 1e100.
     """
     position = check.positions("x", x).copy()
     alpha = check.fractional_order(alpha)
@@ -145,10 +142,8 @@ def cell_counts(x: Any, half_width: float, cells: int, ensembles: int = 1) -> ND
     ndarray of int, shape (ensembles, cells)
     """
     x, half_width = check.positions("x", x), check.scale("half_width", half_width)
-    cells, ensembles = (
-        check.positive_integer("cells", cells),
-        check.positive_integer("ensembles", ensembles),
-    )
+    cells = check.positive_integer("cells", cells)
+    ensembles = check.positive_integer("ensembles", ensembles)
     if ensembles > x.size:
         allowed = f"at most the {x.size} walkers"
         raise InvalidInput("ensembles", ensembles, allowed, "Take fewer ensembles.")
@@ -228,8 +223,7 @@ def expected_deviation(masses: Any, walkers: int) -> FloatArray:
     ndarray
         Same shape as the masses.
     """
-    p, n = check.real_array("masses", masses), check.positive_integer("walkers", walkers)
-    check.within("masses", p, 0.0, 1.0)
+    p, n = check.within("masses", masses, 0.0, 1.0), check.positive_integer("walkers", walkers)
     if n > _MOST_WALKERS:
         remedy = "Use the square root of 2 p (1 - p)/(pi n)."
         raise InvalidInput("walkers", n, f"at most {_MOST_WALKERS:g}", remedy)

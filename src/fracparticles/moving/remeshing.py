@@ -91,6 +91,9 @@ def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray
 
     From one lattice point before the first particle's cell to one after the last's, strengths of zero included.
 
+    Raises `InvalidInput` if there is no such function, the arrays are empty, not finite or do not fit together, or a
+    particle lies so far out that the lattice would not fit into memory.
+
     Parameters
     ----------
     x, strength : array, shape (N,)
@@ -99,12 +102,6 @@ def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray
         Lattice spacing h.
     name : {"M4'", "Lambda3"}
         Interpolation function.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no such function, the arrays are empty, not finite or do not fit together, or a particle lies so far
-        out that the lattice would not fit into memory.
     """
     which, spacing = _index(name), check.scale("spacing", spacing)
     x = check.positions("x", x)

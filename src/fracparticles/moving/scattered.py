@@ -65,6 +65,8 @@ _PAIRS = 2**14  # pairs evaluated together: they stay in the second-level cache
 class ScatteredKernel:
     """A kernel of unit smoothing length.
 
+    Raises `InvalidInput` if the profile is no function, or one of the others not positive.
+
     Attributes
     ----------
     profile : callable
@@ -73,11 +75,6 @@ class ScatteredKernel:
         Wavenumber beyond which the transform is zero, to round-off; infinite if there is none.
     reach : float
         Distance beyond which the kernel is zero, to round-off; infinite if there is none.
-
-    Raises
-    ------
-    InvalidInput
-        If the profile is no function, or one of the others not positive.
     """
 
     profile: Callable[[np.ndarray], np.ndarray]
@@ -127,6 +124,9 @@ def scattered_sum(
 ) -> ScatteredSum:
     """Return the sum over scattered particles for these kernels.
 
+    Raises `InvalidInput` if there is no such summation, or epsilon is not a positive number, or "fft" is asked for a
+    kernel that has neither a finite reach nor a finite bandwidth.
+
     Parameters
     ----------
     summation : {"fft", "naive"}
@@ -134,12 +134,6 @@ def scattered_sum(
     kernels : sequence of ScatteredKernel
     epsilon : float
         Smoothing length.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no such summation, or epsilon is not a positive number, or "fft" is asked for a kernel
-        that has neither a finite reach nor a finite bandwidth.
     """
     if check.choice("summation", summation, ("fft", "naive")) == "naive":
         return NaiveScatteredSum(kernels, epsilon)

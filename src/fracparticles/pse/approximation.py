@@ -46,6 +46,8 @@ def reconstruct(
 ) -> FloatArray:
     """f_eps^h(x) = sum_p f(x_p) V_p eta_eps(x - x_p)  (9).
 
+    Raises `InvalidInput` if the arrays do not fit together or are not finite, or epsilon or the kernel does not do.
+
     Parameters
     ----------
     x : array_like, shape (M,)
@@ -62,11 +64,6 @@ def reconstruct(
     Returns
     -------
     array, shape (M,)
-
-    Raises
-    ------
-    InvalidInput
-        If the arrays do not fit together or are not finite, or epsilon or the kernel does not do.
     """
     weights = _matrix(x, particles, volumes, epsilon, kernel)
     values = check.vector("values", values, weights.shape[1], complex_too=True)
@@ -86,6 +83,8 @@ def derivative(
 ) -> FloatArray:
     """eps^-beta sum_p [f(x_p) - f(x)] V_p eta_eps(x - x_p), the sum of (18); (21) for beta = 2.
 
+    Errors as of `reconstruct`; also if the order is not a whole number from 1 to 24.
+
     Parameters
     ----------
     x, at : array_like, shape (M,)
@@ -98,11 +97,6 @@ def derivative(
     Returns
     -------
     array, shape (M,)
-
-    Raises
-    ------
-    InvalidInput
-        As `reconstruct`; or if the order is not a whole number from 1 to 24.
     """
     divisor = _power(epsilon, check.whole_number("order", order, least=1, most=_HIGHEST))
     weights = _matrix(x, particles, volumes, epsilon, kernel)
@@ -120,14 +114,7 @@ def regularised(
 
     The sum without its quadrature error: what is left against the derivative is the error of regularisation.
 
-    Returns
-    -------
-    array, shape (M,)
-
-    Raises
-    ------
-    InvalidInput
-        As `derivative`; or if f does not take arrays, or is not finite.
+    Shape (M,). Errors as of `derivative`; also if f does not take arrays, or is not finite.
     """
     divisor = _power(epsilon, check.whole_number("order", order, most=_HIGHEST))
     x = check.positions("x", x, least=0)
@@ -157,21 +144,13 @@ def _matrix(
 
 def _check_pairs(points: int, particles: int) -> None:
     if points * particles > _MOST_PAIRS:
-        raise InvalidInput(
-            "x",
-            f"{points} points for {particles} particles",
-            f"at most {_MOST_PAIRS} pairs",
-            "Do it in parts.",
-        )
+        shown = f"{points} points for {particles} particles"
+        raise InvalidInput("x", shown, f"at most {_MOST_PAIRS} pairs", "Do it in parts.")
 
 
 def _power(epsilon: float, order: int) -> float:
     epsilon = check.scale("epsilon", epsilon)
     if abs(order * math.log10(epsilon)) > 300.0:
-        raise InvalidInput(
-            "epsilon",
-            epsilon,
-            f"a number whose power {order} does not overflow",
-            "Change the units.",
-        )
+        allowed = f"a number whose power {order} does not overflow"
+        raise InvalidInput("epsilon", epsilon, allowed, "Change the units.")
     return float(epsilon**order)

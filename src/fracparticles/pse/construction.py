@@ -31,10 +31,8 @@ __all__ = [
 ]
 
 _MOST = 24  # beta + r: the values of the kernel lose about a digit for every three
-_OVERLAPS = (
-    0.25,
-    1000.0,
-)  # below, a kernel is 1e7 times as large between the particles as at the next of them
+# Below, a kernel is 1e7 times as large between the particles as at the next of them.
+_OVERLAPS = (0.25, 1000.0)
 _WORST = 1e10  # condition number: beyond it the conditions are met to less than six digits
 
 
@@ -46,12 +44,8 @@ def required_moments(derivative: int, accuracy: int) -> dict[int, int]:
     derivative = whole_number("derivative", derivative)
     accuracy = whole_number("accuracy", accuracy, least=1)
     if derivative + accuracy > _MOST:
-        raise InvalidInput(
-            "accuracy",
-            accuracy,
-            f"derivative + accuracy <= {_MOST}",
-            "The kernel would drown in round-off.",
-        )
+        remedy = "The kernel would drown in round-off."
+        raise InvalidInput("accuracy", accuracy, f"derivative + accuracy <= {_MOST}", remedy)
     first = 0 if derivative == 0 else 1  # f(y) - f(x) in (18) frees M_0
     return {
         k: (-1) ** derivative * factorial(derivative) if k == derivative else 0
@@ -61,6 +55,8 @@ def required_moments(derivative: int, accuracy: int) -> dict[int, int]:
 
 def construct(derivative: int, accuracy: int, overlap: float | None = None) -> GaussianKernel:
     """Return the kernel c_j z^(p + 2 j) exp(-z^2) / sqrt(pi), p = beta mod 2, that meets the conditions.
+
+    Errors as of `required_moments`; also if the lattice has too few points within the kernel for the conditions.
 
     Parameters
     ----------
@@ -74,11 +70,6 @@ def construct(derivative: int, accuracy: int, overlap: float | None = None) -> G
     -------
     GaussianKernel
         With exact coefficients if `overlap` is None.
-
-    Raises
-    ------
-    InvalidInput
-        As `required_moments`; or if the lattice has too few points within the kernel for the conditions.
     """
     conditions = required_moments(derivative, accuracy)
     parity = derivative % 2
@@ -93,12 +84,9 @@ def construct(derivative: int, accuracy: int, overlap: float | None = None) -> G
     )
     condition = float(np.linalg.cond(matrix))
     if not condition < _WORST:
-        raise InvalidInput(
-            "overlap",
-            overlap,
-            f"enough particles in a kernel for {len(conditions)} conditions",
-            "Take a larger overlap, or construct_stencil.",
-        )
+        allowed = f"enough particles in a kernel for {len(conditions)} conditions"
+        remedy = "Take a larger overlap, or construct_stencil."
+        raise InvalidInput("overlap", overlap, allowed, remedy)
     solution = np.linalg.solve(matrix, np.array(list(conditions.values()), dtype=float))
     return GaussianKernel(tuple(solution.tolist()), parity, 1, condition)
 
@@ -152,9 +140,8 @@ def taylor_constant(kernel: GaussianKernel, derivative: int, accuracy: int) -> F
     if accuracy % 2:
         raise InvalidInput("accuracy", accuracy, "an even number", "An odd r gives r + 1.")
     k = derivative + accuracy
-    terms = (
-        c * gaussian_moment(k + kernel.parity + 2 * j) for j, c in enumerate(kernel.coefficients)
-    )
+    powers = range(k + kernel.parity, k + kernel.parity + 2 * len(kernel.coefficients), 2)
+    terms = (c * gaussian_moment(p) for p, c in zip(powers, kernel.coefficients, strict=True))
     return sum(terms, Fraction(0)) * (-1) ** k / factorial(k)
 
 

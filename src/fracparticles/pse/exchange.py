@@ -21,10 +21,13 @@ _MOST_PAIRS = 2**25  # of neighbours, each twice in the matrix
 
 
 class StrengthExchange:
-    """dQ_i/dt = (D / eps^2) sum_p [Q_p V_i - Q_i V_p] eta_eps(x_i - x_p)  (26), an `Operator` of the integrators.
+    """dQ_i/dt = (D / eps^2) sum_p [Q_p V_i - Q_i V_p] eta_eps(x_i - x_p)  (26), an `Operator` of `time`.
 
     What i gains of p, p loses to i if eta is symmetric: then sum_i dQ_i/dt = 0 for any positions and volumes.
     Q_i = c V_i is a steady state for any kernel; and if eta >= 0 is symmetric, sum_i Q_i^2 / V_i does not grow.
+
+    Raises `InvalidInput` if a volume, the radius or the diffusivity is not positive and finite, a position not
+    finite, the kernel of another dimension, or the particles have more neighbours than memory holds.
 
     Parameters
     ----------
@@ -45,12 +48,6 @@ class StrengthExchange:
         A of dQ/dt = A Q.
     rate : float
         A bound of |lambda| over the eigenvalues of A (Gershgorin, by columns).
-
-    Raises
-    ------
-    InvalidInput
-        If a volume, the radius or the diffusivity is not positive and finite, a position not finite, the kernel of
-        another dimension, or the particles have more neighbours than memory holds.
     """
 
     def __init__(
@@ -64,32 +61,20 @@ class StrengthExchange:
         points = check.places("x", x)
         points = points[:, None] if points.ndim == 1 else points
         if points.ndim != 2 or not points.size or points.shape[1] > 3:
-            raise InvalidInput(
-                "x",
-                f"array of shape {points.shape}",
-                "shape (N,) or (N, d), d = 1, 2 or 3",
-                "Mend it.",
-            )
+            shown, allowed = f"array of shape {points.shape}", "shape (N,) or (N, d), d = 1, 2 or 3"
+            raise InvalidInput("x", shown, allowed, "Mend it.")
         self.size, dim = points.shape
         kernel = kernel_of(dim, kernel)
-        v = check.finite_array("volumes", volumes, (self.size,))
-        v = check.within("volumes", v, 0.0, inside=True)
-        epsilon, diffusivity = (
-            check.scale("epsilon", epsilon),
-            check.scale("diffusivity", diffusivity),
-        )
+        v = check.within("volumes", volumes, 0.0, inside=True, shape=(self.size,))
+        epsilon = check.scale("epsilon", epsilon)
+        diffusivity = check.scale("diffusivity", diffusivity)
         if abs((2 + dim) * math.log10(epsilon)) > 300.0:
-            raise InvalidInput(
-                "epsilon", epsilon, "a number whose power does not overflow", "Change the units."
-            )
+            allowed = "a number whose power does not overflow"
+            raise InvalidInput("epsilon", epsilon, allowed, "Change the units.")
         tree, near = cKDTree(points), kernel.reach * epsilon
         if self.size**2 > _MOST_PAIRS and tree.count_neighbors(tree, near) > 2 * _MOST_PAIRS:
-            raise InvalidInput(
-                "epsilon",
-                epsilon,
-                f"one with at most {_MOST_PAIRS} pairs of neighbours",
-                "Take a smaller one.",
-            )
+            allowed = f"one with at most {_MOST_PAIRS} pairs of neighbours"
+            raise InvalidInput("epsilon", epsilon, allowed, "Take a smaller one.")
         pairs = tree.query_pairs(near, output_type="ndarray")
         i, p = np.concatenate([pairs, pairs[:, ::-1]]).T
         apart = (points[i] - points[p]) / epsilon

@@ -86,6 +86,8 @@ def lattice_moment(
 ) -> FloatArray:
     """M^_k = (1/s) sum_i z_i^k eta(z_i), z_i = (i + offset) / s: what the particles of a lattice make of M_k.
 
+    Errors as of `moment`; also if an overlap is not positive, or holds too many particles.
+
     Parameters
     ----------
     kernel : Kernel
@@ -100,22 +102,16 @@ def lattice_moment(
     Returns
     -------
     array, in the shape of `overlap`
-
-    Raises
-    ------
-    InvalidInput
-        As `moment`; or if an overlap is not positive, or holds too many particles.
     """
     kernel, k = kernel_of(1, kernel), check.whole_number("k", k, most=_HIGHEST)
-    s = check.within("overlap", check.finite_array("overlap", overlap), 0.0, inside=True)
+    s = check.within("overlap", overlap, 0.0, inside=True)
     offset = check.finite_real("offset", offset)
     if abs(offset) > 1.0:
         offset -= round(offset)
     reached = (kernel.reach + _BEYOND) * s.max(initial=0.0)
     if not 2.0 * reached * max(s.size, 1) < _MOST_POINTS:
-        raise InvalidInput(
-            "overlap", overlap, f"at most {_MOST_POINTS} points of lattices", "Take smaller ones."
-        )
+        allowed = f"at most {_MOST_POINTS} points of lattices"
+        raise InvalidInput("overlap", overlap, allowed, "Take smaller ones.")
     n = int(np.ceil(reached)) + 1
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         z = (np.arange(-n, n + 1) + offset) / s[..., None]

@@ -62,12 +62,9 @@ def kernel_of(dim: int, kernel: Any) -> Kernel:
         raise InvalidInput("kernel", kernel, "a kernel, with a reach and breaks", "Make one first.")
     dim, of_kernel = check.dimension(dim), getattr(kernel, "dim", 1)
     if of_kernel != dim:
-        raise InvalidInput(
-            "kernel",
-            kernel,
-            f"a kernel of {dim} dimensions, not of {of_kernel}",
-            f"construct_laplacian(accuracy, {dim}) gives one for the Laplacian.",
-        )
+        allowed = f"a kernel of {dim} dimensions, not of {of_kernel}"
+        remedy = f"construct_laplacian(accuracy, {dim}) gives one for the Laplacian."
+        raise InvalidInput("kernel", kernel, allowed, remedy)
     check.real_between("kernel.reach", kernel.reach, 0.0, _WIDEST)
     result: Kernel = kernel
     return result
@@ -76,6 +73,8 @@ def kernel_of(dim: int, kernel: Any) -> Kernel:
 @dataclass(frozen=True)
 class GaussianKernel:
     """eta(z) = sum_j c_j z^(p + 2 j) pi^(-d/2) exp(-z^2), with (19): p = 0 symmetric, p = 1 antisymmetric.
+
+    Raises `InvalidInput` if there is no coefficient other than zero, or a value is outside its range.
 
     Attributes
     ----------
@@ -87,17 +86,13 @@ class GaussianKernel:
         d; a radial kernel if d > 1.
     condition : float
         Condition number of the moment conditions that gave c_j.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no coefficient other than zero, or a value is outside its range.
     """
 
     coefficients: tuple[Fraction | float, ...]
     parity: int = 0
     dim: int = 1
     condition: float = 1.0
+    breaks = ()  # it is smooth
 
     def __post_init__(self) -> None:
         check.fields(
@@ -107,11 +102,6 @@ class GaussianKernel:
             dim=lambda _, dim: check.dimension(dim),
             condition=check.finite_real,
         )
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """None: it is smooth."""
-        return ()
 
     @property
     def reach(self) -> float:
@@ -149,15 +139,8 @@ def _coefficients(field: str, value: Any) -> tuple[Fraction | float, ...]:
 class Tent:
     """eta(z) = 2 (1 - |z| / 2) for |z| <= 2, else 0  (27)."""
 
-    @property
-    def reach(self) -> float:
-        """Half of the support."""
-        return 2.0
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """The top."""
-        return (0.0,)
+    reach = 2.0
+    breaks = (0.0,)
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
@@ -222,31 +205,24 @@ def _spline(degree: int, u: FloatArray) -> FloatArray:
 class Stencil:
     """A kernel known at the points of the lattice only, eta(i), |i| <= n, for eps = h (Sec. 3.1).
 
+    Raises `InvalidInput` if there is an even number of values, or they are not finite.
+
     Attributes
     ----------
     values : tuple of Fraction
         eta(-n), ..., eta(n); eta(0) is free, since f(x_p) - f(x_i) is zero there, and set to 0.
     condition : float
         Condition number of the moment conditions that gave the values.
-
-    Raises
-    ------
-    InvalidInput
-        If there is an even number of values, or they are not finite.
     """
 
     values: tuple[Fraction, ...]
     condition: float = 1.0
+    breaks = ()  # there is nothing between the points
 
     def __post_init__(self) -> None:
         check.fields(self, values=_coefficients, condition=check.finite_real)
         if len(self.values) % 2 == 0:
             raise InvalidInput("values", self.values, "an odd number of them", "Give eta(0) too.")
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """None: there is nothing between the points."""
-        return ()
 
     @property
     def reach(self) -> float:
@@ -261,13 +237,11 @@ class Stencil:
         n = len(self.values) // 2
         z = np.clip(check.real_array("z", z), -n - 1.0, n + 1.0)
         i = np.rint(z)
-        if (np.abs(z - i) > 1e-6).any():
-            raise InvalidInput(
-                "z",
-                float(np.extract(np.abs(z - i) > 1e-6, z)[0]),
-                "only points of the lattice, with eps = h: a stencil has no values between them",
-                "Take a kernel that has, from `construct`.",
-            )
+        between = z[np.abs(z - i) > 1e-6]
+        if between.size:
+            allowed = "only points of the lattice, eps = h: a stencil has no values between them"
+            remedy = "Take a kernel that has, from `construct`."
+            raise InvalidInput("z", float(between[0]), allowed, remedy)
         table = np.array([0.0, *map(float, self.values), 0.0])
         return table[i.astype(int) + n + 1]
 

@@ -226,9 +226,9 @@ def _check_far_field(case: Parameters) -> None:
         return
     if case.n < _FAR_OVERLAPS * case.epsilon_over_h:
         least = _FAR_OVERLAPS * case.epsilon_over_h * case.particle_spacing
-        short = f"nothing or 1 on a lattice of half-width {case.domain:.4g}, less than {_FAR_OVERLAPS} smoothing lengths"
+        short = f"a lattice of half-width {case.domain:.4g}, less than {_FAR_OVERLAPS} smoothing lengths, {least:.4g}"
         remedy = "Leave it out, or take a wider lattice or a smaller spacing."
-        raise InvalidInput("far_terms", case.far_terms, f"{short}, {least:.4g}", remedy)
+        raise InvalidInput("far_terms", case.far_terms, f"nothing or 1 on {short}", remedy)
     stiffness = (case.t_final - case.t_initial) * case.setting.rate
     if stiffness > _FAR_STIFFEST:
         stiff = f"nothing or 1 where T D / h^alpha = {stiffness:.3g}, more than {_FAR_STIFFEST:g}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 
 from cyclopts import Parameter
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, spelled
 from fracparticles.files import replaceable
 from fracparticles.run.case import Case
 from fracparticles.run.cli import number_or_text
@@ -23,7 +23,7 @@ def _flag(name: str) -> Any:
     field = Case.model_fields[name]
     choices = choices_of(field.annotation)
     notes = [
-        f"[one of: {', '.join(map(str, choices))}]" if choices else "",
+        f"[one of: {spelled(choices, ', ')}]" if choices else "",
         f"[default: {field.default}]" if field.default and not field.is_required() else "",
     ]
     return Annotated[
@@ -55,14 +55,11 @@ def solve(
         The NetCDF file to write.
     """
     target = _writable(output)
-    case = Case(
-        **{
-            name: number_or_text(text)
-            if takes_numbers(Case.model_fields[name].annotation)
-            else text
-            for name, text in (flags or {}).items()
-        }
-    )
+    numbers = {name for name, field in Case.model_fields.items() if takes_numbers(field.annotation)}
+    case = Case(**{
+        name: number_or_text(text) if name in numbers else text
+        for name, text in (flags or {}).items()
+    })  # fmt: skip
 
     from fracparticles.run.dataset import write
     from fracparticles.run.solver import solve as run
@@ -75,14 +72,9 @@ def _writable(output: str | None) -> Path:
     """Return the path of the output if it can be written, before any work is done."""
     if output is None:
         raise InvalidInput("output", None, "the path of the file to write", "Give -o run.nc.")
-    target = replaceable(output, "output")
-    folder = target.parent
+    folder, where = replaceable(output, "output").parent, "a file in a directory that"
     if not folder.is_dir():
-        raise InvalidInput(
-            "output", output, "a file in a directory that exists", f"Make {str(folder)!r} first."
-        )
+        raise InvalidInput("output", output, f"{where} exists", f"Make {str(folder)!r} first.")
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise InvalidInput(
-            "output", output, "a file in a directory that can be written", "Choose another one."
-        )
+        raise InvalidInput("output", output, f"{where} can be written", "Choose another one.")
     return Path(output)

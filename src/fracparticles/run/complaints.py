@@ -94,5 +94,7 @@ def field_table(model: type[BaseModel]) -> str:
         choices = spelled(f"`{choice}`" for choice in choices_of(field.annotation))
         given = not field.is_required() and field.default is not None
         default = f"`{field.default}`" if given else ""
-        lines.append(f"| `{name}` | {meaning}{f' One of {choices}.' if choices else ''} | {default} |")
+        lines.append(
+            f"| `{name}` | {meaning}{f' One of {choices}.' if choices else ''} | {default} |"
+        )
     return "\n".join(lines)

@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fracparticles import __version__
 from fracparticles.errors import InvalidInput
 from fracparticles.files import load_netcdf, replacing
+from fracparticles.graded.field import INTERPOLATED
 from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.complaints import label_of
 from fracparticles.run.initial import case_of_run
 from fracparticles.run.solution import Solution, relative_l1_error
 from fracparticles.special.stable import mean_radius
@@ -31,31 +34,15 @@ REFERENCE = (
     "equations, Comput. Part. Mech. 7, 491-507, doi:10.1007/s40571-019-00275-8"
 )
 
-_LONG_NAMES = {
-    "scheme": "particle scheme",
-    "order": "order of the kernels",
-    "kernel_family": "family of the kernels",
-    "beta": "fractional order beta = alpha - 1",
-    "truncation": "truncation factor C = D / ((diffusivity t_final)^(1/alpha) R_alpha)",
-    "half_width": "half-width D of the lattice",
-    "spacing": "particle spacing h asked for",
-    "particle_spacing": "particle spacing h realised",
-    "overlap": "overlap epsilon / h realised",
-    "dt": "time step realised, 0 for the exponential",
-    "diffusivity": "diffusivity D",
-    "t_initial": "initial time",
-    "t_final": "final time",
-    "integrator": "time integrator",
-    "evaluation": "evaluation of the step polynomial",
-    "summation": "sum over particles",
-    "exterior": "what lies beyond the lattice",
-    "far_terms": "terms that continue the solution beyond the lattice",
-    "dim": "space dimension",
-    "kernel_table": "step of the kernel table, in units of epsilon",
-    "remeshing": "remeshing kernel",
-    "remesh_above": "spacing above which DVM remeshes, in units of h",
-    "threshold": "share of the greatest strength below which DVM leaves a particle out",
+# What a scalar coordinate adds to the label of the field that it is named after.
+_REALISED = {
+    "spacing": ", asked for",
+    "particle_spacing": ", realised",
+    "overlap": ", realised",
+    "dt": ", realised; zero for the exponential",
 }
+
+Variables = dict[str, tuple]
 
 
 def to_dataset(solution: Solution) -> xr.Dataset:
@@ -64,44 +51,31 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     Dimensions `x`, `y`, `z` as there are; `u` unless the case stores metrics only (for dim > 1 the profiles `u_axis`
     and `u_diagonal` if it stores these); scalar coordinates for every parameter; the scalars `mass_initial`,
     `mass_final`, `operator_applications` and, for a run from the fundamental solution, `relative_l1_error` of
-    Eqs. (48), (59). For DVM also the particles and their history.
+    Eqs. (48), (59). For DVM also the particles and their history; for graded particles their volumes.
     """
     import xarray as xr
 
-    case, u = solution.case, solution.u
-    volume = case.particle_spacing**case.dim
-    total = (
-        _mass(u, volume) if solution.particles is None else float(solution.particles.strength.sum())
-    )
-    data: dict[str, tuple] = {
-        "mass_initial": (
-            (),
-            _mass(solution.u0, volume),
-            _describe("total mass, the sum of V u, at t_initial"),
+    case, particles = solution.case, solution.particles
+    total = case.integral(solution.u) if particles is None else float(particles.strength.sum())
+    applications = np.int64(solution.operator_applications)
+    data: Variables = {
+        "mass_initial": _scalar(
+            case.integral(solution.u0), "total mass, the sum of V u, at t_initial"
         ),
-        "mass_final": ((), total, _describe("total mass, the sum of V u, at t_final")),
-        "operator_applications": (
-            (),
-            np.int64(solution.operator_applications),
-            _describe("number of operator applications"),
-        ),
+        "mass_final": _scalar(total, "total mass, the sum of V u, at t_final"),
+        "operator_applications": _scalar(applications, "number of operator applications"),
     }
     if solution.initial.startswith(FUNDAMENTAL):
-        data["relative_l1_error"] = (
-            (),
-            relative_l1_error(case, u),
-            _describe("relative L1 error, Eqs. (48), (59)"),
-        )
-    for name, (value, meaning) in (getattr(solution, "estimates", None) or {}).items():
-        data[name] = ((), float(value), _describe(meaning))
-    coordinates: dict[str, tuple] = {
-        name: ((), value, _describe(_LONG_NAMES[name])) for name, value in _parameters(case).items()
-    }
+        error = relative_l1_error(case, solution.u)
+        data["relative_l1_error"] = _scalar(error, "relative L1 error, Eqs. (48), (59)")
+    for name, (value, meaning) in solution.estimates.items():
+        data[name] = _scalar(float(value), meaning)
+    coordinates = {name: _scalar(value, _label(name)) for name, value in _parameters(case).items()}
     fields, axes = _fields(solution)
     data |= fields
     coordinates |= axes
-    if solution.particles is not None:
-        data |= _particle_variables(solution.particles, case.store)
+    if particles is not None:
+        data |= _particle_variables(particles, case.store)
     return xr.Dataset(
         data,
         coordinates,
@@ -120,92 +94,60 @@ def to_dataset(solution: Solution) -> xr.Dataset:
     )
 
 
-def _fields(solution: Solution) -> tuple[dict[str, tuple], dict[str, tuple]]:
+def _fields(solution: Solution) -> tuple[Variables, Variables]:
     """The strengths that the case stores, and their coordinates."""
-    case, u = solution.case, solution.u
+    case, u, x, kept = solution.case, solution.u, solution.case.x, slice(None)
     if case.store == "metrics":
         return {}, {}
-    x = case.x
-    axes = ("x", "y", "z")[: case.dim]
+    strength, place = "particle strength u at t_final", "particle position"
     if case.store == "profile" and case.dim > 1:
         middle: tuple[Any, ...] = (slice(None), *(case.n,) * (case.dim - 1))
-        return {
-            "u_axis": (("x",), u[middle], _describe("particle strength u at t_final for y = 0")),
-            "u_diagonal": (
-                ("x",),
-                np.einsum("i" * case.dim + "->i", u),
-                _describe("particle strength u at t_final for y = x"),
-            ),
-        }, {"x": (("x",), x, _describe("particle position"))}
+        diagonal = np.einsum("i" * case.dim + "->i", u)
+        profiles = {
+            "u_axis": _along("x", u[middle], f"{strength} for y = 0"),
+            "u_diagonal": _along("x", diagonal, f"{strength} for y = x"),
+        }
+        return profiles, {"x": _along("x", x, place)}
     if case.store == "profile":
         kept = np.abs(x) <= 5.0 * mean_radius(case.alpha) * (1.0 + 1e-12)
         x, u = x[kept], u[kept]
-    coordinates = {axis: ((axis,), x, _describe("particle position")) for axis in axes}
+    axes = ("x", "y", "z")[: case.dim]
+    coordinates = {axis: _along(axis, x, place) for axis in axes}
     # DVM's particles leave the lattice; there is the field that they make.
-    what = "field u" if case.kind.moving else "particle strength u"
-    return {"u": (axes, u, _describe(f"{what} at t_final"))}, coordinates
+    fields = {"u": (axes, u, _describe("field u at t_final" if case.kind.moving else strength))}
+    if case.is_graded:
+        fields["volume"] = _along("x", np.asarray(case.volumes)[kept], "particle volume V")
+    return fields, coordinates
 
 
-def _particle_parameters(case: Case) -> dict[str, object]:
-    return {
-        "remeshing": case.remeshing or "M4'",
-        "remesh_above": 1.5 if case.remesh_above is None else case.remesh_above,
-        "threshold": case.threshold or 0.0,
-    }
-
-
-def _particle_variables(run: ParticleRun, store: str) -> dict[str, tuple]:
+def _particle_variables(run: ParticleRun, store: str) -> Variables:
     """What happened to the particles of DVM, and unless only metrics are stored the particles themselves."""
-    history = run.history
-    scalars = {
-        "remeshings": (np.int64(history.remeshings), "number of remeshings"),
-        "largest_spacing": (history.largest_spacing, "largest spacing after any step"),
-        "overtaking_steps": (
-            np.int64(history.overtaking_steps),
-            "steps that changed the order of the particles",
+    was = run.history
+    overtaking, eliminated = np.int64(was.overtaking_steps), np.int64(was.eliminated_count)
+    data = {
+        "remeshings": _scalar(np.int64(was.remeshings), "number of remeshings"),
+        "largest_spacing": _scalar(was.largest_spacing, "largest spacing after any step"),
+        "overtaking_steps": _scalar(overtaking, "steps that changed the order of the particles"),
+        "eliminated_particles": _scalar(eliminated, "particles left out below the threshold"),
+        "eliminated_strength": _scalar(
+            was.eliminated_strength, "total mass of the particles left out"
         ),
-        "eliminated_particles": (
-            np.int64(history.eliminated_count),
-            "particles left out below the threshold",
+        "lost_strength": _scalar(
+            was.lost_strength, "total mass that remeshing put beyond the lattice"
         ),
-        "eliminated_strength": (
-            history.eliminated_strength,
-            "total mass of the particles left out",
-        ),
-        "lost_strength": (
-            history.lost_strength,
-            "total mass that remeshing put beyond the lattice",
-        ),
-        "final_particles": (np.int64(run.x.size), "number of particles at t_final"),
-    }
-    data: dict[str, tuple] = {
-        name: ((), number, _describe(meaning)) for name, (number, meaning) in scalars.items()
+        "final_particles": _scalar(np.int64(run.x.size), "number of particles at t_final"),
     }
     if store == "metrics":
         return data
-    data["particle_position"] = (("particle",), run.x, _describe("position at t_final"))
-    data["particle_strength"] = (
-        ("particle",),
-        run.strength,
-        _describe("mass of a particle, V u, at t_final"),
-    )
-    if history.remeshings:
-        dimension = ("event",)  # not "remeshing", which is a parameter
-        data["remeshing_time"] = (
-            dimension,
-            np.array(history.remeshing_times),
-            _describe("instant of a remeshing"),
-        )
-        data["spacing_before"] = (
-            dimension,
-            np.array(history.spacings_before),
-            _describe("largest spacing before a remeshing"),
-        )
-        data["spacing_where"] = (
-            dimension,
-            np.array(history.spacings_where),
-            _describe("middle of that gap"),
-        )
+    mass = "mass of a particle, V u, at t_final"
+    data["particle_position"] = _along("particle", run.x, "position at t_final")
+    data["particle_strength"] = _along("particle", run.strength, mass)
+    if was.remeshings:
+        # The dimension is not "remeshing", which is a parameter.
+        before, where = "largest spacing before a remeshing", "middle of that gap"
+        data["remeshing_time"] = _along("event", was.remeshing_times, "instant of a remeshing")
+        data["spacing_before"] = _along("event", was.spacings_before, before)
+        data["spacing_where"] = _along("event", was.spacings_where, where)
     return data
 
 
@@ -327,13 +269,27 @@ def _parameters(case: Case) -> dict[str, object]:
         **({} if case.far_terms is None else {"far_terms": np.int64(case.far_terms)}),
         **({} if case.kernel_family is None else {"kernel_family": case.kernel_family}),
         **({} if case.kernel_table is None else {"kernel_table": case.kernel_table}),
-        **(_particle_parameters(case) if case.kind.moving else {}),
+        **(case.redistribution if case.kind.moving else {}),
+        **(_graded_parameters(case) if case.is_graded else {}),
     }
 
 
-def _mass(u: np.ndarray, volume: float) -> float:
-    """sum_i V_i u_i; numpy sums pairwise, so the error is a few ulp."""
-    return float(volume * u.sum())
+def _graded_parameters(case: Case) -> dict[str, object]:
+    form = case.graded_form or INTERPOLATED
+    return {"graded_scale": case.graded_scale, "graded_form": form, "summation": "matrix"}
+
+
+def _label(name: str) -> str:
+    fields = Case.model_fields
+    return label_of(fields[name.removeprefix("particle_")]) + _REALISED.get(name, "")
+
+
+def _scalar(value: object, long_name: str) -> tuple:
+    return (), value, _describe(long_name)
+
+
+def _along(dimension: str, values: ArrayLike, long_name: str) -> tuple:
+    return (dimension,), np.asarray(values), _describe(long_name)
 
 
 def _describe(long_name: str) -> dict[str, str]:

@@ -76,12 +76,8 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
         u0 = np.asarray(green(x, case.diffusivity * case.t_initial, case.alpha, case.dim))
         return u0, f"fundamental solution at t = {case.t_initial:g}"
     if isinstance(source, str) and source.startswith(_GIVEN):
-        raise InvalidInput(
-            "initial",
-            source,
-            "'fundamental' or a file, unless the data come with the call: a stored case cannot hold them",
-            "Pass the data again: fp.solve(case, data).",
-        )
+        known = "'fundamental' or a file, unless the data come with the call: a stored case cannot hold them"
+        raise InvalidInput("initial", source, known, "Pass the data again: fp.solve(case, data).")
     given: Any
     if isinstance(source, str | os.PathLike):
         given, what = _read(Path(source)), f"file {os.fspath(source)}"
@@ -137,20 +133,16 @@ def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:
     if type(u0) is np.ndarray and u0.dtype is _FLOAT64 and u0.shape == shape:  # a tenth of the rest
         return u0
     if type(u0) is not np.ndarray and _labels(u0) is not None:
-        raise InvalidInput(
-            "initial",
-            type(u0).__name__,
-            "a bare array, whose order is that of case.positions",
-            "Pass the labelled data to fp.solve, which takes them by their labels, or their values.",
+        bare = "a bare array, whose order is that of case.positions"
+        remedy = (
+            "Pass the labelled data to fp.solve, which takes them by their labels, or their values."
         )
+        raise InvalidInput("initial", type(u0).__name__, bare, remedy)
     u0 = _real(u0)
     if u0.shape != shape:
-        raise InvalidInput(
-            "initial",
-            f"array of shape {u0.shape}",
-            f"an array of shape {shape}, one strength for each particle of the lattice",
-            "Evaluate the data on case.positions.",
-        )
+        shaped = f"an array of shape {shape}, one strength for each particle of the lattice"
+        remedy = "Evaluate the data on case.positions."
+        raise InvalidInput("initial", f"array of shape {u0.shape}", shaped, remedy)
     return u0
 
 
@@ -164,13 +156,9 @@ def refuse_non_finite(u0: np.ndarray, x: np.ndarray) -> None:
     """
     if np.isfinite(u0).all():
         return
-    where = x[np.argwhere(~np.isfinite(u0))[0]]
-    raise InvalidInput(
-        "initial",
-        f"not finite at x = {', '.join(f'{part:g}' for part in where)}",
-        "finite strengths",
-        "Mend the data, or shift a singularity off the lattice.",
-    )
+    where = ", ".join(f"{part:g}" for part in x[np.argwhere(~np.isfinite(u0))[0]])
+    remedy = "Mend the data, or shift a singularity off the lattice."
+    raise InvalidInput("initial", f"not finite at x = {where}", "finite strengths", remedy)
 
 
 def case_of_run(case: Case, origin: str) -> Case:
@@ -226,24 +214,18 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
     axes = _AXES[: case.dim]
     wanted = f"u({', '.join(axes)}) and the coordinates {', '.join(axes)}"
     if "u" not in data.variables:
-        raise InvalidInput(
-            "initial", name, wanted, f"It holds {', '.join(map(str, data.variables)) or 'nothing'}."
-        )
+        held = ", ".join(map(str, data.variables)) or "nothing"
+        raise InvalidInput("initial", name, wanted, f"It holds {held}.")
     u = data["u"]
     others = [dim for dim in u.dims if dim not in axes]
     sizes = ", ".join(f"{dim}: {size}" for dim, size in u.sizes.items())
     if not set(axes) <= set(u.dims) or any(u.sizes[dim] != 1 for dim in others):
-        raise InvalidInput(
-            "initial",
-            name,
-            f"{wanted}, and other dimensions of length one only",
-            f"The dimensions of u are ({sizes}): select one of the others, name the axes so.",
-        )
-    missing = [axis for axis in axes if axis not in data.variables]
+        remedy = f"The dimensions of u are ({sizes}): select one of the others, name the axes so."
+        only = f"{wanted}, and other dimensions of length one only"
+        raise InvalidInput("initial", name, only, remedy)
+    missing = ", ".join(axis for axis in axes if axis not in data.variables)
     if missing:
-        raise InvalidInput(
-            "initial", name, wanted, f"Store {', '.join(missing)}, which u does not have."
-        )
+        raise InvalidInput("initial", name, wanted, f"Store {missing}, which u does not have.")
     u = u.squeeze(others, drop=True).transpose(*axes)
     strengths = u.values
     for axis, label in enumerate(axes):
@@ -262,19 +244,20 @@ def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
     if x.dtype.kind not in "iuf" or x.ndim != 1 or not np.isfinite(x).all():
         raise InvalidInput("initial", name, f"finite real numbers as {label}", "Store numbers.")
     if x.size != lattice.size:
-        raise InvalidInput(
-            "initial", name, allowed, f"It has {x.size} points along {label}. {remedy}"
-        )
+        counted = f"It has {x.size} points along {label}. {remedy}"
+        raise InvalidInput("initial", name, allowed, counted)
     order = np.argsort(x, kind="stable")
-    deviation = np.abs(x[order].astype(np.float64) - lattice)
-    rounding = 0.0 if x.dtype.kind != "f" else float(np.finfo(x.dtype).eps) * case.domain
-    worst = int(deviation.argmax())
-    if deviation[worst] > max(1e-9 * h, rounding) or deviation[worst] >= 0.25 * h:
+    apart = np.asarray(case.volumes) if case.is_graded else np.asarray(h)  # of neighbours
+    deviation = np.abs(x[order].astype(np.float64) - lattice) / apart
+    rounding = 0.0 if x.dtype.kind != "f" else float(np.finfo(x.dtype).eps) * case.domain / apart
+    wrong = (deviation > np.maximum(1e-9, rounding)) | (deviation >= 0.25)
+    if wrong.any():
+        worst = int(np.where(wrong, deviation, 0.0).argmax())
         raise InvalidInput(
             "initial",
             name,
             allowed,
-            f"Sorted, its points are up to {deviation[worst] / h:.3g} h off these: {label} = "
+            f"Sorted, its points are up to {deviation[worst]:.3g} h off these: {label} = "
             f"{float(x[order[worst]])!r} for {float(lattice[worst])!r}. {remedy}",
         )
     return order
@@ -315,12 +298,8 @@ def _labels(given: Any) -> xr.Dataset | None:
     """The data as a data set if they have labels; none for bare data. Nothing is imported that the data are not of."""
     pandas = sys.modules.get("pandas")
     if pandas is not None and isinstance(given, pandas.DataFrame):
-        raise InvalidInput(
-            "initial",
-            "DataFrame",
-            "an array, or a Series of u with x as its index",
-            "Take a column.",
-        )
+        series = "an array, or a Series of u with x as its index"
+        raise InvalidInput("initial", "DataFrame", series, "Take a column.")
     if pandas is not None and isinstance(given, pandas.Series):
         if isinstance(given.index, pandas.RangeIndex):  # counted, not labelled
             return None

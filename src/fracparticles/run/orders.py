@@ -39,7 +39,7 @@ def observed_order(h: ArrayLike, error: ArrayLike) -> np.ndarray:
     return np.log(error[:-1] / error[1:]) / np.log(h[:-1] / h[1:])
 
 
-def self_convergence_order(levels: Sequence[np.ndarray]) -> float:
+def self_convergence_order(levels: Sequence[np.ndarray] | np.ndarray) -> float:
     """Return the order of self-convergence p of three solutions on common points, Eq. (49).
 
     p = log2( sum_i |u_i^l - u_i^{l+1}| / sum_i |u_i^{l+1} - u_i^{l+2}| ), where the step or the spacing is halved

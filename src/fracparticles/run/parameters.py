@@ -61,8 +61,8 @@ class Parameters(BaseModel):
     """Order of the kernels. 2 or 4; of some schemes up to 12."""
     kernel_family: Literal["printed", "gamma"] | None = Field(
         default=None,
-        description=f"Family of the kernels. For {_WITH_FAMILIES}: the paper's, printed for orders 2 and 4, or gamma, "
-        "which has all; printed where there is one if left out.",
+        description=f"Family of the kernels. For {_WITH_FAMILIES}: printed, the paper's of orders 2 and 4, or gamma, "
+        "of all orders; if left out printed for 2 and 4, gamma beyond.",
     )
     beta: float = Field(gt=0.0, lt=1.0)
     """Fractional order beta = alpha - 1. Between 0 and 1 (exclusive)."""
@@ -95,7 +95,7 @@ class Parameters(BaseModel):
         default=None,
         description="Evaluation of the time integrator. As one Chebyshev series (if left out) or step by step (always "
         "DVM, and a single step): the same discrete solution to round-off. By convolution the whole run is one lattice "
-        f"sum, from the symbol: {_OPEN} on the line with an open exterior, exponential but for GPSE.",
+        f"sum, from the symbol: {_OPEN} on the line, exponential but for GPSE, with an open exterior.",
     )
     summation: Literal["fft", "naive"] = "fft"
     """Sum over particles. The fast Fourier transform of DVM is a non-uniform one."""
@@ -197,12 +197,12 @@ class Parameters(BaseModel):
             return graded_particles(self.particles, self.domain, self.graded_scale)[1]
         return float(self.particle_spacing**self.dim)
 
-    def integral(self, values: np.ndarray, inside: Any = ...) -> float:
-        """Return sum_i V_i f_i from the values at the particles, or at those `inside`; to a few ulp, summed pairwise."""
+    def integral(self, values: np.ndarray) -> float:
+        """Return sum_i V_i f_i from the values at the particles; numpy sums pairwise: to a few ulp."""
         volumes = self.volumes
         if isinstance(volumes, float):
             return float(volumes * values.sum())
-        return float((volumes[inside] * values).sum())
+        return float((volumes * values).sum())
 
     @property
     def positions(self) -> list[np.ndarray]:

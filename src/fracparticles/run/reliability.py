@@ -27,7 +27,8 @@ decay
 round_off
     64 T |lambda| 2^-52: an application of A is exact to some 2^-53 |lambda|, and the recurrence of a series adds to it.
 
-They cost a few passes over the strengths.
+They cost a few passes over the strengths. Graded particles have the first, `growth` and `outside_share` alone: the
+wavenumber is that in the mapped variable, in which they are equally spaced.
 """
 
 from __future__ import annotations
@@ -74,51 +75,41 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
         Initial and final strengths.
     """
     smooths = case.kind.has_kernel and not case.kind.self_timed
-    smoothing = case.epsilon_over_h if smooths else 1.0
+    resolution = (case.epsilon_over_h if smooths else 1.0) * wavenumber(u0)
+    growth = _ratio(np.abs(u).max(), np.abs(u0).max())
     found = {
-        "resolution": (
-            smoothing * wavenumber(u0),
-            "epsilon times the wavenumber of the initial data",
-        ),
-        "growth": (
-            _ratio(np.abs(u).max(), np.abs(u0).max()),
-            "greatest |u| over that at t_initial",
-        ),
+        "resolution": (resolution, "epsilon times the wavenumber of the initial data"),
+        "growth": (growth, "greatest |u| over that at t_initial"),
     }
     if case.kind.moving:  # its particles spread with the solution
         return found
+    if not case.is_graded:  # whose operator has no symbol
+        found |= _of_the_operator(case, u0, u)
     outside = max(outside_share(case, u0), outside_share(case, u))
     if case.exterior == "truncated":
         outside = max(outside, _beyond(case, case.domain))
     found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
-    if case.is_graded:  # no lattice, no symbol
-        return found
-    span = case.t_final - case.t_initial
-    low, high = (span * case.setting.rate * value for value in case.symbol_range)
-    found["decay"] = (
-        max(0.0, -high),
-        "exponent by which a constant decays on the infinite lattice",
-    )
-    found["round_off"] = (
-        -_ULPS * 2.0**-52 * low,
-        "what the round-off of the operator may add up to",
-    )
-    found["wave_error"] = (
-        wave_error(case, u0),
-        "error in the amplitude of waves that the data hold",
-    )
-    if case.kernel_table is not None:
-        found["table_error"] = (
-            table_error(case, u0, u),
-            "error of the interpolated kernels over the run",
-        )
     if case.exterior == "open":
         misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
+        error = misfit * outside * _beyond(case, 0.5 * case.domain)
         found["tail_misfit"] = (misfit, "relative misfit of the powers that continue u")
-        found["far_field_error"] = (
-            misfit * outside * _beyond(case, 0.5 * case.domain),
-            "estimated relative error of the far field",
-        )
+        found["far_field_error"] = (error, "estimated relative error of the far field")
+    return found
+
+
+def _of_the_operator(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
+    """What the symbol of the operator says, and its kernel table."""
+    span = case.t_final - case.t_initial
+    low, high = (span * case.setting.rate * value for value in case.symbol_range)
+    round_off, error = -_ULPS * 2.0**-52 * low, wave_error(case, u0)
+    found = {
+        "decay": (max(0.0, -high), "exponent by which a constant decays on the infinite lattice"),
+        "round_off": (round_off, "what the round-off of the operator may add up to"),
+        "wave_error": (error, "error in the amplitude of waves that the data hold"),
+    }
+    if case.kernel_table is not None:
+        error = table_error(case, u0, u)
+        found["table_error"] = (error, "error of the interpolated kernels over the run")
     return found
 
 

@@ -11,7 +11,7 @@ from fracparticles.run.case import Case
 from fracparticles.run.reliability import Estimates
 from fracparticles.special.stable import central_mass, green
 
-__all__ = ["Solution", "relative_l1_error"]
+__all__ = ["Solution", "relative_l1_deviation", "relative_l1_error"]
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,41 @@ class Solution:
 
 
 def relative_l1_error(case: Case, u: np.ndarray) -> float:
-    """Return the error against the fundamental solution, Eqs. (48), (59), over |x| <= `case.error_radius`.
-
-    sum_i V_i |u_i - G(x_i, t_f)| / int |G(x, t_f)| dx, the integral in closed form.
-    """
+    """Return `relative_l1_deviation` of the strengths of a case within `case.error_radius`: Eqs. (48), (59)."""
     radius = np.abs(case.x) if case.dim == 1 else case.radius
-    inside = radius <= case.error_radius * (1.0 + 1e-12)
-    time = case.diffusivity * case.t_final
-    exact = green(radius[inside], time, case.alpha, case.dim)
-    deviation = case.integral(np.abs(u[inside] - exact), inside)
-    return float(deviation / central_mass(case.error_radius, time, case.alpha, case.dim))
+    time, within = case.diffusivity * case.t_final, case.error_radius
+    return relative_l1_deviation(
+        u, radius, case.volumes, within, time=time, alpha=case.alpha, dim=case.dim
+    )
+
+
+def relative_l1_deviation(
+    u: np.ndarray,
+    radius: np.ndarray,
+    volumes: np.ndarray | float,
+    within: float,
+    *,
+    time: float,
+    alpha: float,
+    dim: int,
+) -> float:
+    """Return the error against the fundamental solution G over |x| <= `within`, as in Eqs. (48), (59).
+
+    sum_i V_i |u_i - G(x_i, t)| / int |G(x, t)| dx, the integral in closed form.
+
+    Parameters
+    ----------
+    u, radius : array
+        u_i and |x_i|, of one shape.
+    volumes : float or array
+        V_i, one for all or one for each.
+    within : float
+    time, alpha, dim : float, float, int
+        D t, 1 + beta and the space dimension.
+    """
+    inside = radius <= within * (1.0 + 1e-12)
+    deviation = np.abs(u[inside] - green(radius[inside], time, alpha, dim))
+    whole = central_mass(within, time, alpha, dim)
+    if np.ndim(volumes) == 0:
+        return float(volumes * deviation.sum() / whole)
+    return float((np.asarray(volumes)[inside] * deviation).sum() / whole)

@@ -224,24 +224,19 @@ class Prepared:
         NonFiniteSolution
             With the scheme, the step and the time.
         """
-        u0 = bare_strengths(u0, self.shape)
-        try:
-            if u0.ndim == 1:
-                return self.advance(u0)
-            return self.advance(u0.reshape(-1)).reshape(u0.shape)
-        except NonFiniteSolution as error:
-            refuse_non_finite(u0, self.case.x)  # looked at only when it may have been the data
-            raise _named(self.case, error) from None
+        return self.run(u0)[0]
 
     def run(self, u0: np.ndarray) -> tuple[np.ndarray, int]:
         """Return what `solve` does, and how often the operator was applied."""
-        if not isinstance(self.advance, Flow):
-            return self.solve(u0), self.operator_applications
-        u0 = bare_strengths(u0, self.shape)
+        u0, applications = bare_strengths(u0, self.shape), self.operator_applications
+        flat = u0 if u0.ndim == 1 else u0.reshape(-1)
         try:
-            u, applications = self.advance.run(u0.reshape(-1))
+            if isinstance(self.advance, Flow):
+                u, applications = self.advance.run(flat)
+            else:
+                u = self.advance(flat)
         except NonFiniteSolution as error:
-            refuse_non_finite(u0, self.case.x)
+            refuse_non_finite(u0, self.case.x)  # looked at only when it may have been the data
             raise _named(self.case, error) from None
         return u.reshape(u0.shape), applications
 
@@ -264,12 +259,8 @@ def matrix_of(solve: Advance, shape: tuple[int, ...]) -> np.ndarray:
     """
     size = int(np.prod(shape))
     if size > _LARGEST_MATRIX:
-        raise InvalidInput(
-            "particles",
-            size,
-            f"at most {_LARGEST_MATRIX} for a matrix",
-            "Use solve for each of the data.",
-        )
+        most = f"at most {_LARGEST_MATRIX} for a matrix"
+        raise InvalidInput("particles", size, most, "Use solve for each of the data.")
     columns = [solve(unit).reshape(-1) for unit in np.eye(size).reshape(-1, *shape)]
     return np.ascontiguousarray(np.array(columns).T)
 
@@ -292,12 +283,9 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         If the time steps would overflow.
     """
     if case.kind.moving:
-        raise InvalidInput(
-            "scheme",
-            case.scheme,
-            "a scheme whose particles stay on the lattice",
-            "Use solve: DVM's operator depends on the solution.",
-        )
+        resting = "a scheme whose particles stay on the lattice"
+        remedy = f"Use solve: the operator of {case.scheme} depends on the solution."
+        raise InvalidInput("scheme", case.scheme, resting, remedy)
     if case.is_graded or case.evaluation == "convolution":
         whole = _graded_step(case) if case.is_graded else _lattice_sum(case)
         return Prepared(case, whole, 1, partial(single_pass, whole, 1.0, 0.0))
@@ -323,12 +311,11 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     except NonFiniteSolution as error:
         raise _named(case, error) from None
     except FracparticlesError as error:
-        raise InvalidInput(
-            "t_final",
-            case.t_final,
+        reached, remedy = (
             f"a time that can be reached: {error}",
             "Take a shorter run, or a larger spacing.",
-        ) from None
+        )
+        raise InvalidInput("t_final", case.t_final, reached, remedy) from None
     return Prepared(case, operator, flow.operator_applications, flow)
 
 

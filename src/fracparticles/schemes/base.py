@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, one_of
 from fracparticles.kernels.families import family_of
 from fracparticles.lattice.exterior import far_field
 from fracparticles.lattice.exterior_box import box_far_field
@@ -73,8 +73,7 @@ class Scheme:
 
 def _choose(field: str, value: object, choices: tuple[int, ...], where: str) -> None:
     if not (is_number(value) and value in choices):
-        allowed = f"{' or '.join(map(str, choices))} for {where}"
-        raise InvalidInput(field, value, allowed, "Choose one of these, or another scheme.")
+        raise one_of(field, value, choices, where, "Choose one of these, or another scheme.")
 
 
 def is_number(value: object) -> bool:

@@ -6,7 +6,7 @@ from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import one_of
 from fracparticles.schemes.base import LatticeScheme, Scheme
 
 __all__ = ["all_schemes", "scheme"]
@@ -40,4 +40,4 @@ def scheme(name: str) -> LatticeScheme:
     lattice = {key: one for key, one in all_schemes().items() if isinstance(one, LatticeScheme)}
     if isinstance(name, str) and name in lattice:
         return lattice[name]
-    raise InvalidInput("scheme", name, f"one of {', '.join(lattice)}", "Choose one of these names.")
+    raise one_of("scheme", name, lattice)

@@ -140,6 +140,8 @@ def kummer_transformed(c: float, b: float, z: Any) -> NDArray[np.float64] | floa
     The same function as `kummer` with c = b - a given instead of a: near c = 0 or c = -1 the
     difference b - a would lose digits that the far field, proportional to c (c + 1), needs.
 
+    Raises `InvalidInput` if a parameter is outside its range, or z is negative, nan or not numeric.
+
     Parameters
     ----------
     c, b : float
@@ -152,11 +154,6 @@ def kummer_transformed(c: float, b: float, z: Any) -> NDArray[np.float64] | floa
     ndarray or float
         Same shape as z; relative accuracy 1e-13, for c < 0 relative to the larger of the two
         parts exp(-z) and value - exp(-z), which cancel at the one zero.
-
-    Raises
-    ------
-    InvalidInput
-        If a parameter is outside its range, or z is negative, nan or not numeric.
     """
     table, z = _checked(c, b, z)
     return elementwise(_evaluate, z, table)

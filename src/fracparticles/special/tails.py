@@ -37,5 +37,6 @@ def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) 
     time : float
         Time of the run, t_f - t_0, times the diffusivity.
     """
+    # As `tail_constant`, which is one rounding away: tables hold these digits.
     constant = math.gamma(1.0 + alpha) * math.sin(0.5 * math.pi * alpha) / math.pi
     return time * 2.0 * constant / alpha * np.asarray(half_width, dtype=float) ** -alpha

@@ -13,7 +13,6 @@ The support ends at |x| = 2 h: there W and W' vanish, and W~ is 0 or 1.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -31,17 +30,17 @@ def spline(x: Any, h: float) -> np.ndarray | float:
 
     Raises `InvalidInput` if `x` is not real or `h` not from 1e-100 to 1e100; so do the other two.
     """
-    return _evaluate(_w_all, x, h)
+    return elementwise(_all, real_array("x", x), scale("h", h), 0)
 
 
 def spline_gradient(x: Any, h: float) -> np.ndarray | float:
     """dW/dx(x, h), odd in x."""
-    return _evaluate(_dw_all, x, h)
+    return elementwise(_all, real_array("x", x), scale("h", h), 1)
 
 
 def spline_integral(x: Any, h: float) -> np.ndarray | float:
     """W~(x, h), the integral of W from minus infinity to x."""
-    return _evaluate(_iw_all, x, h)
+    return elementwise(_all, real_array("x", x), scale("h", h), 2)
 
 
 @njit()
@@ -81,23 +80,13 @@ def iw(q):
     return 0.5 + half if q > 0.0 else 0.5 - half
 
 
-def _evaluate(function: Callable[..., None], x: Any, h: float) -> np.ndarray | float:
-    return elementwise(function, real_array("x", x), scale("h", h))
-
-
 @njit()
-def _w_all(x, h, out):
+def _all(x, h, which, out):
     for i in range(x.size):
-        out[i] = w(x[i] / h) / h
-
-
-@njit()
-def _dw_all(x, h, out):
-    for i in range(x.size):
-        out[i] = dw(x[i] / h) / (h * h)
-
-
-@njit()
-def _iw_all(x, h, out):
-    for i in range(x.size):
-        out[i] = iw(x[i] / h)
+        q = x[i] / h
+        if which == 0:
+            out[i] = w(q) / h
+        elif which == 1:
+            out[i] = dw(q) / (h * h)
+        else:
+            out[i] = iw(q)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma, roots_jacobi
 
-from fracparticles.arguments import finite_array, positive_integer, within
+from fracparticles.arguments import positive_integer, within
 
 __all__ = ["defining_integral"]
 
@@ -17,6 +17,8 @@ def defining_integral(
     f: Callable[[np.ndarray], np.ndarray], x: Any, alpha: Any, nodes: int = 40
 ) -> np.ndarray:
     """I^alpha f (1), (7) by Gauss-Jacobi: x^alpha / Gamma(alpha) int_0^1 (1-t)^(alpha-1) f(x t) dt.
+
+    Raises `InvalidInput` if a point is negative, an order not positive, or their shapes differ.
 
     Parameters
     ----------
@@ -28,14 +30,9 @@ def defining_integral(
         The order at each, above zero.
     nodes : int
         The quadrature is exact for polynomials of degree 2 nodes - 1.
-
-    Raises
-    ------
-    InvalidInput
-        If a point is negative, an order not positive, or their shapes differ.
     """
-    x = within("x", finite_array("x", x), 0.0)
-    alpha = within("alpha", finite_array("alpha", alpha, x.shape), 0.0, inside=True)
+    x = within("x", x, 0.0)
+    alpha = within("alpha", alpha, 0.0, inside=True, shape=x.shape)
     nodes = positive_integer("nodes", nodes)
     out = np.empty_like(x)
     for order in np.unique(alpha):

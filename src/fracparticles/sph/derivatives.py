@@ -39,6 +39,9 @@ def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
 def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = True) -> np.ndarray:
     """<grad f> (16) at the points z, with the kernel gradient of (18) or, uncorrected, that of (22).
 
+    Raises `InvalidInput` if the arrays do not fit together or are not finite, the particles are not in rising order,
+    a volume or h is not positive, or, corrected, no particle lies within 2 h of a point.
+
     Parameters
     ----------
     z : array_like, shape (M,)
@@ -55,12 +58,6 @@ def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = T
     Returns
     -------
     ndarray, shape (M,), complex if f is, else real
-
-    Raises
-    ------
-    InvalidInput
-        If the arrays do not fit together or are not finite, the particles are not in rising order, a volume or h is
-        not positive, or, corrected, no particle lies within 2 h of a point.
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
     f = check.vector("f", f, x.size, complex_too=True)
@@ -100,9 +97,7 @@ def _particles(
     z: Any, x: Any, volumes: Any, h: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     z, x = check.positions("z", z, least=0), check.positions("x", x, rising=True, equal=True)
-    volumes = check.within(
-        "volumes", check.finite_array("volumes", volumes, x.shape), 0.0, inside=True
-    )
+    volumes = check.within("volumes", volumes, 0.0, inside=True, shape=x.shape)
     return z, x, np.ascontiguousarray(volumes), check.scale("h", h)
 
 

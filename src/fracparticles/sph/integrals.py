@@ -44,6 +44,8 @@ def power_integral(
 ) -> np.ndarray:
     """J^p f at the points z, shape (M,), complex.
 
+    Raises `InvalidInput` if there is no such method, or the arrays do not fit together or are not finite.
+
     Parameters
     ----------
     line : ParticleLine
@@ -56,11 +58,6 @@ def power_integral(
         p there. A particle at z itself has no share where p < 0: its term is infinite.
     method : {"standard", "halved", "modified", "completed"}
         How the volumes are placed.
-
-    Raises
-    ------
-    InvalidInput
-        If there is no such method, or the arrays do not fit together or are not finite.
     """
     line = check.instance("line", line, ParticleLine)
     f = check.vector("f", f, line.count, complex_too=True)

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma
 
-from fracparticles.arguments import finite_array, together, within
+from fracparticles.arguments import together, within
 
 __all__ = ["one_f_two"]
 
@@ -35,9 +35,8 @@ def one_f_two(b: Any, y: Any) -> np.ndarray:
 
     Raises `InvalidInput` if b or y is outside its range, or their shapes do not fit together.
     """
-    b = within("b", within("b", finite_array("b", b), 0.0, inside=True), 0.0, 3.0)
-    y = within("y", finite_array("y", y), 0.0, 1e100)
-    b, y = together(b=b, y=y)
+    b = within("b", within("b", b, 0.0, inside=True), 0.0, 3.0)
+    b, y = together(b=b, y=within("y", y, 0.0, 1e100))
     near = y <= _NEAR
     out = np.empty(b.shape)
     out[near] = _series(b[near], y[near])

@@ -47,6 +47,8 @@ def rl_integral(
 ) -> np.ndarray:
     """The Riemann-Liouville integral (33) on the real particles, shape (N,), complex.
 
+    Raises `InvalidInput` if a value is not allowed; so do the other operators, with the same parameters.
+
     Parameters
     ----------
     line : ParticleLine
@@ -59,11 +61,6 @@ def rl_integral(
         From a, or up to b.
     method : {"standard", "halved", "modified", "completed"}
         How the sum that stands for the integral is done, see `integrals`.
-
-    Raises
-    ------
-    InvalidInput
-        If a value is not allowed. So do the other operators, with the same parameters.
     """
     return _apply(_left_integral, line, f, order, side, method)[line.inside]
 
@@ -123,8 +120,7 @@ def _apply(
 
 
 def _orders(line: ParticleLine, order: Any) -> np.ndarray:
-    alpha = check.finite_array("order", order, line.x_all.shape)
-    return check.within("order", alpha, 0.0, 1.0, inside=True)
+    return check.within("order", order, 0.0, 1.0, inside=True, shape=line.x_all.shape)
 
 
 def _left_integral(line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str) -> np.ndarray:

@@ -28,6 +28,8 @@ def _ratio(field: str, value: Any) -> float:
 class ParticleLine:
     """N real particles from a to b, both ends included, and the virtual ones that complete every support.
 
+    Raises `InvalidInput` if a value is not allowed.
+
     Parameters
     ----------
     a, b : float
@@ -36,11 +38,6 @@ class ParticleLine:
         N, at least 3.
     smoothing_ratio : float
         h / s; the paper has 1.1. Above 1/2, or a particle would see no other; at most 1000.
-
-    Raises
-    ------
-    InvalidInput
-        If a value is not allowed.
     """
 
     a: float

@@ -27,16 +27,18 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Timing",
+    "conditions",
     "forget_tables",
     "in_fresh_process",
     "machine",
     "measure",
     "one_core",
+    "other_load",
     "peak_so_far",
-    "threads",
     "timings_dataset",
 ]
 
+_TICKS = os.sysconf("SC_CLK_TCK")  # a second, of /proc/stat
 _LIBRARIES = ("finufft", "mkl_fft", "numba", "numpy", "pyfftw", "scipy")
 
 
@@ -66,6 +68,7 @@ def measure(
     """Time an action so many times, fewer if that takes longer than `seconds`; return the last result, too."""
     times: list[float] = []
     result = None
+    began, others = time.perf_counter(), _seconds_of_others()
     for _ in range(repeats):
         result = None  # before the next one takes its memory
         start = time.perf_counter()
@@ -73,7 +76,31 @@ def measure(
         times.append(time.perf_counter() - start)
         if sum(times) > seconds:
             break
+    _WATCHED["others"] += _seconds_of_others() - others
+    _WATCHED["clock"] += time.perf_counter() - began
     return Timing(tuple(times)), result
+
+
+# Seconds that the clock ran since `one_core`, and what all other processes took meanwhile, in seconds of a core.
+_WATCHED = {"clock": 0.0, "others": 0.0}
+
+
+def _seconds_of_others() -> float:
+    """What all processes but this one have taken of the cores since the start of the system; nan outside Linux."""
+    counters = Path("/proc/stat")
+    if not counters.exists():
+        return float("nan")
+    with counters.open() as lines:
+        user, nice, system, _idle, _waiting, *interrupts = map(int, lines.readline().split()[1:9])
+    return (user + nice + system + sum(interrupts)) / _TICKS - time.process_time()
+
+
+def other_load() -> float:
+    """Return the share of a core that other processes took while the clock ran, since `one_core`; nan if unknown.
+
+    The system counts in ticks of some milliseconds: of many short measurements the sum is right, not each.
+    """
+    return max(0.0, _WATCHED["others"] / _WATCHED["clock"]) if _WATCHED["clock"] else float("nan")
 
 
 def forget_tables() -> None:
@@ -90,7 +117,8 @@ def forget_tables() -> None:
 
 
 def one_core() -> None:
-    """Keep this process to one thread: the loops that numba runs in parallel, and the matrix products of BLAS."""
+    """Begin a benchmark: keep this process to one thread, numba's parallel loops and BLAS; watch the others anew."""
+    _WATCHED.update(clock=0.0, others=0.0)
     threadpool_limits(1)
     nb.set_num_threads(1)
 
@@ -120,9 +148,11 @@ def in_fresh_process(function: Callable[..., Any], *arguments: Any) -> Any:
     return json.loads(done.stdout)
 
 
-def threads() -> dict[str, int]:
-    """Return how many threads numba and BLAS take in this process, which is not what they take in another."""
-    return {"threads_numba": nb.get_num_threads(), "threads_blas": _blas_threads()}
+def conditions() -> dict[str, float]:
+    """Return what holds for this process and not for another: its threads, and the load beside it."""
+    blas = [pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"]
+    threads = {"threads_numba": nb.get_num_threads(), "threads_blas": max(blas, default=0)}
+    return {**threads, "other_load": other_load()}
 
 
 def machine() -> dict[str, Any]:
@@ -130,7 +160,7 @@ def machine() -> dict[str, Any]:
     facts: dict[str, Any] = {
         "cpu": _cpu_model(),
         "cores": len(os.sched_getaffinity(0)),
-        **threads(),
+        **conditions(),
         "load_average": os.getloadavg()[0],
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
@@ -141,12 +171,6 @@ def machine() -> dict[str, Any]:
         except PackageNotFoundError:
             facts[library] = "not installed"
     return facts
-
-
-def _blas_threads() -> int:
-    """The most that a BLAS takes; 0 if there is none that can be told and asked."""
-    threads = (pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
-    return max(threads, default=0)
 
 
 def _cpu_model() -> str:
@@ -181,7 +205,7 @@ def timings_dataset(
     title : str
     facts : mapping
         More attributes, such as the repeats; the package, its version and commit, and those of the machine are
-        added. What was measured in another process says its threads here.
+        added. What was measured in another process says its `conditions` here.
     """
     import xarray as xr
 

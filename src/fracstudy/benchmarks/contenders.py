@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,12 +13,8 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import advect, compute, matrix_of, prepare
 from fracparticles.time.propagator import propagator
 from fracstudy.benchmarks.problem import Problem
-from fracstudy.benchmarks.trial import Contender
-from fracstudy.peers import Solver, sinc_lattice
-from fracstudy.peers.base import half_intervals
-
-if TYPE_CHECKING:
-    from fracstudy.peers.plane import PlaneSolver
+from fracstudy.benchmarks.trial import Ready
+from fracstudy.peers import PlaneSolver, Solver, sinc_lattice
 
 __all__ = [
     "GRADED_FORMS",
@@ -28,8 +23,8 @@ __all__ = [
     "lent_exterior",
     "moving",
     "naive",
+    "naive_steps",
     "peer",
-    "plane_peer",
     "random_walkers",
     "whole_matrix",
 ]
@@ -39,14 +34,28 @@ _FIELD = "interpolated"
 GRADED_FORMS = (*FORMS, _FIELD)
 
 
-def lattice(case: Case) -> Contender:
+def lattice(case: Case) -> Ready:
     """Return a case whose particles stay on their lattice."""
-    ready = prepare(case)
-    return Contender(*_points(case), ready.solve, ready.operator_applications)
+    run = prepare(case)
+    return Ready(*_points(case), run.solve, run.operator_applications)
 
 
-def naive(case: Case, steps: int) -> Contender:
+def naive(case: Case, steps: int) -> Ready:
     """The papers' way: a few of the time steps, sums over all pairs. The solution is that of all steps by FFT."""
+    run = prepare(naive_steps(case, steps))
+    points = _points(case)
+    problem = Problem(case.beta, case.dim, case.t_initial, case.t_final)
+    return Ready(
+        *points,
+        run.solve,
+        applications=run.operator_applications // steps * case.steps,
+        scale=case.steps / steps,
+        judge=lambda _: problem.error(*points, compute(case).u),
+    )
+
+
+def naive_steps(case: Case, steps: int) -> Case:
+    """Return the same lattice with so many of the time steps, sums over all pairs."""
     fields = case.model_dump(exclude_none=True, exclude={"truncation"})
     few = {
         "half_width": case.domain,  # C would follow from the final time
@@ -54,17 +63,7 @@ def naive(case: Case, steps: int) -> Contender:
         "summation": "naive",
         "evaluation": "stepping",
     }
-    ready = prepare(Case(**{**fields, **few}))
-    radius, volume = _points(case)
-    problem = Problem(case.beta, case.dim, case.t_initial, case.t_final)
-    return Contender(
-        radius,
-        volume,
-        ready.solve,
-        applications=ready.operator_applications // steps * case.steps,
-        scale=case.steps / steps,
-        judge=lambda _: problem.error(radius, volume, compute(case).u),
-    )
+    return Case(**{**fields, **few})
 
 
 def _points(case: Case) -> tuple[np.ndarray, float]:
@@ -72,26 +71,26 @@ def _points(case: Case) -> tuple[np.ndarray, float]:
     return radius, case.particle_spacing**case.dim
 
 
-def moving(case: Case) -> Contender:
+def moving(case: Case) -> Ready:
     """DVM; its solution is the field (7) at the places where the particles began."""
 
     def solve(u0: np.ndarray) -> np.ndarray:
         return advect(case, u0).field(case.x)
 
-    return Contender(*_points(case), solve, applications=2 * case.steps)
+    return Ready(*_points(case), solve, applications=2 * case.steps)
 
 
-def graded(problem: Problem, form: str, count: int, reach: float, scale: float) -> Contender:
+def graded(problem: Problem, form: str, count: int, reach: float, scale: float) -> Ready:
     """One Green step on graded particles, or of the field between them."""
     x, volumes = graded_particles(count, reach, scale)
     if form == _FIELD:
         matrix = green_step_of_field(count, reach, scale, problem.alpha, problem.time)
     else:
         matrix = green_step(x, volumes, problem.alpha, problem.time, form)
-    return Contender(np.abs(x), volumes, matrix.dot)
+    return Ready(np.abs(x), volumes, matrix.dot)
 
 
-def random_walkers(problem: Problem, walkers: int, cells: int) -> Contender:
+def random_walkers(problem: Problem, walkers: int, cells: int) -> Ready:
     """Walkers, counted in cells; each cell is compared with its exact mass."""
     half, alpha = problem.error_radius, problem.alpha
     masses = cell_masses(np.linspace(-half, half, cells + 1), problem.t_final, alpha)
@@ -101,7 +100,7 @@ def random_walkers(problem: Problem, walkers: int, cells: int) -> Contender:
         moved = walk(x, alpha, problem.time, generator)
         return cell_counts(moved, half, cells)[0] / walkers
 
-    return Contender(
+    return Ready(
         np.empty(walkers),
         2.0 * half / cells,
         solve,
@@ -110,40 +109,34 @@ def random_walkers(problem: Problem, walkers: int, cells: int) -> Contender:
     )
 
 
-def peer(make: Callable[[], Solver]) -> Contender:
-    """A method of the literature on the line."""
+def peer(make: Callable[[], Solver | PlaneSolver]) -> Ready:
+    """A method of the literature, on the line or in the plane."""
     solver = make()
-    applications = int(getattr(solver, "applications", 1))
-    return Contender(np.abs(solver.x), solver.volumes, solver.solve, applications)
+    plane = isinstance(solver, PlaneSolver)
+    radius = np.hypot(solver.x[:, None], solver.x) if plane else np.abs(solver.x)
+    return Ready(radius, solver.volumes, solver.solve, int(getattr(solver, "applications", 1)))
 
 
-def lent_exterior(problem: Problem, half_width: float, spacing: float) -> Contender:
+def lent_exterior(problem: Problem, half_width: float, spacing: float) -> Ready:
     """The sinc lattice as one lattice sum, its exterior continued by three terms as ours."""
-    n = half_intervals(half_width, spacing, None)
+    alpha, n = problem.alpha, max(1, round(half_width / spacing))
     h = half_width / n
-    tau = problem.time * h**-problem.alpha
-    run = propagator(
-        lambda theta: np.exp(tau * sinc_lattice.symbol(theta, problem.alpha)),
-        problem.alpha, tau, n, "open", terms=3,
-    )  # fmt: skip
-    return Contender(np.abs(np.arange(-n, n + 1) * h), h, run.apply)
+    tau = problem.time * h**-alpha
+
+    def amplification(theta: np.ndarray) -> np.ndarray:
+        return np.exp(tau * sinc_lattice.symbol(theta, alpha))
+
+    run = propagator(amplification, alpha, tau, n, "open", terms=3)
+    return Ready(np.abs(np.arange(-n, n + 1) * h), h, run.apply)
 
 
-def plane_peer(make: Callable[[], PlaneSolver]) -> Contender:
-    """A method of the literature in the plane."""
-    solver = make()
-    radius = np.hypot(solver.axis[:, None], solver.axis)
-    return Contender(radius, solver.spacing**2, solver.solve)
-
-
-def whole_matrix(make: Callable[[], Contender]) -> Contender:
+def whole_matrix(make: Callable[[], Ready]) -> Ready:
     """Another contender whose whole run is made one matrix: its set-up solves for all unit vectors."""
-    contender = make()
-    shape = contender.radius.shape
-    matrix = matrix_of(contender.solve, shape)
+    one = make()
+    shape = one.radius.shape
+    matrix = matrix_of(one.solve, shape)
 
     def solve(u0: np.ndarray) -> np.ndarray:
         return (matrix @ u0.reshape(-1)).reshape(shape)
 
-    line = len(shape) == 1
-    return Contender(contender.radius, contender.volumes, matrix.dot if line else solve)
+    return Ready(one.radius, one.volumes, matrix.dot if len(shape) == 1 else solve)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from fracparticles.special import central_mass, green, mean_radius
+from fracparticles.run.case import Case
+from fracparticles.run.solution import relative_l1_deviation
+from fracparticles.special import green, mean_radius
 
 __all__ = ["Problem"]
 
@@ -47,25 +50,16 @@ class Problem:
         """Return D = C t_f^(1/alpha) R_alpha, Eq. (46)."""
         return float(truncation * self.t_final ** (1.0 / self.alpha) * mean_radius(self.alpha))
 
+    def case(self, **fields: Any) -> Case:
+        """Return a case of the problem."""
+        times = {"t_initial": self.t_initial, "t_final": self.t_final}
+        return Case(beta=self.beta, dim=self.dim, **times, **fields)
+
     def initial(self, radius: np.ndarray) -> np.ndarray:
         """Return the fundamental solution at `t_initial`; radius is |x|."""
         return np.asarray(green(radius, self.t_initial, self.alpha, self.dim))
 
     def error(self, radius: np.ndarray, volumes: np.ndarray | float, u: np.ndarray) -> float:
-        """Return sum_i V_i |u_i - G(x_i, t_f)| / int |G| dx within the error radius: Eqs. (48) and (59).
-
-        Parameters
-        ----------
-        radius : array
-            |x_i|.
-        volumes : array or float
-            V_i.
-        u : array
-            The solution at `t_final`, of the shape of radius.
-        """
-        inside = radius <= self.error_radius * (1.0 + 1e-12)
-        exact = green(radius[inside], self.t_final, self.alpha, self.dim)
-        weights = volumes if np.ndim(volumes) == 0 else np.asarray(volumes)[inside]
-        deviation = float((weights * np.abs(u[inside] - exact)).sum())
-        whole = central_mass(self.error_radius, self.t_final, self.alpha, self.dim)
-        return float(deviation / whole)
+        """Return the error of u at `t_final` within the error radius; |x_i|, V_i and u_i."""
+        exact = {"time": self.t_final, "alpha": self.alpha, "dim": self.dim}
+        return relative_l1_deviation(u, radius, volumes, self.error_radius, **exact)

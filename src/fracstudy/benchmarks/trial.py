@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,15 +13,16 @@ from fracparticles.errors import FracparticlesError
 from fracstudy.benchmarks.clock import Timing, forget_tables, measure
 from fracstudy.benchmarks.problem import Problem
 
-__all__ = ["LABELS", "VARIABLES", "Contender", "Trial", "run_trials"]
+__all__ = ["LABELS", "VARIABLES", "Ready", "Trial", "run_trials"]
 
-_SLACK = 2.0  # a trial is timed again if no other one of its method is so much faster and as good
+_NOT_YET = Timing(())
+_SLACK = 2.0  # a trial is timed again if no other one of its variant is so much faster and as good
 _LONG = 0.25  # seconds; what takes longer is timed once
 
 
 @dataclass(frozen=True)
-class Contender:
-    """A method made ready for one grid: all that does not depend on the initial data is done.
+class Ready:
+    """A contender made ready for one grid: all that does not depend on the initial data is done.
 
     Attributes
     ----------
@@ -65,10 +67,10 @@ class Trial:
 
     Attributes
     ----------
-    family : str
-        Whose it is: a scheme or a method of the literature.
+    contender : str
+        A scheme, or a method of the literature.
     variant : str
-        Which of the family's: order, exterior, time integration.
+        Which of the contender's: order, exterior, time integration.
     group : {"ours", "papers", "peers", "limit"}
     prepare : callable
         The set-up.
@@ -78,10 +80,10 @@ class Trial:
         nan where there is none.
     """
 
-    family: str
+    contender: str
     variant: str
     group: str
-    prepare: Callable[[], Contender] = field(repr=False)
+    prepare: Callable[[], Ready] = field(repr=False)
     points: float
     spacing: float = float("nan")
     truncation: float = float("nan")
@@ -89,7 +91,7 @@ class Trial:
 
 
 LABELS = {
-    "family": "scheme, or method of the literature",
+    "contender": "scheme, or method of the literature",
     "variant": "order of the kernels, exterior, time integration",
     "group": "ours, the papers' way, peers of the literature, or the limit",
     "beta": "fractional order beta = alpha - 1",
@@ -116,27 +118,23 @@ VARIABLES = {
 class _Record:
     trial: Trial
     row: dict[str, Any]
-    setups: Timing | None = None
-    solves: Timing | None = None
+    setups: Timing = _NOT_YET
+    solves: Timing = _NOT_YET
     u0: Any = None
 
     @property
     def times(self) -> tuple[float, float]:
         """The least times of a solve and of set-up and solve."""
-        assert self.setups is not None
-        assert self.solves is not None
         solve = self.solves.minimum * self.row["extrapolated"]
         return solve, solve + self.setups.minimum
 
     def finished(self) -> dict[str, Any]:
         row = dict(self.row)
-        for name, timing, scale in (
-            ("setup", self.setups, 1.0),
-            ("solve", self.solves, row.get("extrapolated", 1.0)),
-        ):
-            if timing is not None:
-                row[f"{name}_time"] = scale * timing.minimum
-                row[f"{name}_time_median"] = scale * timing.median
+        scale = row.get("extrapolated", 1.0)
+        for name, timing, factor in (("setup", self.setups, 1.0), ("solve", self.solves, scale)):
+            if timing.times:
+                row[f"{name}_time"] = factor * timing.minimum
+                row[f"{name}_time_median"] = factor * timing.median
                 row[f"{name}s"] = len(timing.times)
         return row
 
@@ -146,7 +144,7 @@ def run_trials(
 ) -> list[dict[str, Any]]:
     """Run every trial once, then time those that matter in `rounds` rounds, each with its set-up; one row a trial.
 
-    A trial matters if it is on the front of its method in error and time, or within a factor of 2 of it, and does not
+    A trial matters if it is on the front of its variant in error and time, or within a factor of 2 of it, and does not
     take a quarter of a second. The rounds go through all of them, so that each is measured at several moments.
 
     Parameters
@@ -158,49 +156,41 @@ def run_trials(
     repeats, seconds : int, float
         Solves a set-up, fewer if they take longer than that.
     """
-    warm = {(trial.family, trial.variant): trial for trial in reversed(trials)}
-    for trial in warm.values():  # each method does once what a process does once
+    warm = {(trial.contender, trial.variant): trial for trial in reversed(trials)}
+    for trial in warm.values():  # each variant does once what a process does once
         _first(problem, trial)
     records = [_first(problem, trial) for trial in trials]
     worth = [record for record in _near_front(records) if record.times[1] < _LONG]
     for _ in range(rounds):
         for record in worth:
             forget_tables()
-            setup, contender = measure(record.trial.prepare)
-            solve, _ = measure(lambda: contender.solve(record.u0), repeats, seconds)  # noqa: B023
-            assert record.setups is not None
-            assert record.solves is not None
-            record.setups, record.solves = record.setups + setup, record.solves + solve
+            setup, ready = measure(record.trial.prepare)
+            solve, _ = measure(partial(ready.solve, record.u0), repeats, seconds)
+            record.setups += setup
+            record.solves += solve
     return [record.finished() for record in records]
 
 
 def _first(problem: Problem, trial: Trial) -> _Record:
     """The error, and the times of a first set-up and of a second solve."""
-    row: dict[str, Any] = {
-        "family": trial.family,
-        "variant": trial.variant,
-        "group": trial.group,
-        "beta": problem.beta,
-        "spacing": trial.spacing,
-        "truncation": trial.truncation,
-        "dt": trial.dt,
-        "failure": "",
-    }
-    record = _Record(trial, row)
+    said = ("contender", "variant", "group", "spacing", "truncation", "dt")
+    row = {name: getattr(trial, name) for name in said}
+    record = _Record(trial, {**row, "beta": problem.beta, "failure": ""})
     try:
         forget_tables()
-        setup, contender = measure(trial.prepare)
-        u0 = contender.start(problem)
-        solve, u = measure(lambda: contender.solve(u0))
+        setup, ready = measure(trial.prepare)
+        u0 = ready.start(problem)
+        solve, u = measure(partial(ready.solve, u0))
         if solve.minimum < _LONG:  # the first was the warm-up
-            solve, u = measure(lambda: contender.solve(u0))
-        error = contender.error(problem, u)
+            solve, u = measure(partial(ready.solve, u0))
+        error = ready.error(problem, u)
     except FracparticlesError as failure:
-        return _Record(trial, {**row, "failure": str(failure).splitlines()[0]})
-    row |= {
-        "particles": np.size(contender.radius),
-        "applications": contender.applications,
-        "extrapolated": contender.scale,
+        record.row["failure"] = str(failure).splitlines()[0]
+        return record
+    record.row |= {
+        "particles": np.size(ready.radius),
+        "applications": ready.applications,
+        "extrapolated": ready.scale,
         "error": error,
     }
     record.setups, record.solves, record.u0 = setup, solve, u0
@@ -208,16 +198,16 @@ def _first(problem: Problem, trial: Trial) -> _Record:
 
 
 def _near_front(records: Iterable[_Record]) -> list[_Record]:
-    methods: dict[tuple[str, str], list[_Record]] = {}
+    variants: dict[tuple[str, str], list[_Record]] = {}
     for record in records:
         if np.isfinite(record.row.get("error", np.nan)):
-            key = (record.trial.family, record.trial.variant)
-            methods.setdefault(key, []).append(record)
+            key = (record.trial.contender, record.trial.variant)
+            variants.setdefault(key, []).append(record)
     return [
         record
-        for method in methods.values()
-        for record in method
-        if not all(_beaten(record, method, which) for which in (0, 1))
+        for variant in variants.values()
+        for record in variant
+        if not all(_beaten(record, variant, which) for which in (0, 1))
     ]
 
 

@@ -1,4 +1,4 @@
-"""The limit: the exact symbol on a periodic box, on the line or in the plane; one pair of Fourier transforms from 0 to t.
+"""The limit: the exact symbol on a periodic box, one pair of Fourier transforms from 0 to t; on the line and the plane.
 
     u^_k(t) = exp(-t |k|^alpha) u^_k(0),    k = pi m / D,  m = -N/2 .. N/2 in each coordinate.
 

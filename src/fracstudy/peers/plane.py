@@ -1,6 +1,6 @@
 """What the peers on a square lattice share: a run in the plane as one lattice sum.
 
-Those on a lattice live on the square lattice x_ij = (i h, j h), i, j = -n .. n, and take u for zero beyond it. Their symbol is
+They live on the square lattice x_ij = (i h, j h), i, j = -n .. n, and take u for zero beyond it. Their symbol is
 a(theta) = -s^(alpha/2) h^(-alpha), where s stands for |theta|^2. On the infinite lattice its exponential is Toeplitz,
 and with tau = t / h^alpha one sum takes u from 0 to t, whatever t is:
 

@@ -24,7 +24,7 @@ def test_the_reference_case_judges_both_windows(computed):
     ]
     result = study(
         Inputs("f2", ["L-F2", "L-C1", "L-C2"], runs=computed(blocks)),
-        windows=[(0.0, 5.0), (40.0, 45.0)],
+        windows=[[0.0, 5.0], [40.0, 45.0]],
         shown_spacing=0.03,
         printed_particles=64000,
         mass_beta=[0.5],

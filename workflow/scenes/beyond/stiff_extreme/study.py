@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import product
 from math import ceil
 from typing import Any
@@ -32,7 +32,9 @@ _RK2 = integrators.STEP_POLYNOMIALS["rk2"]
 # The round-off of a run adds up over some thousand operations on quantities of the size of the largest strength.
 _SAME = 1e-10
 
-Check = dict[str, str]
+Base = dict[str, float]
+# Case, what is expected, what was found, whether they agree; the verdict if they do, unless it is OK.
+Check = tuple[Any, ...]
 OK, BLOWS_UP, UNEXPECTED = "ok", "blows up as predicted", "not as expected"
 
 
@@ -47,45 +49,30 @@ def study(
     """
     base = {"beta": beta, "half_width": half_width, "spacing": spacing}
     growth = _growth(base, factors)
-    checks = [
-        *_growth_checks(growth),
-        *_overflow(base),
-        *_edge_of_stability(base),
-        *_extreme_orders(),
-        *_small_overlap(base),
-        *_scaling(base),
-        *_linearity(base),
-        *_long_times(),
-        *_point_data(base),
-        *_signs(base),
-        *_stiff_exponential(),
-        *_transient_growth(beta),
+    checks = {"stability limit": _growth_checks(growth)}
+    checks |= {what: of(base) for what, of in _CHECKS.items()}
+    rows = [
+        {"what": what, "case": case, "expected": expected, "found": found, "verdict": verdict}
+        for what, results in checks.items()
+        for case, expected, found, agrees, *rest in results
+        for verdict in ([*rest, OK] if agrees else [UNEXPECTED])[:1]
     ]
-    work = _work(beta)
-    return Result(pd.DataFrame(checks), (), pd.concat([growth, work], ignore_index=True))
+    series = pd.concat([growth, _work(beta)], ignore_index=True)
+    return Result(pd.DataFrame(rows), (), series)
 
 
-def _check(
-    what: str, case: str, expected: str, found: str, agrees: bool, verdict: str = OK
-) -> Check:
-    verdict = verdict if agrees else UNEXPECTED
-    return {"what": what, "case": case, "expected": expected, "found": found, "verdict": verdict}
-
-
-def _same(
-    what: str, case: str, expected: str, u: np.ndarray, v: np.ndarray, of: str = "peak"
-) -> Check:
+def _same(case: str, expected: str, u: np.ndarray, v: np.ndarray, of: str = "peak") -> Check:
     """The check that u is v to round-off."""
     difference = _largest_difference(u, v)
     found = f"largest difference {difference:.1e} of the {of}"
-    return _check(what, case, expected, found, difference < _SAME)
+    return case, expected, found, difference < _SAME
 
 
-def _falls_four_times(what: str, case: str, expected: str, errors: list[float]) -> Check:
+def _falls_four_times(case: str, expected: str, errors: list[float]) -> Check:
     """The check of second order, for h halved."""
     ratio = errors[0] / errors[1]
     found = f"{errors[0]:.2e} to {errors[1]:.2e}, {ratio:.2f} times"
-    return _check(what, case, expected, found, abs(ratio - 4.0) < 0.4)
+    return case, expected, found, abs(ratio - 4.0) < 0.4
 
 
 def _run(initial: Any = None, **fields: Any) -> Solution:
@@ -111,7 +98,7 @@ def _largest_difference(a: np.ndarray, b: np.ndarray) -> float:
 # --- at the stability limit -------------------------------------------------------------------------------------------
 
 
-def _growth(base: dict[str, float], factors: list[float]) -> pd.DataFrame:
+def _growth(base: Base, factors: list[float]) -> pd.DataFrame:
     """The measured growth factor of the last fifty of 600 steps, and the spectral radius of p(A dt)."""
     rows = []
     for scheme in _SCHEMES:
@@ -133,8 +120,7 @@ def _growth_checks(growth: pd.DataFrame) -> Iterator[Check]:
     for scheme, part in growth.groupby("series"):
         for side, here in (("below", part[part["x"] < 1.0]), ("above", part[part["x"] > 1.0])):
             deviation = (here["y"] - here["predicted"]).abs().max()
-            yield _check(
-                "stability limit",
+            yield (
                 f"{scheme}, RK2, dt = {here['x'].min():g} to {here['x'].max():g} of the limit",
                 f"growth per step {here['predicted'].min():.4f} to {here['predicted'].max():.4f}",
                 f"{here['y'].min():.4f} to {here['y'].max():.4f}",
@@ -144,7 +130,7 @@ def _growth_checks(growth: pd.DataFrame) -> Iterator[Check]:
             )
 
 
-def _overflow(base: dict[str, float]) -> Iterator[Check]:
+def _overflow(base: Base) -> Iterator[Check]:
     """1.2 times the limit: the step of overflow from the modes of A, stepping and series."""
     for scheme in _SCHEMES:
         dt = 1.2 * _limit(scheme, **base)
@@ -159,8 +145,7 @@ def _overflow(base: dict[str, float]) -> Iterator[Check]:
         step = float((room[growing] / factor[growing]).min())
         stepping, series = (_message(evaluation=e, **fields) for e in ("stepping", "series"))
         found = int(stepping.split("after step ")[1].split()[0]) if stepping else 0
-        yield _check(
-            "overflow",
+        yield (
             f"{scheme}, RK2, dt = 1.2 of the limit",
             f"NonFiniteSolution near step {step:.0f}, from stepping and from the series",
             f"after step {found} ({'raised' if series else 'not raised'} by the series)",
@@ -181,7 +166,7 @@ def _message(**fields: Any) -> str:
     return ""
 
 
-def _edge_of_stability(base: dict[str, float]) -> Iterator[Check]:
+def _edge_of_stability(base: Base) -> Iterator[Check]:
     """RK1, RK2 and RK4 at 0.999 of their limit: the Chebyshev series is the same polynomial."""
     for scheme, method in product(_SCHEMES, ("euler", "rk2", "rk4")):
         fields = {**base, "integrator": method, "t_final": 20.5}
@@ -191,23 +176,23 @@ def _edge_of_stability(base: dict[str, float]) -> Iterator[Check]:
         )
         case = f"{scheme}, {method}, dt = 0.999 of the limit, {stepped.case.steps} steps"
         expected = "the same discrete solution"
-        yield _same("series and stepping", case, expected, series.u, stepped.u)
+        yield _same(case, expected, series.u, stepped.u)
 
 
 # --- extreme parameters -----------------------------------------------------------------------------------------------
 
 
-def _extreme_orders() -> Iterator[Check]:
+def _extreme_orders(base: Base) -> Iterator[Check]:
     """Second order in h survives next to beta = 0 and beta = 1."""
     fields = {"half_width": 60.0, "integrator": "exponential", "exterior": "open"}
     for beta, scheme in product((0.01, 0.99), _SCHEMES):
         runs = [_run(scheme=scheme, beta=beta, spacing=h, **fields) for h in (0.1, 0.05)]
         case = f"{scheme}, beta = {beta:g}, open exterior, h = 0.1 and 0.05"
         errors = [relative_l1_error(run.case, run.u) for run in runs]
-        yield _falls_four_times("extreme order", case, "error (48) falls 4 times", errors)
+        yield _falls_four_times(case, "error (48) falls 4 times", errors)
 
 
-def _small_overlap(base: dict[str, float]) -> Iterator[Check]:
+def _small_overlap(base: Base) -> Iterator[Check]:
     """Overlap 1/2: for order IV the symbol of FPSE is positive, so that it grows however small the step."""
     alpha, h = 1.0 + base["beta"], base["spacing"]
     lattice: dict[str, Any] = {
@@ -221,8 +206,7 @@ def _small_overlap(base: dict[str, float]) -> Iterator[Check]:
         matrix = _matrix(setting, scheme) / setting.rate
         greatest = float(np.linalg.eigvals(matrix).real.max())
         predicted = symbol_range(scheme, base["beta"], order, 0.5)[1]
-        yield _check(
-            "small overlap",
+        yield (
             f"{scheme}, order {order}, epsilon = h / 2",
             f"greatest eigenvalue {round(predicted, 3) + 0.0:.3f} D / h^alpha, from the symbol",
             f"{round(greatest, 3) + 0.0:.3f} on {setting.size} particles",
@@ -231,7 +215,7 @@ def _small_overlap(base: dict[str, float]) -> Iterator[Check]:
         )
 
 
-def _scaling(base: dict[str, float]) -> Iterator[Check]:
+def _scaling(base: Base) -> Iterator[Check]:
     """Similarity: lengths times c and times times c^alpha / D leave c u unchanged."""
     expected = f"the scaled solution of h = {base['spacing']:g}, D = 1"
     for scheme in _SCHEMES:
@@ -244,10 +228,10 @@ def _scaling(base: dict[str, float]) -> Iterator[Check]:
             fields = {"beta": base["beta"], "diffusivity": diffusivity, **lengths, **times}
             run = _run(scheme=scheme, **fields)
             case = f"{scheme}, h = {run.case.spacing:.0e}, D = {diffusivity:.0e}"
-            yield _same("scaling", case, expected, c * run.u, reference)
+            yield _same(case, expected, c * run.u, reference)
 
 
-def _linearity(base: dict[str, float]) -> Iterator[Check]:
+def _linearity(base: Base) -> Iterator[Check]:
     """Strengths near the ends of the range of float64."""
     for scheme in _SCHEMES:
         fields = {**base, "scheme": scheme, "integrator": "exponential"}
@@ -255,7 +239,7 @@ def _linearity(base: dict[str, float]) -> Iterator[Check]:
         for size in (1e-300, 1e300):
             u = _run(size * reference.u0, **fields).u / size
             case = f"{scheme}, strengths times {size:.0e}"
-            yield _same("linearity", case, "the solution times the same", u, reference.u)
+            yield _same(case, "the solution times the same", u, reference.u)
 
 
 def _field(run: Solution) -> np.ndarray:
@@ -265,7 +249,7 @@ def _field(run: Solution) -> np.ndarray:
     return np.convolve(run.u, np.asarray(kernel("eta", m / s, run.case.alpha)) / s, mode="same")
 
 
-def _long_times() -> Iterator[Check]:
+def _long_times(base: Base) -> Iterator[Check]:
     """t_f = 10^6 t_0: with the open exterior the exact solution, on a closed lattice the mean or nothing."""
     fields = {"beta": 0.9, "half_width": 4000.0, "spacing": 1.0, "t_initial": 1.0, "t_final": 1e6}
     for scheme in _SCHEMES:
@@ -273,8 +257,7 @@ def _long_times() -> Iterator[Check]:
         exact = green(run.x, 1e6, 1.9)
         near = np.abs(run.x) <= 2000.0
         difference = float(np.abs(_field(run) / exact - 1.0)[near].max())
-        yield _check(
-            "long time",
+        yield (
             f"{scheme}, beta = 0.9, t_f / t_0 = 10^6, open exterior",
             "field (7) is the exact solution, relative error below 10^-2 for |x| < D / 2",
             f"largest relative error {difference:.1e}",
@@ -284,13 +267,12 @@ def _long_times() -> Iterator[Check]:
     run = _run(scheme="KPSE", t_final=1e3, **closed)
     case = "KPSE, truncated, D = 10, t_f = 10^3"
     expected = "the mean of the initial strengths: conservative and symmetric"
-    yield _same("long time", case, expected, run.u, np.full_like(run.u, run.u0.mean()), "mean")
+    yield _same(case, expected, run.u, np.full_like(run.u, run.u0.mean()), "mean")
     run = _run(scheme="DD", t_final=100.5, **closed)
     values, modes = np.linalg.eigh(_matrix(run.case.setting, "DD"))
     predicted = modes @ (np.exp(100.0 * values) * (modes.T @ run.u0))
     left, found = predicted.sum() / run.u0.sum(), run.u.sum() / run.u0.sum()
-    yield _check(
-        "long time",
+    yield (
         "DD, truncated, D = 10, t_f = 100",
         f"leaks as its {values.size} modes decay: {left:.6e} of the total strength is left",
         f"{found:.6e}",
@@ -298,7 +280,7 @@ def _long_times() -> Iterator[Check]:
     )
 
 
-def _point_data(base: dict[str, float]) -> Iterator[Check]:
+def _point_data(base: Base) -> Iterator[Check]:
     """All strength on one particle: the wave of two particles, and order.
 
     The transforms of G, F and eta1 are almost zero or zero at theta = k h = pi: DD and FPSE hardly damp the wave
@@ -312,8 +294,7 @@ def _point_data(base: dict[str, float]) -> Iterator[Check]:
         predicted = float(np.exp(symbol * setting.rate))
         wave = (-1.0) ** np.arange(run.x.size)
         found = float(wave @ run.u / (wave @ run.u0))
-        yield _check(
-            "point data",
+        yield (
             f"{scheme}, one particle of strength 1 / h, T = 1, h = 0.05",
             f"wave of two particles keeps {predicted:.4f} of its amplitude, from the symbol",
             f"{found:.4f}",
@@ -326,11 +307,11 @@ def _point_data(base: dict[str, float]) -> Iterator[Check]:
         errors.append(float(np.abs(run.u - exact).sum() / exact.sum()))
     case = "KPSE, one particle of strength 1 / h, T = 1, h = 0.1 and 0.05"
     expected = "the fundamental solution, error falls 4 times"
-    yield _falls_four_times("point data", case, expected, errors)
+    yield _falls_four_times(case, expected, errors)
 
 
-def _signs(base: dict[str, float]) -> Iterator[Check]:
-    """One particle, and random strengths: sign and bounds."""
+def _signs(base: Base) -> Iterator[Check]:
+    """One particle: the sign of the weights."""
     fields = {**base, "integrator": "exponential"}
     kernels = (("KPSE", 2, 0.5, True), ("KPSE", 4, 0.5, True), ("KPSE", 4, 0.9, False))
     for scheme, order, beta, positive in (*kernels, ("DD", 2, 0.5, False)):
@@ -344,17 +325,18 @@ def _signs(base: dict[str, float]) -> Iterator[Check]:
             float(run.u.min() / run.u.max()),
             "stays positive" if positive else "turns negative",
         )
-        yield _check(
-            "sign",
+        yield (
             f"{scheme}, order {order}, beta = {beta:g}, one particle, T D = 0.01 h^alpha",
             f"least weight {off_diagonal:.1e} D / h^alpha: u {becomes}",
             f"least u {least:.1e} of the peak",
             (off_diagonal >= 0.0) == positive and (least >= -_SAME) == positive,
         )
+
+
+def _rough_data(base: Base) -> Iterator[Check]:
     fields = {**base, "scheme": "KPSE", "integrator": "exponential"}
     run = _run(lambda x: np.random.default_rng(1).uniform(-1.0, 1.0, x.size), **fields)
-    yield _check(
-        "rough data",
+    yield (
         "KPSE, order 2, random strengths in [-1, 1]",
         "stays within the initial bounds",
         f"{run.u.min():.3f} to {run.u.max():.3f}",
@@ -371,7 +353,7 @@ def _point(x: np.ndarray) -> np.ndarray:
 # --- stiffness and non-normality --------------------------------------------------------------------------------------
 
 
-def _stiff_exponential() -> Iterator[Check]:
+def _stiff_exponential(base: Base) -> Iterator[Check]:
     """A lattice on which RK2 needs a million steps: the series of exp(A T) against the modes of A."""
     fields = {"beta": 0.9, "half_width": 0.2, "spacing": 1e-3, "integrator": "exponential"}
     for scheme in _SCHEMES:
@@ -380,8 +362,7 @@ def _stiff_exponential() -> Iterator[Check]:
         values, modes = np.linalg.eig(_matrix(run.case.setting, scheme))
         exact = (modes @ (np.exp(values * span) * np.linalg.solve(modes, run.u0))).real
         difference = float(np.abs(run.u - exact).max() / np.abs(run.u0).max())
-        yield _check(
-            "stiff",
+        yield (
             f"{scheme}, beta = 0.9, h = 10^-3, T = 10^6 steps of RK2 at its limit",
             f"exp(A T) from the {values.size} modes, 0 <= |u| <= {np.abs(exact).max():.3g}",
             f"difference {difference:.1e}, {run.operator_applications} operator applications",
@@ -407,11 +388,11 @@ def _work(beta: float) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["series", "x", "y"]).assign(panel="work")
 
 
-def _transient_growth(beta: float) -> Iterator[Check]:
+def _transient_growth(base: Base) -> Iterator[Check]:
     """|exp(A t)| in the Euclidean norm: at most 1 for symmetric A; for FPSE at most the condition of its modes."""
     times = np.geomspace(0.01, 1e6, 60)
     for scheme in _SCHEMES:
-        matrix = _matrix(Setting(n=50, spacing=1.0, alpha=1.0 + beta), scheme)
+        matrix = _matrix(Setting(n=50, spacing=1.0, alpha=1.0 + base["beta"]), scheme)
         values, modes = np.linalg.eig(matrix)
         greatest, condition = float(values.real.max()), float(np.linalg.cond(modes))
         most = max(float(np.linalg.norm(expm(t * matrix), 2)) for t in times)
@@ -420,10 +401,25 @@ def _transient_growth(beta: float) -> Iterator[Check]:
             holds = 1.0 + _SAME < most <= condition
         else:
             bound, holds = "at most 1", most <= 1.0 + _SAME
-        yield _check(
-            "transient growth",
+        yield (
             f"{scheme}, 101 particles, t D up to 10^6 h^alpha",
             f"no eigenvalue above zero; |exp(A t)| {bound}",
             f"greatest eigenvalue {greatest:.0e}, |exp(A t)| at most {most:.6g}",
             greatest < _SAME and holds,
         )
+
+
+_CHECKS: dict[str, Callable[[Base], Iterator[Check]]] = {
+    "overflow": _overflow,
+    "series and stepping": _edge_of_stability,
+    "extreme order": _extreme_orders,
+    "small overlap": _small_overlap,
+    "scaling": _scaling,
+    "linearity": _linearity,
+    "long time": _long_times,
+    "point data": _point_data,
+    "sign": _signs,
+    "rough data": _rough_data,
+    "stiff": _stiff_exponential,
+    "transient growth": _transient_growth,
+}

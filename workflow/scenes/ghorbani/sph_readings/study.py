@@ -130,7 +130,7 @@ def _double_sum(line: ParticleLine, order: float) -> Finding:
     )
 
 
-def _orders(line: ParticleLine, variable: Order) -> Iterator[Finding]:
+def _orders(line: ParticleLine, variable: dict[str, float]) -> Iterator[Finding]:
     """The left side of (32), and the range of alpha(x)."""
     alpha = order_at(variable, line.x_all)
     ours = approximate(line, "cos", "caputo", alpha, False, replace(_OURS, halved=True))
@@ -150,7 +150,7 @@ def _orders(line: ParticleLine, variable: Order) -> Iterator[Finding]:
         "S-EQ.order_range",
         low < 0.01 and high > 0.99,
         f"On the particles α(x) runs from {low:.4f} to {high:.4f}.",
-        "The amplitude of 0.3 about the mean of 0.5 does not reach 0 and 1.",
+        f"The amplitude of {variable['amplitude']:g} about the mean of {variable['mean']:g} does not reach 0 and 1.",
     )
 
 

@@ -1,7 +1,93 @@
-"""See `marker_diffusion_figures`."""
+"""Markers per eps, the best eps, the parts of the error, and a field that turns negative."""
 
 from __future__ import annotations
 
-from scenes.lewandowski.marker_diffusion_figures import marker_claims as figure
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fracstudy.panels import pick
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, decimals, draw, note, symbol
+from scenes.lewandowski.square_profile import LOADINGS, SquareRuns
 
 __all__ = ["figure"]
+
+_MARKERS = {"S1": "s", "S2": "D", "S3": "v", "S4": "o", "S8": "^"}
+_RED = "#D55E00"
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, run: SquareRuns) -> Figure:
+    """Draw (a) E by markers per eps, (b) the best eps, (c) the parts of the error, (d) F that turns negative."""
+    figure = Figure(figsize=(8.8, 6.6), layout="constrained")
+    axes = figure.subplots(2, 2).ravel()
+    _numbers(axes[0], pick(series, panel="E"))
+    axes[0].set_ylabel(f"error norm $E({SquareRuns.model_validate(run).t_final:g})$")
+    _best(axes[1], pick(series, panel="best ε"))
+    _parts(axes[2], pick(series, loading=LOADINGS["midpoints"]))
+    _denominator(axes[3], pick(series, panel="denominator"))
+    for letter, ax in zip("abcd", axes, strict=True):
+        ax.set_title(f"({letter}) {ax.get_title()}", loc="left")
+        ax.set_title("")
+    return figure
+
+
+def _numbers(ax: Axes, series: pd.DataFrame) -> None:
+    for name, part in series.groupby("series"):
+        for loading, line, face in (("midpoints", "-", None), ("random", "--", "white")):
+            style = {"color": SHAPE_COLOURS[name], "markersize": 4, "markerfacecolor": face}
+            curve, label = pick(part, loading=LOADINGS[loading]), f"{symbol(name)}, {loading}"
+            draw(ax, curve, f"o{line}", label=label, **style)
+    ax.axvspan(10.0, 15.0, color="0.5", alpha=0.15, linewidth=0)
+    ax.set(xscale="log", yscale="log", xlabel=r"markers per $\varepsilon$ at the end")
+    decimals(ax, 0.02, 0.05, 0.1, 0.2)
+    ax.set_title("number of markers; grey: 10 to 15")
+    ax.legend(loc="lower left")
+
+
+def _best(ax: Axes, series: pd.DataFrame) -> None:
+    for name, part in series.groupby("series"):
+        style = {"color": SHAPE_COLOURS[name], "markerfacecolor": "none", "label": symbol(name)}
+        part = part.sort_values("x")
+        draw(ax, part, _MARKERS.get(name, "o"), **style)
+        ax.plot(part["x"], part["predicted"], color=SHAPE_COLOURS[name], linewidth=1.0)
+    ticks = sorted(series["x"].unique())
+    ax.set(xscale="log", yscale="log", xlabel="distance of the markers $h$")
+    ax.set_xticks(ticks, [f"{h:g}" for h in ticks])
+    ax.minorticks_off()
+    decimals(ax, 0.1, 0.2, 0.5, 1.0)
+    ax.set_ylabel(r"best support parameter $\varepsilon$")
+    ax.set_title("measured (points) and formula (lines)")
+    ax.legend(loc="upper left", ncols=2)
+
+
+def _parts(ax: Axes, series: pd.DataFrame) -> None:
+    looks = {"position": ("-", r"position, $\hat e$ (18)"), "representation": (":", "representation")}
+    for name, part in series.groupby("series"):
+        for what, (line, label) in looks.items():
+            style = {"color": SHAPE_COLOURS[name], "markersize": 3.5}
+            curve = pick(part, panel=f"{what} error")
+            draw(ax, curve, f"o{line}", label=f"{symbol(name)}: {label}", **style)
+    ax.set(yscale="log", xlabel="time $t$", ylabel="largest error")
+    decimals(ax, 0.002, 0.005, 0.01, 0.02, 0.05)
+    ax.set_title("the parts of (17), from midpoints")
+    ax.legend(loc="best")
+
+
+def _denominator(ax: Axes, series: pd.DataFrame) -> None:
+    if series.empty:
+        ax.text(0.5, 0.5, "F stayed positive", transform=ax.transAxes, ha="center")
+        return
+    at = pick(series, series="markers")
+    below, above = at[at["y"] <= 0.0], at[at["y"] > 0.0]
+    draw(ax, pick(series, series="F"), color=SHAPE_COLOURS["S8"])
+    draw(ax, above, "|", color="0.35", markersize=7)
+    draw(ax, below, "X", color=_RED, markersize=8)
+    ax.axhline(0.0, color="0.3", linewidth=0.8)
+    x, y = below[["x", "y"]].iloc[0]
+    depth = f"{y:.2g}".replace("-", "−")
+    centred = {"ha": "center", "va": "center", "color": _RED}
+    arrow = {"arrowstyle": "-", "color": _RED}
+    note(ax, f"F = {depth}\nat a marker", (x, y), (-62, -8), arrowprops=arrow, **centred)
+    ax.set(xlabel="$x$", ylabel="$F$, the denominator of (7)")
+    ax.set_yscale("symlog", linthresh=1e-3)
+    ax.set_title(rf"$S_8$ from random positions, $t \approx {series['t'].iloc[0]:.2f}$")

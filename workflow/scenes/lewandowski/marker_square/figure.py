@@ -44,10 +44,11 @@ def figure(
             draw(ax, pick(series, panel=panel, series=loading), color=colour, marker=marker)
         for epsilon in shown:
             ax.axvline(epsilon, color="0.6", linewidth=0.8, linestyle=":")
+        if panel == "slope":
+            ax.axhline(1.0, color="black", linewidth=1.0)
+            ax.text(0.02, 1.0, "exact", transform=ax.get_yaxis_transform(), va="bottom", fontsize=8)
         ax.set(yscale="log", xlabel=r"support parameter $\varepsilon$", ylabel=label)
         decimals(ax, *_TICKS[panel])
-    ax.axhline(1.0, color="black", linewidth=1.0)
-    ax.text(0.02, 1.0, "exact", transform=ax.get_yaxis_transform(), va="bottom", fontsize=8)
     legend = [entry(t, color=colour, marker=mark) for t, colour, mark in LOADING_LOOKS.values()]
     figure.legend(handles=[entry(**EXACT), *legend], loc="outside lower center", ncols=4)
     return figure

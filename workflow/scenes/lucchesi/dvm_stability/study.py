@@ -28,7 +28,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import mean_radius
 from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.inputs import Inputs, Result, listed, statement
 
 __all__ = ["displacement_growth", "gpse_factors", "study", "worst_wave"]
 
@@ -198,7 +198,7 @@ def _gpse_finding(runs: pd.DataFrame, overlaps: list[float]) -> Finding:
     return statement(
         "L-C11.GPSE",
         low >= -1.0 and high <= 1.0 + _ROUND_OFF and here["ratio"].max() < _RUINED,
-        f"A step multiplies waves by {round(low, 12) + 0.0:g} to {round(high, 12):g}, for beta = 0.1, 0.5, 0.9 "
+        f"A step multiplies waves by {round(low, 12) + 0.0:g} to {round(high, 12):g}, for beta = {listed(_BETAS)} "
         f"and epsilon / h from {min(overlaps):g} to {max(overlaps):g}; runs with steps up to "
         f"{here['factor'].max():.3g} times the limit of DD err by {here['error'].min():.1e} to "
         f"{here['error'].max():.1e}.",

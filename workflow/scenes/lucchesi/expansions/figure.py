@@ -36,7 +36,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, alpha: float) -> Figure
             error = np.abs(y / exact.to_numpy() - 1.0)
             more = {} if name == "series" else {**_SYMBOLS, "marker": marker}
             style: dict[str, Any] = {"color": colour, **more}
-            every = {"markevery": 7} if more else {}
+            every: dict[str, Any] = {"markevery": 7} if more else {}
             inside = np.where((y > 0.0) & (y < _CEILING), y, np.nan)
             left.plot(curve["x"], inside, **style, **every)
             right.plot(curve["x"], np.clip(error, _FLOOR, _CEILING), **style, **every)

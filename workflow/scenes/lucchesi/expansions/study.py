@@ -33,7 +33,7 @@ def study(
     A sum of so many `terms` holds where its relative error is below the tolerance, from the origin on for (A.1), to
     infinity for (A.2). `series_terms` and `asymptotic_terms` are those of the figure.
     """
-    exact = reduced_green(_X, alpha)
+    exact = np.asarray(reduced_green(_X, alpha))
     rows = []
     for count in terms:
         series, expansion = (_off(name, alpha, count, exact) for name in _FUNCTIONS)

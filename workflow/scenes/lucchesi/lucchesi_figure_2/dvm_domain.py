@@ -19,7 +19,7 @@ _SPOILED = 2.0  # the error without remeshing over that with it
 
 
 def lagrangian_domain(
-    inputs: Inputs, main: Inputs, table: pd.DataFrame, window: tuple[float, float]
+    inputs: Inputs, main: Inputs, table: pd.DataFrame, window: list[float]
 ) -> list[Finding]:
     """Judge what the paper says on DVM's domain and remeshing.
 
@@ -31,7 +31,7 @@ def lagrangian_domain(
     return [*_lattice(main, table, window), *_truncation(inputs, main)]
 
 
-def _lattice(main: Inputs, table: pd.DataFrame, window: tuple[float, float]) -> list[Finding]:
+def _lattice(main: Inputs, table: pd.DataFrame, window: list[float]) -> list[Finding]:
     moving = main.select(scheme="DVM")
     half = float(moving["half_width"].max())
     errors = table.set_index("scheme")["error (48)"]

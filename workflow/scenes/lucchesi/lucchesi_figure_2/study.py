@@ -36,7 +36,7 @@ _ABSOLUTE_EDGE = "largest absolute error at the boundary / peak"
 def study(
     inputs: Inputs,
     *,
-    windows: list[tuple[float, float]],
+    windows: list[list[float]],
     shown_spacing: float,
     printed_particles: int,
     mass_beta: list[float],
@@ -64,7 +64,7 @@ def study(
     x = first["x"].values
     series += _windows("exact", "", x, np.asarray(green(x, time, alpha)), windows)
     table = pd.DataFrame(rows)
-    start = green(half * np.array([0.5, 1.0]), float(first["t_initial"]), alpha)
+    start = np.asarray(green(half * np.array([0.5, 1.0]), float(first["t_initial"]), alpha))
     findings = [
         *_shape(main, table, alpha, float(np.log2(start[1] / start[0]))),
         *_setting(main, printed_particles),

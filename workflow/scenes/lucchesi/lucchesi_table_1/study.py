@@ -38,14 +38,9 @@ def _sum(u: np.ndarray, k: np.ndarray, s: Setting, power: float) -> np.ndarray:
     return (s.spacing * u * k).sum(axis=1) / _epsilon(s) ** power
 
 
-def _exchange(u: np.ndarray, k: np.ndarray, s: Setting, power: float | None = None) -> np.ndarray:
-    """sum_j V_j (u_j - u_i) k_ij / epsilon^power, alpha without a power."""
-    return _sum(u[None, :] - u[:, None], k, s, s.alpha if power is None else power)
-
-
-def _dd(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
-    """(10): (1 / epsilon^alpha) sum_j V_j u_j G_epsilon(x_i - x_j)."""
-    return _sum(u, _scaled("G", r, s), s, s.alpha)
+def _exchange(u: np.ndarray, k: np.ndarray, s: Setting, power: float) -> np.ndarray:
+    """sum_j V_j (u_j - u_i) k_ij / epsilon^power."""
+    return _sum(u[None, :] - u[:, None], k, s, power)
 
 
 def _flux(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
@@ -54,30 +49,16 @@ def _flux(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
     return -_sum(q[None, :] + q[:, None], _scaled("eta1", r, s), s, 1.0)
 
 
-def _kpse(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
-    """(34): (alpha / epsilon^alpha) sum_j V_j (u_j - u_i) K_epsilon(x_j - x_i)."""
-    return s.alpha * _exchange(u, _scaled("K", -r, s), s)
-
-
-def _gpse(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
-    """(41): (1 / epsilon^alpha) sum_j V_j (u_j - u_i) E_epsilon(x_j - x_i)."""
-    return _exchange(u, _scaled("E", -r, s), s)
-
-
 def _dpse(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
     """(16): (2 / epsilon^2) sum_j V_j (v_j - v_i) Phi_epsilon(x_j - x_i) with the potential (13)."""
     v = _sum(u, _scaled("kappa", r, s), s, s.alpha - 2.0)
     return 2.0 * _exchange(v, _scaled("Phi", -r, s), s, 2.0)
 
 
-def _pse29(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
-    """(29): (1 / epsilon^alpha) sum_j V_j (u_j - u_i) G_epsilon(x_j - x_i)."""
-    return _exchange(u, _scaled("G", -r, s), s)
-
-
 def _riesz(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
     """As (34), with the kernel K* of the regularised potential."""
-    return s.alpha * _exchange(u, riesz.kernel_star(r / _epsilon(s), s.alpha) / _epsilon(s), s)
+    k = riesz.kernel_star(r / _epsilon(s), s.alpha) / _epsilon(s)
+    return s.alpha * _exchange(u, k, s, s.alpha)
 
 
 def _finite_differences(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
@@ -105,13 +86,17 @@ def _finite_differences(u: np.ndarray, r: np.ndarray, s: Setting) -> np.ndarray:
 
 
 PAIR_SUMS: dict[str, Callable[[np.ndarray, np.ndarray, Setting], np.ndarray]] = {
-    "DD": _dd,
+    # (10): (1 / epsilon^alpha) sum_j V_j u_j G_epsilon(x_i - x_j)
+    "DD": lambda u, r, s: _sum(u, _scaled("G", r, s), s, s.alpha),
     "FPSE": _flux,
-    "KPSE": _kpse,
-    "GPSE": _gpse,
+    # (34): (alpha / epsilon^alpha) sum_j V_j (u_j - u_i) K_epsilon(x_j - x_i)
+    "KPSE": lambda u, r, s: s.alpha * _exchange(u, _scaled("K", -r, s), s, s.alpha),
+    # (41): (1 / epsilon^alpha) sum_j V_j (u_j - u_i) E_epsilon(x_j - x_i)
+    "GPSE": lambda u, r, s: _exchange(u, _scaled("E", -r, s), s, s.alpha),
     "FD": _finite_differences,
     "DPSE": _dpse,
-    "PSE29": _pse29,
+    # (29): (1 / epsilon^alpha) sum_j V_j (u_j - u_i) G_epsilon(x_j - x_i)
+    "PSE29": lambda u, r, s: _exchange(u, _scaled("G", -r, s), s, s.alpha),
     "RIESZ": _riesz,
 }
 """By scheme: du/dt from strengths u, distances r[i, j] = x_i - x_j and a setting (D = 1)."""

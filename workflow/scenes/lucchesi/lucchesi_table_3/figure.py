@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, entry, legend_below
+from fracstudy.style import COLOURS, MARKERS, axes_row, entry, legend_below, note
 
 __all__ = ["figure"]
 
@@ -51,8 +51,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> F
         right.plot(curve["x"], curve["y"], _LINES[order], color=COLOURS[scheme])
         highest, style = curve.loc[curve["y"].idxmax()], {"color": COLOURS[scheme]}
         right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, **style)
-    edge, place = exact[exact["y"] <= top].iloc[-1], {"textcoords": "offset points", "va": "top"}
-    right.annotate(r"exact, $\theta^\alpha$", (edge["x"], edge["y"]), xytext=(5, -4), **place)
+    edge = exact[exact["y"] <= top].iloc[-1]
+    place = (edge["x"], edge["y"])
+    note(right, r"exact, $\theta^\alpha$", place, (5, -4), va="top", color=None, fontsize=None)
     right.set(
         xlim=(0.0, np.pi),
         ylim=(0.0, top),

@@ -389,15 +389,15 @@ def _series(betas: list[float], printed: Mapping[str, str]) -> pd.DataFrame:
     """Panel "limit": a against beta; panel "symbol": -A(theta) h^alpha / D at the middle beta."""
     middle = betas[len(betas) // 2]
     theta = np.linspace(0.0, np.pi, 181)
-    curves = []
+    curves: list[tuple] = []
     for scheme in _SCHEMES:
         for order, name in ORDERS.items():
             setting = Setting(alpha=1.0 + middle, order=order, overlap=_OVERLAP)
             limit = [stability_limit(scheme, beta, order) for beta in _BETAS]
             curves.append(("limit", scheme, name, _BETAS, limit))
             curves.append(("symbol", scheme, name, theta, -SCHEMES[scheme].symbol(theta, setting)))
-        known = {b: printed.get(f"L-T3.{scheme}.beta{b:g}") for b in betas}
-        known = {b: float(text) for b, text in known.items() if text}
+        texts = {b: printed.get(f"L-T3.{scheme}.beta{b:g}") for b in betas}
+        known = {b: float(text) for b, text in texts.items() if text}
         curves.append(("printed", scheme, "II", list(known), list(known.values())))
     curves.append(("symbol", "exact", "", theta, theta ** (1.0 + middle)))
     names = ("panel", "scheme", "order", "x", "y")

@@ -11,7 +11,11 @@ from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result, spelled, statemen
 
 __all__ = ["fpse_over_others", "last_order_of_kpse_four", "settled", "study"]
 
-NEEDS = {"exterior": ["truncated", "open"], "scheme": ["DD", "FPSE", "KPSE"], "order": [2, 4]}
+NEEDS: dict[str, list] = {
+    "exterior": ["truncated", "open"],
+    "scheme": ["DD", "FPSE", "KPSE"],
+    "order": [2, 4],
+}
 
 # A level shows the order of a scheme if truncation is less than this part of its error.
 _CLEAN = 0.05

@@ -61,7 +61,10 @@ def study(inputs: Inputs) -> Result:
             series.append(pd.DataFrame(curve))
     table = pd.DataFrame(rows)
     judged = table[table["integrator"].isin(["RK1", "RK2"])] if inputs.items else table[:0]
-    findings = [_finding(*key, part) for key, part in judged.groupby(["scheme", "integrator"])]
+    findings = [
+        _finding(scheme, name, part)
+        for (scheme, name), part in judged.groupby(["scheme", "integrator"])
+    ]
     return Result(table.drop(columns="runs"), findings, pd.concat(series, ignore_index=True))
 
 

@@ -11,17 +11,17 @@ from fracstudy.style import (
     COLOURS,
     axes_row,
     entry,
+    legend_below,
     log_log,
     name_ticks,
     panel_title,
-    scheme_legend,
     scheme_style,
 )
 from scenes.lucchesi.exteriors import ERROR
 
 __all__ = ["figure"]
 
-_SHOWN = [("KPSE", "II"), ("KPSE", "IV"), ("GPSE", "II")]
+_SHOWN = {"KPSE II": ("KPSE", "II"), "KPSE IV": ("KPSE", "IV"), "GPSE": ("GPSE", "II")}
 _PREDICTED: dict[str, Any] = {"color": "0.6", "linewidth": 4}
 _EITHER: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": "none"}
 
@@ -35,7 +35,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     for letter, ax, beta in zip("abcdefgh", axes, betas, strict=False):
         here = curves.loc[beta]
         ax.plot(*here.loc["predicted", "GPSE"].T.to_numpy(), solid_capstyle="round", **_PREDICTED)
-        for scheme, order in _SHOWN:
+        for scheme, order in _SHOWN.values():
             for variable, face in (("truncated", COLOURS[scheme]), ("open", "none")):
                 points = here.loc[variable, scheme, order].T.to_numpy()
                 ax.plot(*points, **scheme_style(scheme, order, markerfacecolor=face))
@@ -43,10 +43,14 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         panel_title(ax, letter, rf"$\beta = {beta:g}$")
         name_ticks(ax, sorted(here["C"].unique())[::2])
     axes[0].set_ylabel(ERROR)
-    more = [
+    handles = [
+        entry(name, **scheme_style(*pair, markerfacecolor=COLOURS[pair[0]]))
+        for name, pair in _SHOWN.items()
+    ]
+    handles += [
         entry("truncated", **_EITHER),
         entry("open exterior", markerfacecolor="none", **_EITHER),
         entry(r"predicted, $\propto C^{-\alpha}$", **_PREDICTED),
     ]
-    scheme_legend(figure, _SHOWN, more)
+    legend_below(figure, handles)
     return figure

@@ -34,7 +34,10 @@ def figure(
     _solution(axes[0], panels["solution"], panels["exact"], 2.0 * half_width / particles)
     _mass(axes[1], panels["mass"])
     _accuracy(axes[2], panels["operator"])
-    handles = [*axes[2].get_legend_handles_labels()[0], entry("random", **_LOOKS["random"])]
+    handles: list[Any] = [
+        *axes[2].get_legend_handles_labels()[0],
+        entry("random", **_LOOKS["random"]),
+    ]
     legend_below(drawn, handles)
     return drawn
 

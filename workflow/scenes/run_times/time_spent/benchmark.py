@@ -2,38 +2,38 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from functools import partial
-from importlib import import_module
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 import numpy as np
 
+from fracparticles.kernels.families import kernel
+from fracparticles.lattice.exterior import far_field, tabulated_far_field
+from fracparticles.lattice.exterior_box import box_far_field
 from fracparticles.run.case import Case
 from fracparticles.run.solver import Prepared, initial_strengths, prepare
+from fracparticles.schemes.spectrum import spectral_interval
+from fracparticles.time import exponential_flow, power_flow
+from fracparticles.time.propagator import propagator_weights
 from fracstudy.benchmarks.clock import Timing, forget_tables, measure, one_core, timings_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["PARTS", "benchmark"]
+__all__ = ["benchmark"]
 
-# The parts of a set-up, each by the functions where a caller looks them up; a part within a part counts for itself.
-PARTS = {
-    "kernel values": ("schemes.setting.kernel", "schemes.fpse.kernel"),
-    "far field": (
-        "schemes.base.far_field",
-        "schemes.fpse.far_field",
-        "schemes.base.box_far_field",
-        "schemes.fpse.box_far_field",
-        "time.propagator.tabulated_far_field",
-    ),
-    "range of the symbol": ("run.solver.spectral_interval",),
-    "time series": ("run.solver.exponential_flow", "run.solver.power_flow"),
-    "weights from the symbol": ("time.propagator.propagator_weights",),
+# The parts of a set-up and the functions that do them; a part within a part counts for itself.
+_FUNCTIONS: dict[str, tuple[Callable[..., Any], ...]] = {
+    "kernel values": (kernel,),
+    "far field": (far_field, box_far_field, tabulated_far_field),
+    "range of the symbol": (spectral_interval,),
+    "time series": (exponential_flow, power_flow),
+    "weights from the symbol": (propagator_weights,),
 }
 _OTHER = "plans and the rest"
 _SOLVES = 10  # solves for every set-up
@@ -42,14 +42,11 @@ _VARIABLES = {
     "particles": ("number of particles", "1"),
     "applications": ("operator applications of a solve", "1"),
     "setup_time": ("set-up, nothing kept from before, minimum", "s"),
-    **{name: (f"of the set-up: {name}", "s") for name in (*PARTS, _OTHER)},
+    **{name: (f"of the set-up: {name}", "s") for name in (*_FUNCTIONS, _OTHER)},
     "solve_time": ("solve, minimum", "s"),
-    "lattice sums": (
-        "of the solve: the sums over the particles, one of them times their number",
-        "s",
-    ),
+    "lattice sums": ("of the solve: the sums over the particles, one of them times their number", "s"),
     "rest of the solve": ("of the solve: all else", "s"),
-}
+}  # fmt: skip
 
 
 def benchmark(cases: Mapping[str, Mapping[str, Any]], repeats: int) -> xr.Dataset:
@@ -97,10 +94,11 @@ def _row(name: str, case: Case, repeats: int) -> dict[str, Any]:
 
 def _watched_setup(case: Case) -> tuple[float, dict[str, float], Prepared]:
     """The time of a set-up, that of its parts without the parts within them, and the case made ready."""
-    spent = dict.fromkeys(PARTS, 0.0)
+    spent = dict.fromkeys(_FUNCTIONS, 0.0)
     within: list[float] = []  # of each part that is under way, the time of the parts within it
 
     def watched(part: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(function)
         def call(*arguments: Any, **options: Any) -> Any:
             within.append(0.0)
             start = time.perf_counter()
@@ -115,18 +113,20 @@ def _watched_setup(case: Case) -> tuple[float, dict[str, float], Prepared]:
         return call
 
     with ExitStack() as stack:
-        for part, places in PARTS.items():
-            for place in places:
-                stack.enter_context(_replaced(place, partial(watched, part)))
-        timing, ready = measure(lambda: prepare(case))
+        for part, functions in _FUNCTIONS.items():
+            for function in functions:
+                stack.enter_context(_replaced(function, watched(part, function)))
+        timing, ready = measure(partial(prepare, case))
     return timing.minimum, spent, ready
 
 
 @contextmanager
-def _replaced(
-    place: str, wrap: Callable[[Callable[..., Any]], Callable[..., Any]]
-) -> Iterator[None]:
-    module, name = place.rsplit(".", 1)
-    owner = import_module(f"fracparticles.{module}")
-    with patch.object(owner, name, wrap(getattr(owner, name))):
+def _replaced(function: Callable[..., Any], by: Callable[..., Any]) -> Iterator[None]:
+    """Replace a function of the library wherever one of its modules looks it up."""
+    modules = [module for name, module in sys.modules.items() if name.startswith("fracparticles.")]
+    with ExitStack() as stack:
+        for module in modules:
+            for name, value in vars(module).items():
+                if value is function:
+                    stack.enter_context(patch.object(module, name, by))
         yield
