@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -10,14 +13,14 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 import fracparticles as fp
-from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.errors import NonFiniteSolution
 from fracparticles.lattice.fourier import transform_length
 from fracparticles.moving.random_walk import cell_masses
 from fracparticles.run.dataset import read_benchmark, write
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.schemes.stability import _symbol_range, stability_limit
-from fracstudy.benchmarks import BENCHMARKS, benchmark, clock
+from fracstudy.benchmarks import clock
 from fracstudy.benchmarks.problem import Problem
 from fracstudy.benchmarks.sweeps import (
     graded_trials,
@@ -33,8 +36,9 @@ from fracstudy.benchmarks.sweeps import (
     tied_step_trials,
     walk_trials,
 )
-from fracstudy.benchmarks.trial import Contender, Trial, run_trials
+from fracstudy.benchmarks.trial import Ready, Trial, run_trials
 from fracstudy.peers import PEERS
+from scene_functions import scenes
 from scenes.run_times.reference_times.benchmark import benchmark as reference
 from scenes.run_times.reference_times.benchmark import transform_pairs
 
@@ -108,6 +112,7 @@ def test_rows_become_a_data_set_and_a_frame(tmp_path):
         "numpy",
         "pyfftw",
         "load_average",
+        "other_load",
     ):
         assert fact in frame.attrs, fact
 
@@ -123,14 +128,30 @@ def test_a_benchmark_says_the_commit_as_a_run_does():
 def test_what_was_measured_elsewhere_says_its_own_facts():
     data = clock.timings_dataset("row", [], {}, {}, "t", {"threads_numba": 3})
     assert data.attrs["threads_numba"] == 3
-    assert data.attrs["threads_blas"] == clock.threads()["threads_blas"]
+    assert data.attrs["threads_blas"] == clock.conditions()["threads_blas"]
 
 
-def test_unknown_benchmarks_are_refused():
-    with pytest.raises(InvalidInput, match="work_precision"):
-        benchmark("nothing")
-    for name in BENCHMARKS:
-        assert callable(benchmark(name))
+def test_the_load_of_others_is_that_beside_the_clock():
+    """Another process that counts takes a core, or its share of one; what this process takes does not count."""
+    busy = [sys.executable, "-c", "while True: pass"]
+    clock.one_core()
+    assert np.isnan(clock.other_load())
+    with subprocess.Popen(busy) as other:
+        time.sleep(0.2)  # until it has begun
+        clock.measure(lambda: time.sleep(0.5))
+        other.kill()
+    assert clock.other_load() > 0.4
+    before = clock.other_load()
+    clock.one_core()
+    clock.measure(lambda: sum(range(10_000_000)))
+    assert clock.other_load() < before + 0.5
+
+
+def test_every_benchmark_is_found():
+    measured = [scene for scene in scenes().values() if scene.benchmark is not None]
+    assert {"work_precision", "reference_times"} <= {scene.name for scene in measured}
+    for scene in measured:
+        assert callable(scene.function("benchmark"))
 
 
 # --- the problem and the contenders ---------------------------------------------------------------
@@ -171,7 +192,7 @@ def test_every_trial_solves_the_problem():
         *particle_trials(LINE, [4], 8.0, [0.25], [100]),
         *naive_trials(LINE, ["KPSE", "FD"], [2, 4], 1e-3, 1, **grid),
     ]
-    assert {trial.family for trial in trials} == {
+    assert {trial.contender for trial in trials} == {
         "DD", "FPSE", "KPSE", "GPSE", "DVM", "FD", *PEERS
     }  # fmt: skip
     for trial in trials:
@@ -188,7 +209,7 @@ def test_the_lent_exterior_is_that_of_gpse():
     (own,) = (
         trial
         for trial in peer_trials(LINE, **{**PEER_GRID, **grid})
-        if trial.family == "sinc-lattice" and trial.variant == "open, convolution"
+        if trial.contender == "sinc-lattice" and trial.variant == "open, convolution"
     )
     assert solved(own)[2] > 100.0 * solved(lent)[2]
 
@@ -240,7 +261,7 @@ def test_a_matrix_is_the_run_itself(problem):
 
 
 def test_peers_of_the_plane_solve_the_problem():
-    trials = list(plane_peer_trials(PLANE, [0.4], [4.0], 5000))
+    trials = list(plane_peer_trials(PLANE, spacings=[0.4], truncations=[4.0], most=5000))
     assert {trial.group for trial in trials} == {"peers", "limit"}
     for trial in trials:
         assert solved(trial, PLANE)[2] < 0.02, trial
@@ -263,11 +284,11 @@ def test_lattices_too_small_or_too_large_are_left_out():
 # --- trials ---------------------------------------------------------------------------------------
 
 
-def failing() -> Contender:
+def failing() -> Ready:
     def solve(u0):
         raise NonFiniteSolution("it blew up\nas it should")
 
-    return Contender(np.zeros(3), 1.0, solve)
+    return Ready(np.zeros(3), 1.0, solve)
 
 
 def test_rows_of_trials():
@@ -286,8 +307,8 @@ def test_rows_of_trials():
 
 def test_trials_off_the_front_are_timed_once():
     """A narrow lattice has a larger error, and with a hundred times the particles it is slower, too."""
-    wide = one_step_trials(LINE, OPEN, [0.2], [7.0], 1e5)
-    narrow = one_step_trials(LINE, OPEN, [0.001], [4.0], 1e5)
+    wide = one_step_trials(LINE, OPEN, spacings=[0.2], truncations=[7.0], most=1e5)
+    narrow = one_step_trials(LINE, OPEN, spacings=[0.001], truncations=[4.0], most=1e5)
     rows = run_trials(LINE, [*wide, *narrow], rounds=2, repeats=2, seconds=1.0)
     assert [row["setups"] for row in rows] == [3, 1]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
-from fracparticles.run.complaints import choices_of, takes_numbers
+from fracparticles.run.complaints import choices_of, field_table, label_of, takes_numbers
 from fracparticles.special import mean_radius
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "truncation": 4.0, "spacing": 0.1, "dt": 0.001}
@@ -165,8 +166,18 @@ def test_numpy_scalars_are_taken_for_what_they_hold():
 
 
 def test_every_field_is_described():
-    for name, field in Case.model_fields.items():
-        assert field.description, name
+    labels = [label_of(field) for field in Case.model_fields.values()]
+    assert len(set(labels)) == len(labels)
+    for label in labels:
+        assert 4 < len(label) < 90
+        assert not label.endswith(".")
+    assert label_of(Case.model_fields["spacing"]) == "particle spacing h"
+    assert label_of(Case.model_fields["truncation"]).endswith("R_alpha), Eq. (46)")
+
+
+def test_the_table_of_the_configuration_is_that_of_the_fields():
+    readme = Path(__file__).parents[1] / "config" / "README.md"
+    assert f"\n\n{field_table(Case)}\n" in readme.read_text(encoding="utf-8")
 
 
 def test_annotations():
@@ -178,7 +189,7 @@ def test_annotations():
     assert numbers == {
         *("order", "beta", "dim", "truncation", "half_width", "spacing", "overlap", "dt"),
         *("diffusivity", "t_initial", "t_final", "kernel_table", "remesh_above", "threshold"),
-        "far_terms",
+        *("far_terms", "graded_scale"),
     }
 
 
@@ -314,6 +325,8 @@ PLAUSIBLE = {
     "evaluation": st.sampled_from(["series", "stepping"]),
     "summation": st.sampled_from(["fft", "naive"]),
     "exterior": st.sampled_from(["truncated", "open"]),
+    "graded_scale": st.floats(0.0, 1e300) | st.floats(0.1, 10.0),
+    "graded_form": st.sampled_from(["exchange", "quadrature", "interpolated"]),
     "store": st.sampled_from(["field", "profile", "metrics"]),
 }
 

@@ -100,11 +100,25 @@ def test_every_flag_reaches_the_case(cli):
         "kernel_table": 0.01,
         "store": "profile",
     }
-    of_others = {"half_width", "remeshing", "remesh_above", "threshold"}
+    of_others = {"half_width", "graded_scale", "graded_form"}
+    of_others |= {"remeshing", "remesh_above", "threshold"}
     assert {*everything, *of_others} == set(Case.model_fields)
     flags = [f"--{name.replace('_', '-')}={value}" for name, value in everything.items()]
     assert cli("solve", *flags, "-o", "run.nc")[0] == 0
     assert Case.from_json(fp.read_run("run.nc").attrs["case"]) == Case(**everything)
+
+
+def test_graded_particles(cli):
+    given = words_of("--scheme GPSE --beta 0.1 --half-width 1e9 --spacing 0.4 --graded-scale 2")
+    assert cli("solve", *given, "--graded-form", "exchange", "-o", "a.nc")[0] == 0
+    assert cli("solve", *given, "-o", "b.nc") == (0, "b.nc\n", "")
+    fields = {"scheme": "GPSE", "beta": 0.1, "half_width": 1e9, "spacing": 0.4, "graded_scale": 2.0}
+    assert fp.read_run("b.nc").identical(fp.solve(Case(**fields)))
+    assert fp.read_run("a.nc").graded_form.item() == "exchange"
+    status, out, err = cli("show", "b.nc")
+    assert (status, err) == (0, "")
+    assert "\n  graded_form                interpolated" in out
+    assert refused(cli("solve", *given, "--dt", 1, "-o", "c.nc"), "dt = 1", "graded particles")
 
 
 def test_a_restart(cli):

@@ -122,10 +122,10 @@ def test_eta_solves_the_moment_conditions(order):
 @orders
 @dims
 def test_moments(n, order):
-    """Nil up to order 2m - 2; the first that is not, from eta^ = 1 - z^m / m!: (-1)^(m+1) (n/2)_m."""
+    """Zero up to order 2m - 2; the first that is not, from eta^ = 1 - z^m / m!: (-1)^(m+1) (n/2)_m."""
     m = order // 2
     nodes, weights = np.polynomial.legendre.leggauss(200)
-    r = 6.5 * (nodes + 1.0)  # to 13, where all is nil
+    r = 6.5 * (nodes + 1.0)  # to 13, where all is zero
     weights = 6.5 * weights * SPHERE[n] * r ** (n - 1)
     for name, first, unit in (("eta", 0, 1.0), ("eta1", 1, -n), ("Phi", 2, n)):
         values = weights * kernel(name, r, 1.5, dim=n, order=order)
@@ -240,7 +240,7 @@ def lattice_error(order: int, alpha: float, epsilon: float) -> list[float]:
     def sums(name: str, y: np.ndarray, x: np.ndarray, u: np.ndarray) -> np.ndarray:
         return kernel(name, (y[:, None] - x) / epsilon, alpha, order=order) @ u / overlap
 
-    x, y = lattice(4.0), lattice(6.5)  # u is nil beyond 6.5
+    x, y = lattice(4.0), lattice(6.5)  # u is zero beyond 6.5
     u = np.exp(-y * y)
     reached = lattice(4.0 + 9.0 * epsilon)  # by the divergence
     flux = -sums("F", reached, y, u) / epsilon ** (alpha - 1.0)

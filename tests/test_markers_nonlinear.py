@@ -158,7 +158,7 @@ def test_the_fourier_sums_are_the_sums_over_neighbours(markers):
     scale = np.abs(slow.fields(x, weights)).max(axis=1, keepdims=True)
     assert (
         np.abs((fast.fields(x, weights) - slow.fields(x, weights)) / scale).max()
-        < fast._transforms.accuracy
+        < fast._sums.accuracy
     )
     z = np.linspace(-1.0, 1.0, 7)
     assert fast.fields(x, weights, z)[0] == pytest.approx(slow.fields(x, weights, z)[0], abs=1e-11)
@@ -167,7 +167,7 @@ def test_the_fourier_sums_are_the_sums_over_neighbours(markers):
 
 
 def test_markers_at_the_steady_state_stay(markers):
-    """V is nil where F = f_inf, up to what smoothing by S8 changes: eps^4 f^(4) / 32 of f, eps = 0.1."""
+    """V is zero where F = f_inf, up to what smoothing by S8 changes: eps^4 f^(4) / 32 of f, eps = 0.1."""
     x, _, _ = markers
     x = np.linspace(-1.5, 1.5, 400)
     weights = PROBLEM.steady(x) * (x[1] - x[0])

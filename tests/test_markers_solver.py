@@ -167,7 +167,7 @@ def test_perturbations_grow_as_the_lattice_sum_says(name, spacing, k):
 def test_many_markers_make_the_lattice_rate_the_transform():
     k = np.linspace(0.5, 9.0, 18)
     for name, spacing, bound in (("S8", 0.1, 1e-11), ("S4", 1 / 64, 0.01), ("S6", 1 / 64, 0.01)):
-        # S8: aliases at k = 2 pi / spacing are nil. The others: S'' jumps, so the sum is of the order spacing^2.
+        # S8: aliases at k = 2 pi / spacing are zero. The others: S'' jumps, so the sum is of the order spacing^2.
         gap = lattice_rate(SHAPES[name], k, spacing) - rate(SHAPES[name], k)
         assert np.abs(gap).max() < bound
 

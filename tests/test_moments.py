@@ -214,7 +214,7 @@ def test_the_laplacian_in_one_dimension_is_the_second_derivative():
 def test_laplacians_are_exact_for_polynomials(dim):
     """Lap x^2 = 2, Lap x^4 = 12 x^2, and Lap (x^2 y^2) = 2 (x^2 + y^2), by a sum over a fine enough lattice."""
     kernel = construct_laplacian(4, dim)
-    epsilon, s = 0.5, 2.5  # aliases of exp(-(pi s)^2): nil
+    epsilon, s = 0.5, 2.5  # aliases of exp(-(pi s)^2): none
     n = int(kernel.reach * s) + 1
     grid = np.meshgrid(*[np.arange(-n, n + 1) / s] * dim, indexing="ij")
     distance = np.sqrt(sum(z**2 for z in grid))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from fracstudy.config import batches
 from fracstudy.scene import Scene, expand
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "dt": 1e-4}
+GRADED = {"scheme": "GPSE", "dt": None, "graded_scale": 5.0}
 DVM = {**GIVEN, "scheme": "DVM", "dt": 1e-3}
 
 
@@ -63,6 +65,9 @@ def check(one: Case, other: Case) -> None:
         ({"diffusivity": 1.0}, {"diffusivity": 1.0000000001}),
         ({"diffusivity": 2.0}, {"diffusivity": 2.0000000001}),
         ({"kernel_table": 0.01}, {"kernel_table": 0.010000001}),
+        (GRADED, {**GRADED, "graded_scale": 5.0000001}),
+        (GRADED, {**GRADED, "graded_form": "exchange"}),
+        (GRADED, {**GRADED, "graded_scale": None}),
     ],
     ids=str,
 )
@@ -178,7 +183,7 @@ def test_the_plan_makes_every_run_that_was_asked_for():
         "initial": ["a b.nc", "a-b.nc"],
     }
     assert len(expand([block])) == 8
-    scene = Scene(title="t", study="s", runs=[block])
+    scene = Scene(name="one", folder=Path("one"), title="t", runs=[block])
     wanted, jobs = batches({"one": scene, "two": scene})
     computed = [c.path for chunk in jobs.values() for c in chunk]
     assert len(set(computed)) == len(computed) == 8

@@ -48,7 +48,7 @@ class Kernel:
     symbol : str
         Symbol in TeX.
     equation : str
-        Equations of order II and order IV of the printed family.
+        Equations of order II and order IV of the printed kernel family.
     parity : str
         "even" (a radial function) or "odd" (a vector along r).
     orders, dims : tuple of int
@@ -158,7 +158,7 @@ def kernel_transform(
 
 
 def _family(name: str, order: int, family: str | None) -> KernelFamily:
-    """The family that has the kernel in this order; of the two that have order 2, the printed one."""
+    """The kernel family that has the kernel in this order; of the two that have order 2, the printed one."""
     entry = KERNELS[choice("name", name, tuple(KERNELS))]
     if order not in entry.orders:
         raise one_of("order", order, entry.orders, name)

@@ -6,9 +6,9 @@ A kernel family is made by one regularisation eta of the delta function. With M(
     kappa = Gamma_{n,0}(beta-1) M((beta-1+n)/2, n/2, r^2)             k^(alpha-2) eta^(k)     (14), (15), (B.11)
     F     = -r K                                                      k^(alpha-1) eta^(k)     (20), (21), (B.12)
     G     = -Gamma_{n,0}(alpha) M((alpha+n)/2, n/2, r^2)              -k^alpha eta^(k)        (11), (12), (B.13)
-    K     = Gamma_{n,2}(alpha) M((alpha+n)/2, (n+2)/2, r^2)           see the families        (31), (32)
+    K     = Gamma_{n,2}(alpha) M((alpha+n)/2, (n+2)/2, r^2)           see `k_hat`             (31), (32)
 
-with the transform on the right. `kernel` and `kernel_transform` of a family check what they are given.
+with the transform on the right. `kernel` and `kernel_transform` of a kernel family check what they are given.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ class KernelFamily(ABC):
         return like(k, getattr(self, f"{name.lower()}_hat")(k, alpha, dim, order))
 
     def check_order(self, order: Any) -> None:
-        """Refuse an order that the family does not have."""
+        """Refuse an order that the kernel family does not have."""
         if isinstance(order, bool) or order not in self.orders:
             raise one_of("order", order, self.orders)
 

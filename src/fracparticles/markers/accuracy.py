@@ -32,10 +32,7 @@ _PER_UNIT = 6  # values of eps / h between whole numbers
 def smoothing_exponent(shape: Shape) -> float:
     """Return k, measured: from two support parameters, with so many markers that only eps^k is left.
 
-    Raises
-    ------
-    InvalidInput
-        If it is no shape function. So do the others.
+    Raises `InvalidInput` if it is no shape function. So do the others.
     """
     z = np.linspace(-1.0, 1.0, 41)
     errors = [_error(shape, epsilon, epsilon / 200.5, z) for epsilon in (0.1, 0.2)]

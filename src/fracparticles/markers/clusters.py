@@ -16,10 +16,7 @@ _FEWEST = 3  # markers that make a cluster
 def cluster_centres(x: Any, gap: float, within: float) -> np.ndarray:
     """Return the centres, in |x| < within, of the groups of three markers or more with gaps above `gap` between them.
 
-    Raises
-    ------
-    InvalidInput
-        If there are no positions, or a length is not positive. So do the others.
+    Raises `InvalidInput` if there are no positions, or a length is not positive. So do the others.
     """
     x = np.sort(positions("x", x))
     groups = np.split(x, np.flatnonzero(np.diff(x) > scale("gap", gap)) + 1)

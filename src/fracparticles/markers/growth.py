@@ -35,10 +35,8 @@ def measured_rate(
 ) -> tuple[float, float]:
     """Return k = eps q and eps^2 times the rate of a wave of `mode` wavelengths in a period.
 
-    Raises
-    ------
-    InvalidInput
-        If a number is not positive, the mode or the steps are not whole, or the shape function does not do.
+    Raises `InvalidInput` if a number is not positive, the mode or the steps are not whole, or the shape
+    function does not do.
     """
     shape, epsilon = instance("shape", shape, Shape), scale("epsilon", epsilon)
     period, amplitude, dt = scale("period", period), scale("amplitude", amplitude), scale("dt", dt)
@@ -57,10 +55,7 @@ def measured_rate(
 def largest_step(shape: Shape, epsilon: float = 1.0) -> float:
     """Return the largest dt / eps^2 from 0.05 to 2 at which the wave that decays fastest does not grow, by bisection.
 
-    Raises
-    ------
-    InvalidInput
-        If it is no shape function with a first derivative, or epsilon is not positive.
+    Raises `InvalidInput` if it is no shape function with a first derivative, or epsilon is not positive.
     """
     wavelength = 2.0 * math.pi / extremes(shape).k_decay
     waves = math.floor(2.0 * shape.reach / wavelength) + 1

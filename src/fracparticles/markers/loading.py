@@ -4,6 +4,9 @@ r"""Initial positions and weights of the markers, Sec. 2.2. Each returns x_j and
 - `equal_weight`, the quiet start: x_j = g^-1(sigma (j - 1/2) / N), W_j = sigma / N (10), for g(x) = int_-inf^x f.
   (11) prints W_j = 1 / N for f = x exp(-x^2), whose sigma is not 1.
 - `random`: the same with random xi_j for (j - 1/2) / N, from a seed.
+
+All raise `InvalidInput` if the count is not a positive whole number, the ends do not increase, or f, the profile or the
+generator is none.
 """
 
 from __future__ import annotations
@@ -24,11 +27,7 @@ Loading = tuple[np.ndarray, np.ndarray]
 def uniform(
     f: Callable[[np.ndarray], np.ndarray], ends: tuple[float, float], count: int
 ) -> Loading:
-    """Return `count` midpoints of equal cells between the ends, with W_j = f(x_j) h.
-
-    Raises `InvalidInput` if the ends do not increase, the count is not a positive whole number, or f is no function
-    of arrays.
-    """
+    """Return `count` midpoints of equal cells between the ends, with W_j = f(x_j) h."""
     low, high = check.pair("ends", ends, rising=True)
     h = (high - low) / check.positive_integer("count", count, most=check.MOST)
     x = low + h * (np.arange(count) + 0.5)
@@ -36,23 +35,15 @@ def uniform(
 
 
 def equal_weight(profile: Profile, count: int) -> Loading:
-    """Return markers that share the total equally (10).
-
-    Raises `InvalidInput` if the count is not a positive whole number, or the profile none.
-    """
+    """Return markers that share the total equally (10)."""
     count = check.positive_integer("count", count, most=check.MOST)
     part = _total(profile) / count
-    return check.sampled("profile", profile.quantile, part * (np.arange(count) + 0.5)), np.full(
-        count, part
-    )
+    x = check.sampled("profile", profile.quantile, part * (np.arange(count) + 0.5))
+    return x, np.full(count, part)
 
 
 def random(profile: Profile, count: int, generator: np.random.Generator) -> Loading:
-    """Return markers of equal weight at random, distributed like f, in increasing order.
-
-    Raises `InvalidInput` if the count is not a positive whole number, the profile none, or the generator none of
-    numpy's.
-    """
+    """Return markers of equal weight at random, distributed like f, in increasing order."""
     count = check.positive_integer("count", count, most=check.MOST)
     total = _total(profile)
     xi = np.sort(check.generator("generator", generator).random(count))

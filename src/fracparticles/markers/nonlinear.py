@@ -84,6 +84,12 @@ class NonlinearDiffusion:
             check.places("x", x), check.whole_number("derivative", derivative, most=2)
         )
 
+    def steady_beyond(self, x: float) -> float:
+        """Return int f_inf over |x'| > x, for x >= 0."""
+        x, root = check.not_negative("x", x), math.sqrt(self.alpha)
+        both = sum(math.erfc(root * (x + side * self.x0)) for side in (1, -1))
+        return math.sqrt(math.pi) / root * both
+
     def source(self, x: Any) -> np.ndarray:
         """Q (21)."""
         x = check.places("x", x)

@@ -10,7 +10,8 @@ and only if f is a product. Two ways to mend it, both with sum W = sigma or near
 - `weighted`: the same places with W = sigma / (n_x n_y) f / (<f>_y <f>_x / sigma);
 - `sequential`: x by its marginal, then y by the density of y given that x; all weights equal.
 
-`TwoBlobs` is a density that goes from a product to the contrary.
+`TwoBlobs` is a density that goes from a product to the contrary. All functions raise `InvalidInput` if an argument is
+none of its kind, the arrays do not fit together, or there are too many markers for memory.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ _MOST_TERMS = 2**27  # of markers and points along one axis
 class TwoBlobs:
     """f = exp(-(x - a)^2 - (y - a)^2) + exp(-(x + a)^2 - (y + a)^2); a product only for a = 0.
 
-    Raises `InvalidInput` if a is anything else; so do the methods, of values outside their range or shapes that do
+    Raises `InvalidInput` if a is outside its range; so do the methods, of values outside their range or shapes that do
     not fit.
 
     Attributes
@@ -117,11 +118,7 @@ class TwoBlobs:
 def decoupled(
     quantile: Callable[[np.ndarray], np.ndarray], total: float, counts: tuple[int, int]
 ) -> Loading:
-    """Return the paper's loading x, y, W, each of shape (n_x n_y,), for equal marginals.
-
-    Raises `InvalidInput` if a count is not a positive whole number, the total not a positive number, or the quantile
-    no function of arrays.
-    """
+    """Return the paper's loading x, y, W, each of shape (n_x n_y,), for equal marginals."""
     total = check.scale("total", total)
     x, y = (check.sampled("quantile", quantile, part) for part in _midpoints(counts))
     x, y = (part.ravel() for part in np.meshgrid(x, y, indexing="ij"))
@@ -129,11 +126,7 @@ def decoupled(
 
 
 def weighted(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
-    """Return the same places with the weights that make the density f.
-
-    Raises `InvalidInput` if a count is not a positive whole number, or the density of another kind. So does
-    `sequential`.
-    """
+    """Return the same places with the weights that make the density f."""
     density = check.instance("density", density, TwoBlobs)
     x, y, w = decoupled(density.quantile, density.total, counts)
     return x, y, w * density.value(x, y) / density.product(x, y)
@@ -149,11 +142,7 @@ def sequential(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
 
 
 def reconstruct(shape: Shape, epsilon: float, markers: Loading, x: Any, y: Any) -> np.ndarray:
-    """Return F = sum_j W_j S_eps(x - x_j) S_eps(y - y_j) on the grid, shape (x, y).
-
-    Raises `InvalidInput` if the arrays are not finite or do not fit together, are too long for memory, or the shape
-    or epsilon does not do.
-    """
+    """Return F = sum_j W_j S_eps(x - x_j) S_eps(y - y_j) on the grid, shape (x, y)."""
     check.instance("shape", shape, Shape)
     if not isinstance(markers, tuple | list) or len(markers) != 3:
         raise InvalidInput("markers", markers, "x, y and W of the markers", "Give three arrays.")

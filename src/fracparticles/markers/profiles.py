@@ -164,7 +164,7 @@ class Gaussian:
 class Ramp:
     """f = x exp(-x^2) on [0, x_0]; total sigma = (1 - exp(-x_0^2)) / 2.
 
-    Raises `InvalidInput` if it is not positive.
+    Raises `InvalidInput` if x_0 is not positive.
 
     Attributes
     ----------

@@ -27,6 +27,7 @@ from scipy.special import gammaln, xlog1py, xlogy
 
 from fracparticles import arguments as check
 from fracparticles._compiled import njit
+from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 from fracparticles.special.stable import tail_mass
 
@@ -39,8 +40,6 @@ __all__ = [
     "stable_variates",
     "walk",
 ]
-
-FloatArray = NDArray[np.float64]
 
 _CHUNK = 2**14  # walkers at a time: their random numbers stay in the cache
 _MOST_WALKERS = 10**9  # beyond, the logarithms in `expected_deviation` lose digits
@@ -83,10 +82,6 @@ def walk(
         Number of steps; the law of the end does not depend on it.
     diffusivity : float
         D of Eq. (2).
-
-    Returns
-    -------
-    ndarray, shape (walkers,)
     """
     position = check.positions("x", x).copy()
     alpha = check.fractional_order(alpha)
@@ -124,7 +119,7 @@ def _add_increments(x, scale, alpha, uniform, exponential):
 
 
 def cell_counts(x: Any, half_width: float, cells: int, ensembles: int = 1) -> NDArray[np.int64]:
-    """Count the walkers in equal cells of [-half_width, half_width), for disjoint ensembles.
+    """Count the walkers in equal cells of [-half_width, half_width), for disjoint ensembles: shape (ensembles, cells).
 
     Parameters
     ----------
@@ -136,10 +131,6 @@ def cell_counts(x: Any, half_width: float, cells: int, ensembles: int = 1) -> ND
         Number of cells.
     ensembles : int
         Number of ensembles, at most that of walkers.
-
-    Returns
-    -------
-    ndarray of int, shape (ensembles, cells)
     """
     x, half_width = check.positions("x", x), check.scale("half_width", half_width)
     cells = check.positive_integer("cells", cells)
@@ -166,7 +157,7 @@ def _count(x, half_width, cells_per_length, counts):
 
 
 def cell_masses(edges: Any, t: float, alpha: float) -> FloatArray:
-    """Return int G(x, t) dx over each cell, the probability p of a walker to be in it.
+    """Return int G(x, t) dx over each cell, the probability p of a walker to be in it, shape (cells,).
 
     Parameters
     ----------
@@ -176,10 +167,6 @@ def cell_masses(edges: Any, t: float, alpha: float) -> FloatArray:
         Time, t > 0.
     alpha : float
         Fractional order, 1 < alpha < 2.
-
-    Returns
-    -------
-    ndarray, shape (cells,)
     """
     edges = check.real_array("edges", edges)
     if edges.ndim != 1 or edges.size < 2 or not (edges[1:] > edges[:-1]).all():
@@ -214,14 +201,9 @@ def expected_deviation(masses: Any, walkers: int) -> FloatArray:
     Parameters
     ----------
     masses : array_like
-        p, within [0, 1], any shape.
+        p, within [0, 1], any shape, which the result has.
     walkers : int
         n, at most 1e9.
-
-    Returns
-    -------
-    ndarray
-        Same shape as the masses.
     """
     p, n = check.within("masses", masses, 0.0, 1.0), check.positive_integer("walkers", walkers)
     if n > _MOST_WALKERS:

@@ -24,9 +24,10 @@ from __future__ import annotations
 
 import math
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -106,17 +107,39 @@ def smooth_kernel(name: str, alpha: float, order: int = 2) -> ScatteredKernel:
     return ScatteredKernel(profile, _GAUSSIAN_BAND, reach)
 
 
-class ScatteredSum(Protocol):
+class ScatteredSum(ABC):
     """What every one of the sums offers.
 
     `accuracy` bounds the error of a field relative to its largest value; 0 if the error of every value is
     relative to its own terms.
+
+    Parameters
+    ----------
+    kernels : sequence of ScatteredKernel
+    epsilon : float
+        Smoothing length.
     """
 
-    accuracy: float
+    accuracy = 0.0
+
+    def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
+        self._kernels, self._epsilon = _kernels(kernels), check.scale("epsilon", epsilon)
 
     def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
-        """Return y, shape (kernels, M): the sums at the points z, or at the particles themselves."""
+        """Return y, shape (kernels, M), a new array: the sums at the points z, or at the particles themselves.
+
+        Raises `InvalidInput` if the arrays do not fit together, a position is not finite, or the set is too wide.
+        """
+        x, q, z = _checked(x, q, z)
+        out = np.zeros((len(self._kernels), x.size if z is None else z.size))
+        if x.size and out.size:
+            self._add_to(out, x, q, z)
+        return out
+
+    @abstractmethod
+    def _add_to(
+        self, out: np.ndarray, x: np.ndarray, q: np.ndarray, z: np.ndarray | None
+    ) -> None: ...
 
 
 def scattered_sum(
@@ -142,23 +165,17 @@ def scattered_sum(
     return NonuniformFourierSum(kernels, epsilon)
 
 
-class NonuniformFourierSum:
-    """The sums by non-uniform fast Fourier transforms. The accuracy is relative to the largest value of each.
+class NonuniformFourierSum(ScatteredSum):
+    """The sums by non-uniform fast Fourier transforms, for kernels of finite bandwidth.
 
-    The periodic box is made when it is needed, an eighth wider than the set, and made anew when particles leave it.
-
-    Parameters
-    ----------
-    kernels : sequence of ScatteredKernel
-        Each with a finite bandwidth.
-    epsilon : float
-        Smoothing length.
+    The accuracy is relative to the largest value of each. The periodic box is made when it is needed, an eighth wider
+    than the set, and made anew when particles leave it.
     """
 
     accuracy = 1e-11
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        self._kernels, self._epsilon = _kernels(kernels), check.scale("epsilon", epsilon)
+        super().__init__(kernels, epsilon)
         for k in self._kernels:
             if not math.isfinite(k.bandwidth):
                 allowed = "a finite number for a Fourier sum"
@@ -168,21 +185,12 @@ class NonuniformFourierSum:
         self._low, self._high = math.inf, -math.inf
         self._in_use = threading.Lock()  # box and plans belong to one call at a time
 
-    def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
-        """Return y, shape (kernels, M), as a new array.
-
-        Raises `InvalidInput` if the arrays do not fit together, a position is not finite, or the set is too wide.
-        """
-        x, q, z = _checked(x, q, z)
-        points = x if z is None else z
-        out = np.zeros((len(self._kernels), points.size))
-        if x.size and points.size:
-            with self._in_use:
-                self._transform(x, q, z, out)
-        return out
+    def _add_to(self, out, x, q, z):
+        with self._in_use:
+            self._transform(out, x, q, z)
 
     def _transform(
-        self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None, out: np.ndarray
+        self, out: np.ndarray, x: np.ndarray, q: np.ndarray, z: np.ndarray | None
     ) -> None:
         ends = [x.min(), x.max(), *(() if z is None else (z.min(), z.max()))]
         low, high = min(ends), max(ends)
@@ -230,23 +238,12 @@ class NonuniformFourierSum:
         self._backward = finufft.Plan(2, (size,), isign=1, **options)
 
 
-class _PairSum:
+class _PairSum(ScatteredSum):
     """The sum over the pairs that `_partners` gives, a block of rows at a time."""
 
-    accuracy = 0.0
-
-    def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        self._kernels, self._epsilon = _kernels(kernels), check.scale("epsilon", epsilon)
-
-    def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
-        """Return y, shape (kernels, M), as a new array.
-
-        Raises `InvalidInput` if the arrays do not fit together, or a position is not finite.
-        """
-        x, q, z = _checked(x, q, z)
+    def _add_to(self, out, x, q, z):
         z = x if z is None else z
         x, q, first, last = self._partners(x, q, z)
-        out = np.zeros((len(self._kernels), z.size))
         count = last - first
         ends = np.cumsum(count)
         row = 0
@@ -259,17 +256,17 @@ class _PairSum:
                 values = np.ascontiguousarray(k.profile(distance))
                 _add_up(values, q, first[row:stop], last[row:stop], y[row:stop])
             row = stop
-        return out / self._epsilon
+        out /= self._epsilon
 
+    @abstractmethod
     def _partners(
         self, x: np.ndarray, q: np.ndarray, z: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Return x and q in an order in which the partners of z_i are x[first_i:last_i], first and last."""
-        raise NotImplementedError
 
 
 class NaiveScatteredSum(_PairSum):
-    """The sums over all pairs, O(N M). Same parameters and results as `NonuniformFourierSum`."""
+    """The sums over all pairs, O(N M)."""
 
     def _partners(self, x, q, z):
         return x, q, np.zeros(z.size, dtype=np.int64), np.full(z.size, x.size)

@@ -6,16 +6,15 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.moments import nodes_and_weights
 from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["derivative", "lattice", "reconstruct", "regularised"]
-
-FloatArray = NDArray[np.float64]
 
 _MOST_PARTICLES = 2**26
 _FARTHEST = 2.0**31  # lattice points from the origin
@@ -44,7 +43,7 @@ def reconstruct(
     epsilon: float,
     kernel: Kernel,
 ) -> FloatArray:
-    """f_eps^h(x) = sum_p f(x_p) V_p eta_eps(x - x_p)  (9).
+    """f_eps^h(x) = sum_p f(x_p) V_p eta_eps(x - x_p)  (9), shape (M,).
 
     Raises `InvalidInput` if the arrays do not fit together or are not finite, or epsilon or the kernel does not do.
 
@@ -60,10 +59,6 @@ def reconstruct(
         Kernel radius, positive.
     kernel : Kernel
         eta, of one dimension.
-
-    Returns
-    -------
-    array, shape (M,)
     """
     weights = _matrix(x, particles, volumes, epsilon, kernel)
     values = check.vector("values", values, weights.shape[1], complex_too=True)
@@ -81,7 +76,7 @@ def derivative(
     kernel: Kernel,
     order: int,
 ) -> FloatArray:
-    """eps^-beta sum_p [f(x_p) - f(x)] V_p eta_eps(x - x_p), the sum of (18); (21) for beta = 2.
+    """eps^-beta sum_p [f(x_p) - f(x)] V_p eta_eps(x - x_p), shape (M,), the sum of (18); (21) for beta = 2.
 
     Errors as of `reconstruct`; also if the order is not a whole number from 1 to 24.
 
@@ -93,10 +88,6 @@ def derivative(
         beta, at most 24.
     particles, values, volumes, epsilon, kernel
         As in `reconstruct`.
-
-    Returns
-    -------
-    array, shape (M,)
     """
     divisor = _power(epsilon, check.whole_number("order", order, least=1, most=_HIGHEST))
     weights = _matrix(x, particles, volumes, epsilon, kernel)

@@ -65,11 +65,7 @@ def construct(derivative: int, accuracy: int, overlap: float | None = None) -> G
     overlap : float, optional
         Meet the conditions on the lattice with this eps / h, (28), instead of over the line: then the sum over
         that lattice has no quadrature error in them, however few particles a kernel holds. From 0.25 to 1000.
-
-    Returns
-    -------
-    GaussianKernel
-        With exact coefficients if `overlap` is None.
+        The coefficients are exact without it.
     """
     conditions = required_moments(derivative, accuracy)
     parity = derivative % 2

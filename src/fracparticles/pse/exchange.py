@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
 from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["StrengthExchange", "cell_volumes"]
-
-FloatArray = NDArray[np.float64]
 
 _MOST_PAIRS = 2**25  # of neighbours, each twice in the matrix
 
@@ -89,7 +88,7 @@ class StrengthExchange:
     def apply(self, u: FloatArray) -> FloatArray:
         """Return A Q, for an array of shape (N,).
 
-        Raises `InvalidInput` if it has another shape. So does `update`.
+        Raises `InvalidInput` if it has another shape; so does `combine`.
         """
         return np.asarray(self.matrix @ check.operand("u", u, (self.size,), complex_too=True))
 

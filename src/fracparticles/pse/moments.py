@@ -7,15 +7,14 @@ from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["absolute_moment", "gaussian_moment", "lattice_moment", "moment", "nodes_and_weights"]
-
-FloatArray = NDArray[np.float64]
 _BEYOND = 4.0
 _HIGHEST = 60  # z^60 exp(-z^2) is below 1e-16 of its maximum beyond the reach and `_BEYOND`
 _SCANNED = 4096  # points between which a kernel changes its sign once at most
@@ -95,13 +94,9 @@ def lattice_moment(
     k : int
         Order of the moment, at most 60.
     overlap : array_like
-        s = eps / h, positive; s = 1 is (28).
+        s = eps / h, positive; s = 1 is (28). The result has its shape.
     offset : float
         Distance of the point from the lattice, in h; whole numbers more or less change nothing.
-
-    Returns
-    -------
-    array, in the shape of `overlap`
     """
     kernel, k = kernel_of(1, kernel), check.whole_number("k", k, most=_HIGHEST)
     s = check.within("overlap", overlap, 0.0, inside=True)

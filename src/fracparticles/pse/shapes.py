@@ -14,9 +14,10 @@ from numbers import Rational
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 
 __all__ = [
@@ -29,8 +30,6 @@ __all__ = [
     "Tent",
     "kernel_of",
 ]
-
-FloatArray = NDArray[np.float64]
 
 _NOTHING = 1e3  # exp(-z^2) is 0 from 28 on; no power of z overflows up to here
 _WIDEST = 1e4  # reach of a kernel

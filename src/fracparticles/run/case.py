@@ -101,37 +101,38 @@ class Case(Parameters):
         Numbers are as short as they can be; the name of a file is percent-encoded; a name too long for a file system
         ends in a digest of the whole.
         """
-        if self.truncation is not None:
-            width = f"C{_digits(self.truncation)}"
-        else:
-            assert self.half_width is not None
-            width = f"D{_digits(self.half_width)}"
-        step = self.method if self.dt is None else f"{self.method}_dt{_digits(self.dt)}"
+        width = _said("C", self.truncation) or _said("D", self.half_width)
         parts = [
             f"{width}_h{_digits(self.spacing, 7)}",
-            *([] if self.overlap is None else [f"s{_digits(self.overlap)}"]),
-            step,
+            _said("s", self.overlap),
+            self.method,
+            _said("dt", self.dt),
             f"t{_digits(self.t_initial)}-{_digits(self.t_final)}",
-            *([] if self.diffusivity == 1.0 else [f"diffusivity{_digits(self.diffusivity)}"]),
-            *([] if self.initial == FUNDAMENTAL else [f"from-{_encoded(self.initial)}"]),
-            *([] if self.evaluation is None or self._series_by_default else [self.evaluation]),
-            *([] if self.summation == "fft" else [self.summation]),
-            *([] if self.kernel_family is None else [self.kernel_family]),
-            *([] if self.kernel_table is None else [f"table{_digits(self.kernel_table)}"]),
-            *([] if self.graded_scale is None else [f"graded{_digits(self.graded_scale)}"]),
-            *([] if self.graded_form is None else [self.graded_form]),
-            *([] if self.remeshing is None else [self.remeshing.replace("'", "-")]),
-            *([] if self.remesh_above is None else [f"above{_digits(self.remesh_above)}"]),
-            *([] if self.threshold is None else [f"threshold{_digits(self.threshold)}"]),
-            self.exterior + ("" if self.far_terms is None else str(self.far_terms)),
+            _said("diffusivity", self.diffusivity, default=1.0),
+            "" if self.initial == FUNDAMENTAL else f"from-{_encoded(self.initial)}",
+            None if self._series_by_default else self.evaluation,
+            "" if self.summation == "fft" else self.summation,
+            self.kernel_family,
+            _said("table", self.kernel_table),
+            _said("graded", self.graded_scale),
+            self.graded_form,
+            self.remeshing and self.remeshing.replace("'", "-"),
+            _said("above", self.remesh_above),
+            _said("threshold", self.threshold),
+            f"{self.exterior}{self.far_terms or ''}",
             self.store,
         ]
-        name = "_".join(parts)
+        name = "_".join(filter(None, parts))
         if len(name) > _LONGEST_NAME:  # no other part begins like the digest
             digest = sha256(name.encode()).hexdigest()
             name = f"{name[: _LONGEST_NAME - len(digest) - 8]}_sha256-{digest}"
         kind = f"{self.scheme}-{self.order}" + ("" if self.dim == 1 else f"-{self.dim}d")
         return f"{kind}/beta{_digits(self.beta)}/{name}.nc"
+
+
+def _said(word: str, number: float | None, default: float | None = None) -> str:
+    """The word and the number, empty for the default."""
+    return "" if number == default else f"{word}{_digits(number or 0.0)}"
 
 
 def _digits(number: float, digits: int = 6) -> str:

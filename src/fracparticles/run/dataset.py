@@ -247,8 +247,9 @@ def read_benchmark(path: str | Path) -> pd.DataFrame:
 
 
 def _parameters(case: Case) -> dict[str, object]:
+    """Each parameter as it was taken, the defaults resolved; those that the case has nothing of are left out."""
     spread = (case.diffusivity * case.t_final) ** (1.0 / case.alpha) * mean_radius(case.alpha)
-    return {
+    parameters = {
         "scheme": case.scheme,
         "order": np.int64(case.order),
         "beta": case.beta,
@@ -263,20 +264,17 @@ def _parameters(case: Case) -> dict[str, object]:
         "t_final": case.t_final,
         "integrator": case.method,
         "evaluation": "stepping" if case.steps_taken else case.evaluation or "series",
-        "summation": case.summation,
+        "summation": "matrix" if case.is_graded else case.summation,
         "exterior": case.exterior,
         "dim": np.int64(case.dim),
-        **({} if case.far_terms is None else {"far_terms": np.int64(case.far_terms)}),
-        **({} if case.kernel_family is None else {"kernel_family": case.kernel_family}),
-        **({} if case.kernel_table is None else {"kernel_table": case.kernel_table}),
+        "far_terms": case.far_terms and np.int64(case.far_terms),
+        "kernel_family": case.kernel_family,
+        "kernel_table": case.kernel_table,
+        "graded_scale": case.graded_scale,
+        "graded_form": (case.graded_form or INTERPOLATED) if case.is_graded else None,
         **(case.redistribution if case.kind.moving else {}),
-        **(_graded_parameters(case) if case.is_graded else {}),
     }
-
-
-def _graded_parameters(case: Case) -> dict[str, object]:
-    form = case.graded_form or INTERPOLATED
-    return {"graded_scale": case.graded_scale, "graded_form": form, "summation": "matrix"}
+    return {name: value for name, value in parameters.items() if value is not None}
 
 
 def _label(name: str) -> str:

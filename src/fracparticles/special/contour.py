@@ -38,13 +38,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fracparticles._compiled import njit
+from fracparticles.arguments import FloatArray
 
 __all__ = ["density_and_tail"]
-
-FloatArray = NDArray[np.float64]
 
 _PHASE = 1.5  # of piece 1 at its end, at most
 _LARGEST_TURN = 0.25 * math.pi  # phi alpha, at most

@@ -23,16 +23,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gamma
 
 from fracparticles._compiled import njit
+from fracparticles.arguments import FloatArray
 from fracparticles.special import chebyshev
 from fracparticles.special.contour import density_and_tail
 
 __all__ = ["RadialTable", "density", "mass", "radial_table", "tail_sine"]
-
-FloatArray = NDArray[np.float64]
 
 _WIDTH = 0.5  # of a piece; the series serves the first one
 _SERIES_TERMS = 28  # and 2 n more: r^(2k) k^((n-1)/2) has fallen to 1e-18 at r = 1/2

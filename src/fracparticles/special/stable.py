@@ -19,10 +19,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gamma, gammaln, xlogy
 
 from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 from fracparticles.special import radial
 from fracparticles.special.radial import radial_table, tail_sine
@@ -39,8 +39,6 @@ __all__ = [
     "reduced_green",
     "tail_mass",
 ]
-
-FloatArray = NDArray[np.float64]
 
 
 # --- partial sums of Appendix A -------------------------------------------------------------------

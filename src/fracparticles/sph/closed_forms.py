@@ -86,13 +86,15 @@ class Function(ABC):
 
 
 @dataclass(frozen=True)
-class Sine(Function):
-    """sin(beta x), beta > 0."""
-
+class _Wave(Function):
     beta: float
 
     def __post_init__(self) -> None:
         check.fields(self, beta=check.scale)
+
+
+class Sine(_Wave):
+    """sin(beta x), beta > 0."""
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         return np.sin(self.beta * x)
@@ -112,14 +114,8 @@ class Sine(Function):
         return [(sin(self.beta * b), Cosine(self.beta)), (-cos(self.beta * b), self)]
 
 
-@dataclass(frozen=True)
-class Cosine(Function):
+class Cosine(_Wave):
     """cos(beta x), beta > 0."""
-
-    beta: float
-
-    def __post_init__(self) -> None:
-        check.fields(self, beta=check.scale)
 
     def _value(self, x: np.ndarray) -> np.ndarray:
         return np.cos(self.beta * x)

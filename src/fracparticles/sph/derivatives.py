@@ -39,6 +39,8 @@ def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
 def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = True) -> np.ndarray:
     """<grad f> (16) at the points z, with the kernel gradient of (18) or, uncorrected, that of (22).
 
+    The result has the shape (M,) and is complex if f is.
+
     Raises `InvalidInput` if the arrays do not fit together or are not finite, the particles are not in rising order,
     a volume or h is not positive, or, corrected, no particle lies within 2 h of a point.
 
@@ -54,10 +56,6 @@ def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = T
         Smoothing length.
     corrected : bool
         Whether to divide by L_i.
-
-    Returns
-    -------
-    ndarray, shape (M,), complex if f is, else real
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
     f = check.vector("f", f, x.size, complex_too=True)

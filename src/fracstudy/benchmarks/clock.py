@@ -112,7 +112,8 @@ def forget_tables() -> None:
     for name, module in list(sys.modules.items()):
         if name.startswith("fracparticles."):
             for kept in vars(module).values():
-                if isinstance(kept, _lru_cache_wrapper):
+                # What has no largest size is no table: the list of schemes.
+                if isinstance(kept, _lru_cache_wrapper) and kept.cache_parameters()["maxsize"]:
                     kept.cache_clear()
 
 
@@ -139,12 +140,13 @@ def in_fresh_process(function: Callable[..., Any], *arguments: Any) -> Any:
     """Return function(*arguments) from a process of its own, whose peak memory is its own; all of it plain data."""
     program = (
         "import json, sys\n"
+        "sys.path[:], arguments = json.loads(sys.argv[1])\n"
         f"from {function.__module__} import {function.__name__} as function\n"
-        "print(json.dumps(function(*json.loads(sys.argv[1]))))\n"
+        "print(json.dumps(function(*arguments)))\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program, json.dumps(arguments)], stdout=subprocess.PIPE, check=True
-    )
+    given = json.dumps([sys.path, arguments])  # the path: the packages of scenes are found there
+    command = [sys.executable, "-c", program, given]
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
     return json.loads(done.stdout)
 
 

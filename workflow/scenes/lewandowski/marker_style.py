@@ -43,7 +43,7 @@ LOADING_LOOKS = {
     "random": ("random in [−1, 1]", "#D55E00", "s"),
     "wide": ("uniform in [−L, L]", "#E69F00", "^"),
 }
-EXACT = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
+EXACT: dict[str, Any] = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
 
 
 def symbol(shape: str) -> str:
@@ -77,8 +77,8 @@ def decimals(ax: Axes, *values: float) -> None:
 
 def strokes(ax: Axes, x: pd.Series, colour: str) -> None:
     """Draw the markers as strokes below the axis."""
-    style = {"markersize": 6, "markeredgewidth": 0.6, "alpha": 0.8}
-    ax.plot(x, np.full(len(x), -0.025), "|", color=colour, **style)
+    level = np.full(len(x), -0.025)
+    ax.plot(x, level, "|", color=colour, markersize=6, markeredgewidth=0.6, alpha=0.8)
 
 
 def shape_panels(

@@ -28,7 +28,17 @@ from fracparticles.markers import (
 from fracparticles.markers.clusters import emptiness
 from fracparticles.moving.lagrangian import FieldNotPositive
 
-__all__ = ["CLOSE", "LOADINGS", "SHAPES", "SQUARE", "SquareRuns", "Starts", "Trace", "delay", "load"]
+__all__ = [
+    "CLOSE",
+    "LOADINGS",
+    "SHAPES",
+    "SQUARE",
+    "SquareRuns",
+    "Starts",
+    "Trace",
+    "delay",
+    "load",
+]
 
 SQUARE = Square()
 LOADINGS = {
@@ -38,7 +48,10 @@ LOADINGS = {
 }
 SHAPES = ("S4", "S7", "S8")  # of Figs. 8-16
 CLOSE = 0.05  # "good": an error of at most 5 % of the norm of f
-_GAP, _WITHIN = 0.2, 3.0  # in units of eps: where gaps between the markers are looked for, and how wide
+_GAP, _WITHIN = (
+    0.2,
+    3.0,
+)  # in units of eps: where gaps between the markers are looked for, and how wide
 _CLUSTERED = 0.1  # of |x| < within empty: independent markers give a hundredth, clusters nearly all
 
 
@@ -111,7 +124,11 @@ class SquareRuns(BaseModel):
     @cached_property
     def exact(self) -> np.ndarray:
         """f on the fixed grid at the end."""
-        return SQUARE.value(self.z, self.t_final)
+        return self.f(self.z)
+
+    def f(self, x: np.ndarray) -> np.ndarray:
+        """Return the exact solution at the end."""
+        return SQUARE.value(x, self.t_final)
 
     def having(self, **changes: Any) -> SquareRuns:
         """Return other runs, with some values changed."""

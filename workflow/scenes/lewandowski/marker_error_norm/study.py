@@ -73,8 +73,8 @@ def _growth(claim: str, shape: str, starts: Starts) -> Finding:
     return statement(
         claim,
         grows[at_random].mean() > 0.5,
-        f"{grows.sum()} of {at_random.sum()} random starts turn, at t = {median['least E at t']:.2f} (median), and then "
-        f"grow with a correlation with t of {median['linearity']:.3f}. {ratios}.",
+        f"{grows.sum()} of {at_random.sum()} random starts turn, at t = {median['least E at t']:.2f} (median), and "
+        f"then grow with a correlation with t of {median['linearity']:.3f}. {ratios}.",
         "By then E grows for few of the random starts.",
     )
 

@@ -6,16 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from scenes.lewandowski.marker_style import (
-    EXACT,
-    LOADING_LOOKS,
-    SHAPE_COLOURS,
-    draw,
-    entry,
-    shape_panels,
-    strokes,
-    symbol,
-)
+from scenes.lewandowski import marker_style as look
 
 __all__ = ["figure"]
 
@@ -23,15 +14,17 @@ __all__ = ["figure"]
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw F: a column for each shape function, a row for each start, markers below."""
     shapes = list(series.loc[series["panel"] == "markers", "series"].unique())
-    figure, panels, _ = shape_panels(shapes, tuple(LOADING_LOOKS), first=8)
+    figure, panels, _ = look.shape_panels(shapes, tuple(look.LOADING_LOOKS), first=8)
     for ax, shape, loading in panels:
-        here, colour = pick(series, series=shape, loading=loading), SHAPE_COLOURS[shape]
-        draw(ax, pick(series, panel="field", series="exact"), **EXACT)
-        draw(ax, pick(here, panel="field"), color=colour, linewidth=1.5)
-        strokes(ax, pick(here, panel="markers")["x"], colour)
+        here, colour = pick(series, series=shape, loading=loading), look.SHAPE_COLOURS[shape]
+        look.draw(ax, pick(series, panel="field", series="exact"), **look.EXACT)
+        look.draw(ax, pick(here, panel="field"), color=colour, linewidth=1.5)
+        look.strokes(ax, pick(here, panel="markers")["x"], colour)
         ax.set(xlim=(-9.0, 9.0), ylim=(-0.045, 0.36))
-    entries = [entry(f"$F$ with {symbol(s)}", color=SHAPE_COLOURS[s]) for s in shapes]
-    ticks = entry("markers", color="0.4", marker="|", linestyle="")
-    legend = [entry(**EXACT), *entries, ticks]
+    entries = [
+        look.entry(f"$F$ with {look.symbol(s)}", color=look.SHAPE_COLOURS[s]) for s in shapes
+    ]
+    ticks = look.entry("markers", color="0.4", marker="|", linestyle="")
+    legend = [look.entry(**look.EXACT), *entries, ticks]
     figure.legend(handles=legend, loc="outside lower center", ncols=5)
     return figure

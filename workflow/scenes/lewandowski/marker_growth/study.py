@@ -63,7 +63,12 @@ def _rates(name: str, modes: list[int], **lattice: float) -> list[Mapping[str, A
     spacing = lattice["period"] / round(lattice["period"] / lattice["spacing"])
     for mode in modes:
         k, measured = measured_rate(shape, mode, **lattice)
-        row = {"S": name, "k = ε q": k, "-k² S^(k)": float(rate(shape, k)), "of the lattice": np.nan}
+        row = {
+            "S": name,
+            "k = ε q": k,
+            "-k² S^(k)": float(rate(shape, k)),
+            "of the lattice": np.nan,
+        }
         if shape.smoothness is None or shape.smoothness >= 2:
             row["of the lattice"] = float(lattice_rate(shape, k, spacing))
         rows.append({**row, "measured": measured})

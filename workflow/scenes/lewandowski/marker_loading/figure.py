@@ -54,7 +54,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, support: float, shown: 
         ax.set_title(title, loc="left", color=colour)
         if column == 0:
             ax.set_ylabel("relative $L^2$ error")
-    entries = [part.get_legend_handles_labels() for part in (first, ax)]
-    handles, labels = (sum(part, []) for part in zip(*entries, strict=True))
-    figure.legend(handles, labels, loc="outside lower center", ncols=7)
+    handles, labels = first.get_legend_handles_labels()
+    more, names = ax.get_legend_handles_labels()
+    figure.legend([*handles, *more], [*labels, *names], loc="outside lower center", ncols=7)
     return figure

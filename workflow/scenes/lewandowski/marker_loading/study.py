@@ -39,7 +39,7 @@ def study(
     *,
     support: float,
     markers: int,
-    ends: tuple[float, float, int],
+    ends: list[float],
     tabled: list[float],
     shown: float,
 ) -> Result:
@@ -49,7 +49,8 @@ def study(
     approximation is better if its error is smaller, much better if it is at most half; a statement on a figure holds if
     one x_0, the same for all figures, makes it true of both curves.
     """
-    scanned = sorted({*np.round(np.linspace(*ends), 6), *tabled})
+    first, last, number = ends
+    scanned = sorted({*np.round(np.linspace(first, last, int(number)), 6), *tabled})
     errors = pd.DataFrame({end: _errors(end, support, markers) for end in scanned}).T
     errors.index.name = "x_0"
     ramp, panels = Ramp(shown), Panels()

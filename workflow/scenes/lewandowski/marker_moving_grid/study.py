@@ -9,15 +9,7 @@ from fracparticles.markers.clusters import cluster_centres, marker_spectrum
 from fracparticles.markers.stability import extremes
 from fracstudy.inputs import Inputs, Result, statement
 from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import (
-    CLOSE,
-    LOADINGS,
-    SHAPES,
-    SQUARE,
-    SquareRuns,
-    Starts,
-    Trace,
-)
+from scenes.lewandowski.square_profile import CLOSE, LOADINGS, SHAPES, SquareRuns, Starts, Trace
 
 __all__ = ["study"]
 
@@ -25,9 +17,7 @@ _K = np.linspace(3.0, 12.0, 181)  # eps q of the spectra
 _CLUSTER = ("S4", "S7")
 
 
-def study(
-    inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int, compared: list[str]
-) -> Result:
+def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int, compared: list[str]) -> Result:
     """Find the clusters of the markers, and how well f itself is represented on them.
 
     The exact solution "by the representation (6)" is sum_k f(x_k) D_k S_eps(x - x_k), with D_k half the distance
@@ -104,8 +94,7 @@ def study(
 def _represented(trace: Trace, square: SquareRuns, z: np.ndarray) -> np.ndarray:
     """f at the markers of the end, each with its cell, as they represent it at z."""
     x = np.sort(trace.end.x)
-    f = SQUARE.value(x, square.t_final)
-    return trace.end.velocity.fields(x, f * np.gradient(x), z)[0]
+    return trace.end.velocity.fields(x, square.f(x) * np.gradient(x), z)[0]
 
 
 def _mean_spectrum(starts: Starts, shape: str, epsilon: float) -> np.ndarray:
@@ -130,14 +119,14 @@ def _step_change(square: SquareRuns, starts: Starts, shape: str) -> float:
 
 
 def _panels(square: SquareRuns, starts: Starts) -> Panels:
-    """Panels "field", "exact" and "representation" at the sorted markers, and "centres" of the clusters, y in units of eps."""
+    """Panels "field", "exact" and "representation" at the sorted markers; "centres" of clusters, y in units of eps."""
     panels = Panels()
     for trace in starts.first:
         if trace.shape in SHAPES:
             x = np.sort(trace.end.x)
             shown = {
                 "field": trace.end.field(x),
-                "exact": SQUARE.value(x, square.t_final),
+                "exact": square.f(x),
                 "representation": _represented(trace, square, x),
             }
             for panel, y in shown.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,61 +18,66 @@ from fracparticles.markers.stability import extremes
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.panels import Panels
 
-__all__ = ["Setting", "evolve", "study"]
+__all__ = ["Evolution", "Markers", "study"]
 
 _EXCELLENT = 0.01  # of the peak: cannot be seen in a figure
 _MARGIN = 1.5  # of the stability interval, for what the linear limit leaves out
-_CLOSE = (
-    0.02  # a scanned step is stable if F is that close to f_inf, the runs that are not are far off
-)
-_MIDPOINT = "midpoint"
+# A scanned step is stable if F is that close to f_inf, the runs that are not are far off.
+_CLOSE = 0.02
+_CORE, _FLANK = 1.2, 1.7  # |x|: within, F is compared with f_inf; beyond, f reaches zero
 
 
-@dataclass(frozen=True)
-class Setting:
-    """The parameters of the scene, and what follows from them."""
+class Markers:
+    """The markers at equal distances h with epsilon = h^(1/2), and what is measured of them.
 
-    parameters: Mapping[str, Any]
-    problem: NonlinearDiffusion
-    x: np.ndarray
-    weights: np.ndarray
-    velocity: FourierMarkerVelocity
-    limit: float
+    Attributes
+    ----------
+    problem : NonlinearDiffusion
+    x, weights : array
+        At the start.
+    limit : float
+        The limit eta eps^2 e / D_0 of the time step of the linear equation.
+    """
 
-    @classmethod
-    def of(cls, parameters: Mapping[str, Any]) -> Setting:
-        """Load the markers at equal distances h, with epsilon = h^(1/2)."""
-        problem = NonlinearDiffusion(**parameters["problem"])
-        half, count = float(parameters["half_width"]), int(parameters["markers"])
-        x, weights = uniform(Gaussian().value, (-half, half), count)
-        epsilon = math.sqrt(2.0 * half / count)
-        limit = problem.step_limit(epsilon, extremes(SHAPES["S8"]).eta)
-        velocity = FourierMarkerVelocity(epsilon, problem.flux)
-        return cls(parameters, problem, x, weights, velocity, limit)
+    def __init__(self, problem: NonlinearDiffusion, half_width: float, markers: int) -> None:
+        self.problem = problem
+        self.x, self.weights = uniform(Gaussian().value, (-half_width, half_width), markers)
+        self.epsilon = math.sqrt(2.0 * half_width / markers)
+        self.limit = problem.step_limit(self.epsilon, extremes(SHAPES["S8"]).eta)
+        self._velocity = self.velocity()
+        self.peak = float(problem.steady(self.x).max())
+
+    def velocity(self) -> FourierMarkerVelocity:
+        """Return a new velocity: the box of its transforms, and so the round-off, depends on what it did before."""
+        return FourierMarkerVelocity(self.epsilon, self.problem.flux)
+
+    def field(self, x: np.ndarray) -> np.ndarray:
+        """Return F at the markers when they are at x."""
+        return self._velocity.fields(x, self.weights)[0]
 
     def deviation(self, x: np.ndarray, everywhere: bool = False) -> float:
         """Return max |F - f_inf| at the markers, those in the core or all."""
-        gap = np.abs(self.velocity.fields(x, self.weights)[0] - self.problem.steady(x))
-        core = np.abs(x) < float(self.parameters["core"])
-        return float(gap.max() if everywhere else gap[core].max(initial=0.0))
+        gap = np.abs(self.field(x) - self.problem.steady(x))
+        return float(gap.max() if everywhere else gap[np.abs(x) < _CORE].max(initial=0.0))
 
     def excess(self, x: np.ndarray) -> float:
-        """Return what the markers have beyond |x| = `flank`, less what f_inf has there."""
-        c, p = float(self.parameters["flank"]), self.problem
-        root = math.sqrt(p.alpha)
-        steady = math.sqrt(math.pi) / root * sum(math.erfc(root * (c + s * p.x0)) for s in (1, -1))
-        return float(self.weights[np.abs(x) > c].sum() - steady)
+        """Return what the markers have in the flanks, less what f_inf has there."""
+        there = self.weights[np.abs(x) > _FLANK].sum()
+        return float(there - self.problem.steady_beyond(_FLANK))
 
 
 @dataclass
 class Evolution:
-    """A run: its markers at some times, and why it stopped if it did."""
+    """A run: its markers at some times, and why it stopped if it did.
 
-    label: str
-    integrator: str
+    It is by the midpoint rule, or by RKC2 if `stages` are given.
+    """
+
+    markers: Markers
     dt: float
-    stages: int
+    stages: int | None = None
     times: list[float] = field(default_factory=list)
     positions: list[np.ndarray] = field(default_factory=list)
     last: float = 0.0
@@ -88,219 +93,226 @@ class Evolution:
         """The markers at the time kept nearest to t."""
         return self.positions[int(np.argmin(np.abs(np.array(self.times) - t)))]
 
+    def to(self, until: float, keep: Iterable[float] = ()) -> Evolution:
+        """Run, and keep the markers at these times, at the end, and where the run stops."""
+        wanted = np.sort([t for t in {*keep, until} if t <= until * (1.0 + 1e-9)])
+        x, weights, velocity = self.markers.x, self.markers.weights, self.markers.velocity()
+        order, latest = np.argsort(x), x
 
-def evolve(
-    setting: Setting,
-    label: str,
-    dt: float,
-    until: float,
-    keep: Sequence[float],
-    stages: int | None = None,
-) -> Evolution:
-    """Run the markers by the midpoint rule, or by RKC2 if `stages` are given, and keep them at times."""
-    integrator = _MIDPOINT if stages is None else "RKC2"
-    found = Evolution(label, integrator, dt, stages or 2)
-    wanted = np.sort([t for t in {*keep, until} if t <= until * (1.0 + 1e-9)])
+        def keep_now() -> None:
+            self.times.append(self.last)
+            self.positions.append(latest)
 
-    # A velocity of its own: the box of its transforms, and so the round-off, depends on what it did before.
-    velocity = FourierMarkerVelocity(setting.velocity.epsilon, setting.problem.flux)
-    order, latest = np.argsort(setting.x), setting.x
+        def observe(t: float, x: np.ndarray, _: Any = None) -> None:
+            nonlocal latest
+            self.overtaking += int((np.diff(x[order]) < 0.0).any())
+            order[:] = np.argsort(x)
+            self.last, latest = t, x  # both integrators make a new array in every step
+            if np.abs(wanted - t).min() < 0.5 * self.dt:
+                keep_now()
 
-    def keep_now() -> None:
-        found.times.append(found.last)
-        found.positions.append(latest)
-
-    def observe(t: float, x: np.ndarray, _: Any = None) -> None:
-        nonlocal latest
-        found.overtaking += int((np.diff(x[order]) < 0.0).any())
-        order[:] = np.argsort(x)
-        found.last, latest = t, x  # both integrators make a new array in every step
-        if np.abs(wanted - t).min() < 0.5 * dt:
+        how: dict[str, Any] = {"dt": self.dt, "steps": round(until / self.dt), "observe": observe}
+        try:
+            if self.stages is None:
+                run(x, weights, velocity, **how)
+            else:
+                ChebyshevStep(self.stages).advance(lambda x: velocity(x, weights), x, **how)
+        except NonFiniteSolution as error:
+            self.stopped = str(error)
             keep_now()
+        return self
 
-    steps = round(until / dt)
-    try:
-        if stages is None:
-            run(setting.x, setting.weights, velocity, dt=dt, steps=steps, observe=observe)
-        else:
-            ChebyshevStep(stages).advance(
-                lambda x: velocity(x, setting.weights), setting.x, dt=dt, steps=steps,
-                observe=observe,
-            )  # fmt: skip
-    except NonFiniteSolution as error:
-        found.stopped = str(error)
-        keep_now()
-    return found
+    def row(self, label: str, t: float) -> dict[str, Any]:
+        """Return a row of the table."""
+        x, stages = self.at(t), self.stages
+        return {
+            "run": label,
+            "integrator": f"RKC2, {stages} stages" if stages else "midpoint",
+            "dt": self.dt,
+            "t": t,
+            "max |F - f_inf|, core": self.markers.deviation(x),
+            "max |F - f_inf|, all markers": self.markers.deviation(x, everywhere=True),
+            "excess in the flanks": self.markers.excess(x),
+            "outermost marker": float(np.abs(x).max()),
+            "steps with overtaking": self.overtaking,
+            "evaluations": round(t / self.dt) * (stages or 2),
+            "stopped": self.stopped.split(":")[0],
+        }
 
 
-def study(inputs: Inputs) -> Result:
+class _Reference:
+    """The solution without markers, until it vanishes somewhere; with half as many cells, too."""
+
+    def __init__(
+        self,
+        problem: NonlinearDiffusion,
+        until: float,
+        half_width: float,
+        cells: int,
+        within: float,
+    ) -> None:
+        self._lines, coarse = (Lines(problem, half_width, n, within) for n in (cells, cells // 2))
+        self.x, self._start = self._lines.x, Gaussian().value(self._lines.x)
+        self.lost, self.place = self._lines.positivity_lost(self._start, until)
+        self.lost_coarse, _ = coarse.positivity_lost(Gaussian().value(coarse.x), until)
+
+    def solve(self, times: list[float]) -> np.ndarray:
+        """Return f at the times."""
+        return self._lines.solve(self._start, times)
+
+
+def study(
+    inputs: Inputs,
+    *,
+    problem: dict[str, float],
+    half_width: float,
+    markers: int,
+    dt: float,
+    t_final: float,
+    small_dt: float,
+    small_until: float,
+    scan_dt: list[float],
+    scan_until: float,
+    times: list[float],
+    compared_at: float,
+    reference_times: list[float],
+    lines: dict[str, Any],
+) -> Result:
     """Markers beside the steady state (24), the limit of the time step, and the equation's own solution.
 
-    The reference is `markers.nonlinear.Lines`, without markers. The linear limit of the step is eta eps^2 e / D_0.
+    The runs are the printed one, one with a smaller step, one with a stable integrator, and a scan of the step. The
+    reference is `markers.nonlinear.Lines`, without markers. The linear limit of the step is eta eps^2 e / D_0.
     """
-    p = inputs.parameters
-    setting = Setting.of(p)
-    dt, until = float(p["dt"]), float(p["t_final"])
+    setting = Markers(NonlinearDiffusion(**problem), half_width, markers)
     stages = stages_for(_MARGIN * 2.0 * dt / setting.limit)
-    keep = [0.0, *map(float, p["times"]), float(p["compared_at"])]
-    printed = evolve(setting, "as printed", dt, until, keep)
-    small = evolve(setting, "smaller step", float(p["small_dt"]), float(p["small_until"]), keep)
-    stable = evolve(setting, "stable integrator", dt, until, keep, stages)
-    scans = [
-        evolve(setting, "scan of the step", float(s), float(p["scan_until"]), [])
-        for s in p["scan_dt"]
-    ]
-    reference = _Reference.of(setting)
+    keep = [0.0, *times, compared_at]
+    printed = Evolution(setting, dt).to(t_final, keep)
+    small = Evolution(setting, small_dt).to(small_until, keep)
+    stable = Evolution(setting, dt, stages).to(t_final, keep)
+    scans = [Evolution(setting, s).to(scan_until) for s in scan_dt]
+    reference = _Reference(setting.problem, t_final, **lines)
+    runs = {"as printed": printed, "smaller step": small, "stable integrator": stable}
     rows = [
-        _row(setting, e, t)
-        for e in (printed, small, stable)
-        for t in sorted({*map(float, p["times"]), e.times[-1]})
-        if t <= e.last * (1.0 + 1e-9)
-    ] + [_row(setting, e, e.last) for e in scans]
-    findings = [
-        *_set_up(setting),
-        *_time_stepping(setting, printed, small, stable, scans),
-        _long_time(setting, stable, reference),
+        found.row(label, t)
+        for label, found in runs.items()
+        for t in sorted({*times, found.times[-1]})
+        if t <= found.last * (1.0 + 1e-9)
     ]
-    series = _series(setting, printed, stable, scans, reference)
-    return Result(pd.DataFrame(rows), findings, series)
+    rows += [scan.row("scan of the step", scan.last) for scan in scans]
+    findings = [
+        *_set_up(setting, half_width),
+        *_time_stepping(setting, printed, small, stable, scans, t_final),
+        _long_time(setting, stable, reference, t_final, compared_at),
+    ]
+    panels = _panels(setting, printed, stable)
+    for scan in scans:
+        far = setting.deviation(scan.end) / setting.peak
+        panels.add("step", "midpoint", scan.dt, far, stopped=bool(scan.stopped))
+    far = setting.deviation(stable.at(scan_until)) / setting.peak
+    panels.add("step", "RKC2", dt, far, stopped=False)
+    panels.add("step", "limit", setting.limit, 0.0)
+    for t, f in zip(reference_times, reference.solve(reference_times), strict=True):
+        panels.add("lost", "lines", reference.x, f, t=t)
+        if min(abs(t - s) for s in stable.times) < 0.5 * dt:
+            panels.add("lost", "markers", stable.at(t), setting.field(stable.at(t)), t=t)
+    panels.add("lost", "zero", reference.place, 0.0, t=reference.lost)
+    return Result(pd.DataFrame(rows), inputs.judged(findings), panels.frame)
 
 
-@dataclass(frozen=True)
-class _Reference:
-    """The solution without markers, until it vanishes somewhere."""
-
-    lines: Lines
-    lost: float
-    place: float
-    lost_coarse: float
-    times: list[float]
-    profiles: np.ndarray
-
-    @classmethod
-    def of(cls, setting: Setting) -> _Reference:
-        q = setting.parameters["lines"]
-        cells, half = int(q["cells"]), float(q["half_width"])
-        lines, coarse = (
-            Lines(setting.problem, half, n, float(q["within"])) for n in (cells, cells // 2)
-        )
-        until = float(setting.parameters["t_final"])
-        lost, place = lines.positivity_lost(Gaussian().value(lines.x), until)
-        lost_coarse, _ = coarse.positivity_lost(Gaussian().value(coarse.x), until)
-        times = [*map(float, setting.parameters["reference_times"])]
-        profiles = lines.solve(Gaussian().value(lines.x), times)
-        return cls(lines, lost, place, lost_coarse, times, profiles)
+def _panels(setting: Markers, printed: Evolution, stable: Evolution) -> Panels:
+    """Panels "profile" and "approach", and the steady state of "lost"."""
+    panels, z = Panels(), np.linspace(-3.0, 3.0, 601)
+    for panel in ("profile", "lost"):
+        panels.add(panel, "steady", z, setting.problem.steady(z))
+    panels.add("profile", "initial", setting.x, setting.field(setting.x), t=0.0)
+    for label, found in (("printed", printed), ("stable", stable)):
+        panels.add("profile", label, found.end, setting.field(found.end), t=found.times[-1])
+    for t, x in zip(stable.times[1:], stable.positions[1:], strict=True):
+        panels.add("approach", "core", t, setting.deviation(x))
+        panels.add("approach", "excess", t, setting.excess(x))
+    return panels
 
 
-def _row(setting: Setting, e: Evolution, t: float) -> dict[str, Any]:
-    x = e.at(t)
-    evaluations = round(t / e.dt) * e.stages
-    return {
-        "run": e.label,
-        "integrator": e.integrator if e.integrator == _MIDPOINT else f"RKC2, {e.stages} stages",
-        "dt": e.dt,
-        "t": t,
-        "max |F - f_inf|, core": setting.deviation(x),
-        "max |F - f_inf|, all markers": setting.deviation(x, everywhere=True),
-        "excess in the flanks": setting.excess(x),
-        "outermost marker": float(np.abs(x).max()),
-        "steps with overtaking": e.overtaking,
-        "evaluations": evaluations,
-        "stopped": e.stopped.split(":")[0],
-    }
-
-
-def _set_up(setting: Setting) -> list[Finding]:
-    p, half = setting.problem, float(setting.parameters["half_width"])
-    z = np.linspace(-half, half, 2001)
+def _set_up(setting: Markers, half_width: float) -> Iterator[Finding]:
+    p, z = setting.problem, np.linspace(-half_width, half_width, 2001)
     nodes, gauss = np.polynomial.legendre.leggauss(8)
     middle, width = 0.5 * (z[:-1] + z[1:]), 0.5 * (z[1] - z[0])
     integral = width * p.source(middle[:, None] + width * nodes) @ gauss
-    closed = np.diff(p.cumulative_source(z))
-    scale = float(np.abs(p.cumulative_source(z)).max())
-    gap = float(np.abs(np.cumsum(integral - closed)).max()) / scale
-    f0, loaded = Gaussian().value(setting.x), setting.velocity.fields(setting.x, setting.weights)[0]
-    misfit = float(np.abs(loaded - f0).max())
+    closed = p.cumulative_source(z)
+    gap = float(np.abs(np.cumsum(integral - np.diff(closed))).max()) / float(np.abs(closed).max())
+    misfit = float(np.abs(setting.field(setting.x) - Gaussian().value(setting.x)).max())
     said = f"int Q dx (by quadrature) and -D(f_inf) f_inf' differ by {gap:.1e} of their maximum"
-    return [
-        statement(
-            "M-F17.steady",
-            gap < 1e-9,
-            f"{said}: the flux D f_x + S^ vanishes where f = f_inf.",
-            "The source does not balance the diffusion of (24).",
-        ),
-        statement(
-            "M-F17.integral",
-            gap > 1e-9,
-            f"{said}: (23) has a closed form, and takes no table.",
-            "(21) is the derivative of -D(f_inf) f_inf': the integral (23) is known wherever f_inf is.",
-        ),
-        statement(
-            "M-F17.initial",
-            misfit < _EXCELLENT,
-            f"{setting.x.size} markers at equal distances with eps = h^(1/2) = "
-            f"{setting.velocity.epsilon:.4f}: F differs from exp(-x^2) by {misfit:.1e} at most at the markers.",
-            "The markers do not represent the initial profile.",
-        ),
-    ]
+    yield statement(
+        "M-F17.steady",
+        gap < 1e-9,
+        f"{said}: the flux D f_x + S^ vanishes where f = f_inf.",
+        "The source does not balance the diffusion of (24).",
+    )
+    yield statement(
+        "M-F17.integral",
+        gap > 1e-9,
+        f"{said}: (23) has a closed form, and takes no table.",
+        "(21) is the derivative of -D(f_inf) f_inf': the integral (23) is known wherever f_inf is.",
+    )
+    yield statement(
+        "M-F17.initial",
+        misfit < _EXCELLENT,
+        f"{setting.x.size} markers at equal distances with eps = h^(1/2) = {setting.epsilon:.4f}: F differs from "
+        f"exp(-x^2) by {misfit:.1e} at most at the markers.",
+        "The markers do not represent the initial profile.",
+    )
 
 
 def _time_stepping(
-    setting: Setting,
+    setting: Markers,
     printed: Evolution,
     small: Evolution,
     stable: Evolution,
     scans: Sequence[Evolution],
-) -> list[Finding]:
-    peak = float(setting.problem.steady(setting.x).max())
+    t_final: float,
+) -> Iterator[Finding]:
+    peak = setting.peak
     far = setting.deviation(printed.end) / peak
     good = [e.dt for e in scans if not e.stopped and setting.deviation(e.end) < _CLOSE * peak]
-    below, above = (
-        max(good, default=0.0),
-        min((e.dt for e in scans if e.dt not in good), default=math.inf),
-    )
-    ended = f"stops after t = {printed.last:.2g}, when F is no longer positive at a marker" if printed.stopped else (
-        f"is off f_inf by {100 * far:.0f} % of the peak at t = {printed.times[-1]:g}"
-    )  # fmt: skip
+    below = max(good, default=0.0)
+    above = min((e.dt for e in scans if e.dt not in good), default=math.inf)
+    ended = f"is off f_inf by {100 * far:.0f} % of the peak at t = {printed.times[-1]:g}"
+    if printed.stopped:
+        ended = f"stops after t = {printed.last:.2g}, when F is no longer positive at a marker"
     worst = setting.deviation(stable.end, everywhere=True) / peak
-    reached = bool(
-        not stable.stopped and stable.last >= 0.999 * float(setting.parameters["t_final"])
-    )
+    core = setting.deviation(stable.end) / peak
     same = max(
         abs(setting.deviation(small.at(t)) - setting.deviation(stable.at(t)))
         for t in set(np.round(small.times, 9)) & set(np.round(stable.times, 9))
     )
-    return [
-        statement(
-            "M-F18.time_step",
-            not printed.stopped and far < _EXCELLENT,
-            f"The midpoint rule with dt = {printed.dt:g} {ended}, after {printed.overtaking} steps in which markers "
-            f"overtook one another. It works up to dt = {below:g}, not from {above:g} on.",
-            f"dt is above the explicit limit eta eps^2 / max D = eta eps^2 e / D_0 = {setting.limit:.3g}, the one of "
-            f"Sec. 2.3 at the largest D; the scan finds it between {below:g} and {above:g}.",
-        ),
-        statement(
-            "M-F18.agreement",
-            reached and worst < _EXCELLENT,
-            f"With RKC2 of {stable.stages} stages at dt = {stable.dt:g}, F at the markers is within "
-            f"{100 * worst:.2g} % of the peak of f_inf at t = {stable.last:g}, in the core within "
-            f"{100 * setting.deviation(stable.end) / peak:.2g} %; the midpoint rule at dt = {small.dt:g} agrees with "
-            f"it to {same:.1e} up to t = {small.last:g}.",
-            f"F is off f_inf by {100 * worst:.2g} % of the peak.",
-        ),
-    ]
+    yield statement(
+        "M-F18.time_step",
+        not printed.stopped and far < _EXCELLENT,
+        f"The midpoint rule with dt = {printed.dt:g} {ended}, after {printed.overtaking} steps in which markers "
+        f"overtook one another. It works up to dt = {below:g}, not from {above:g} on.",
+        f"dt is above the explicit limit eta eps^2 / max D = eta eps^2 e / D_0 = {setting.limit:.3g}, the one of "
+        f"Sec. 2.3 at the largest D; the scan finds it between {below:g} and {above:g}.",
+    )
+    yield statement(
+        "M-F18.agreement",
+        not stable.stopped and stable.last >= 0.999 * t_final and worst < _EXCELLENT,
+        f"With RKC2 of {stable.stages} stages at dt = {stable.dt:g}, F at the markers is within "
+        f"{100 * worst:.2g} % of the peak of f_inf at t = {stable.last:g}, in the core within {100 * core:.2g} %; "
+        f"the midpoint rule at dt = {small.dt:g} agrees with it to {same:.1e} up to t = {small.last:g}.",
+        f"F is off f_inf by {100 * worst:.2g} % of the peak.",
+    )
 
 
-def _long_time(setting: Setting, stable: Evolution, reference: _Reference) -> Finding:
-    t = float(setting.parameters["compared_at"])
-    x = stable.at(t)
-    exact = np.interp(x, reference.lines.x, reference.lines.solve(
-        Gaussian().value(reference.lines.x), [t])[0])  # fmt: skip
-    gap = float(np.abs(setting.velocity.fields(x, setting.weights)[0] - exact).max())
+def _long_time(
+    setting: Markers, stable: Evolution, reference: _Reference, t_final: float, compared_at: float
+) -> Finding:
+    x = stable.at(compared_at)
+    exact = np.interp(x, reference.x, reference.solve([compared_at])[0])
+    gap = float(np.abs(setting.field(x) - exact).max())
     evidence = (
-        f"A solution of (20) without markers ({reference.lines.x.size} cells) stays positive until "
-        f"t = {reference.lost:.4g} (half as many cells: {reference.lost_coarse:.4g}), when it vanishes at "
-        f"|x| = {reference.place:.4g}. The markers agree with it to {gap:.1e} at t = {t:g}."
+        f"A solution of (20) without markers ({reference.x.size} cells) stays positive until t = {reference.lost:.4g} "
+        f"(half as many cells: {reference.lost_coarse:.4g}), when it vanishes at |x| = {reference.place:.4g}. The "
+        f"markers agree with it to {gap:.1e} at t = {compared_at:g}."
     )
     times = np.array(stable.times[1:])
     late = times >= 0.05 * stable.last
@@ -313,53 +325,10 @@ def _long_time(setting: Setting, stable: Evolution, reference: _Reference) -> Fi
         )
     return statement(
         "M-F18.long_time",
-        reference.lost > float(setting.parameters["t_final"]),
+        reference.lost > t_final,
         evidence,
         "With the initial profile (25) the sink Q < 0 in the flanks drives the solution of (20) through zero, where "
         "D < 0 and the equation is ill-posed: there is no long-time behaviour to determine. Markers keep their weights "
         "and cannot follow; those left outside spread without end, as slowly as t^(1/4), so that f_inf is approached "
         "by a power of t only.",
     )
-
-
-def _series(
-    setting: Setting,
-    printed: Evolution,
-    stable: Evolution,
-    scans: Sequence[Evolution],
-    reference: _Reference,
-) -> pd.DataFrame:
-    parts: list[pd.DataFrame] = []
-
-    def add(panel: str, series: str, x: Any, y: Any, **more: Any) -> None:
-        columns = {"panel": panel, "series": series, "x": np.atleast_1d(x), "y": np.atleast_1d(y)}
-        parts.append(pd.DataFrame({**columns, **more}))
-
-    def field_of(x: np.ndarray) -> np.ndarray:
-        return setting.velocity.fields(x, setting.weights)[0]
-
-    z = np.linspace(-3.0, 3.0, 601)
-    add("profile", "steady", z, setting.problem.steady(z))
-    for label, x, t in (
-        ("initial", setting.x, 0.0),
-        ("printed", printed.end, printed.times[-1]),
-        ("stable", stable.end, stable.times[-1]),
-    ):
-        add("profile", label, x, field_of(x), t=t)
-    peak = float(setting.problem.steady(z).max())
-    for e in scans:
-        add("step", e.integrator, e.dt, setting.deviation(e.end) / peak, stopped=bool(e.stopped))
-    scanned = float(setting.parameters["scan_until"])
-    add("step", "RKC2", stable.dt, setting.deviation(stable.at(scanned)) / peak, stopped=False)
-    add("step", "limit", setting.limit, 0.0)
-    for t, f in zip(reference.times, reference.profiles, strict=True):
-        add("lost", "lines", reference.lines.x, f, t=t)
-        if min(abs(t - s) for s in stable.times) < 0.5 * stable.dt:
-            x = stable.at(t)
-            add("lost", "markers", x, field_of(x), t=t)
-    add("lost", "steady", z, setting.problem.steady(z))
-    add("lost", "zero", reference.place, 0.0, t=reference.lost)
-    for t, x in zip(stable.times[1:], stable.positions[1:], strict=True):
-        add("approach", "core", t, setting.deviation(x))
-        add("approach", "excess", t, setting.excess(x))
-    return pd.concat(parts, ignore_index=True)

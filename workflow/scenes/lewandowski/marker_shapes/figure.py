@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, legend_below
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, note, symbol
 from scenes.lewandowski.square_profile import SHAPES
 
 __all__ = ["figure"]
@@ -26,8 +28,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, wavenumbers: float) -> 
     transforms.set(xlim=(0.0, wavenumbers), ylim=(-0.25, 0.4))
     transforms.set_xlabel(r"wavenumber $k = \varepsilon q$")
     transforms.set_ylabel(r"Fourier transform $\widehat{S}(k)$")
-    style = {"ha": "right", "color": "#A04000", "fontsize": 8}
-    text = "negative: perturbations grow"
-    transforms.text(0.98, 0.03, text, transform=transforms.transAxes, **style)
+    place: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
+    note(transforms, "negative: perturbations grow", (0.98, 0.03), (0, 0), color="#A04000", **place)
     legend_below(figure, shapes, columns=8)
     return figure

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
@@ -24,7 +25,7 @@ def figure(
     grid = figure.add_gridspec(2, 6, height_ratios=(1.0, 1.0))
     fields = pick(series, panel="field")
     names = dict(zip(shown, ("Fig. 5", "Fig. 6", "Fig. 7"), strict=True))
-    axes = []
+    axes: list[Axes] = []
     for column, epsilon in enumerate(sorted(shown)):
         place = grid[0, 2 * column : 2 * column + 2]
         ax = figure.add_subplot(place, sharey=axes[0] if axes else None)

@@ -18,12 +18,12 @@ from fracparticles.run.solver import Prepared, prepare
 from fracparticles.schemes import SCHEMES
 from fracstudy.benchmarks.clock import (
     Timing,
+    conditions,
     forget_tables,
     in_fresh_process,
     measure,
     one_core,
     peak_so_far,
-    threads,
     timings_dataset,
 )
 
@@ -51,7 +51,7 @@ _VARIABLES = {
     "naive_time": ("one application by sums over all pairs, one core, minimum", "s"),
     "peak_memory": ("peak resident memory of a process that runs this and the smaller", "byte"),
     "memory_per_particle": (
-        "peak memory beyond that of a run on 17 in each direction, over the particles",
+        "peak memory beyond that of 17 in each direction, per particle",
         "byte",
     ),
     "machine_memory": ("memory of the machine", "byte"),
@@ -87,26 +87,21 @@ def benchmark(
         Whether to measure the peak memory: each dimension and kind then has a process of its own.
     """
     machine_memory = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
-    call = in_fresh_process if memory else _here
+    limits = naive_particles, most_solved, repeats, seconds, memory
     rows = []
     for (shape, dim), sizes in zip(_DIMENSIONS.items(), (lines, squares, cubes), strict=True):
-        ascending = [_TINY, *sorted(sizes)]
         for kind in kinds.get(shape, ()):
-            limits = naive_particles, most_solved, repeats, seconds, memory
-            tiny, *measured = call(measure_sizes, kind, dim, ascending, *limits)
-            for row in measured:
-                beyond = row["peak_memory"] - tiny["peak_memory"]
-                row["memory_per_particle"] = beyond / row["particles"]
+            task = kind, dim, [_TINY, *sorted(sizes)], *limits
+            measured = in_fresh_process(measure_sizes, *task) if memory else measure_sizes(*task)
+            least = measured[0]["peak_memory"]
+            for row in measured[1:]:
+                row["memory_per_particle"] = (row["peak_memory"] - least) / row["particles"]
                 rows.append({"kind": kind, "dim": dim, "machine_memory": machine_memory, **row})
     # Of the processes that measured, not of this one.
-    taken = {name: max(row[name] for row in rows) for name in threads() if rows}
+    taken = {name: max(row[name] for row in rows) for name in conditions() if rows}
     facts = {"repeats": repeats, "beta": _BETA, "spacing": _SPACING, **taken}
     title = "Run time and memory against the number of particles"
     return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
-
-
-def _here(function: Any, *arguments: Any) -> Any:
-    return function(*arguments)
 
 
 def measure_sizes(
@@ -128,7 +123,7 @@ def measure_sizes(
     rows = []
     for number, size in enumerate(sizes):
         case = _case(kind, dim, size, _END if number else _START + _SHORT)
-        row: dict[str, Any] = {"particles": case.particles, **threads()}
+        row: dict[str, Any] = {"particles": case.particles, **conditions()}
         if case.particles <= naive_particles and case.exterior == "truncated":
             row["naive_time"] = _naive_time(case, repeats, seconds)
         row |= _run_times(case, most_solved, repeats, seconds)
@@ -139,19 +134,11 @@ def measure_sizes(
 
 def _case(kind: str, dim: int, size: int, end: float) -> Case:
     scheme, order, exterior = kind.split("-")
-    half_width = (size // 2) * _SPACING
-    return Case(
-        scheme=scheme,
-        order=int(order),
-        exterior=exterior,
-        beta=_BETA,
-        dim=dim,
-        half_width=half_width,
-        spacing=_SPACING * (1.0 - 1e-12),  # the smallest lattice is not refused for round-off
-        t_initial=_START,
-        t_final=end,
-        integrator="exponential",
-    )
+    # A little less, so that the smallest lattice is not refused for round-off.
+    lattice = {"half_width": (size // 2) * _SPACING, "spacing": _SPACING * (1.0 - 1e-12)}
+    scheme_is = {"scheme": scheme, "order": int(order), "exterior": exterior}
+    times = {"t_initial": _START, "t_final": end, "integrator": "exponential"}
+    return Case(beta=_BETA, dim=dim, **lattice, **scheme_is, **times)
 
 
 def _strengths(case: Case) -> np.ndarray:
@@ -163,22 +150,21 @@ def _naive_time(case: Case, repeats: int, seconds: float) -> float:
     setting = case.model_copy(update={"summation": "naive"}).setting
     operator = SCHEMES[case.scheme].operator(setting)
     u = _strengths(case).reshape(-1)
-    timing, _ = measure(partial(operator.apply, u), repeats, seconds)
-    return timing.minimum
+    return measure(partial(operator.apply, u), repeats, seconds)[0].minimum
 
 
 def _run_times(case: Case, most_solved: float, repeats: int, seconds: float) -> dict[str, Any]:
     """Times of set-up, application and solve; afterwards all arrays of a run have been there at once."""
     u = _strengths(case)
     setup, ready = _set_up(case, repeats, seconds)
+    apply = partial(ready.operator.combine, u.reshape(-1), np.zeros(u.size), 1.0)
     row = {
         "setup_time": setup.minimum,
-        "application_time": _application_time(ready, u, repeats, seconds),
+        "application_time": measure(apply, repeats, seconds)[0].minimum,
         "applications": ready.operator_applications,
     }
     if case.particles <= most_solved:
-        solve, _ = measure(partial(ready.solve, u), repeats, seconds)
-        row["solve_time"] = solve.minimum
+        row["solve_time"] = measure(partial(ready.solve, u), repeats, seconds)[0].minimum
     else:
         brief = case.model_copy(update={"t_final": _START + _SHORT})
         prepare(brief, ready.operator).solve(u)
@@ -195,9 +181,3 @@ def _set_up(case: Case, repeats: int, seconds: float) -> tuple[Timing, Prepared]
         again, ready = measure(partial(prepare, case))
         timing += again
     return timing, ready
-
-
-def _application_time(ready: Prepared, u: np.ndarray, repeats: int, seconds: float) -> float:
-    flat, v = u.reshape(-1), np.zeros(u.size)
-    timing, _ = measure(partial(ready.operator.combine, flat, v, 1.0), repeats, seconds)
-    return timing.minimum

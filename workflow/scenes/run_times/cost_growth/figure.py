@@ -12,15 +12,27 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fracstudy.style import COLOURS, MARKERS, note_below, slope_triangle
+from fracstudy.inputs import NUMERALS
+from fracstudy.style import (
+    entry,
+    legend_below,
+    log_log,
+    note,
+    note_below,
+    scheme_style,
+    slope_triangle,
+)
 
 __all__ = ["figure"]
 
 _SHAPES = {1: "lines", 2: "squares", 3: "cubes"}
-_ORDERS = {2: "II", 4: "IV", 6: "VI", 8: "VIII", 10: "X", 12: "XII"}
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
-_FACES = {"truncated": (7.0, "none"), "open": (3.6, None)}
+_FACES: dict[str, dict[str, Any]] = {
+    "truncated": {"markersize": 7.0, "markerfacecolor": "none"},
+    "open": {"markersize": 3.6},
+}
 _GREY = "0.35"
+_SMALL = {"color": _GREY, "fontsize": 7.5}
 _DASHES = (0, (4, 3))
 _WAYS: dict[str, Any] = {
     "by FFT, one core": "-",
@@ -30,7 +42,7 @@ _WAYS: dict[str, Any] = {
 _MINUTE, _HOUR, _YEAR = 60.0, 3600.0, 365.25 * 86400.0  # seconds
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the time of one application and (b) the peak memory, a column a dimension."""
     dims = sorted(series["dim"].unique())
     figure = Figure(figsize=(max(3.2 * len(dims), 4.6), 6.6), layout="constrained")
@@ -46,13 +58,13 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]
     axes[0, 0].set_ylabel("time of one application / s")
     axes[1, 0].set_ylabel("peak memory of the process / byte")
     handles = _handles(series)
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles) // 2)
+    legend_below(figure, handles, columns=len(handles) // 2)
     note_below(figure, series["note"].iloc[0])
     return figure
 
 
 def _application(ax: Axes, points: pd.DataFrame) -> None:
-    ax.set(xscale="log", yscale="log")
+    log_log(ax)
     for way, style in (("fast", "-"), ("naive", ":")):
         some = points[points["series"] == way]
         if some.empty:
@@ -69,45 +81,32 @@ def _application(ax: Axes, points: pd.DataFrame) -> None:
 
 
 def _memory(ax: Axes, points: pd.DataFrame) -> None:
-    ax.set(xscale="log", yscale="log")
+    log_log(ax)
     peak = points[points["series"] == "peak"]
     _curves(ax, peak, "-")
     _name_end(ax, peak, _gigabytes)
     machine = points.loc[points["series"] == "machine", "y"].max()
     if len(peak) and np.isfinite(machine):
         ax.axhline(machine, color=_GREY, linewidth=0.8, linestyle="-.")
-        ax.annotate(
-            f"memory of the machine, {machine / 2**30:.2g} GiB", (peak["x"].min(), machine),
-            xytext=(0, 3), textcoords="offset points", color=_GREY, fontsize=7.5,
-        )  # fmt: skip
+        text = f"memory of the machine, {machine / 2**30:.2g} GiB"
+        note(ax, text, (peak["x"].min(), machine), (0, 3), **_SMALL)
 
 
 def _curves(ax: Axes, points: pd.DataFrame, style: str) -> None:
     """What was measured, and a dashed line to what is extrapolated."""
     for kind, curve in points.groupby("kind", sort=False):
         curve = curve.sort_values("x")
-        measured, look = curve[~curve["extrapolated"]], _look(kind)
-        ax.plot(measured["x"], measured["y"], **look, linestyle=style)
-        ax.plot(
-            curve["x"].iloc[-2:], curve["y"].iloc[-2:], color=look["color"], linewidth=0.9,
-            linestyle=_DASHES,
-        )  # fmt: skip
+        measured, look = curve[~curve["extrapolated"]], _look(kind, linestyle=style)
+        ax.plot(measured["x"], measured["y"], **look)
+        last = curve.iloc[-2:]
+        ax.plot(last["x"], last["y"], color=look["color"], linewidth=0.9, linestyle=_DASHES)
 
 
 def _name_end(ax: Axes, points: pd.DataFrame, text: Callable[[float, float], str]) -> None:
     """Write the least and the greatest extrapolated value at their end."""
-    ends = points[points["extrapolated"]]
-    if ends.empty:
-        return
-    ax.annotate(
-        text(ends["y"].min(), ends["y"].max()),
-        (ends["x"].max(), ends["y"].max()),
-        xytext=(0, 5),
-        textcoords="offset points",
-        ha="right",
-        fontsize=7.5,
-        color=_GREY,
-    )
+    x, y = points[points["extrapolated"]][["x", "y"]].to_numpy().T
+    if y.size:
+        note(ax, text(y.min(), y.max()), (x.max(), y.max()), (0, 5), ha="right", **_SMALL)
 
 
 def _durations(least: float, greatest: float) -> str:
@@ -126,15 +125,9 @@ def _range(least: float, greatest: float, unit: str) -> str:
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
-def _look(kind: str) -> dict[str, Any]:
+def _look(kind: str, **more: Any) -> dict[str, Any]:
     scheme, _, exterior = kind.split("-")
-    size, face = _FACES[exterior]
-    return {
-        "color": COLOURS[scheme],
-        "marker": MARKERS[scheme],
-        "markersize": size,
-        "markerfacecolor": face or COLOURS[scheme],
-    }
+    return scheme_style(scheme, **{**_FACES[exterior], **more})
 
 
 def _handles(series: pd.DataFrame) -> list[Line2D]:
@@ -142,10 +135,8 @@ def _handles(series: pd.DataFrame) -> list[Line2D]:
     kinds = []
     for kind in series["kind"].unique():
         scheme, order, exterior = kind.split("-")
-        name = f"{scheme} {_ORDERS[int(order)]}, {exterior}"
-        kinds.append(Line2D([], [], **_look(kind), linestyle="none", label=name))
-    ways = [
-        Line2D([], [], color=_GREY, linestyle=style, label=name) for name, style in _WAYS.items()
-    ]
-    blank = Line2D([], [], linestyle="none", label=" ")
+        name = f"{scheme} {NUMERALS[int(order)]}, {exterior}"
+        kinds.append(entry(name, **_look(kind, linestyle="none")))
+    ways = [entry(name, color=_GREY, linestyle=style) for name, style in _WAYS.items()]
+    blank = entry(" ", linestyle="none")
     return [handle for column in zip_longest(kinds, ways, fillvalue=blank) for handle in column]

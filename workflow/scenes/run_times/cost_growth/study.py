@@ -16,13 +16,13 @@ import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
+from fracstudy.panels import Panels
 
 __all__ = ["exponent", "extrapolate", "study"]
 
 # Bytes: a smaller rise of the peak is as much the allocator's steps as the particles'.
 _LEAST_RISE = 4e6
 _YEAR = 365.25 * 86400.0  # seconds
-_KEY = ["dim", "kind"]
 _BEYOND = "memory_beyond"  # what the process takes more than a tiny one
 
 # Column of the benchmark, or of what is made of it here -> column of the table.
@@ -48,24 +48,23 @@ _FITTED = {
 }
 
 
-def study(inputs: Inputs) -> Result:
+def study(inputs: Inputs, *, extrapolate_to: float) -> Result:
     """Return times and memory of every size; below them the exponents, and what `extrapolate_to` particles would take.
 
     The exponent of the memory is that of what the process takes beyond a tiny one.
     """
     data = inputs.benchmarks["cost_growth"]
-    target = float(inputs.parameters["extrapolate_to"])
     rows: list[dict[str, Any]] = []
     points: list[pd.DataFrame] = []
-    for (dim, kind), runs in data.groupby(_KEY, sort=False):
+    for (dim, kind), runs in data.groupby(["dim", "kind"], sort=False):
         runs = runs.sort_values("particles", ignore_index=True)
         runs[_BEYOND] = runs["memory_per_particle"] * runs["particles"]
-        beyond = _extrapolated(runs, target)
-        group = {"dim": dim, "operator": kind}
-        rows += [{**group, **row} for row in _measured(runs)]
-        rows.append({**group, "lattice": "exponent", **_exponents(runs)})
-        rows.append({**group, "lattice": f"{_power(target)}, extrapolated", **beyond})
-        points.append(_points(runs, beyond, target))
+        beyond = _extrapolated(runs, extrapolate_to)
+        sizes = _measured(runs)
+        sizes.append({"lattice": "exponent", **_exponents(runs)})
+        sizes.append({"lattice": f"{_power(extrapolate_to)}, extrapolated", **beyond})
+        rows += [{"dim": dim, "operator": kind, **row} for row in sizes]
+        points.append(_points(runs, beyond, extrapolate_to).assign(dim=dim, kind=kind))
     table = pd.DataFrame(rows, columns=list(_COLUMNS)).rename(columns=_COLUMNS)
     table["applications"] = table["applications"].astype("Int64")
     series = pd.concat(points, ignore_index=True).assign(note=machine_note(data))
@@ -115,8 +114,7 @@ def _fast(n: float) -> float:
     return n * log(n)
 
 
-def _all_pairs(n: float) -> float:
-    return n * n
+_LAWS = {"setup_time": _fast, "application_time": _fast, "naive_time": lambda n: n * n}
 
 
 def _measured(runs: pd.DataFrame) -> list[dict[str, Any]]:
@@ -138,20 +136,14 @@ def _exponents(runs: pd.DataFrame) -> dict[str, float]:
 def _extrapolated(runs: pd.DataFrame, target: float) -> dict[str, Any]:
     """What `target` particles would take, on one core, if the memory were there."""
     n, last = runs["particles"].to_numpy(), runs.iloc[-1]
-    setup, application, naive = (
-        extrapolate(n, runs[name].to_numpy(), law, target)
-        for name, law in (
-            ("setup_time", _fast),
-            ("application_time", _fast),
-            ("naive_time", _all_pairs),
-        )
-    )
+    times = {
+        name: extrapolate(n, runs[name].to_numpy(), law, target) for name, law in _LAWS.items()
+    }
+    application, naive = times["application_time"], times["naive_time"]
     return {
-        "setup_time": setup,
-        "application_time": application,
+        **times,
         "applications": last["applications"],
         "solve_time": last["applications"] * application,
-        "naive_time": naive,
         "naive_ratio": naive / application,
         "naive_solve_years": last["applications"] * naive / _YEAR,
         "gigabytes": 1e-9 * target * last["memory_per_particle"],
@@ -167,21 +159,12 @@ def _points(runs: pd.DataFrame, beyond: dict[str, Any], target: float) -> pd.Dat
         ("memory", "peak", "peak_memory", 1e9 * beyond["gigabytes"]),
         ("memory", "machine", "machine_memory", np.nan),
     ]
-    parts = [
-        pd.DataFrame(
-            {
-                "panel": panel,
-                "series": series,
-                "x": np.append(runs["particles"].to_numpy(float), target),
-                "y": np.append(runs[column].to_numpy(float), further),
-                "extrapolated": np.append(np.zeros(len(runs), dtype=bool), True),
-            }
-        )
-        for panel, series, column, further in drawn
-    ]
-    points = pd.concat(parts, ignore_index=True)
-    positive = points[points["y"] > 0.0]  # the axes are logarithmic
-    return positive.assign(dim=runs["dim"].iloc[0], kind=runs["kind"].iloc[0])
+    x = np.append(runs["particles"].to_numpy(float), target)
+    points = Panels()
+    for panel, series, column, further in drawn:
+        y = np.append(runs[column].to_numpy(float), further)
+        points.add(panel, series, x, y, extrapolated=np.arange(x.size) >= len(runs))
+    return points.frame[points.frame["y"] > 0.0]  # the axes are logarithmic
 
 
 def _lattice(particles: float, dim: int) -> str:

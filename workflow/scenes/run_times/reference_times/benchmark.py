@@ -13,7 +13,9 @@ and, of the transform pair that all is made of, what other kinds of it would cos
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from importlib import import_module
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,8 +24,9 @@ import scipy.fft
 
 from fracparticles.lattice.fourier import shares_memory, transform_length
 from fracparticles.run.case import Case
-from fracparticles.run.solver import Prepared, compute, initial_strengths, prepare
+from fracparticles.run.solver import compute, initial_strengths, prepare
 from fracstudy.benchmarks.clock import (
+    Timing,
     forget_tables,
     in_fresh_process,
     measure,
@@ -31,6 +34,7 @@ from fracstudy.benchmarks.clock import (
     peak_so_far,
     timings_dataset,
 )
+from fracstudy.benchmarks.contenders import naive_steps
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,7 +44,8 @@ __all__ = ["benchmark", "transform_pairs"]
 Action = Callable[[], Any]
 
 _PAIRS = 40  # transform pairs between two looks at the clock
-_OTHER_KINDS = ("single precision", "cosine transform of an even field")
+# What half the data would need: a pair in single precision, or of one half of an even field.
+_SINGLE, _COSINE = "single precision", "cosine transform of an even field"
 
 
 def benchmark(
@@ -81,11 +86,9 @@ def benchmark(
     """
     one_core()
     common = {"beta": 0.5, "truncation": truncation, "spacing": spacing}
-    cases = [
-        Case(scheme=scheme, order=order, dt=dt, **common)
-        for scheme in ("DD", "FPSE", "KPSE")
-        for order in (2, 4)
-    ] + [Case(scheme="GPSE", dt=green_dt, **common)]
+    schemes = product(("DD", "FPSE", "KPSE"), (2, 4))
+    cases = [Case(scheme=scheme, order=order, dt=dt, **common) for scheme, order in schemes]
+    cases.append(Case(scheme="GPSE", dt=green_dt, **common))
     pairs = transform_pairs(transform_length(2 * cases[0].particles - 1), measured_plans)
     rows = []
     for case in cases:
@@ -93,9 +96,9 @@ def benchmark(
         if memory:
             row["peak_memory"] = in_fresh_process(peak_of, case.to_json())
         if case.order == 2 and case.scheme in stepping:
-            row.update(_time_stepping(case))
+            row |= _time_stepping(case)
         if case.order == 2 and case.scheme in naive:
-            row.update(_time_naive(case, naive_steps))
+            row |= _time_naive(case, naive_steps)
         for slow in ("stepping", "naive"):
             row[f"{slow}_over_series"] = row.get(f"{slow}_time", np.nan) / row["solve_time"]
         rows.append(row)
@@ -115,80 +118,60 @@ def transform_pairs(length: int, measured_plans: bool = True) -> dict[str, Actio
 
     On zeros, which stay zeros however often they are transformed: the time does not depend on the data.
     """
-    x = np.zeros(length)
+    estimate, half, zeros = "FFTW_ESTIMATE", length // 2 + 1, np.zeros(length)
     pairs: dict[str, Action] = {
-        "FFTW": _fftw_pair(length, "FFTW_ESTIMATE", in_place=False),
-        "FFTW, in place": _fftw_pair(length, "FFTW_ESTIMATE", in_place=True),
-        "scipy.fft": lambda: scipy.fft.irfft(scipy.fft.rfft(x), n=length, overwrite_x=True),
+        "FFTW": _fftw_pair(length, estimate),
+        "FFTW, in place": _fftw_pair(length, estimate, in_place=True),
+        "scipy.fft": lambda: scipy.fft.irfft(scipy.fft.rfft(zeros), n=length, overwrite_x=True),
+        _SINGLE: _fftw_pair(length, estimate, single=True),
     }
     if measured_plans:
-        pairs["FFTW, measured"] = _fftw_pair(length, "FFTW_MEASURE", in_place=False)
+        pairs["FFTW, measured"] = _fftw_pair(length, "FFTW_MEASURE")
         pairs["FFTW, measured, in place"] = _fftw_pair(length, "FFTW_MEASURE", in_place=True)
-    pairs |= _other_kinds(length)
+    even, cosines = pyfftw.zeros_aligned(half), pyfftw.zeros_aligned(half)
+    cosine = pyfftw.FFTW(even, cosines, direction="FFTW_REDFT00", flags=(estimate,))
+    pairs[_COSINE] = lambda: (cosine.execute(), cosine.execute())
     try:
         mkl_fft = import_module("mkl_fft")
     except ImportError:  # not a dependency
         return pairs
-    spectrum = np.zeros(length // 2 + 1, dtype=complex)
+    x, spectrum = np.zeros(length), np.zeros(half, dtype=complex)
     pairs["MKL"] = lambda: mkl_fft.irfft(mkl_fft.rfft(x, out=spectrum), n=length, out=x)
     return pairs
 
 
-def _other_kinds(length: int) -> dict[str, Action]:
-    """Return the pairs that half the data would need: in single precision, or of one half of an even field."""
-    single = pyfftw.zeros_aligned(length, dtype=np.float32)
-    spectrum = pyfftw.zeros_aligned(length // 2 + 1, dtype=np.complex64)
-    forward = pyfftw.FFTW(single, spectrum, flags=("FFTW_ESTIMATE",))
-    backward = pyfftw.FFTW(
-        spectrum, single, direction="FFTW_BACKWARD", flags=("FFTW_ESTIMATE", "FFTW_DESTROY_INPUT")
-    )
-    half, cosines = pyfftw.zeros_aligned(length // 2 + 1), pyfftw.zeros_aligned(length // 2 + 1)
-    cosine = pyfftw.FFTW(half, cosines, direction="FFTW_REDFT00", flags=("FFTW_ESTIMATE",))
-    return {
-        _OTHER_KINDS[0]: lambda: (forward.execute(), backward.execute()),
-        _OTHER_KINDS[1]: lambda: (cosine.execute(), cosine.execute()),
-    }
-
-
-def _fftw_pair(length: int, effort: str, in_place: bool) -> Action:
-    spectrum = pyfftw.zeros_aligned(length // 2 + 1, dtype=complex)
-    real = spectrum.view(float)[:length] if in_place else pyfftw.zeros_aligned(length)
+def _fftw_pair(length: int, effort: str, in_place: bool = False, single: bool = False) -> Action:
+    kinds = (np.float32, np.complex64) if single else (float, complex)
+    spectrum = pyfftw.zeros_aligned(length // 2 + 1, dtype=kinds[1])
+    real = spectrum.view(kinds[0])[:length]
+    if not in_place:
+        real = pyfftw.zeros_aligned(length, dtype=kinds[0])
     forward = pyfftw.FFTW(real, spectrum, flags=(effort,))
-    backward = pyfftw.FFTW(
-        spectrum, real, direction="FFTW_BACKWARD", flags=(effort, "FFTW_DESTROY_INPUT")
-    )
+    destroy = (effort, "FFTW_DESTROY_INPUT")
+    backward = pyfftw.FFTW(spectrum, real, direction="FFTW_BACKWARD", flags=destroy)
     real[:] = 0.0  # a measured plan overwrites its arrays
     spectrum[:] = 0.0
-
-    def pair() -> None:
-        forward.execute()
-        backward.execute()
-
-    return pair
+    return lambda: (forward.execute(), backward.execute())
 
 
 def _time_series(case: Case, repeats: int, pairs: dict[str, Action]) -> dict[str, Any]:
     """Time the series and, in turn with it, the transforms of each library."""
     u0, _ = initial_strengths(case)
-    ready = prepare(case)
-    ready.solve(u0)  # compiles what is not compiled yet
-    setups: list[float] = []
-    solves: list[float] = []
-    pair_times: dict[str, list[float]] = {name: [] for name in pairs}
+    prepare(case).solve(u0)  # compiles what is not compiled yet
+    setup = solve = Timing(())
+    least = dict.fromkeys(pairs, np.inf)
     for _ in range(repeats):
         forget_tables()
-        setup, ready = measure(lambda: prepare(case))
-        setups += setup.times
-        solves += measure(lambda: ready.solve(u0))[0].times  # noqa: B023
+        once, ready = measure(partial(prepare, case))
+        setup += once
+        solve += measure(partial(ready.solve, u0))[0]
         for name, pair in pairs.items():
-            many, _ = measure(lambda: [pair() for _ in range(_PAIRS)])  # noqa: B023
-            pair_times[name].append(many.minimum / _PAIRS)
-    least = {name: min(times) for name, times in pair_times.items()}
-    others = {name: least.pop(name) for name in _OTHER_KINDS}
+            many, _ = measure(partial(_repeat, pair))
+            least[name] = min(least[name], many.minimum / _PAIRS)
+    single, cosine = least.pop(_SINGLE), least.pop(_COSINE)
     length = transform_length(2 * case.particles - 1)
     own = least["FFTW, in place" if shares_memory(length) else "FFTW"]
     fastest = min(least, key=lambda name: least[name])
-    floor = ready.operator_applications * least[fastest]
     return {
         "scheme": case.scheme,
         "order": case.order,
@@ -197,17 +180,22 @@ def _time_series(case: Case, repeats: int, pairs: dict[str, Action]) -> dict[str
         "steps": case.steps,
         "transform_length": length,
         "operator_applications": ready.operator_applications,
-        "setup_time": min(setups),
-        "solve_time": min(solves),
-        "solve_time_median": float(np.median(solves)),
+        "setup_time": setup.minimum,
+        "solve_time": solve.minimum,
+        "solve_time_median": solve.median,
         "fastest_pair": fastest,
         "fastest_pair_time": least[fastest],
         "own_pair_time": own,
-        "single_pair_time": others[_OTHER_KINDS[0]],
-        "cosine_pair_time": others[_OTHER_KINDS[1]],
-        "floor_ratio": min(solves) / floor,
-        "own_ratio": min(solves) / (ready.operator_applications * own),
+        "single_pair_time": single,
+        "cosine_pair_time": cosine,
+        "floor_ratio": solve.minimum / (ready.operator_applications * least[fastest]),
+        "own_ratio": solve.minimum / (ready.operator_applications * own),
     }
+
+
+def _repeat(pair: Action) -> None:
+    for _ in range(_PAIRS):
+        pair()
 
 
 def _time_stepping(case: Case) -> dict[str, float]:
@@ -215,7 +203,7 @@ def _time_stepping(case: Case) -> dict[str, float]:
     u0, _ = initial_strengths(case)
     series = prepare(case).solve(u0)
     stepped = prepare(_changed(case, evaluation="stepping"))
-    time, u = measure(lambda: stepped.solve(u0))
+    time, u = measure(partial(stepped.solve, u0))
     return {
         "stepping_time": time.minimum,
         "stepping_applications": stepped.operator_applications,
@@ -225,21 +213,10 @@ def _time_stepping(case: Case) -> dict[str, float]:
 
 def _time_naive(case: Case, steps: int) -> dict[str, float]:
     """Time so many steps with sums over all pairs of particles, and extrapolate."""
-
-    def naive(case: Case) -> Prepared:
-        end = case.t_initial + steps * case.time_step
-        return prepare(
-            _changed(
-                case, summation="naive", evaluation="stepping", t_final=end,
-                truncation=None, half_width=case.domain,
-            )
-        )  # fmt: skip
-
     small = _changed(case, truncation=100.0 * case.spacing)
-    naive(small).solve(initial_strengths(small)[0])  # compiles
+    prepare(naive_steps(small, steps)).solve(initial_strengths(small)[0])  # compiles
     u0, _ = initial_strengths(case)
-    ready = naive(case)
-    time, _ = measure(lambda: ready.solve(u0))
+    time, _ = measure(partial(prepare(naive_steps(case, steps)).solve, u0))
     return {
         "naive_measured_steps": steps,
         "naive_step_time": time.minimum / steps,

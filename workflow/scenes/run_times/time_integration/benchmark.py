@@ -12,6 +12,7 @@ is the way from u(0) to u(T) = exp(A T) u(0) with it:
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,10 +20,9 @@ from scipy.linalg import expm
 from scipy.sparse.linalg import LinearOperator, expm_multiply
 
 from fracparticles.lattice.operators import Operator
-from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
 from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
-from fracparticles.time import STEP_POLYNOMIALS, StepPolynomial, exponential, step
+from fracparticles.time import STEP_POLYNOMIALS, exponential, step
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.benchmarks.clock import measure, one_core, timings_dataset
 from fracstudy.benchmarks.problem import Problem
@@ -80,24 +80,23 @@ def benchmark(
         u0 = problem.initial(np.abs(x))
         matrix = dense_matrix(operator)
         exact = expm(problem.time * matrix) @ u0
-        for integrator, steps, applications, run in _ways(
-            operator, interval, problem.time, u0, factors, float(np.trace(matrix))
-        ):
+        trace = float(np.trace(matrix))
+        for way in _ways(operator, interval, problem.time, u0, factors, trace):
+            integrator, steps, applications, run = way
             run()
             timing, u = measure(run, repeats, seconds)
-            rows.append(
-                {
-                    "operator": name,
-                    "integrator": integrator,
-                    "particles": x.size,
-                    "steps": steps,
-                    "applications": applications,
-                    "error": float(np.abs(u - exact).sum() / np.abs(exact).sum()),
-                    "solve_time": timing.minimum,
-                    "solve_time_median": timing.median,
-                    "solves": len(timing.times),
-                }
-            )
+            row = {
+                "operator": name,
+                "integrator": integrator,
+                "particles": x.size,
+                "steps": steps,
+                "applications": applications,
+                "error": float(np.abs(u - exact).sum() / np.abs(exact).sum()),
+                "solve_time": timing.minimum,
+                "solve_time_median": timing.median,
+                "solves": len(timing.times),
+            }
+            rows.append(row)
     title = "Error of the time integration against run time"
     facts = {"beta": beta, "truncation": truncation, "spacing": spacing, "repeats": repeats}
     return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
@@ -107,30 +106,15 @@ def _operators(
     problem: Problem, truncation: float, spacing: float, order: int, peers: Sequence[str]
 ) -> Iterator[tuple[str, np.ndarray, Operator, tuple[float, float]]]:
     """The operators with their points and an interval that holds their spectrum."""
-    case = Case(
-        scheme="KPSE",
-        order=order,
-        beta=problem.beta,
-        truncation=truncation,
-        spacing=spacing,
-        exterior="open",
-        integrator="exponential",
-    )
+    lattice = {"truncation": truncation, "spacing": spacing, "exterior": "open"}
+    case = problem.case(scheme="KPSE", order=order, integrator="exponential", **lattice)
     operator = prepare(case).operator
-    yield (
-        f"KPSE {order}",
-        case.x,
-        operator,
-        spectral_interval(case.scheme, case.setting, operator, case.steps),
-    )
+    interval = spectral_interval(case.scheme, case.setting, operator, case.steps)
+    yield f"KPSE {order}", case.x, operator, interval
+    task = {"alpha": problem.alpha, "half_width": case.domain, "time": problem.time}
     for name in peers:
         solver: Any = peer(name).prepare(
-            alpha=problem.alpha,
-            half_width=problem.half_width(truncation),
-            spacing=spacing,
-            time=problem.time,
-            exterior="open",
-            propagation="series",
+            **task, spacing=spacing, exterior="open", propagation="series"
         )
         yield name, solver.x, solver.operator, solver.interval
 
@@ -146,24 +130,17 @@ def _ways(
     stiffness = -interval[0] * time
     for name, polynomial in STEP_POLYNOMIALS.items():
         least = int(np.ceil(stiffness / polynomial.stability_interval))
-        for factor in factors:
-            steps = factor * least
-
-            def stepped(polynomial: StepPolynomial = polynomial, steps: int = steps) -> np.ndarray:
-                return step(operator, polynomial, time / steps, steps, u0)
-
-            yield name, steps, steps * polynomial.stages, stepped
+        for steps in (factor * least for factor in factors):
+            run = partial(step, operator, polynomial, time / steps, steps, u0)
+            yield name, steps, steps * polynomial.stages, run
     for steps in factors:
         stages = stages_for(stiffness / steps)
-        chebyshev = ChebyshevStep(stages)
-
-        def stabilised(chebyshev: ChebyshevStep = chebyshev, steps: int = steps) -> np.ndarray:
-            return chebyshev.advance(operator.apply, u0, dt=time / steps, steps=steps)
-
-        yield "RKC2", steps, steps * stages, stabilised
+        advance = ChebyshevStep(stages).advance
+        run = partial(advance, operator.apply, u0, dt=time / steps, steps=steps)
+        yield "RKC2", steps, steps * stages, run
     yield "expm_multiply", 1, *_expm_multiply(operator, time, u0, trace)
     series = exponential(time, *interval)
-    yield "Chebyshev series", 1, series.degree, lambda: series(operator, u0)
+    yield "Chebyshev series", 1, series.degree, partial(series, operator, u0)
 
 
 def _expm_multiply(

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from fracstudy.style import axes_row, legend_below, note_below, slope_triangle
+from fracstudy.style import axes_row, legend_below, log_log, note, note_below, slope_triangle
 
 __all__ = ["figure"]
 
@@ -27,7 +27,7 @@ _POINTS: dict[str, dict[str, Any]] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """One panel an operator; a line an integrator that takes steps, a large marker one that takes none."""
     operators = list(series["operator"].unique())
     width = 3.3 if len(operators) > 1 else 5.0
@@ -52,11 +52,9 @@ def _panel(ax: Axes, runs: pd.DataFrame) -> None:
             # What of the lines lies on its left is faster.
             ax.axvline(time, color=look["color"], linewidth=0.7, linestyle=":", zorder=1)
             ax.plot(time, run.error, label=integrator, linestyle="none", **look)
-            ax.annotate(
-                f"{run.applications}\napplications", (time, run.error), xytext=(8, 0),
-                textcoords="offset points", va="center", fontsize=7, color=look["color"],
-            )  # fmt: skip
-    ax.set(xscale="log", yscale="log", xlabel="time of a solve / ms")
+            text = {"va": "center", "fontsize": 7, "color": look["color"]}
+            note(ax, f"{run.applications}\napplications", (time, run.error), (8, 0), **text)
+    log_log(ax, xlabel="time of a solve / ms")
     ax.xaxis.set_major_locator(LogLocator(numticks=8))
     ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from fracstudy.style import note_below
+from fracstudy.style import legend_below, note, note_below, panel_title
 
 __all__ = ["figure"]
 
@@ -30,19 +30,19 @@ _WRITTEN = 0.08  # shares from here on are written into the bar
 _PANELS = ("set-up", "solve")
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the set-up and (b) the solve, a bar of shares a case, its whole time at the end."""
     cases = series.drop_duplicates("case")
     figure = Figure(figsize=(8.6, 1.5 + 0.42 * len(cases)), layout="constrained")
     axes = figure.subplots(1, len(_PANELS), sharey=True)
     for letter, ax, panel in zip("ab", axes, _PANELS, strict=True):
         _bars(ax, series[series["panel"] == panel])
-        ax.set_title(f"({letter}) {panel}", loc="left")
+        panel_title(ax, letter, panel)
     axes[0].set_yticks(np.arange(len(cases)), [_name(case) for case in cases.itertuples()])
     axes[0].set_ylim(len(cases) - 0.5, -0.5)  # the first on top
     drawn = series.loc[series["share"] > 0.0, "part"].unique()
     handles = [Patch(color=_COLOURS[part], label=part) for part in _COLOURS if part in drawn]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    legend_below(figure, handles, columns=4)
     note_below(figure, f"set-up: nothing kept from before; {series['note'].iloc[0]}")
     return figure
 
@@ -54,18 +54,13 @@ def _bars(ax: Axes, parts: pd.DataFrame) -> None:
             colour = _COLOURS[part]
             ax.barh(place, share, left=start, height=0.62, color=colour, edgecolor="white")
             if share >= _WRITTEN:
-                ax.annotate(
-                    f"{100.0 * share:.0f}", (start + 0.5 * share, place), ha="center", va="center",
-                    fontsize=7, color="white" if colour in _DARK else "black",
-                )  # fmt: skip
+                text = "white" if colour in _DARK else "black"
+                style = {"ha": "center", "va": "center", "fontsize": 7, "color": text}
+                ax.annotate(f"{100.0 * share:.0f}", (start + 0.5 * share, place), **style)
             start += share
-        ax.annotate(
-            _duration(bar["total"].iloc[0]), (1.0, place), xytext=(4, 0),
-            textcoords="offset points", va="center", fontsize=8,
-        )  # fmt: skip
-    ax.set_xlim(0.0, 1.0)
+        note(ax, _duration(bar["total"].iloc[0]), (1.0, place), (4, 0), va="center", color="black")
+    ax.set(xlim=(0.0, 1.0), xlabel="share / %")
     ax.set_xticks(np.linspace(0.0, 1.0, 5), [f"{share}" for share in range(0, 101, 25)])
-    ax.set_xlabel("share / %")
     ax.tick_params(axis="y", length=0)
     ax.grid(visible=False)
     ax.spines["left"].set_visible(False)

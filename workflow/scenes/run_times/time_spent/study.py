@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
@@ -38,25 +35,20 @@ def study(inputs: Inputs) -> Result:
         for part in parts:
             table[f"{part} / ms"] = 1e3 * data[part]
     table["set-up / solve"] = data["setup_time"] / data["solve_time"]
-    series = pd.DataFrame(row for whole in PARTS for row in _shares(data, whole))
+    series = pd.concat([_shares(data, whole) for whole in PARTS])
     return Result(table, (), series.assign(note=machine_note(data)))
 
 
-def _shares(data: pd.DataFrame, whole: str) -> Iterator[dict[str, Any]]:
+def _shares(data: pd.DataFrame, whole: str) -> pd.DataFrame:
     """The parts of one whole, case by case.
 
-    The rest of a solve is a difference of two minima and may come out below nil, where it is next to nothing.
+    The rest of a solve is a difference of two minima and may come out below zero, where it is next to nothing.
     """
     parts = data[list(PARTS[whole])].clip(lower=0.0)
     shares = parts.div(parts.sum(axis="columns"), axis="index")
-    for row, (_, share) in zip(data.to_dict("records"), shares.iterrows(), strict=True):
-        for part in PARTS[whole]:
-            yield {
-                "panel": _NAMES[whole],
-                "case": row["run"],
-                "particles": row["particles"],
-                "applications": row["applications"],
-                "total": row[whole],
-                "part": part,
-                "share": share[part],
-            }
+    kept = {"run": "case", "particles": "particles", "applications": "applications", whole: "total"}
+    cases = data[list(kept)].rename(columns=kept).assign(panel=_NAMES[whole])
+    long = cases.join(shares).melt(
+        list(cases), var_name="part", value_name="share", ignore_index=False
+    )
+    return long.sort_index(kind="stable")

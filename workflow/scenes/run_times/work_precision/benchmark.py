@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fracstudy.benchmarks.clock import one_core, timings_dataset
@@ -28,14 +28,11 @@ if TYPE_CHECKING:
 __all__ = ["benchmark", "line_trials"]
 
 _SCHEMES = ("DD", "FPSE", "KPSE")
+_Grid = Mapping[str, Any]
 
 
 def benchmark(
-    beta: Sequence[float],
-    rounds: int,
-    repeats: int,
-    seconds: float,
-    **grids: Any,
+    beta: Sequence[float], rounds: int, repeats: int, seconds: float, **grids: Any
 ) -> xr.Dataset:
     """Measure error, set-up and solve of all contenders on the line.
 
@@ -62,15 +59,15 @@ def benchmark(
 
 def line_trials(
     problem: Problem,
-    at_once: dict[str, Any],
-    series: dict[str, Any],
-    truncated: dict[str, Any],
-    graded: dict[str, Any],
-    stepped: dict[str, Any],
-    particles: dict[str, Any],
-    naive: dict[str, Any],
-    walkers: dict[str, Any],
-    peers: dict[str, Any],
+    at_once: _Grid,
+    series: _Grid,
+    truncated: _Grid,
+    graded: _Grid,
+    stepped: _Grid,
+    particles: _Grid,
+    naive: _Grid,
+    walkers: _Grid,
+    peers: _Grid,
     matrices: float,
 ) -> Iterator[Trial]:
     """Yield the trials.
@@ -78,13 +75,13 @@ def line_trials(
     Parameters
     ----------
     problem : Problem
-    at_once : dict
+    at_once : mapping
         `orders`, `spacings`, `truncations` and the `most` particles of runs that are one lattice sum, open.
-    series : dict
+    series : mapping
         Likewise of those by a Chebyshev series, open; GPSE with its step tied to h is among them.
-    truncated : dict
+    truncated : mapping
         Likewise of truncated lattices, by a series.
-    graded, stepped, particles, naive, walkers, peers : dict
+    graded, stepped, particles, naive, walkers, peers : mapping
         Arguments of `graded_trials`, `stepped_trials`, `particle_trials`, `naive_trials`, `walk_trials` and
         `peer_trials`; the lattices of the peers are those of `lent_exterior_trials`, too.
     matrices : float
@@ -115,11 +112,7 @@ def line_trials(
 
 
 def _scheme_and_tied_trials(
-    problem: Problem,
-    schemes: Sequence[str],
-    way: dict[str, Any],
-    orders: Sequence[int],
-    **grid: Any,
+    problem: Problem, schemes: Sequence[str], way: _Grid, orders: Sequence[int], **grid: Any
 ) -> Iterator[Trial]:
     yield from scheme_trials(problem, schemes, orders, {**way, "evaluation": "series"}, **grid)
     yield from tied_step_trials(problem, way, **grid)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from fracstudy.benchmarks.clock import one_core, timings_dataset
@@ -45,11 +45,11 @@ def benchmark(beta: float, rounds: int, repeats: int, seconds: float, **grids: A
 
 def plane_trials(
     problem: Problem,
-    opened: dict[str, Any],
-    truncated: dict[str, Any],
-    fpse: dict[str, Any],
-    naive: dict[str, Any],
-    peers: dict[str, Any],
+    opened: Mapping[str, Any],
+    truncated: Mapping[str, Any],
+    fpse: Mapping[str, Any],
+    naive: Mapping[str, Any],
+    peers: Mapping[str, Any],
     matrices: float,
 ) -> Iterator[Trial]:
     """Yield the trials.
@@ -57,11 +57,11 @@ def plane_trials(
     Parameters
     ----------
     problem : Problem
-    opened, truncated : dict
+    opened, truncated : mapping
         `orders` of DD and KPSE, `spacings`, `truncations` and the `most` particles of lattices with either exterior.
-    fpse : dict
+    fpse : mapping
         Likewise of FPSE, truncated: it has the orders 2 and 4 in the plane.
-    naive, peers : dict
+    naive, peers : mapping
         Arguments of `naive_trials` and `plane_peer_trials`.
     matrices : float
         GPSE in one step and the peers on up to so many points also run as one matrix.
@@ -76,9 +76,8 @@ def plane_trials(
         yield from single
         yield from matrix_trials(single, matrices)
         yield from tied_step_trials(problem, way, **grid)
-    yield from scheme_trials(
-        problem, ("FPSE",), way={"exterior": "truncated", "evaluation": "series"}, **fpse
-    )
+    series = {"exterior": "truncated", "evaluation": "series"}
+    yield from scheme_trials(problem, ("FPSE",), way=series, **fpse)
     yield from naive_trials(problem, **naive)
     rivals = list(plane_peer_trials(problem, **peers))
     yield from rivals

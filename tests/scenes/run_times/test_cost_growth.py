@@ -85,11 +85,11 @@ def test_a_data_set_of_growth_is_netcdf_and_says_what_it_was_measured_on(growth,
 def test_study_and_figure_take_what_was_measured_without_memory(growth, tmp_path):
     frame = growth.to_dataframe().reset_index()
     frame.attrs = dict(growth.attrs)
-    parameters = {"extrapolate_to": TARGET}
-    result = cost_growth(SimpleNamespace(benchmarks={"cost_growth": frame}, parameters=parameters))
+    given = SimpleNamespace(benchmarks={"cost_growth": frame})
+    result = cost_growth(given, extrapolate_to=TARGET)
     assert len(result.table) == len(frame) + 2 * 4
     assert result.table["peak memory / GB"].isna().all()
-    save(draw(result.series, result.table, parameters), tmp_path / "growth")
+    save(draw(result.series, result.table), tmp_path / "growth")
     assert (tmp_path / "growth.png").stat().st_size > 0
 
 
@@ -116,8 +116,8 @@ def test_memory_is_proportional_to_the_particles(kind, squares, cubes):
 @pytest.mark.parametrize("memory", [False, True])
 def test_the_threads_are_those_of_the_process_that_measures(memory, monkeypatch):
     """The one that collects has as many as it likes, here seven."""
-    mine = {"threads_numba": 7, "threads_blas": 7}
-    monkeypatch.setattr("fracstudy.benchmarks.clock.threads", lambda: mine)
+    mine = {"threads_numba": 7, "threads_blas": 7, "other_load": 0.0}
+    monkeypatch.setattr("fracstudy.benchmarks.clock.conditions", lambda: mine)
     if not memory:  # then it is the one that measures
         mine |= {"threads_numba": 1, "threads_blas": 1}
     kinds, limits = {"square": ["KPSE-2-truncated"]}, {**LIMITS, "naive_particles": 0}
@@ -155,10 +155,8 @@ def synthetic() -> pd.DataFrame:
 
 @pytest.fixture(scope="module")
 def result():
-    inputs = SimpleNamespace(
-        benchmarks={"cost_growth": synthetic()}, parameters={"extrapolate_to": TARGET}
-    )
-    return cost_growth(inputs)
+    given = SimpleNamespace(benchmarks={"cost_growth": synthetic()})
+    return cost_growth(given, extrapolate_to=TARGET)
 
 
 def rows(result, dim: int, size: str) -> pd.Series:
@@ -234,7 +232,7 @@ def test_the_series_holds_what_was_measured_and_one_point_more(result):
 
 
 def test_the_figure_draws_a_column_a_dimension(result, tmp_path):
-    figure = draw(result.series, result.table, {})
+    figure = draw(result.series, result.table)
     assert len(figure.axes) == 4
     save(figure, tmp_path / "growth")
     assert (tmp_path / "growth.svg").stat().st_size > 0

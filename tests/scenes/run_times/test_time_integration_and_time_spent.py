@@ -12,9 +12,8 @@ from fracparticles.lattice.fourier import FourierConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.time import STEP_POLYNOMIALS
 from fracparticles.time.rkc import stages_for
-from fracstudy.benchmarks import time_integration as integration_benchmark
 from fracstudy.style import save
-from scenes.run_times.time_integration.benchmark import benchmark as run_integrations
+from scenes.run_times.time_integration import benchmark as integration_benchmark
 from scenes.run_times.time_integration.figure import figure as draw_integrations
 from scenes.run_times.time_integration.study import study as time_integration
 from scenes.run_times.time_spent.benchmark import benchmark as take_apart
@@ -43,7 +42,7 @@ CASES = {
 
 
 def inputs(name, frame):
-    return SimpleNamespace(benchmarks={name: frame}, parameters={})
+    return SimpleNamespace(benchmarks={name: frame})
 
 
 def frame_of(data):
@@ -54,7 +53,7 @@ def frame_of(data):
 
 @pytest.fixture(scope="module")
 def integrations():
-    data = run_integrations(
+    data = integration_benchmark.benchmark(
         beta=0.5, truncation=5.0, spacing=0.2, order=4, peers=["huang-oberman"], factors=[1, 2, 4],
         repeats=2, seconds=0.1,
     )  # fmt: skip
@@ -211,7 +210,7 @@ def test_the_figures_are_drawn_from_the_results(integrations, parts, tmp_path):
         result = study(inputs(name, frame))
         file = tmp_path / f"{name}.csv"
         result.series.to_csv(file, index=False)  # figures are drawn from files
-        figure = draw(pd.read_csv(file), result.table, {})
+        figure = draw(pd.read_csv(file), result.table)
         save(figure, tmp_path / name)
         assert len(figure.axes) == 2
         assert (tmp_path / f"{name}.svg").stat().st_size > 0
