@@ -166,7 +166,7 @@ def test_the_error_is_that_of_the_runs(dim, spacing):
     radius = np.abs(case.x) if dim == 1 else case.radius
     ours = problem.error(radius, case.particle_spacing**dim, run.u)
     assert ours == pytest.approx(relative_l1_error(case, run.u), rel=1e-13)
-    assert problem.half_width(4.0) == case.domain
+    assert problem.half_width(4.0) == case.reach
 
 
 def test_unequal_volumes_count():
@@ -234,7 +234,7 @@ def test_a_naive_trial_takes_a_few_steps_and_counts_all():
     case = fp.Case(scheme="KPSE", beta=0.5, truncation=5.0, spacing=0.4, dt=1e-3)
     assert error == pytest.approx(relative_l1_error(case, compute(case).u), rel=1e-12)
     four = fp.Case(
-        scheme="KPSE", beta=0.5, half_width=case.domain, spacing=0.4, dt=1e-3, t_final=0.504
+        scheme="KPSE", beta=0.5, half_width=case.reach, spacing=0.4, dt=1e-3, t_final=0.504
     )
     assert u == pytest.approx(compute(four).u, rel=1e-12)
 

@@ -28,18 +28,18 @@ def case(**changes) -> Case:
 
 def test_the_lattice():
     c = case()
-    assert c.domain == pytest.approx(4.0 * 1.5 ** (1.0 / 1.5) * mean_radius(1.5), rel=1e-15)
-    assert c.n == round(c.domain / 0.1)
+    assert c.reach == pytest.approx(4.0 * 1.5 ** (1.0 / 1.5) * mean_radius(1.5), rel=1e-15)
+    assert c.n == round(c.reach / 0.1)
     assert c.particles == c.x.size == 2 * c.n + 1
     assert c.x[c.n] == 0.0
-    assert c.x[-1] == pytest.approx(c.domain, rel=1e-15)
+    assert c.x[-1] == pytest.approx(c.reach, rel=1e-15)
     assert c.particle_spacing == pytest.approx(0.1, rel=1.0 / c.n)
     assert np.array_equal(c.x, -c.x[::-1])
 
 
 def test_the_half_width_grows_with_the_diffusivity():
-    assert case(diffusivity=8.0).domain == pytest.approx(4.0 * case().domain, rel=1e-14)
-    assert case(truncation=None, half_width=3.0).domain == 3.0
+    assert case(diffusivity=8.0).reach == pytest.approx(4.0 * case().reach, rel=1e-14)
+    assert case(truncation=None, half_width=3.0).reach == 3.0
 
 
 @given(dt=st.floats(1e-4, 2.0), t_final=st.floats(0.51, 3.0))
@@ -57,21 +57,21 @@ def test_a_step_that_fits_is_kept_in_spite_of_rounding():
 
 
 def test_defaults_that_depend():
-    assert case().method == "rk2"
-    assert case(scheme="GPSE", dt=None).method == "euler"
-    assert case().epsilon_over_h == 2.0
+    assert case().resolved_integrator == "rk2"
+    assert case(scheme="GPSE", dt=None).resolved_integrator == "euler"
+    assert case().resolved_overlap == 2.0
     c = case(dt=None, integrator="exponential")
     assert (c.steps, c.time_step, c.largest_stable_step) == (0, 0.0, float("inf"))
 
 
 def test_the_smoothing_length_of_gpse_is_tied_to_the_step():
     c = case(scheme="GPSE", dt=0.05, diffusivity=2.0)
-    epsilon = c.epsilon_over_h * c.particle_spacing
+    epsilon = c.resolved_overlap * c.particle_spacing
     assert epsilon == pytest.approx((2.0 * c.time_step) ** (1.0 / 1.5), rel=1e-14)
     c = case(scheme="GPSE", dt=None)
-    assert c.epsilon_over_h == pytest.approx(2.0, rel=0.07)  # 9 steps, not 8.3
+    assert c.resolved_overlap == pytest.approx(2.0, rel=0.07)  # 9 steps, not 8.3
     c = case(scheme="GPSE", dt=None, overlap=3.0)
-    assert c.epsilon_over_h == pytest.approx(3.0, rel=0.1)
+    assert c.resolved_overlap == pytest.approx(3.0, rel=0.1)
 
 
 def test_the_largest_stable_step():

@@ -12,7 +12,7 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 
 # As far as it takes for the tails: beta -> half-width and spacing in the middle, for L = 2.
-GRIDS = {0.1: (1e12, 0.2), 0.5: (1e4, 0.2), 0.9: (300.0, 0.2)}
+GRIDS = {0.1: (1e10, 0.125), 0.5: (1e4, 0.2), 0.9: (300.0, 0.2)}
 SCALE = 2.0
 
 
@@ -70,7 +70,7 @@ def test_the_error_is_small(beta):
     exact = fp.green(solution.x, 1.5, 1.0 + beta)
     near = np.abs(solution.x) <= 5.0 * fp.mean_radius(1.0 + beta)
     assert solution.u[near] == pytest.approx(exact[near], abs=1e-9 * exact.max())
-    assert run.relative_l1_error.item() < 1e-10
+    assert run.relative_l1_error.item() < 1e-9
     assert run.mass_initial.item() == pytest.approx(1.0, abs=1e-4)
 
 
@@ -116,7 +116,7 @@ def test_a_run_goes_on_where_another_ended():
     near = np.abs(whole.x.values) <= 10.0
     assert rest.u.values[near] == pytest.approx(whole.u.values[near], abs=1e-12)
     with pytest.raises(InvalidInput, match=r"initial = .*points are up to"):
-        fp.solve(case(t_initial=1.0, graded_scale=2.01), half)
+        fp.solve(case(t_initial=1.0, graded_scale=2.001), half)
 
 
 def test_data_of_ones_own():
@@ -131,7 +131,7 @@ def test_data_of_ones_own():
     with pytest.raises(InvalidInput, match="not finite at x = -"):
         ready.solve(u0)
     with pytest.raises(fp.NonFiniteSolution, match="GPSE"):
-        prepare(case(graded_form="exchange")).solve(np.full(case().shape, 1e308))
+        prepare(case(graded_form="quadrature")).solve(np.full(case().shape, 1e308))
 
 
 def test_too_narrow_is_a_warning():

@@ -28,7 +28,7 @@ def same_run(one: Case, other: Case) -> bool:
 
     def plain(c: Case) -> Case:
         evaluation = None if c._series_by_default else c.evaluation
-        return c.model_copy(update={"integrator": c.method, "evaluation": evaluation})
+        return c.model_copy(update={"integrator": c.resolved_integrator, "evaluation": evaluation})
 
     return plain(one) == plain(other)
 

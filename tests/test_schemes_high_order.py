@@ -37,7 +37,7 @@ def smoothing_error(case: Case) -> float:
 
     With t_initial = 0.5 the integrand falls like exp(-k^alpha / 2): 1e-27 at k = 25.
     """
-    alpha, epsilon = case.alpha, case.epsilon_over_h * case.particle_spacing
+    alpha, epsilon = case.alpha, case.resolved_overlap * case.particle_spacing
     nodes, weights = np.polynomial.legendre.leggauss(800)
     k, weights = 12.5 * (1.0 + nodes), 12.5 * weights
     eta = kernel_transform("eta", epsilon * k, alpha, order=case.order)

@@ -10,6 +10,7 @@ import matplotlib as mpl
 import matplotlib.style
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -149,7 +150,7 @@ def scheme_legend(
 
 
 def legend_below(
-    figure: Figure, entries: Axes | Sequence[Line2D], columns: int | None = None
+    figure: Figure, entries: Axes | Sequence[Artist], columns: int | None = None
 ) -> None:
     """Put one frameless legend below the panels: the entries given, or those of `ax`; all in a row if not told."""
     handles = entries.get_legend_handles_labels()[0] if isinstance(entries, Axes) else list(entries)

@@ -32,4 +32,4 @@ def test_the_closed_form_is_the_truncation_error_of_an_exchange_scheme(beta, spa
         integrator="exponential",
     )
     error = relative_l1_error(case, compute(case).u)
-    assert error == pytest.approx(exchange_truncation_error(case.domain, 1 + beta, 1.0), rel=0.05)
+    assert error == pytest.approx(exchange_truncation_error(case.reach, 1 + beta, 1.0), rel=0.05)

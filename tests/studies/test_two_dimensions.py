@@ -71,7 +71,7 @@ def test_the_truncation_error_of_an_exchange_scheme_is_predicted():
     )
     error = relative_l1_error(case, compute(case).u)
     # Beside it: its next term, a few times (T / D^alpha) = 1 % of it, and the spatial error, 2 to 3 % of it.
-    assert error == pytest.approx(square_exchange_error(case.domain, ALPHA, 1.0), rel=0.1)
+    assert error == pytest.approx(square_exchange_error(case.reach, ALPHA, 1.0), rel=0.1)
 
 
 @pytest.mark.parametrize("alpha", [1.2, 1.5, 1.8])
@@ -236,7 +236,7 @@ def test_planar_map(runs):
     assert len(result.series) == 3 * 2 * 17**2
     kpse = result.table.set_index(["scheme", "exterior"]).loc[("KPSE", "truncated")]
     # The exchange conserves: at t_f it holds the mass inside the square at t_0, up to the midpoint rule.
-    half = Case(scheme="KPSE", spacing=0.5586979, **COMMON).domain
+    half = Case(scheme="KPSE", spacing=0.5586979, **COMMON).reach
     assert kpse["mass at t_f"] == pytest.approx(1.0 - square_tail_mass(half, 0.5, ALPHA), abs=2e-3)
     drawn("planar_map", result, parameters)
 
@@ -283,7 +283,7 @@ def test_planar_orders(runs):
     # Three lattices: only h as the middle level can be had, and no tables.
     assert result.table["ours, h as middle level"].notna().all()
     assert result.table[["h as coarse level", "with kernel tables"]].isna().all(axis=None)
-    half = Case(scheme="DD", spacing=1.0, **COMMON).domain
+    half = Case(scheme="DD", spacing=1.0, **COMMON).reach
     assert findings(result)["L-2D-ORD.spacing.h0.223"].ours == pytest.approx(2.0 * half / 32.0)
 
 

@@ -94,7 +94,7 @@ rule report:
     log:
         RESULTS / "logs/report.log",
     params:
-        scenes=[as_json(name) for name in SCENES],
+        scenes=[scene.model_dump_json(exclude_none=True) for scene in SCENES.values()],
         code=code("src/fracstudy/report.py"),
         documents=STUDY.model_dump(mode="json")["documents"],
     script:

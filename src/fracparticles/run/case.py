@@ -105,7 +105,7 @@ class Case(Parameters):
         parts = [
             f"{width}_h{_digits(self.spacing, 7)}",
             _said("s", self.overlap),
-            self.method,
+            self.resolved_integrator,
             _said("dt", self.dt),
             f"t{_digits(self.t_initial)}-{_digits(self.t_final)}",
             _said("diffusivity", self.diffusivity, default=1.0),

@@ -42,7 +42,7 @@ def check(case: Parameters) -> None:
     _check_time(case)
     case.kind.check(case.dim, case.order, case.kernel_family, "kernel_family")
     for field, takes, whom, remedy in _rules(case):
-        value = case.method if field == "integrator" else getattr(case, field)
+        value = case.resolved_integrator if field == "integrator" else getattr(case, field)
         if value not in takes:
             raise one_of(field, value, takes, whom, remedy)
     _check_width(case)
@@ -88,7 +88,7 @@ def _rules(case: Parameters) -> Iterator[Rule]:
     if case.remeshing == "none":
         for name in ("remesh_above", "threshold"):
             yield Rule(name, nothing, "remeshing='none'")
-    if case.method == "exponential":
+    if case.resolved_integrator == "exponential":
         exponential = "integrator='exponential', which takes no steps"
         yield Rule("dt", nothing, exponential)
         yield Rule("evaluation", (None, "series", "convolution"), exponential)
@@ -141,7 +141,7 @@ def _check_width(case: Parameters) -> None:
         remedy = "Give the factor C of Eq. (46) or the half-width itself."
         exactly = "exactly one of truncation and half_width"
         raise InvalidInput("truncation", case.truncation, exactly, remedy)
-    if case.is_graded and not SIZES[0] <= case.domain <= SIZES[1]:
+    if case.is_graded and not SIZES[0] <= case.reach <= SIZES[1]:
         within = f"a factor that makes a half-width from {SIZES[0]:g} to {SIZES[1]:g}"
         raise InvalidInput("truncation", case.truncation, within, "Take another unit of length.")
     if case.spacing > case.extent / _FEWEST:
@@ -181,12 +181,12 @@ def _check_step(case: Parameters) -> None:
         _check_own_step(case)
     elif case.kind.moving and case.dt is None:
         raise InvalidInput("dt", None, f"a number > 0 for {case.scheme}", "Give the time step.")
-    elif case.dt is None and not case.is_graded and case.method != "exponential":
+    elif case.dt is None and not case.is_graded and case.resolved_integrator != "exponential":
         limit = stability_limit(
-            case.scheme, case.beta, case.order, case.epsilon_over_h, case.dim, case.kernel_family
+            case.scheme, case.beta, case.order, case.resolved_overlap, case.dim, case.kernel_family
         )
         largest = limit * case.particle_spacing**case.alpha / case.diffusivity
-        stable = f"a number > 0 for integrator={case.method!r}, stable up to {largest:.4g}"
+        stable = f"a number > 0 for integrator={case.resolved_integrator!r}, stable up to {largest:.4g}"
         remedy = "Give dt, or integrator='exponential', which needs none."
         raise InvalidInput("dt", None, stable, remedy)
 
@@ -197,7 +197,7 @@ def _check_own_step(case: Parameters) -> None:
         one = f"one of dt and overlap for {case.scheme}, since epsilon = (D dt)^(1/alpha), Eq. (40)"
         raise InvalidInput("overlap", case.overlap, one, "Leave one of them out.")
     low, high = OVERLAPS[0] * (1.0 - _ROUNDED), OVERLAPS[1] * (1.0 + _ROUNDED)
-    if not low <= case.epsilon_over_h <= high:
+    if not low <= case.resolved_overlap <= high:
         least, most = (
             (s * case.particle_spacing) ** case.alpha / case.diffusivity for s in OVERLAPS
         )
@@ -222,11 +222,11 @@ def _check_far_field(case: Parameters) -> None:
         _check_spread(case)
     if case.far_terms in (None, 1) or case.evaluation == "convolution":
         return
-    if case.method == "euler" and case.steps == 1:
+    if case.resolved_integrator == "euler" and case.steps == 1:
         return
-    if case.n < _FAR_OVERLAPS * case.epsilon_over_h:
-        least = _FAR_OVERLAPS * case.epsilon_over_h * case.particle_spacing
-        short = f"a lattice of half-width {case.domain:.4g}, less than {_FAR_OVERLAPS} smoothing lengths, {least:.4g}"
+    if case.n < _FAR_OVERLAPS * case.resolved_overlap:
+        least = _FAR_OVERLAPS * case.resolved_overlap * case.particle_spacing
+        short = f"a lattice of half-width {case.reach:.4g}, less than {_FAR_OVERLAPS} smoothing lengths, {least:.4g}"
         remedy = "Leave it out, or take a wider lattice or a smaller spacing."
         raise InvalidInput("far_terms", case.far_terms, f"nothing or 1 on {short}", remedy)
     stiffness = (case.t_final - case.t_initial) * case.setting.rate
@@ -239,14 +239,14 @@ def _check_far_field(case: Parameters) -> None:
 def _check_spread(case: Parameters) -> None:
     """A point mass must not spread beyond the lattice: no power of |x| continues a solution that is flat there."""
     time = case.diffusivity * (case.t_final - case.t_initial)
-    inside = float(central_mass(case.domain, time, case.alpha, case.dim))
+    inside = float(central_mass(case.reach, time, case.alpha, case.dim))
     if inside < 0.5:
         given = "half_width" if case.truncation is None else "truncation"
         raise InvalidInput(
             given,
             getattr(case, given),
             "a lattice that is wider than the solution for exterior='open', and of a point mass only the share "
-            f"{inside:.2g} stays on |x| <= {case.domain:.4g} for the time of this run; half is asked for, 0.95 is good",
+            f"{inside:.2g} stays on |x| <= {case.reach:.4g} for the time of this run; half is asked for, 0.95 is good",
             f"The solution spreads over about (D T)^(1/alpha) = {time ** (1.0 / case.alpha):.4g}: take a half-width of "
             "several times that, or a shorter run.",
         )
@@ -258,6 +258,6 @@ def _check_work(case: Parameters) -> None:
         latest = case.t_initial + _STIFFEST / case.setting.rate
         most = f"at most {latest:.6g} with this spacing and diffusivity"
         raise InvalidInput("t_final", case.t_final, most, "Take a shorter run or a larger spacing.")
-    if case.method != "exponential" and span / case.asked_step > _MOST_STEPS:
+    if case.resolved_integrator != "exponential" and span / case.resolved_dt > _MOST_STEPS:
         least = f"at least {span / _MOST_STEPS:.3g}: 2^53 steps"
         raise InvalidInput("dt", case.dt, least, "Take a larger step.")

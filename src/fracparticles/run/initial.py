@@ -238,7 +238,7 @@ def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
     lattice, h = case.x, case.particle_spacing
     allowed = (
         f"u on the {case.particles} points of case.positions, {lattice.size} along {label}, h = {h:.9g} and "
-        f"|{label}| <= {case.domain:.9g}"
+        f"|{label}| <= {case.reach:.9g}"
     )
     remedy = "Set half_width and spacing to match, or interpolate the data onto case.positions."
     if x.dtype.kind not in "iuf" or x.ndim != 1 or not np.isfinite(x).all():
@@ -249,7 +249,7 @@ def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
     order = np.argsort(x, kind="stable")
     apart = np.asarray(case.volumes) if case.is_graded else np.asarray(h)  # of neighbours
     deviation = np.abs(x[order].astype(np.float64) - lattice) / apart
-    rounding = 0.0 if x.dtype.kind != "f" else float(np.finfo(x.dtype).eps) * case.domain / apart
+    rounding = 0.0 if x.dtype.kind != "f" else float(np.finfo(x.dtype).eps) * case.reach / apart
     wrong = (deviation > np.maximum(1e-9, rounding)) | (deviation >= 0.25)
     if wrong.any():
         worst = int(np.where(wrong, deviation, 0.0).argmax())

@@ -143,7 +143,7 @@ class Parameters(BaseModel):
         return 1.0 + self.beta
 
     @property
-    def domain(self) -> float:
+    def reach(self) -> float:
         """The half-width of the lattice, Eq. (46)."""
         if self.half_width is not None:
             return self.half_width
@@ -160,8 +160,8 @@ class Parameters(BaseModel):
     def extent(self) -> float:
         """What the spacing divides: the half-width D, or L arcsinh(D / L), the end of graded particles in L s."""
         if self.graded_scale is None:
-            return self.domain
-        return float(self.graded_scale * np.arcsinh(self.domain / self.graded_scale))
+            return self.reach
+        return float(self.graded_scale * np.arcsinh(self.reach / self.graded_scale))
 
     @property
     def n(self) -> int:
@@ -187,14 +187,14 @@ class Parameters(BaseModel):
     def x(self) -> np.ndarray:
         """The particle positions along one axis, shape (2 n + 1,)."""
         if self.graded_scale is not None:
-            return graded_particles(self.particles, self.domain, self.graded_scale)[0]
+            return graded_particles(self.particles, self.reach, self.graded_scale)[0]
         return np.arange(-self.n, self.n + 1) * self.particle_spacing
 
     @property
     def volumes(self) -> np.ndarray | float:
         """The particle volumes V_i: h^n for all on a lattice, of graded particles one for each."""
         if self.graded_scale is not None:
-            return graded_particles(self.particles, self.domain, self.graded_scale)[1]
+            return graded_particles(self.particles, self.reach, self.graded_scale)[1]
         return float(self.particle_spacing**self.dim)
 
     def integral(self, values: np.ndarray) -> float:
@@ -223,7 +223,7 @@ class Parameters(BaseModel):
         """
         half = 5.0 * mean_radius(self.alpha) if self.dim == 1 else 5.0
         spread = (self.diffusivity * self.t_final / 1.5) ** (1.0 / self.alpha)
-        return min(half * spread, self.domain)
+        return min(half * spread, self.reach)
 
     @property
     def kind(self) -> Scheme:
@@ -231,7 +231,7 @@ class Parameters(BaseModel):
         return ALL_SCHEMES[self.scheme]
 
     @property
-    def method(self) -> str:
+    def resolved_integrator(self) -> str:
         """The integrator, the default resolved."""
         if self.integrator is not None:
             return self.integrator
@@ -240,9 +240,9 @@ class Parameters(BaseModel):
     @cached_property
     def steps(self) -> int:
         """The number of time steps; 0 for the exponential."""
-        if self.method == "exponential":
+        if self.resolved_integrator == "exponential":
             return 0
-        return max(1, ceil((self.t_final - self.t_initial) / self.asked_step * (1 - _STEP_SLACK)))
+        return max(1, ceil((self.t_final - self.t_initial) / self.resolved_dt * (1 - _STEP_SLACK)))
 
     @property
     def time_step(self) -> float:
@@ -250,7 +250,7 @@ class Parameters(BaseModel):
         return (self.t_final - self.t_initial) / self.steps if self.steps else 0.0
 
     @property
-    def asked_step(self) -> float:
+    def resolved_dt(self) -> float:
         """The step asked for: dt, or for GPSE the one of its overlap, Eq. (40), on graded particles all of the time."""
         if self.dt is not None:
             return self.dt
@@ -259,7 +259,7 @@ class Parameters(BaseModel):
         return ((self.overlap or 2.0) * self.particle_spacing) ** self.alpha / self.diffusivity
 
     @property
-    def epsilon_over_h(self) -> float:
+    def resolved_overlap(self) -> float:
         """The realised overlap s = epsilon / h; for GPSE from the realised step, Eq. (40)."""
         if self.kind.self_timed:
             epsilon = (self.diffusivity * self.time_step) ** (1.0 / self.alpha)
@@ -283,7 +283,7 @@ class Parameters(BaseModel):
             spacing=self.particle_spacing,
             alpha=self.alpha,
             order=self.order,
-            overlap=self.epsilon_over_h,
+            overlap=self.resolved_overlap,
             diffusivity=self.diffusivity,
             summation=self.summation,
             exterior=self.exterior,
@@ -296,22 +296,22 @@ class Parameters(BaseModel):
     @property
     def steps_taken(self) -> bool:
         """Whether the steps are taken one by one; a single Euler step has nothing to gain from a series."""
-        if self.evaluation is None and self.method == "euler" and self.steps == 1:
+        if self.evaluation is None and self.resolved_integrator == "euler" and self.steps == 1:
             return True
         return self.evaluation == "stepping" or self.kind.moving
 
     @property
     def _series_by_default(self) -> bool:
         """Whether `evaluation` says "series" where it would be one anyway: but for a single Euler step."""
-        return self.evaluation == "series" and not (self.method == "euler" and self.steps == 1)
+        return self.evaluation == "series" and not (self.resolved_integrator == "euler" and self.steps == 1)
 
     @cached_property
     def largest_stable_step(self) -> float:
         """The largest dt inside the stability interval; infinite for the exponential and on graded particles."""
-        if self.method == "exponential" or self.is_graded:
+        if self.resolved_integrator == "exponential" or self.is_graded:
             return float("inf")
         limit = stability_limit(*self._of_the_symbol)
-        reach = STEP_POLYNOMIALS[self.method].stability_interval / 2.0
+        reach = STEP_POLYNOMIALS[self.resolved_integrator].stability_interval / 2.0
         return float(reach * limit * self.particle_spacing**self.alpha / self.diffusivity)
 
     @property
@@ -322,5 +322,5 @@ class Parameters(BaseModel):
     @property
     def _of_the_symbol(self) -> tuple[str, float, int, float, int, str | None]:
         scheme = self.kind.symbol_of or self.scheme
-        overlap = self.epsilon_over_h
+        overlap = self.resolved_overlap
         return scheme, self.beta, self.order, overlap, self.dim, self.kernel_family

@@ -75,7 +75,7 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
         Initial and final strengths.
     """
     smooths = case.kind.has_kernel and not case.kind.self_timed
-    resolution = (case.epsilon_over_h if smooths else 1.0) * wavenumber(u0)
+    resolution = (case.resolved_overlap if smooths else 1.0) * wavenumber(u0)
     growth = _ratio(np.abs(u).max(), np.abs(u0).max())
     found = {
         "resolution": (resolution, "epsilon times the wavenumber of the initial data"),
@@ -87,11 +87,11 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
         found |= _of_the_operator(case, u0, u)
     outside = max(outside_share(case, u0), outside_share(case, u))
     if case.exterior == "truncated":
-        outside = max(outside, _beyond(case, case.domain))
+        outside = max(outside, _beyond(case, case.reach))
     found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
     if case.exterior == "open":
         misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
-        error = misfit * outside * _beyond(case, 0.5 * case.domain)
+        error = misfit * outside * _beyond(case, 0.5 * case.reach)
         found["tail_misfit"] = (misfit, "relative misfit of the powers that continue u")
         found["far_field_error"] = (error, "estimated relative error of the far field")
     return found
@@ -125,7 +125,7 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
     complaints = []
     if not np.any(u0):
         complaints.append(
-            f"the initial strengths are zero at all particles, |x| <= {case.domain:.6g}. "
+            f"the initial strengths are zero at all particles, |x| <= {case.reach:.6g}. "
             "Move the data onto the lattice, or widen it."
         )
     if value["resolution"] > _RESOLUTION:
@@ -139,7 +139,7 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
     if value.get("wave_error", 0.0) > _WAVE:
         complaints.append(
             f"waves of the length that the initial data hold come out wrong by {value['wave_error']:.2g} of their "
-            f"amplitude. Take a smaller spacing, an overlap of about 2 (now {case.epsilon_over_h:.3g}), a smaller "
+            f"amplitude. Take a smaller spacing, an overlap of about 2 (now {case.resolved_overlap:.3g}), a smaller "
             "time step, or another scheme."
         )
     if value.get("table_error", 0.0) > _WAVE:
@@ -152,7 +152,7 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
         where = ", ".join(f"{case.x[k]:.4g}" for k in place)
         complaints.append(
             f"the greatest |u| has grown by the factor {value['growth']:.4g}, which the equation does not allow; it is "
-            f"at x = {where} of |x| <= {case.domain:.4g}. At an end of the lattice it is a layer of the truncated "
+            f"at x = {where} of |x| <= {case.reach:.4g}. At an end of the lattice it is a layer of the truncated "
             "scheme: take a wider lattice. Elsewhere the scheme is unstable: take a larger overlap or a smaller step."
         )
     if value.get("outside_share", 0.0) > _OUTSIDE:
@@ -160,18 +160,18 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
         could_open = could_open and not case.is_graded
         remedy = "take a wider lattice" + (" or exterior='open'" if could_open else "")
         complaints.append(
-            f"the solution does not fit on |x| <= {case.domain:.4g}: about {value['outside_share']:.2g} of it lies "
+            f"the solution does not fit on |x| <= {case.reach:.4g}: about {value['outside_share']:.2g} of it lies "
             f"beyond, or has left. To solve on the whole space, {remedy}."
         )
     if value.get("far_field_error", 0.0) > _FAR_FIELD:
         complaints.append(
             f"the far field leaves a relative error of about {value['far_field_error']:.1g}: the powers that continue "
-            f"u beyond |x| = {case.domain:.4g} miss the strengths inside by {value['tail_misfit']:.1g}. "
+            f"u beyond |x| = {case.reach:.4g} miss the strengths inside by {value['tail_misfit']:.1g}. "
             "Take a wider lattice."
         )
     if value.get("decay", 0.0) > _DECAY:
         complaints.append(
-            f"{case.scheme} of order {case.order} at overlap = {case.epsilon_over_h:.4g} makes every constant decay, "
+            f"{case.scheme} of order {case.order} at overlap = {case.resolved_overlap:.4g} makes every constant decay, "
             f"by exp(-{value['decay']:.3g}) over this run. Take a larger overlap."
         )
     if value.get("round_off", 0.0) > _ROUND_OFF:
@@ -213,7 +213,7 @@ def outside_share(case: Case, u: np.ndarray) -> float:
     lattice = np.abs(u)
     if lattice.max() == 0.0:
         return 0.0
-    dim, alpha, half = case.dim, case.alpha, case.domain
+    dim, alpha, half = case.dim, case.alpha, case.reach
     edges = [
         (np.take(lattice, k, axis), np.take(case.radius, k, axis) / half)
         for axis in range(dim)
@@ -246,7 +246,7 @@ def wave_error(case: Case, u: np.ndarray) -> float:
     with np.errstate(over="ignore"):
         if case.steps:
             z = symbol * tau / case.steps
-            sign, exponent = STEP_POLYNOMIALS[case.method].log_power(z, case.steps)
+            sign, exponent = STEP_POLYNOMIALS[case.resolved_integrator].log_power(z, case.steps)
             amplitude = sign * np.exp(exponent)
         else:
             amplitude = np.exp(tau * symbol)

@@ -141,7 +141,7 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
             spacing=case.particle_spacing,
             alpha=case.alpha,
             order=case.order,
-            overlap=case.epsilon_over_h,
+            overlap=case.resolved_overlap,
             diffusivity=case.diffusivity,
             start=case.t_initial,
             dt=case.time_step,
@@ -170,7 +170,7 @@ def warn_if_unstable(case: Case) -> None:
     if grows(low, high):
         if exponent > _NO_GROWTH:
             warnings.warn(
-                f"{case.scheme} of order {case.order} amplifies some waves at overlap = {case.epsilon_over_h:.4g}, "
+                f"{case.scheme} of order {case.order} amplifies some waves at overlap = {case.resolved_overlap:.4g}, "
                 f"beta = {case.beta:g}, whatever the time step: by exp({exponent:.4g}) over this run. The run is "
                 "computed as it is. Take a larger overlap, or a lower order.",
                 StabilityWarning,
@@ -179,7 +179,7 @@ def warn_if_unstable(case: Case) -> None:
     elif case.time_step > case.largest_stable_step:
         warnings.warn(
             f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
-            f"{case.method}: at most {case.largest_stable_step:.6g} is stable. The run is computed as it is.",
+            f"{case.resolved_integrator}: at most {case.largest_stable_step:.6g} is stable. The run is computed as it is.",
             StabilityWarning,
             stacklevel=3,
         )
@@ -293,7 +293,7 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         operator = SCHEMES[case.scheme].operator(case.setting)
     warn_if_unstable(case)
     if case.steps_taken:
-        polynomial, dt, steps = STEP_POLYNOMIALS[case.method], case.time_step, case.steps
+        polynomial, dt, steps = STEP_POLYNOMIALS[case.resolved_integrator], case.time_step, case.steps
         applications = steps * polynomial.stages
         if applications == 1:
             return Prepared(case, operator, 1, partial(single_pass, operator, dt, 1.0))
@@ -303,10 +303,10 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     low, high = spectral_interval(case.scheme, case.setting, operator, case.steps)
     most = largest_degree(case.scheme, case.setting, operator)
     try:
-        if case.method == "exponential":
+        if case.resolved_integrator == "exponential":
             flow = exponential_flow(operator, case.t_final - case.t_initial, low, high, most)
         else:
-            polynomial = STEP_POLYNOMIALS[case.method]
+            polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
             flow = power_flow(operator, polynomial, case.time_step, case.steps, low, high, most)
     except NonFiniteSolution as error:
         raise _named(case, error) from None
@@ -326,7 +326,7 @@ def _lattice_sum(case: Case) -> LatticeOperator:
 
     def amplification(theta: np.ndarray) -> np.ndarray:
         symbol = SCHEMES[case.scheme].symbol(theta, setting)
-        if case.method == "exponential":
+        if case.resolved_integrator == "exponential":
             return np.exp(scaled_time * symbol)
         return (1.0 + scaled_time / case.steps * symbol) ** case.steps
 
@@ -341,7 +341,7 @@ def _graded_step(case: Case) -> LatticeOperator:
     time = case.diffusivity * (case.t_final - case.t_initial)
     form = case.graded_form or INTERPOLATED
     return MatrixOperator(
-        graded_step(case.particles, case.domain, case.graded_scale, case.alpha, time, form)
+        graded_step(case.particles, case.reach, case.graded_scale, case.alpha, time, form)
     )
 
 

@@ -38,6 +38,7 @@ __all__ = [
     "timings_dataset",
 ]
 
+_SHORT = 0.1  # seconds of clock, of which nothing is said
 _TICKS = os.sysconf("SC_CLK_TCK")  # a second, of /proc/stat
 _LIBRARIES = ("finufft", "mkl_fft", "numba", "numpy", "pyfftw", "scipy")
 
@@ -57,6 +58,11 @@ class Timing:
     def median(self) -> float:
         """The one in the middle."""
         return statistics.median(self.times)
+
+    def columns(self, name: str, factor: float = 1.0) -> dict[str, float]:
+        """Return what a data set holds of them: <name>_time, <name>_time_median, times a factor, and <name>s."""
+        least, middle = factor * self.minimum, factor * self.median
+        return {f"{name}_time": least, f"{name}_time_median": middle, f"{name}s": len(self.times)}
 
     def __add__(self, other: Timing) -> Timing:
         return Timing(self.times + other.times)
@@ -100,7 +106,9 @@ def other_load() -> float:
 
     The system counts in ticks of some milliseconds: of many short measurements the sum is right, not each.
     """
-    return max(0.0, _WATCHED["others"] / _WATCHED["clock"]) if _WATCHED["clock"] else float("nan")
+    if _WATCHED["clock"] < _SHORT:
+        return float("nan")
+    return max(0.0, _WATCHED["others"] / _WATCHED["clock"])
 
 
 def forget_tables() -> None:

@@ -58,7 +58,7 @@ def naive_steps(case: Case, steps: int) -> Case:
     """Return the same lattice with so many of the time steps, sums over all pairs."""
     fields = case.model_dump(exclude_none=True, exclude={"truncation"})
     few = {
-        "half_width": case.domain,  # C would follow from the final time
+        "half_width": case.reach,  # C would follow from the final time
         "t_final": case.t_initial + steps * case.time_step,
         "summation": "naive",
         "evaluation": "stepping",

@@ -61,5 +61,5 @@ class Problem:
 
     def error(self, radius: np.ndarray, volumes: np.ndarray | float, u: np.ndarray) -> float:
         """Return the error of u at `t_final` within the error radius; |x_i|, V_i and u_i."""
-        exact = {"time": self.t_final, "alpha": self.alpha, "dim": self.dim}
+        exact: Any = {"time": self.t_final, "alpha": self.alpha, "dim": self.dim}
         return relative_l1_deviation(u, radius, volumes, self.error_radius, **exact)

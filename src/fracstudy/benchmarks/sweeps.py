@@ -12,6 +12,7 @@ from functools import partial
 from itertools import product
 from typing import Any
 
+from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracstudy.benchmarks.contenders import (
     GRADED_FORMS,
@@ -39,12 +40,49 @@ __all__ = [
     "plane_peer_trials",
     "scheme_trials",
     "stepped_trials",
+    "sweep",
     "tied_step_trials",
     "walk_trials",
 ]
 
 _SMALLEST = 8.0  # the least half of a lattice in h
 _ONE_OF_N = 1.0 + 1e-9  # over the n-th part of the time: a step that is to be one of n equal ones
+
+
+def sweep(
+    problem: Problem,
+    kind: str,
+    ways: Sequence[Mapping[str, Any]] | None = None,
+    as_matrix: float = 0,
+    **given: Any,
+) -> Iterator[Trial]:
+    """Yield the trials of one kind.
+
+    Parameters
+    ----------
+    problem : Problem
+    kind : str
+        Of a function of this module, without "_trials".
+    ways : sequence of mapping, optional
+        Its `way`, one after the other, for a kind that has one.
+    as_matrix : float
+        Of up to so many points each also runs as one matrix; the limit does not.
+    **given
+        What else the function takes.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such kind.
+    """
+    function = globals().get(f"{kind}_trials")
+    if function is None:
+        kinds = [name.removesuffix("_trials") for name in __all__ if name != "sweep"]
+        raise InvalidInput("kind", kind, f"one of {', '.join(kinds)}", "Choose one of these.")
+    for way in [{}] if ways is None else [{"way": way} for way in ways]:
+        trials = list(function(problem, **way, **given))
+        yield from trials
+        yield from matrix_trials((one for one in trials if one.group != "limit"), as_matrix)
 
 
 def _trial(
@@ -69,7 +107,7 @@ def _grids(
     truncations: Sequence[float],
     most: float,
     smallest: float = _SMALLEST,
-) -> Iterator[dict[str, float]]:
+) -> Iterator[dict[str, Any]]:
     for truncation, spacing in product(truncations, spacings):
         width = problem.half_width(truncation)
         half = width / spacing
@@ -218,7 +256,7 @@ def _peer_trial(
     names: tuple[str, str, str],
     make: Callable[..., Solver | PlaneSolver],
     half_width: float,
-    place: dict[str, float],
+    place: dict[str, Any],
 ) -> Trial:
     spacing = place["spacing"]
     task = {"alpha": problem.alpha, "time": problem.time, "half_width": half_width}

@@ -37,7 +37,7 @@ class Ready:
     scale : float
         The time of a run over that of `solve`: more than 1 where only some of the time steps are taken.
     draw : callable, optional
-        The initial data of a method that does not start from the fundamental solution at its points.
+        The initial data of a contender that does not start from the fundamental solution at its points.
     judge : callable, optional
         The error of what `solve` returns, where that is not the solution at the points at the final time.
     """
@@ -133,9 +133,7 @@ class _Record:
         scale = row.get("extrapolated", 1.0)
         for name, timing, factor in (("setup", self.setups, 1.0), ("solve", self.solves, scale)):
             if timing.times:
-                row[f"{name}_time"] = factor * timing.minimum
-                row[f"{name}_time_median"] = factor * timing.median
-                row[f"{name}s"] = len(timing.times)
+                row |= timing.columns(name, factor)
         return row
 
 

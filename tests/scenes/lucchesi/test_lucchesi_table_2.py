@@ -14,7 +14,7 @@ from scenes.lucchesi.lucchesi_table_2.study import study
 def test_without_a_print_the_middle_level_is_taken(computed, counts):
     """The levels that are not nested have no order (49)."""
     grid = {"scheme": "DD", "beta": 0.7, "truncation": 5.0, "dt": 5e-3}
-    half = Case(**grid, spacing=0.1).domain
+    half = Case(**grid, spacing=0.1).reach
     files = computed([{**grid, "spacing": [half / n for n in counts], "store": "field"}])
     result = study(Inputs("mine", runs=files), judged_remeshing="M4'", printed_spacing={})
     row = result.table.iloc[0]

@@ -12,7 +12,7 @@ from scenes.lucchesi.spatial_claims.study import study as study_of_claims
 
 
 def test_the_orders_of_the_kernels_are_found(computed):
-    half = Case(scheme="DD", beta=0.5, truncation=20.0, spacing=0.1, dt=1e-3).domain
+    half = Case(scheme="DD", beta=0.5, truncation=20.0, spacing=0.1, dt=1e-3).reach
     h = [half / n for n in (128, 256, 512)]
     block = {"order": [2, 4], "beta": 0.5, "truncation": 20.0, "spacing": h, "store": "metrics"}
     both = {"exterior": ["truncated", "open"]}

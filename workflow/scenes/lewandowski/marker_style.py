@@ -15,11 +15,13 @@ from fracstudy.style import COLOURS
 
 __all__ = [
     "EXACT",
+    "HOLLOW",
     "LOADING_LOOKS",
     "SHAPE_COLOURS",
     "decimals",
     "draw",
     "entry",
+    "four_panels",
     "note",
     "shape_panels",
     "strokes",
@@ -44,6 +46,12 @@ LOADING_LOOKS = {
     "wide": ("uniform in [−L, L]", "#E69F00", "^"),
 }
 EXACT: dict[str, Any] = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
+HOLLOW: dict[str, Any] = {
+    "marker": "o",
+    "linestyle": "",
+    "markersize": 3.5,
+    "markerfacecolor": "white",
+}
 
 
 def symbol(shape: str) -> str:
@@ -79,6 +87,15 @@ def strokes(ax: Axes, x: pd.Series, colour: str) -> None:
     """Draw the markers as strokes below the axis."""
     level = np.full(len(x), -0.025)
     ax.plot(x, level, "|", color=colour, markersize=6, markeredgewidth=0.6, alpha=0.8)
+
+
+def four_panels(width: float, height: float, *titles: str) -> tuple[Figure, list[Axes]]:
+    """Return a figure with two rows of two panels, lettered."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    axes = list(figure.subplots(2, 2).ravel())
+    for letter, ax, title in zip("abcd", axes, titles, strict=True):
+        ax.set_title(f"({letter}) {title}", loc="left")
+    return figure, axes
 
 
 def shape_panels(

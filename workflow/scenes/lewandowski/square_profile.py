@@ -57,34 +57,18 @@ _CLUSTERED = 0.1  # of |x| < within empty: independent markers give a hundredth,
 
 @dataclass(frozen=True)
 class Trace:
-    """A run with its error norm.
-
-    Attributes
-    ----------
-    shape, loading : str
-    seed : int
-    x0, weights : array, shape (N,)
-        The markers at the start.
-    t, error : array
-        Times, and E(t) then: all, or the last only.
-    last : tuple of float and array
-        The last time that the run reached, and the markers then.
-    run : MarkerRun or None
-        The end of the run; None if it stopped.
-    stopped : str
-        Why, when and where it stopped; empty if it did not.
-    """
+    """A run with its error norm E(t), at all times or at the last only."""
 
     shape: str
     loading: str
     seed: int
-    x0: np.ndarray
+    x0: np.ndarray  # the markers at the start
     weights: np.ndarray
     t: np.ndarray
     error: np.ndarray
-    last: tuple[float, np.ndarray]
-    run: MarkerRun | None
-    stopped: str
+    last: tuple[float, np.ndarray]  # the last time that the run reached, and the markers then
+    run: MarkerRun | None  # none if it stopped
+    stopped: str  # why, when and where; empty if it did not
 
     @property
     def end(self) -> MarkerRun:
@@ -95,30 +79,20 @@ class Trace:
 
 
 class SquareRuns(BaseModel):
-    """What the runs of a scene share.
-
-    Attributes
-    ----------
-    support, dt, t_final : float
-        eps, the time step, and the end.
-    markers : int
-        N, of which the start "wide" leaves out those of no weight.
-    half_width, grid : float, int
-        L and N_g of the fixed grid X_g = -L + (g - 1) 2 L / (N_g - 1).
-    """
+    """What the runs of a scene share."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
-    support: float = 1.0
+    support: float = 1.0  # eps
     dt: float
     t_final: float
-    markers: int
-    half_width: float
-    grid: int
+    markers: int  # N, of which the start "wide" leaves out those of no weight
+    half_width: float  # L
+    grid: int  # N_g
 
     @cached_property
     def z(self) -> np.ndarray:
-        """The fixed grid."""
+        """The fixed grid X_g = -L + (g - 1) 2 L / (N_g - 1)."""
         return np.linspace(-self.half_width, self.half_width, self.grid)
 
     @cached_property
@@ -198,15 +172,9 @@ def delay(z: np.ndarray, f: np.ndarray, t: float) -> tuple[float, float]:
 
 
 class Starts:
-    """The runs with some shape functions from all starts, and what is measured of those that did not stop.
+    """The runs with some shape functions from all starts: those that stopped, and what is `measured` of the others.
 
-    Attributes
-    ----------
-    runs, stopped : list of Trace
-    measured : DataFrame
-        One row a run of `runs`.
-    clustered : Series
-        Whether its markers form clusters: over a tenth of |x| < 3 eps lies in gaps wider than eps / 5.
+    Markers form clusters if over a tenth of |x| < 3 eps lies in gaps wider than eps / 5.
     """
 
     def __init__(

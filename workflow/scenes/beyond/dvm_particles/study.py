@@ -40,7 +40,7 @@ def study(inputs: Inputs, *, times: list[float], every: int) -> Result:
     case = Case.from_json(inputs.open(remeshing="none").attrs["case"])
     other = next(name for name in inputs.scalars["remeshing"] if name != "none")
     remeshed = inputs.open(remeshing=other)
-    h, overlap = case.particle_spacing, case.epsilon_over_h
+    h, overlap = case.particle_spacing, case.resolved_overlap
     states: list[tuple[float, np.ndarray]] = []
     advect(case, initial_strengths(case)[0], lambda t, x, _: states.append((t, x)))
     time, places = np.array([t for t, _ in states]), [x for _, x in states]
@@ -63,12 +63,12 @@ def study(inputs: Inputs, *, times: list[float], every: int) -> Result:
                 "largest spacing / h": widest[k] / h,
                 "overlap in the bulk": overlap / (bulk[k] / h),
                 "last particle": x.max(),
-                "last particle, exact": case.domain * exact,
+                "last particle, exact": case.reach * exact,
                 "remeshings the bulk would need": int(np.log(bulk[k] / h) / np.log(above)),
                 f"remeshings, {other}": int(so_far.sum()),
                 "steps": k,
                 "largest spacing before a remeshing / h": before[so_far].max(initial=0.0),
-                "nearest to the centre / D": where[so_far].min(initial=np.inf) / case.domain,
+                "nearest to the centre / D": where[so_far].min(initial=np.inf) / case.reach,
             }
         )
         at = 0.5 * (x[1:] + x[:-1])

@@ -244,7 +244,7 @@ def _linearity(base: Base) -> Iterator[Check]:
 
 def _field(run: Solution) -> np.ndarray:
     """u_eps(x_i) = sum_j V_j u_j eta_eps(x_i - x_j), Eq. (7), with eta of (8)."""
-    s = run.case.epsilon_over_h
+    s = run.case.resolved_overlap
     m = np.arange(-ceil(7.0 * s), ceil(7.0 * s) + 1)  # exp(-49) is below round-off
     return np.convolve(run.u, np.asarray(kernel("eta", m / s, run.case.alpha)) / s, mode="same")
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, decimals, draw, note, symbol
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, decimals, draw, four_panels, note, symbol
 from scenes.lewandowski.square_profile import LOADINGS, SquareRuns
 
 __all__ = ["figure"]
@@ -18,16 +18,18 @@ _RED = "#D55E00"
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, run: SquareRuns) -> Figure:
     """Draw (a) E by markers per eps, (b) the best eps, (c) the parts of the error, (d) F that turns negative."""
-    figure = Figure(figsize=(8.8, 6.6), layout="constrained")
-    axes = figure.subplots(2, 2).ravel()
+    titles = (
+        "number of markers; grey: 10 to 15",
+        "measured (points) and formula (lines)",
+        "the parts of (17), from midpoints",
+        "",
+    )
+    figure, axes = four_panels(8.8, 6.6, *titles)
     _numbers(axes[0], pick(series, panel="E"))
     axes[0].set_ylabel(f"error norm $E({SquareRuns.model_validate(run).t_final:g})$")
     _best(axes[1], pick(series, panel="best ε"))
     _parts(axes[2], pick(series, loading=LOADINGS["midpoints"]))
     _denominator(axes[3], pick(series, panel="denominator"))
-    for letter, ax in zip("abcd", axes, strict=True):
-        ax.set_title(f"({letter}) {ax.get_title()}", loc="left")
-        ax.set_title("")
     return figure
 
 
@@ -40,7 +42,6 @@ def _numbers(ax: Axes, series: pd.DataFrame) -> None:
     ax.axvspan(10.0, 15.0, color="0.5", alpha=0.15, linewidth=0)
     ax.set(xscale="log", yscale="log", xlabel=r"markers per $\varepsilon$ at the end")
     decimals(ax, 0.02, 0.05, 0.1, 0.2)
-    ax.set_title("number of markers; grey: 10 to 15")
     ax.legend(loc="lower left")
 
 
@@ -56,7 +57,6 @@ def _best(ax: Axes, series: pd.DataFrame) -> None:
     ax.minorticks_off()
     decimals(ax, 0.1, 0.2, 0.5, 1.0)
     ax.set_ylabel(r"best support parameter $\varepsilon$")
-    ax.set_title("measured (points) and formula (lines)")
     ax.legend(loc="upper left", ncols=2)
 
 
@@ -72,7 +72,6 @@ def _parts(ax: Axes, series: pd.DataFrame) -> None:
             draw(ax, curve, f"o{line}", label=f"{symbol(name)}: {label}", **style)
     ax.set(yscale="log", xlabel="time $t$", ylabel="largest error")
     decimals(ax, 0.002, 0.005, 0.01, 0.02, 0.05)
-    ax.set_title("the parts of (17), from midpoints")
     ax.legend(loc="best")
 
 
@@ -93,4 +92,5 @@ def _denominator(ax: Axes, series: pd.DataFrame) -> None:
     note(ax, f"F = {depth}\nat a marker", (x, y), (-62, -8), arrowprops=arrow, **centred)
     ax.set(xlabel="$x$", ylabel="$F$, the denominator of (7)")
     ax.set_yscale("symlog", linthresh=1e-3)
-    ax.set_title(rf"$S_8$ from random positions, $t \approx {series['t'].iloc[0]:.2f}$")
+    t = series["t"].iloc[0]
+    ax.set_title(rf"(d) $S_8$ from random positions, $t \approx {t:.2f}$", loc="left")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -58,8 +57,9 @@ def study(
     return Result(table, inputs.judged(findings), panels.frame)
 
 
-def _rates(name: str, modes: list[int], **lattice: float) -> list[Mapping[str, Any]]:
-    shape, rows = shape_function(name), []
+def _rates(name: str, modes: list[int], **lattice: Any) -> list[dict[str, Any]]:
+    shape = shape_function(name)
+    rows: list[dict[str, Any]] = []
     spacing = lattice["period"] / round(lattice["period"] / lattice["spacing"])
     for mode in modes:
         k, measured = measured_rate(shape, mode, **lattice)

@@ -12,31 +12,27 @@ from matplotlib.ticker import NullFormatter
 
 from fracstudy.panels import pick
 from fracstudy.style import slope_triangle
-from scenes.lewandowski.marker_style import draw, note
+from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels, note
 
 __all__ = ["figure"]
 
 _BLUE, _RED, _GREEN, _PINK, _ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
-_HOLLOW: dict[str, Any] = {"marker": "o", "linestyle": "", "markersize": 3.5, "markerfacecolor": "white"}
-_SMALL = {"fontsize": 7.5}
+_SMALL: dict[str, Any] = {"fontsize": 7.5}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, dt: float, scan_until: float) -> Figure:
     """Draw (a) the profiles, (b) the step, (c) where the solution vanishes, (d) how the steady state is met."""
-    figure = Figure(figsize=(8.6, 6.6), layout="constrained")
-    axes = figure.subplots(2, 2).ravel()
-    _profiles(axes[0], pick(series, panel="profile"))
-    _steps(axes[1], pick(series, panel="step"), dt)
-    _lost(axes[2], pick(series, panel="lost"))
-    _approach(axes[3], pick(series, panel="approach"))
     titles = (
         "Figs. 17 and 18",
         f"the limit of the step, $t = {scan_until:g}$",
         "the flank: the equation loses $f > 0$",
         "a power of $t$",
     )
-    for letter, ax, title in zip("abcd", axes, titles, strict=True):
-        ax.set_title(f"({letter}) {title}", loc="left")
+    figure, axes = four_panels(8.6, 6.6, *titles)
+    _profiles(axes[0], pick(series, panel="profile"))
+    _steps(axes[1], pick(series, panel="step"), dt)
+    _lost(axes[2], pick(series, panel="lost"))
+    _approach(axes[3], pick(series, panel="approach"))
     return figure
 
 
@@ -86,13 +82,13 @@ def _lost(ax: Axes, series: pd.DataFrame) -> None:
     lines, markers, steady = (pick(here, series=s) for s in ("lines", "markers", "steady"))
     for (t, line), colour in zip(lines.groupby("t"), (_GREEN, _BLUE, _PINK), strict=False):
         draw(ax, line, color=colour, label=f"$t = {t:g}$")
-        draw(ax, markers[np.isclose(markers["t"], t)], color=colour, **_HOLLOW)
+        draw(ax, markers[np.isclose(markers["t"], t)], color=colour, **HOLLOW)
     draw(ax, steady, "--", color="black", linewidth=0.9, label=r"$f_\infty$")
     ax.axhline(0.0, color="0.5", linewidth=0.7)
     ax.plot(zero["x"], 0.0, "v", color=_RED, markersize=6, clip_on=False)
     text, at = f"$f = 0$ at $t = {zero['t']:.3f}$:\nno solution beyond", (zero["x"], 0.0)
     note(ax, text, at, (-4, -7), va="top", ha="center", color=_RED)
-    ax.plot([], [], color="0.3", label="markers", **_HOLLOW)
+    ax.plot([], [], color="0.3", label="markers", **HOLLOW)
     ax.set(xlabel="$x$", ylabel="$f$ without markers, $F$", xlim=(0.95, 2.5), ylim=(-0.045, 0.16))
     ax.legend(loc="upper right")
 

@@ -11,14 +11,13 @@ from matplotlib.ticker import NullFormatter
 
 from fracstudy.panels import pick
 from fracstudy.style import legend_below, slope_triangle
-from scenes.lewandowski.marker_style import draw, note
+from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels, note
 
 __all__ = ["figure"]
 
 _BLUE, _RED, _GREEN, _PINK, _SKY, _ORANGE = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00",
 )  # fmt: skip
-_HOLLOW = {"marker": "o", "linestyle": "", "markersize": 3.5, "markerfacecolor": "white"}
 _PROFILES: dict[str, tuple[str, dict[str, Any]]] = {
     "initial": ("$f_0$", {"color": "0.55", "linestyle": ":"}),
     "exact": ("exact", {"color": "black"}),
@@ -34,12 +33,6 @@ def figure(
     series: pd.DataFrame, table: pd.DataFrame, *, burgers: dict[str, Any], source: dict[str, Any]
 ) -> Figure:
     """Draw (a) Burgers' equation, (b) a soliton, (c) a source, (d) the errors."""
-    figure = Figure(figsize=(8.6, 6.8), layout="constrained")
-    axes = figure.subplots(2, 2).ravel()
-    _burgers(axes[0], pick(series, panel="burgers"))
-    _kdv(axes[1], pick(series, panel="kdv"))
-    _source(axes[2], pick(series, panel="source 0"))
-    _errors(axes[3], pick(series, panel="errors"))
     profile, t = rf"{source['q']['0']:g}\,\exp(-x^2)", source["t_final"]
     titles = (
         f"Burgers, $R = {burgers['shown']:g}$; lines: Cole-Hopf",
@@ -47,8 +40,11 @@ def figure(
         rf"source $Q = {profile}$, $t = {t:g}$",
         "errors",
     )
-    for letter, ax, title in zip("abcd", axes, titles, strict=True):
-        ax.set_title(f"({letter}) {title}", loc="left")
+    figure, axes = four_panels(8.6, 6.8, *titles)
+    _burgers(axes[0], pick(series, panel="burgers"))
+    _kdv(axes[1], pick(series, panel="kdv"))
+    _source(axes[2], pick(series, panel="source 0"))
+    _errors(axes[3], pick(series, panel="errors"))
     legend_below(figure, axes[3], columns=2)
     return figure
 
@@ -57,7 +53,7 @@ def _burgers(ax: Axes, series: pd.DataFrame) -> None:
     for (t, part), colour in zip(series.groupby("t"), (_ORANGE, _GREEN, _BLUE), strict=False):
         exact, dots = pick(part, series="exact"), pick(part, series="markers").sort_values("x")
         draw(ax, exact, color="black", linewidth=0.9)
-        draw(ax, dots.iloc[:: max(1, len(dots) // 40)], color=colour, **_HOLLOW)
+        draw(ax, dots.iloc[:: max(1, len(dots) // 40)], color=colour, **HOLLOW)
         note(ax, f"$t = {t:g}$", _peak(exact), (6, 2), color=colour)
     ax.set(xlim=(-1.5, 4.0), ylim=(0.0, 1.12 * series["y"].max()))
     ax.set(xlabel="$x$", ylabel="$F$ at the markers")
@@ -69,7 +65,7 @@ def _kdv(ax: Axes, series: pd.DataFrame) -> None:
         draw(ax, part, line, color="black", linewidth=0.9)
         note(ax, f"$t = {t:g}$", _peak(part), (0, 4), ha="center")
     dots = pick(series, series="markers").sort_values("x")
-    draw(ax, dots.iloc[:: max(1, len(dots) // 80)], color=_BLUE, **_HOLLOW)
+    draw(ax, dots.iloc[:: max(1, len(dots) // 80)], color=_BLUE, **HOLLOW)
     ax.set(xlabel="$x$", ylabel="$F$ at the markers", ylim=(0.0, 1.15 * series["y"].max()))
 
 

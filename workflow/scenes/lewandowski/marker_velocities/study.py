@@ -234,7 +234,7 @@ def _source(
             for count in markers:
                 epsilon = support * math.sqrt(markers[0] / count)
                 steps = math.ceil(t_final / (step * epsilon**2))
-                time = {"dt": t_final / steps, "steps": steps}
+                time: dict[str, Any] = {"dt": t_final / steps, "steps": steps}
                 x, w = equal_weight(Gaussian(), count)
                 if way == _VELOCITY:
                     velocity = FourierMarkerVelocity(epsilon, source_flux(source.cumulative))

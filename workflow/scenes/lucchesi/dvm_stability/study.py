@@ -229,14 +229,14 @@ def _dvm_finding(runs: pd.DataFrame, growth: pd.DataFrame, beta: float, h: float
 
 
 def _velocity(case: Case) -> dvm.DiffusionVelocity:
-    epsilon = case.epsilon_over_h * case.particle_spacing
+    epsilon = case.resolved_overlap * case.particle_spacing
     return dvm.DiffusionVelocity(case.alpha, case.order, epsilon)
 
 
 def _bounded_finding(grid: dict[str, float], spacings: list[float]) -> Finding:
     """The last particle's velocity at the start, over the exact x / (alpha t), against h."""
     cases = [Case(scheme="DVM", **grid, spacing=h, dt=1.0) for h in spacings]
-    exact = cases[0].domain / (cases[0].alpha * cases[0].t_initial)
+    exact = cases[0].reach / (cases[0].alpha * cases[0].t_initial)
     h = np.array([case.particle_spacing for case in cases])
     strengths = [case.particle_spacing * initial_strengths(case)[0] for case in cases]
     pairs = zip(cases, strengths, strict=True)
@@ -257,7 +257,7 @@ def _bounded_finding(grid: dict[str, float], spacings: list[float]) -> Finding:
 def _divergence_finding(case: Case) -> Finding:
     """A run that stops below the limit: where, and how weak the particle there is."""
     states: deque[Any] = deque(maxlen=1)
-    stopped, weak, place = "does not stop", 0.0, case.domain
+    stopped, weak, place = "does not stop", 0.0, case.reach
     try:
         advect(case, initial_strengths(case)[0], lambda *state: states.append(state))
     except FieldNotPositive:
@@ -271,7 +271,7 @@ def _divergence_finding(case: Case) -> Finding:
         weak < _WEAK and place > 5.0 * mean_radius(case.alpha),
         f"At beta = {case.beta:g}, h = {case.particle_spacing:.3g}, dt = {case.time_step:g}, "
         f"{case.time_step / case.largest_stable_step:.2g} of the limit of DD, the run {stopped}: the field changes "
-        f"sign; the weakest particle of the step before is at {place / case.domain:.2f} D with {weak:.1e} of the peak. "
+        f"sign; the weakest particle of the step before is at {place / case.reach:.2f} D with {weak:.1e} of the peak. "
         "It is weak because it is an end of the lattice, which remeshing rings about.",
         "A run stops where the field is not small.",
     )

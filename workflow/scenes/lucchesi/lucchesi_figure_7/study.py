@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,13 +12,15 @@ from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.fpse import flux_weights
 from fracparticles.special.stable import green, green_flux, green_rate
-from fracstudy.inputs import Inputs, Result, observed_order, statement
-from scenes.beyond.solution_map_2d.study import DISK
+from fracstudy.claims import Finding
+from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.orders import orders_by
+from scenes.plane import DISK
 
 __all__ = ["flux_along_axis", "study"]
 
 _SECOND = 0.25  # how far from 2 an observed order may be
-_COLUMN = "largest error for r <= 5 / largest value"
+_ERROR, _ORDER = "largest error for r <= 5 / largest value", "observed order"
 _QUANTITIES = {
     "flux": "flux (19), FPSE",
     "DD": "diffusion rate, DD",
@@ -41,135 +42,100 @@ def flux_along_axis(case: Case, u: np.ndarray) -> np.ndarray:
     return case.particle_spacing**-case.beta * sums(u)[0][:, case.n]
 
 
-def study(inputs: Inputs) -> Result:
+def study(
+    inputs: Inputs,
+    *,
+    beta: float,
+    truncation: float,
+    time: float,
+    particles: list[int],
+    finer: list[int],
+) -> Result:
     """Errors of the flux and the rate of G(., t_0) along y = 0, on the printed lattices and finer ones."""
-    parameters = inputs.parameters
-    counts = [*parameters["particles"], *parameters["finer"]]
-    time, alpha = float(parameters["time"]), 1.0 + float(parameters["beta"])
+    alpha = 1.0 + beta
+    common = {"beta": beta, "dim": 2, "truncation": truncation, "integrator": "exponential"}
+    # The half-width does not depend on the spacing asked for.
+    width = 2.0 * Case(scheme="DD", spacing=1.0, **common).reach
     parts = []
-    for count in counts:
-        x, h, profiles = _profiles(parameters, count)
-        kept = x >= 0.0
-        r = x[kept]
-        exact = {"flux": green_flux(r, time, alpha, 2), "rate": green_rate(r, time, alpha, 2)}
-        for name, profile in profiles.items():
-            true = exact["flux" if name == "flux" else "rate"]
-            parts.append(
-                pd.DataFrame(
-                    {
-                        "quantity": name,
-                        "N": count,
-                        "h": h,
-                        "r": r,
-                        "y": profile[kept],
-                        "exact": true,
-                    }
-                )
-            )
+    for count in (*particles, *finer):
+        cases = [
+            Case(scheme=scheme, spacing=width / (count - 1), **common) for scheme in ("DD", "FPSE")
+        ]
+        case, kept = cases[1], cases[1].x >= 0.0
+        u, r = np.asarray(green(case.radius, time, alpha, 2)), case.x[kept]
+        flux, rate = green_flux(r, time, alpha, 2), green_rate(r, time, alpha, 2)
+        found = {"flux": (flux_along_axis(case, u), flux)}
+        found |= {one.scheme: (_rate_along_axis(one, u), rate) for one in cases}
+        where: dict[str, Any] = {"N": count, "h": case.particle_spacing, "r": r}
+        for name, (profile, exact) in found.items():
+            curve = {"quantity": name, **where, "y": profile[kept], "exact": exact}
+            parts.append(pd.DataFrame(curve))
     series = pd.concat(parts, ignore_index=True)
     table = _table(series)
-    findings = _findings(table, counts[: len(parameters["particles"])])
-    fine = series["N"].max()
-    shown = (series["r"] <= DISK) & (series["N"] <= max(parameters["particles"]))
-    drawn = series[shown | (series["N"] == fine)]
-    return Result(table, findings, drawn)
+    shown = (series["r"] <= DISK) & (series["N"] <= max(particles))
+    drawn = series[shown | (series["N"] == series["N"].max())]
+    return Result(table, inputs.judged(_findings(table, particles)), drawn)
 
 
-def _profiles(
-    parameters: Mapping[str, Any], count: int
-) -> tuple[np.ndarray, float, dict[str, np.ndarray]]:
-    """The positions, h, and flux and rates along y = 0 on the lattice of `count` particles a side."""
-    profiles = {}
-    for scheme in ("DD", "FPSE"):
-        case = Case(
-            scheme=scheme,
-            beta=parameters["beta"],
-            dim=2,
-            truncation=parameters["truncation"],
-            # The half-width does not depend on the spacing asked for.
-            spacing=_spacing(parameters, count),
-            integrator="exponential",
-        )
-        u = np.asarray(green(case.radius, parameters["time"], case.alpha, 2))
-        rate = SCHEMES[scheme].operator(case.setting).apply(u.reshape(-1)).reshape(case.shape)
-        profiles[scheme] = rate[:, case.n]
-        if scheme == "FPSE":
-            profiles["flux"] = flux_along_axis(case, u)
-    return case.x, case.particle_spacing, profiles
-
-
-def _spacing(parameters: Mapping[str, Any], count: int) -> float:
-    probe = Case(
-        scheme="DD",
-        beta=parameters["beta"],
-        dim=2,
-        truncation=parameters["truncation"],
-        spacing=1.0,
-        integrator="exponential",
-    )
-    return 2.0 * probe.domain / (count - 1)
+def _rate_along_axis(case: Case, u: np.ndarray) -> np.ndarray:
+    rate = SCHEMES[case.scheme].operator(case.setting).apply(u.reshape(-1))
+    return rate.reshape(case.shape)[:, case.n]
 
 
 def _table(series: pd.DataFrame) -> pd.DataFrame:
     rows = []
-    for (name, count), part in series.groupby(["quantity", "N"]):
-        inside = part["r"] <= DISK
-        error = (part["y"] - part["exact"]).abs() / part["exact"].abs().max()
-        rows.append(
-            {
-                "quantity": name,
-                "N": count,
-                "h": part["h"].iloc[0],
-                _COLUMN: error[inside].max(),
-                "at r": part.loc[error[inside].idxmax(), "r"],
-                "the same, 3 < r < 5": error[inside & (part["r"] > 3.0)].max(),
-                "the same, r > 5": error[~inside].max(),
-            }
-        )
-    table = pd.DataFrame(rows).sort_values(["quantity", "N"]).reset_index(drop=True)
-    table["observed order"] = np.nan
-    for _, part in table.groupby("quantity"):
-        order = observed_order(part["h"], part[_COLUMN])
-        table.loc[part.index[1:], "observed order"] = order
-    # The flux first, as in the figure.
-    place = table["quantity"].map({name: k for k, name in enumerate(_QUANTITIES)})
-    table = table.assign(place=place).sort_values(["place", "N"]).drop(columns="place")
-    return table.assign(quantity=table["quantity"].map(_QUANTITIES)).reset_index(drop=True)
+    for name, words in _QUANTITIES.items():
+        for count, part in series[series["quantity"] == name].groupby("N"):
+            inside = part["r"] <= DISK
+            error = (part["y"] - part["exact"]).abs() / part["exact"].abs().max()
+            rows.append(
+                {
+                    "quantity": words,
+                    "N": count,
+                    "h": part["h"].iloc[0],
+                    _ERROR: error[inside].max(),
+                    "at r": part.loc[error[inside].idxmax(), "r"],
+                    "the same, 3 < r < 5": error[inside & (part["r"] > 3.0)].max(),
+                    "the same, r > 5": error[~inside].max(),
+                }
+            )
+    table = pd.DataFrame(rows)
+    return table.assign(**{_ORDER: orders_by(table, "quantity", _ERROR)})
 
 
-def _findings(table: pd.DataFrame, printed: list[int]) -> list:
-    errors = table.pivot_table(index="N", columns="quantity", values=_COLUMN)
-    here = errors.loc[printed]
-    spelled = {
-        name: ", ".join(f"{error:.2g}" for error in here[name]) for name in _QUANTITIES.values()
-    }
+def _findings(table: pd.DataFrame, printed: list[int]) -> list[Finding]:
+    flux, dd, fpse = _QUANTITIES.values()
+    errors = table.pivot_table(index="N", columns="quantity", values=_ERROR).loc[printed]
+    values = {name: ", ".join(f"{error:.2g}" for error in errors[name]) for name in errors}
     where = f"of the largest value at N = {', '.join(map(str, printed))}"
-    orders = table.dropna(subset=["observed order"])
-    last = orders[orders["N"] == printed[-1]].set_index("quantity")["observed order"]
-    beyond = orders[orders["N"] > printed[-1]].set_index("quantity")["observed order"]
-    flux, *rates = _QUANTITIES.values()
+    orders = table.set_index(["N", "quantity"])[_ORDER]
+    last = orders[printed[-1]]
+    beyond = orders[orders.index.get_level_values("N") > printed[-1]].droplevel("N")
+    last_, beyond_ = (_spelled(order) for order in (last, beyond))
+    grows = "The error does not fall from each lattice to the next."
+    falls = np.diff(errors[[flux, dd, fpse]], axis=0) < 0.0
     return [
         statement(
             "L-F7.flux_converges",
-            bool((np.diff(here[flux]) < 0.0).all()),
-            f"Largest error of the flux along y = 0: {spelled[flux]} {where}.",
-            "The error does not fall from each lattice to the next.",
+            falls[:, 0].all(),
+            f"Largest error of the flux along y = 0: {values[flux]} {where}.",
+            grows,
         ),
         statement(
             "L-F7.rate_converges",
-            bool((np.diff(here[rates], axis=0) < 0.0).all()),
-            f"Largest error of the diffusion rate, {where}: {spelled[rates[0]]} (DD); {spelled[rates[1]]} (FPSE).",
-            "The error does not fall from each lattice to the next.",
+            falls[:, 1:].all(),
+            f"Largest error of the diffusion rate, {where}: {values[dd]} (DD); {values[fpse]} (FPSE).",
+            grows,
         ),
         statement(
             "L-F7.second_order",
-            bool(((last - 2.0).abs() < _SECOND).all()),
-            f"Observed order of the largest error between the two finest lattices: {_spell(last)}; between N = "
-            f"{printed[-1]} and the next finer one, not in the paper: {_spell(beyond)}.",
+            ((last - 2.0).abs() < _SECOND).all(),
+            f"Observed order of the largest error between the two finest lattices: {last_}; between N = "
+            f"{printed[-1]} and the next finer one, not in the paper: {beyond_}.",
             "The peak at the origin is not resolved yet: the order is still below 2.",
         ),
     ]
 
 
-def _spell(values: pd.Series) -> str:
-    return ", ".join(f"{values[name]:.2f} ({name})" for name in _QUANTITIES.values())
+def _spelled(orders: pd.Series) -> str:
+    return ", ".join(f"{order:.2f} ({name})" for name, order in orders.items())

@@ -1,7 +1,82 @@
-"""See `two_dimensional_errors_figures`."""
+"""Error (59) against the particle spacing: the paper's runs, and all schemes."""
 
 from __future__ import annotations
 
-from scenes.lucchesi.two_dimensional_errors_figures import planar_errors as figure
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fracstudy.style import (
+    axes_row,
+    entry,
+    legend_entries,
+    note,
+    panel_title,
+    scheme_style,
+    slope_triangle,
+)
+from scenes.plane import spacing_axis
 
 __all__ = ["figure"]
+
+_SCHEMES = ("DD", "FPSE", "KPSE", "GPSE")
+_HOLLOW: dict[str, Any] = {"markerfacecolor": "white"}
+_LEGEND: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (-0.08, -0.17)}
+_POINT: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": ""}
+_KEY = [
+    *legend_entries((name, None) for name in _SCHEMES),
+    entry("order II", color="0.3"),
+    entry("order IV", color="0.3", linestyle="--"),
+    entry("truncated", **_POINT),
+    entry("open", **_POINT, **_HOLLOW),
+]
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -> Figure:
+    """Draw (a) the paper's schemes, strengths and field (7); (b) all schemes, truncated and open."""
+    series = series[series["C"] == series["C"].min()].sort_values("h")
+    groups = dict(iter(series.groupby(["scheme", "order", "exterior"])))
+    figure, (paper, ours) = axes_row(2, width=4.3, height=4.3)
+    for scheme in ("DD", "FPSE"):
+        part = groups[scheme, "II", "truncated"]
+        style = scheme_style(scheme)
+        paper.plot(part["h"], part["error (59)"], label=f"{scheme}, strengths", **style)
+        part = part.dropna(subset=["error of the field (7)"])
+        style |= {"linestyle": "--", **_HOLLOW}
+        paper.plot(part["h"], part["error of the field (7)"], label=f"{scheme}, field (7)", **style)
+    dd = groups["DD", "II", "truncated"]
+    finest, error = dd.loc[dd["N"] == max(particles), ["h", "error (59)"]].iloc[0]
+    paper.axvspan(0.5 * series["h"].min(), finest / 1.3, color="0.95", zorder=0)
+    finer: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
+    finer |= {"color": "0.4", "fontsize": 7.5}
+    note(paper, "finer than\nin the paper", (finest / 1.36, 0.98), (0, 0), **finer)
+    slope_triangle(paper, 1.1 * finest, 0.4 * error, 2.0)
+    spacing_axis(paper, dd["h"])
+
+    for (scheme, order, exterior), part in groups.items():
+        shown = scheme in ("DD", "FPSE") and order == "II" and exterior == "truncated"
+        if not shown:  # nearly the open ones, and in (a)
+            face = {} if exterior == "truncated" else _HOLLOW
+            style = (
+                scheme_style(scheme, order, markerfacecolor=scheme_style(scheme)["color"]) | face
+            )
+            ours.plot(part["h"], part["error (59)"], **style)
+    if ("GPSE", "II", "truncated") in groups:
+        at = tuple(groups["GPSE", "II", "truncated"].iloc[0][["h", "error (59)"]])
+        note(ours, "KPSE and GPSE,\ntruncated", at, (-6, 6), ha="left", fontsize=7.5)
+    if ("KPSE", "IV", "open") in groups:
+        kpse = groups["KPSE", "IV", "open"]
+        h, error = kpse.iloc[len(kpse) // 2][["h", "error (59)"]]
+        slope_triangle(ours, 1.1 * h, 0.25 * error, 4.0)
+    spacing_axis(ours, series["h"])
+    for letter, ax, title in (
+        ("a", paper, "DD and FPSE, truncated"),
+        ("b", ours, "all schemes"),
+    ):
+        panel_title(ax, letter, title)
+        ax.set_yscale("log")
+    paper.set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (59)")
+    paper.legend(ncols=2, **_LEGEND)
+    ours.legend(handles=_KEY, ncols=4, **_LEGEND)
+    return figure

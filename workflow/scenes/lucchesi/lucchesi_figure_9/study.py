@@ -2,217 +2,166 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
-import netCDF4
 import numpy as np
 import pandas as pd
 
-from fracparticles.special.stable import central_mass, green
-from fracstudy.inputs import ORDERS, Inputs, Result, observed_order, statement
-from scenes.beyond.solution_map_2d.study import DISK, reconstructed, with_count
+from fracparticles.lattice.field import smoothed_field
+from fracparticles.run.solution import relative_l1_deviation
+from fracparticles.schemes import ALL_SCHEMES
+from fracparticles.special.stable import central_mass
+from fracstudy.claims import Finding
+from fracstudy.inputs import ORDERS, Inputs, Result, statement
+from fracstudy.orders import orders_by
+from scenes.plane import DISK, particles_per_side, stored_field
 
-__all__ = ["disk_error", "study"]
+__all__ = ["study"]
+
+_PAPER = ["DD", "FPSE"]
+NEEDS: dict[str, list[Any]] = {"scheme": _PAPER, "dim": [1, 2], "exterior": ["truncated", "open"]}
 
 _SECOND = 0.3  # how far from 2 an observed order may be
 _WEAK = 0.05  # share of the error that a weak effect may change
-_PAPER = ["DD", "FPSE"]
+_ERROR, _FIELD = "error (59)", "error of the field (7)"
+_ORDER, _FIELD_ORDER = "observed order", "observed order, field"
+# Columns of the table: those of the errors, by exterior.
+_COLUMNS = {
+    "error (59), truncated": (_ERROR, "truncated"),
+    "observed order, truncated": (_ORDER, "truncated"),
+    "error of the field (7), truncated": (_FIELD, "truncated"),
+    "observed order, field": (_FIELD_ORDER, "truncated"),
+    "error (59), open exterior": (_ERROR, "open"),
+    "observed order, open": (_ORDER, "open"),
+}
 
 
-def disk_error(
-    deviation: np.ndarray, radius: np.ndarray, run: Mapping[Any, Any] | pd.Series
-) -> float:
-    """Return the sum of V |deviation| over the disk |x| <= 5, in parts of the mass of the exact solution there."""
-    dim, alpha = int(run["dim"]), 1.0 + float(run["beta"])
-    inside = radius <= DISK * (1.0 + 1e-12)
-    volume = float(run["particle_spacing"]) ** dim
-    mass = float(central_mass(DISK, float(run["t_final"]), alpha, dim))
-    return float(volume * np.abs(deviation[inside]).sum() / mass)
+def study(inputs: Inputs, *, particles: list[int]) -> Result:
+    """Errors by lattice, of the strengths and of the field (7); by C; and of the schemes that the paper leaves out.
 
-
-def study(inputs: Inputs) -> Result:
-    """Errors by lattice, of the strengths and of the field (7); by C; and of the schemes that the paper leaves out."""
-    runs = with_count(inputs.scalars)
+    The least C is the paper's, and `particles` are those of its lattices. What the truncation changes is compared
+    between one dimension and two at the spacing of the runs in one dimension.
+    """
+    runs = inputs.scalars
+    runs = runs.assign(C=runs["truncation"].round(6), N=particles_per_side(runs))
+    least = runs["C"] == runs["C"].min()
     plane = runs[runs["dim"] == 2]
-    usual = np.isclose(plane["truncation"], inputs.parameters["truncation"])
-    errors = _by_lattice(plane[usual])
-    widths = _by_width(plane, inputs)
-    shift = _by_dimension(runs, inputs)
-    series = pd.concat([errors, widths], ignore_index=True)
-    findings = _findings(errors, widths, shift, inputs)
-    return Result(_table(series), findings, series)
-
-
-def _table(errors: pd.DataFrame) -> pd.DataFrame:
-    """One row a lattice: truncated and open side by side."""
-    keys = ["scheme", "order", "C", "N", "h"]
-    pair = {
-        exterior: errors[errors["exterior"] == exterior].set_index(keys)
-        for exterior in ("truncated", "open")
-    }
-    columns = {
-        "error (59), truncated": pair["truncated"]["error (59)"],
-        "observed order, truncated": pair["truncated"]["observed order"],
-        "error of the field (7), truncated": pair["truncated"]["error of the field (7)"],
-        "observed order, field": pair["truncated"]["observed order, field"],
-        "error (59), open exterior": pair["open"]["error (59)"],
-        "observed order, open": pair["open"]["observed order"],
-    }
-    return pd.DataFrame(columns).reset_index().sort_values(["order", "scheme", "C", "N"])
-
-
-def _by_lattice(runs: pd.DataFrame) -> pd.DataFrame:
-    rows = []
-    for run in runs.to_dict("records"):
-        row = {
-            "scheme": run["scheme"],
-            "order": ORDERS[run["order"]],
-            "exterior": run["exterior"],
-            "C": round(run["truncation"], 6),
-            "N": run["N"],
-            "h": run["particle_spacing"],
-            "error (59)": run["relative_l1_error"],
-            "error of the field (7)": np.nan,
-        }
-        with netCDF4.Dataset(run["run"]) as file:
-            paper = run["scheme"] in _PAPER and run["exterior"] == "truncated"
-            if "u" in file.variables and paper and run["order"] == 2:
-                u, x = np.asarray(file["u"][:]), np.asarray(file["x"][:])
-                r = np.hypot(x[:, None], x[None, :])
-                exact = green(r, run["t_final"], 1.0 + run["beta"], 2)
-                row["error of the field (7)"] = disk_error(
-                    reconstructed(u, run["overlap"]) - exact, r, run
-                )
-        rows.append(row)
-    keys = ["exterior", "scheme", "order", "N"]
-    errors = pd.DataFrame(rows).sort_values(keys, ascending=[False, True, True, True])
-    errors = errors.reset_index(drop=True)
-    for name, column in (
-        ("observed order", "error (59)"),
-        ("observed order, field", "error of the field (7)"),
-    ):
-        errors[name] = np.nan
-        for _, part in errors.groupby(keys[:-1]):
-            errors.loc[part.index[1:], name] = observed_order(part["h"], part[column])
-    return errors
-
-
-def _by_width(plane: pd.DataFrame, inputs: Inputs) -> pd.DataFrame:
-    """The errors on wider squares of the same h."""
-    wide = plane[plane["truncation"] > inputs.parameters["truncation"] * 1.001]
-    return pd.DataFrame(
+    errors = pd.DataFrame(
         {
-            "scheme": wide["scheme"],
-            "order": wide["order"].map(ORDERS),
-            "exterior": wide["exterior"],
-            "C": wide["truncation"].round(6),
-            "N": wide["N"],
-            "h": wide["particle_spacing"],
-            "error (59)": wide["relative_l1_error"],
-            "error of the field (7)": np.nan,
+            "scheme": plane["scheme"],
+            "order": plane["order"].map(ORDERS),
+            "exterior": plane["exterior"],
+            "C": plane["C"],
+            "N": plane["N"],
+            "h": plane["particle_spacing"],
+            _ERROR: plane["relative_l1_error"],
+            _FIELD: [_field_error(run) for run in plane.assign(least=least).itertuples()],
         }
-    ).sort_values(["scheme", "C"])
+    )
+    key = ["exterior", "C", "scheme", "order"]
+    errors = errors.sort_values([*key, "N"], ascending=[False, *[True] * 4], ignore_index=True)
+    errors[_ORDER] = orders_by(errors, key, _ERROR)
+    errors[_FIELD_ORDER] = orders_by(errors, key, _FIELD)
+    wide = errors.pivot(index=["order", "scheme", "C", "N", "h"], columns="exterior")
+    table = pd.DataFrame({name: wide[column] for name, column in _COLUMNS.items()}).reset_index()
+    table = table[["scheme", "order", "C", "N", "h", *_COLUMNS]]
+    findings = _findings(errors, _shift(runs[least]), particles, list(runs["run"]))
+    return Result(table, inputs.judged(findings), errors)
 
 
-def _by_dimension(runs: pd.DataFrame, inputs: Inputs) -> dict[tuple[str, int], float]:
-    """What the truncation changes of u: truncated less open in the disk (the interval) |x| <= 5, by scheme and n."""
+def _field_error(run: Any) -> float:
+    """The error of the field (7) of the paper's schemes on its square; nan for the others."""
+    if not run.least or run.scheme not in _PAPER or run.exterior == "open" or run.order != 2:
+        return np.nan
+    stored = stored_field(run.run)
+    if stored is None:
+        return np.nan
+    _, r, u = stored
+    field, volume = smoothed_field(u, run.overlap), run.particle_spacing**2
+    time, alpha = run.diffusivity * run.t_final, 1.0 + run.beta
+    return relative_l1_deviation(field, r, volume, DISK, time=time, alpha=alpha, dim=2)
+
+
+def _shift(runs: pd.DataFrame) -> pd.DataFrame:
+    """What the truncation changes of u: sum V |truncated - open| in |x| <= 5, over the mass there; by n and scheme."""
+    line = runs.loc[runs["dim"] == 1, "spacing"].iloc[0]
+    runs = runs[np.isclose(runs["spacing"], line, rtol=1e-6) & (runs["order"] == 2)]
     shift = {}
-    h, truncation = inputs.parameters["compared_h"], inputs.parameters["truncation"]
-    for dim in (1, 2):
-        here = runs[(runs["dim"] == dim) & np.isclose(runs["spacing"], h, rtol=1e-6)]
-        here = here[np.isclose(here["truncation"], truncation)]
-        for scheme in sorted(here["scheme"].unique()):
-            pair = here[(here["scheme"] == scheme) & (here["order"] == 2)].set_index("exterior")
-            fields = []
-            for exterior in ("truncated", "open"):
-                with netCDF4.Dataset(pair.loc[exterior, "run"]) as file:
-                    fields.append(np.asarray(file["u"][:]))
-                    x = np.asarray(file["x"][:])
-            r = np.abs(x) if dim == 1 else np.hypot(x[:, None], x[None, :])
-            shift[scheme, dim] = disk_error(fields[0] - fields[1], r, pair.loc["open"])
-    return shift
+    for key, pair in runs.groupby(["scheme", "dim"]):
+        files = pair.set_index("exterior")["run"]
+        if len(files) == 2:
+            (_, r, truncated), (_, _, opened) = map(stored_field, files[NEEDS["exterior"]])
+            run = pair.iloc[0]
+            inside = r <= DISK * (1.0 + 1e-12)
+            change = (
+                run["particle_spacing"] ** run["dim"] * np.abs(truncated - opened)[inside].sum()
+            )
+            shift[key] = change / central_mass(DISK, run["t_final"], 1.0 + run["beta"], run["dim"])
+    return pd.Series(shift).unstack()
 
 
-def _findings(errors: pd.DataFrame, widths: pd.DataFrame, shift: dict, inputs: Inputs) -> list:
-    printed = inputs.parameters["particles"]
-    here = errors[(errors["exterior"] == "truncated") & (errors["order"] == "II")]
-    here = here[here["scheme"].isin(_PAPER) & here["N"].isin(printed)]
-    error = here.pivot_table(index="N", columns="scheme", values="error (59)")
-    ours = here[here["N"] > min(printed)].pivot_table(
-        index="N", columns="scheme", values="observed order"
-    )
-    field = here[here["N"] > min(printed)].pivot_table(
-        index="N", columns="scheme", values="observed order, field"
-    )
+def _findings(
+    errors: pd.DataFrame, shift: pd.DataFrame, printed: list[int], files: list[str]
+) -> list[Finding]:
+    usual = errors["C"] == errors["C"].min()
+    second = errors[(errors["exterior"] == "truncated") & (errors["order"] == "II")]
+    paper = second[usual & second["scheme"].isin(_PAPER) & second["N"].isin(printed)]
+    by_count = paper.pivot(index="N", columns="scheme")
+    error, orders, field = by_count[_ERROR], by_count[_ORDER][1:], by_count[_FIELD_ORDER][1:]
     ratio = error["FPSE"] / error["DD"]
-    wide, change = [], {}
-    for scheme in ("DD", "FPSE", "KPSE", "GPSE"):
-        part = widths[(widths["scheme"] == scheme) & (widths["exterior"] == "truncated")]
-        h = part["h"].iloc[0]
-        usual = errors[
-            (errors["scheme"] == scheme)
-            & (errors["order"] == "II")
-            & (errors["exterior"] == "truncated")
-            & np.isclose(errors["h"], h)
-        ]["error (59)"].iloc[0]
-        values = [usual, *part["error (59)"]]
-        change[scheme] = max(values) / min(values) - 1.0
-        wide.append(f"{scheme} {', '.join(f'{value:.3g}' for value in values)}")
-    at = ", ".join(
-        f"{c:g}" for c in [inputs.parameters["truncation"], *sorted(widths["C"].unique())]
-    )
-    files = list(inputs.scalars["run"])
-    counts = ", ".join(map(str, printed))
-    return [
-        statement(
+    # The same h on wider squares.
+    wide = second[second["h"].round(9).isin(second.loc[~usual, "h"].round(9))]
+    by_width = wide.pivot(index="C", columns="scheme", values=_ERROR)
+    change = by_width.max() / by_width.min() - 1.0
+    statements = [
+        (
             "L-F9.decreases",
-            bool((np.diff(error, axis=0) < 0.0).all()),
-            f"Error (59) at N = {counts}: {_rows(error, '.3g')}.",
+            (np.diff(error, axis=0) < 0.0).all(),
+            f"Error (59) at N = {', '.join(map(str, printed))}: {_columns(error, '.3g')}.",
             "It does not fall from each lattice to the next.",
-            files,
         ),
-        statement(
+        (
             "L-F9.second_order",
-            bool(((ours - 2.0).abs() < _SECOND).all(axis=None)),
-            f"Observed order between neighbouring lattices: {_rows(ours, '.2f')}; of the field (7): "
-            f"{_rows(field, '.2f')}.",
+            ((orders - 2.0).abs() < _SECOND).all(axis=None),
+            f"Observed order between neighbouring lattices: {_columns(orders, '.2f')}; of the field (7): "
+            f"{_columns(field, '.2f')}.",
             "Between the two coarsest lattices the order is not 2 yet.",
-            files,
         ),
-        statement(
+        (
             "L-F9.fpse_larger",
-            bool((ratio > 1.0).all()),
+            (ratio > 1.0).all(),
             f"The error of FPSE is {', '.join(f'{value:.3g}' for value in ratio)} times that of DD.",
             "It is not larger on every lattice.",
-            files,
         ),
-        statement(
+        (
             "L-F9.truncation",
-            max(change[scheme] for scheme in _PAPER) < _WEAK,
-            f"Error (59) at C = {at}: {'; '.join(wide)}. KPSE and GPSE, which Sec. 5 does not use, have little else "
-            "than truncation error.",
+            change[_PAPER].max() < _WEAK,
+            f"Error (59) at C = {', '.join(f'{c:g}' for c in by_width.index)}: {_columns(by_width, '.3g')}. KPSE and "
+            "GPSE, which Sec. 5 does not use, have little else than truncation error.",
             "The error changes by more than 5 %.",
-            files,
         ),
-        statement(
+        (
             "L-F9.weaker",
-            all(shift[scheme, 1] > shift[scheme, 2] for scheme in _PAPER),
-            "At C = 4 the truncation changes u within |x| <= 5, n = 1 and 2, by "
+            (shift[1] > shift[2])[_PAPER].all(),
+            f"At C = {errors['C'].min():g} the truncation changes u within |x| <= 5, n = 1 and 2, by "
             + "; ".join(
-                f"{shift[scheme, 1]:.2g} and {shift[scheme, 2]:.2g} ({scheme})"
-                for scheme in ("DD", "FPSE", "KPSE", "GPSE")
+                f"{shift.loc[name, 1]:.2g} and {shift.loc[name, 2]:.2g} ({name})"
+                for name in sorted(shift.index, key=_place)
             )
             + ". It is weaker for DD and FPSE, whose lost part falls like D^(-n-2 alpha) with kernel and solution; not "
             "for the exchange schemes, D^-alpha for every n.",
             "The truncation changes u as much in two dimensions as in one.",
-            files,
         ),
-    ]  # fmt: skip
+    ]
+    return [statement(*words, runs=files) for words in statements]
 
 
-def _rows(values: pd.DataFrame, digits: str) -> str:
+def _place(scheme: str) -> int:
+    return list(ALL_SCHEMES).index(scheme)
+
+
+def _columns(values: pd.DataFrame, form: str) -> str:
     return "; ".join(
-        f"{scheme} {', '.join(format(value, digits) for value in values[scheme])}"
-        for scheme in _PAPER
+        f"{scheme} {', '.join(format(value, form) for value in values[scheme])}"
+        for scheme in sorted(values, key=_place)
     )

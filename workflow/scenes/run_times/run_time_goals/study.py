@@ -66,7 +66,7 @@ def off_the_front(trials: pd.DataFrame, errors: list[float]) -> float:
 
     Either least time, as a function of the error allowed, steps down at the errors of the trials: these and the ends
     are all that there is to look at. An error of ours that is the same but for its last digits counts as reached: two
-    methods that are one but for round-off are not apart. Infinite, if somebody gets to an error that ours do not.
+    contenders that are one but for round-off are not apart. Infinite, if somebody gets to an error that ours do not.
     """
     done = trials[~trials["failed"]].sort_values("error")
     error = done["error"].to_numpy()

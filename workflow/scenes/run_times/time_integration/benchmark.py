@@ -92,9 +92,7 @@ def benchmark(
                 "steps": steps,
                 "applications": applications,
                 "error": float(np.abs(u - exact).sum() / np.abs(exact).sum()),
-                "solve_time": timing.minimum,
-                "solve_time_median": timing.median,
-                "solves": len(timing.times),
+                **timing.columns("solve"),
             }
             rows.append(row)
     title = "Error of the time integration against run time"
@@ -111,7 +109,7 @@ def _operators(
     operator = prepare(case).operator
     interval = spectral_interval(case.scheme, case.setting, operator, case.steps)
     yield f"KPSE {order}", case.x, operator, interval
-    task = {"alpha": problem.alpha, "half_width": case.domain, "time": problem.time}
+    task: dict[str, Any] = {"alpha": problem.alpha, "half_width": case.reach, "time": problem.time}
     for name in peers:
         solver: Any = peer(name).prepare(
             **task, spacing=spacing, exterior="open", propagation="series"

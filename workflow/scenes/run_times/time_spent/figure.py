@@ -55,7 +55,12 @@ def _bars(ax: Axes, parts: pd.DataFrame) -> None:
             ax.barh(place, share, left=start, height=0.62, color=colour, edgecolor="white")
             if share >= _WRITTEN:
                 text = "white" if colour in _DARK else "black"
-                style = {"ha": "center", "va": "center", "fontsize": 7, "color": text}
+                style: dict[str, Any] = {
+                    "ha": "center",
+                    "va": "center",
+                    "fontsize": 7,
+                    "color": text,
+                }
                 ax.annotate(f"{100.0 * share:.0f}", (start + 0.5 * share, place), **style)
             start += share
         note(ax, _duration(bar["total"].iloc[0]), (1.0, place), (4, 0), va="center", color="black")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -13,7 +15,7 @@ from scenes.run_times.contests import LOOKS
 
 __all__ = ["figure"]
 
-_TEXT = {"va": "center", "fontsize": 7.5}
+_TEXT: dict[str, Any] = {"va": "center", "fontsize": 7.5}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -41,7 +43,11 @@ def _bars(ax: Axes, part: pd.DataFrame) -> None:
         rival = bar.contender in LOOKS
         colour = LOOKS[bar.contender]["color"] if rival else COLOURS[bar.contender]
         filled = bar.group not in ("peers", "limit")
-        style = {"color": colour if filled else "white", "edgecolor": colour, "linewidth": 1.0}
+        style: dict[str, Any] = {
+            "color": colour if filled else "white",
+            "edgecolor": colour,
+            "linewidth": 1.0,
+        }
         if bar.extrapolated > 1.0:
             style |= {"edgecolor": "white", "hatch": "////"}
         ax.barh(place, bar.solve_time - start, left=start, height=0.66, **style)

@@ -1,0 +1,86 @@
+"""The fundamental solution in the plane, Eq. (58), in three other ways, and what lies outside a square.
+
+`stable` evaluates it for every dimension; these are independent of it.
+"""
+
+from __future__ import annotations
+
+from math import gamma, pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import gammaln, j0, roots_legendre, xlogy
+
+from fracparticles.arguments import FloatArray
+from fracparticles.special.stable import tail_mass
+
+__all__ = [
+    "planar_asymptotic",
+    "planar_integral",
+    "planar_series",
+    "square_exchange_error",
+    "square_tail_mass",
+]
+
+_NODES = 800  # of the quadrature: 4 for each period of J_0(r omega) at r = 100
+_LAST_EXPONENT = 45.0  # exp(-omega^alpha) is zero beyond
+_OCTANT_NODES = 32  # smooth integrands of the angle
+
+
+def planar_integral(r: ArrayLike, alpha: float, power: float = 0.0) -> FloatArray:
+    """Return (1/2 pi) int_0^inf omega^(1 + power) exp(-omega^alpha) J_0(r omega) domega: (58) for power 0.
+
+    Gauss-Legendre in s, omega = s^2, which makes the integrand smooth at 0; exact to round-off for r <= 100.
+    """
+    x, weight = roots_legendre(_NODES)
+    last = _LAST_EXPONENT ** (0.5 / alpha)
+    s, weight = 0.5 * last * (1.0 + x), 0.5 * last * weight
+    omega = s * s
+    factor = weight * 2.0 * s * omega ** (1.0 + power) * np.exp(-(omega**alpha)) / (2.0 * pi)
+    return np.asarray(j0(np.multiply.outer(np.asarray(r, dtype=float), omega)) @ factor)
+
+
+def planar_series(r: ArrayLike, alpha: float, terms: int) -> FloatArray:
+    """Return a partial sum of Phi = (1 / 2 pi alpha) sum_{k>=0} (-1)^k Gamma((2k + 2) / alpha) / (k!)^2 (r/2)^(2k)."""
+    k = np.arange(float(terms))
+    logarithm = gammaln((2.0 * k + 2.0) / alpha) - 2.0 * gammaln(k + 1.0)
+    powers = xlogy(2.0 * k, 0.5 * np.asarray(r, dtype=float)[..., None])
+    return ((-1.0) ** k * np.exp(logarithm + powers)).sum(axis=-1) / (2.0 * pi * alpha)
+
+
+def planar_asymptotic(r: ArrayLike, alpha: float, terms: int) -> FloatArray:
+    """Return a partial sum of the far series.
+
+    Phi ~ (1/pi^2) sum_{k>=1} (-1)^(k+1) / k! 2^(alpha k) Gamma(1 + alpha k / 2)^2 sin(pi alpha k / 2) r^(-alpha k - 2)
+    """
+    k = np.arange(1.0, terms + 1.0)
+    size = np.exp(alpha * k * np.log(2.0) + 2.0 * gammaln(1.0 + 0.5 * alpha * k) - gammaln(k + 1.0))
+    factor = (-1.0) ** (k + 1.0) * size * np.sin(0.5 * pi * alpha * k) / pi**2
+    return (factor * np.asarray(r, dtype=float)[..., None] ** (-alpha * k - 2.0)).sum(axis=-1)
+
+
+def square_tail_mass(half_width: float, t: float, alpha: float) -> float:
+    """Return the mass of G(., t) outside the square |x|, |y| <= D.
+
+    (4 / pi) int_0^(pi/4) T(D / cos phi) dphi, T(r) the mass outside the disk of radius r.
+    """
+    phi, weight = _first_octant()
+    return float(4.0 / pi * weight @ tail_mass(half_width / np.cos(phi), t, alpha, 2))
+
+
+def square_exchange_error(half_width: float, alpha: float, time: float) -> float:
+    """Return the relative error that truncation to |x|, |y| <= D causes in KPSE and GPSE.
+
+    time int c |y|^(-2-alpha) dy over the outside of the square, with c of (4) for n = 2,
+    c = alpha 2^(alpha-1) Gamma(1 + alpha/2) / (pi Gamma(1 - alpha/2)): what each particle near the origin would give
+    to the places without particles, and keeps. For n = 1 see `tails.exchange_truncation_error`.
+    """
+    c = alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + 0.5 * alpha) / (pi * gamma(1.0 - 0.5 * alpha))
+    phi, weight = _first_octant()
+    return float(time * 8.0 * c / alpha * (weight @ np.cos(phi) ** alpha) * half_width**-alpha)
+
+
+def _first_octant() -> tuple[FloatArray, FloatArray]:
+    """Gauss-Legendre nodes and weights on (0, pi/4)."""
+    x, weight = np.polynomial.legendre.leggauss(_OCTANT_NODES)
+    return pi / 8.0 * (1.0 + x), pi / 8.0 * weight

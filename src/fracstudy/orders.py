@@ -1,0 +1,20 @@
+"""Observed orders in a table of errors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.run.orders import observed_order
+
+__all__ = ["orders_by"]
+
+
+def orders_by(table: pd.DataFrame, by: str | Sequence[str], error: str, h: str = "h") -> pd.Series:
+    """Return for each row the observed order between it and the row before in its group; nan for the first ones."""
+    orders = pd.Series(np.nan, index=table.index)
+    for _, part in table.groupby(by):
+        orders[part.index[1:]] = observed_order(part[h], part[error])
+    return orders
