@@ -201,7 +201,7 @@ def test_every_trial_solves_the_problem():
 
 
 def test_the_lent_exterior_is_that_of_gpse():
-    """At epsilon / h = 5 the aliases of GPSE, at most exp(-(pi epsilon / h)^alpha), are nil: the sums are the same."""
+    """At epsilon / h = 5 the aliases of GPSE, at most exp(-(pi epsilon / h)^alpha), are zero: the sums are the same."""
     grid = {"spacings": [0.2], "truncations": [5.0], "most": 1000}
     way = {**OPEN, "evaluation": "convolution"}
     (lent,), (ours,) = lent_exterior_trials(LINE, **grid), one_step_trials(LINE, way, **grid)

@@ -12,7 +12,8 @@ import xarray as xr
 
 import fracparticles as fp
 from fracparticles.run.case import Case
-from fracparticles.run.cli import main, number_or_text
+from fracparticles.run.cli import main
+from fracparticles.run.commands import number_or_text
 
 
 def words_of(text: str) -> list[str]:

@@ -115,6 +115,14 @@ def test_the_steady_state_stays():
     assert abs(lines.rate(0.0, g).sum()) < 200 * 10.0 * 2.0**-50 / lines.h**2
 
 
+def test_what_the_steady_state_has_beyond():
+    problem = NonlinearDiffusion(10.0, 4.0, 0.5)
+    x, w = np.polynomial.legendre.leggauss(60)
+    right = 2.0 * (w @ problem.steady(1.7 + 2.0 * (1.0 + x)))  # to 5.7, where f_inf is 1e-47
+    assert problem.steady_beyond(1.7) == pytest.approx(2.0 * right, rel=1e-12)
+    assert problem.steady_beyond(0.0) == pytest.approx(2.0 * math.sqrt(math.pi / 4.0), rel=1e-14)
+
+
 def test_jacobian():
     lines = Lines(PROBLEM, 2.0, 12, 2.0)
     f, step = Gaussian().value(lines.x), 1e-6

@@ -12,6 +12,7 @@ __all__ = [
     "NonFiniteSolution",
     "StabilityWarning",
     "one_of",
+    "reason_of",
     "spelled",
 ]
 
@@ -66,6 +67,11 @@ def one_of(
     """Return the error of a value that is none of the choices; `where` says what has only these."""
     allowed = f"{spelled(choices)} for {where}" if where else f"one of {spelled(choices, ', ')}"
     return InvalidInput(field, value, allowed, remedy)
+
+
+def reason_of(error: Exception) -> str:
+    """Return what an error of a library says, in one short line, or its name if it says nothing."""
+    return str(error).splitlines()[0][:120] if str(error) else type(error).__name__
 
 
 class NonFiniteSolution(FracparticlesError, ArithmeticError):

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, reason_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,19 +31,14 @@ def replaceable(path: Any, field: str = "path") -> Path:
     if given.is_dir():
         raise InvalidInput(field, str(given), "a file, and this is a directory", "Add a file name.")
     if given.exists() and not given.is_file():
-        raise InvalidInput(
-            field,
-            str(given),
-            "a regular file, and this is a device, a pipe or a socket: only files are replaced",
-            "Choose another one.",
+        regular = (
+            "a regular file, and this is a device, a pipe or a socket: only files are replaced"
         )
+        raise InvalidInput(field, str(given), regular, "Choose another one.")
     if given.is_symlink() and not given.exists():
-        raise InvalidInput(
-            field,
-            str(given),
-            f"a file, and this is a link to {str(target)!r}, which does not exist",
-            "Remove the link, or make what it links to.",
-        )
+        linked = f"a file, and this is a link to {str(target)!r}, which does not exist"
+        remedy = "Remove the link, or make what it links to."
+        raise InvalidInput(field, str(given), linked, remedy)
     return target
 
 
@@ -108,7 +103,5 @@ def load_netcdf(path: Path, names: Sequence[str] | None = None) -> xr.Dataset:
     except FileNotFoundError:
         raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
     except Exception as error:  # the library raises many kinds for damaged files
-        reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-        raise InvalidInput(
-            "file", str(path), f"a readable NetCDF file ({reason})", "Write or copy it again."
-        ) from None
+        readable = f"a readable NetCDF file ({reason_of(error)})"
+        raise InvalidInput("file", str(path), readable, "Write or copy it again.") from None

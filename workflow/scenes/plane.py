@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from fracstudy.style import name_ticks
+from fracstudy.style import log_log, name_ticks
 
-__all__ = ["DISK", "particles_per_side", "spacing_axis", "stored_field"]
+__all__ = ["DISK", "particles_per_side", "spacing_axes", "stored_field"]
 
 DISK = 5.0  # radius of the disk of (59)
 
@@ -28,7 +28,8 @@ def stored_field(run: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     return x, np.abs(x) if u.ndim == 1 else np.hypot(x[:, None], x[None, :]), u
 
 
-def spacing_axis(ax: Axes, h: pd.Series) -> None:
-    """Make the axis of h logarithmic, with a tick at each of its values."""
-    ax.set(xscale="log", xlabel="particle spacing $h$", xlim=(h.min() / 1.25, h.max() * 1.25))
+def spacing_axes(ax: Axes, h: pd.Series) -> None:
+    """Make both axes logarithmic, with the particle spacing on x and a tick at each of its values."""
+    log_log(ax, xlabel="particle spacing $h$", xlim=(h.min() / 1.25, h.max() * 1.25))
     name_ticks(ax, sorted(h.unique()), form=".3f")
+    ax.minorticks_off()

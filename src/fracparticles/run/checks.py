@@ -186,7 +186,8 @@ def _check_step(case: Parameters) -> None:
             case.scheme, case.beta, case.order, case.resolved_overlap, case.dim, case.kernel_family
         )
         largest = limit * case.particle_spacing**case.alpha / case.diffusivity
-        stable = f"a number > 0 for integrator={case.resolved_integrator!r}, stable up to {largest:.4g}"
+        whom = f"integrator={case.resolved_integrator!r}"
+        stable = f"a number > 0 for {whom}, stable up to {largest:.4g}"
         remedy = "Give dt, or integrator='exponential', which needs none."
         raise InvalidInput("dt", None, stable, remedy)
 
@@ -220,9 +221,7 @@ def _check_far_field(case: Parameters) -> None:
     """
     if case.exterior == "open":
         _check_spread(case)
-    if case.far_terms in (None, 1) or case.evaluation == "convolution":
-        return
-    if case.resolved_integrator == "euler" and case.steps == 1:
+    if case.far_terms in (None, 1) or case.evaluation == "convolution" or case.is_one_step:
         return
     if case.n < _FAR_OVERLAPS * case.resolved_overlap:
         least = _FAR_OVERLAPS * case.resolved_overlap * case.particle_spacing

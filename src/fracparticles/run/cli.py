@@ -11,9 +11,8 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
-from typing import Annotated, Any
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError
 
 from fracparticles import __version__
 from fracparticles.errors import (
@@ -23,7 +22,7 @@ from fracparticles.errors import (
     NonFiniteSolution,
 )
 
-__all__ = ["app", "main", "number_or_text"]
+__all__ = ["app", "main"]
 
 app = App(
     name="fracparticles",
@@ -31,25 +30,13 @@ app = App(
     version=__version__,
     suppress_keyboard_interrupt=False,  # `main` reports it
 )
-# By its address: the flags are the fields of Case, which takes the whole core to import.
-app.command(
-    "fracparticles.run.cli_solve:solve", name="solve", help="Run a case and write its file."
-)
-
-
-# Flags are read as text, and this makes numbers of them, so that text where a number belongs is refused in the same
-# words as in Python.
-Number = Annotated[str, Parameter(metavar="NUMBER")]
-
-
-def number_or_text(text: str) -> Any:
-    """Return the number that the text stands for, or the text if it stands for none."""
-    for number in (int, float):
-        try:
-            return number(text)
-        except ValueError:
-            continue
-    return text
+# By their addresses: the flags are fields of Case, which takes the whole core to import.
+_COMMANDS = {
+    "solve": "Run a case and write its file.",
+    "limit": "Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.",
+}
+for _name, _help in _COMMANDS.items():
+    app.command(f"fracparticles.run.commands:{_name}", name=_name, help=_help)
 
 
 @app.command
@@ -81,65 +68,6 @@ def show(file: str) -> None:
     print(run.attrs.get("title", file))
     for name, value, meaning in rows:
         print(f"  {name:{first}}  {value:{second}}  {meaning}".rstrip())
-
-
-@app.command
-def limit(
-    *,
-    scheme: str,
-    beta: Number,
-    order: Number = "2",
-    overlap: Number | None = None,
-    dim: Number = "1",
-    kernel_family: str | None = None,
-    spacing: Number | None = None,
-    diffusivity: Number = "1.0",
-) -> None:
-    """Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.
-
-    Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a, Eq. (56). A single step of GPSE, over the
-    whole time, has no limit.
-
-    Parameters
-    ----------
-    scheme : str
-        Name of a scheme.
-    beta : float
-        Fractional order, 0 < beta < 1.
-    order : {2, 4, 6, 8, 10, 12}
-        Order of the kernels.
-    overlap : float
-        epsilon / h; 2 if left out.
-    dim : {1, 2, 3}
-        Space dimension.
-    kernel_family : {printed, gamma}
-        Family of the kernels; printed for orders 2 and 4, gamma beyond if left out.
-    spacing : float
-        Particle spacing h.
-    diffusivity : float
-        D of Eq. (2).
-    """
-    from fracparticles.arguments import positive_real
-    from fracparticles.schemes import scheme as find_scheme
-    from fracparticles.schemes.stability import stability_limit
-
-    if overlap is not None and not find_scheme(scheme).has_kernel:
-        allowed = f"nothing for {scheme}, which has no kernel"
-        raise InvalidInput("overlap", overlap, allowed, "Leave it out.")
-    numbers = [number_or_text(text) for text in (beta, order, overlap or "2.0", dim)]
-    a = stability_limit(scheme, *[*numbers, kernel_family])
-    lines = [f"a = {a:.6g}"]
-    rate = positive_real("diffusivity", number_or_text(diffusivity))
-    if spacing is not None:
-        h = positive_real("spacing", number_or_text(spacing))
-        lines.append(f"dt = {a * h ** (1.0 + float(beta)) / rate:.6g}")
-    print("\n".join(lines))
-    if find_scheme(scheme).self_timed:
-        _note(
-            f"this binds steps that are repeated; a single step of {scheme}, over the whole time, has no limit"
-        )
-    if a == 0.0:
-        _note("no step is stable, some wave grows: take a larger overlap or a lower order")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -180,10 +108,6 @@ def _fail(error: object, status: int) -> int:
     message = " ".join(str(error).split()) or type(error).__name__
     print(f"error: {message}", file=sys.stderr)
     return status
-
-
-def _note(text: str) -> None:
-    print(f"note: {text}", file=sys.stderr)
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

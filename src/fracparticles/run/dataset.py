@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fracparticles import __version__
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, reason_of
 from fracparticles.files import load_netcdf, replacing
 from fracparticles.graded.field import INTERPOLATED
 from fracparticles.run.case import FUNDAMENTAL, Case
@@ -170,9 +170,8 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
             _to_netcdf(dataset, temporary)
         except Exception as error:  # the libraries raise many kinds
             _refuse_what_does_not_fit(dataset, temporary)
-            reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-            free = shutil.disk_usage(temporary.parent).free
-            raise OSError(f"cannot write {str(path)!r} ({reason}); {free} bytes are free") from None
+            free = f"{shutil.disk_usage(temporary.parent).free} bytes are free"
+            raise OSError(f"cannot write {str(path)!r} ({reason_of(error)}); {free}") from None
 
 
 def _to_netcdf(dataset: xr.Dataset, path: Path) -> None:
@@ -188,13 +187,8 @@ def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:
         try:
             _to_netcdf(part, path)
         except (TypeError, ValueError, AttributeError, LookupError, OverflowError) as error:
-            reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-            raise InvalidInput(
-                what,
-                value,
-                f"what a NetCDF file can hold ({reason})",
-                "Leave it out, or make text of it.",
-            ) from None
+            held = f"what a NetCDF file can hold ({reason_of(error)})"
+            raise InvalidInput(what, value, held, "Leave it out, or make text of it.") from None
         except Exception:  # that of the disk
             return
 
@@ -223,12 +217,8 @@ def read_run(path: str | Path) -> xr.Dataset:
     """
     dataset = load_netcdf(Path(path))
     if "case" not in dataset.attrs or "mass_final" not in dataset:
-        raise InvalidInput(
-            "file",
-            str(path),
-            "a run written by fracparticles",
-            "Make one with `fracparticles solve`.",
-        )
+        remedy = "Make one with `fracparticles solve`."
+        raise InvalidInput("file", str(path), "a run written by fracparticles", remedy)
     return dataset
 
 

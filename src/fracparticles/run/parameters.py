@@ -144,7 +144,7 @@ class Parameters(BaseModel):
 
     @property
     def reach(self) -> float:
-        """The half-width of the lattice, Eq. (46)."""
+        """The half-width D, given or from C by Eq. (46): the outermost particles are at -D and D in each coordinate."""
         if self.half_width is not None:
             return self.half_width
         assert self.truncation is not None
@@ -294,16 +294,21 @@ class Parameters(BaseModel):
         )
 
     @property
+    def is_one_step(self) -> bool:
+        """Whether the whole run is a single Euler step: one application of the operator."""
+        return self.resolved_integrator == "euler" and self.steps == 1
+
+    @property
     def steps_taken(self) -> bool:
         """Whether the steps are taken one by one; a single Euler step has nothing to gain from a series."""
-        if self.evaluation is None and self.resolved_integrator == "euler" and self.steps == 1:
+        if self.evaluation is None and self.is_one_step:
             return True
         return self.evaluation == "stepping" or self.kind.moving
 
     @property
     def _series_by_default(self) -> bool:
         """Whether `evaluation` says "series" where it would be one anyway: but for a single Euler step."""
-        return self.evaluation == "series" and not (self.resolved_integrator == "euler" and self.steps == 1)
+        return self.evaluation == "series" and not self.is_one_step
 
     @cached_property
     def largest_stable_step(self) -> float:
@@ -311,8 +316,8 @@ class Parameters(BaseModel):
         if self.resolved_integrator == "exponential" or self.is_graded:
             return float("inf")
         limit = stability_limit(*self._of_the_symbol)
-        reach = STEP_POLYNOMIALS[self.resolved_integrator].stability_interval / 2.0
-        return float(reach * limit * self.particle_spacing**self.alpha / self.diffusivity)
+        longer = STEP_POLYNOMIALS[self.resolved_integrator].stability_interval / 2.0
+        return float(longer * limit * self.particle_spacing**self.alpha / self.diffusivity)
 
     @property
     def symbol_range(self) -> tuple[float, float]:

@@ -34,6 +34,7 @@ wavenumber is that in the mapped variable, in which they are equally spaced.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -54,14 +55,17 @@ __all__ = ["Estimates", "estimates", "warn_if_doubtful"]
 Estimates = dict[str, tuple[float, str]]
 
 # Above these a warning is given.
-_RESOLUTION = 1.0  # an error of a quarter in the operator, at order II
-_GROWTH = 1.1
-_WAVE = 0.05
-_OUTSIDE = 0.05  # of the mass
-_FAR_FIELD = 5e-5
-_ROUND_OFF = 1e-6
+_LIMITS = {
+    "resolution": 1.0,  # an error of a quarter in the operator, at order II
+    "growth": 1.1,
+    "wave_error": 0.05,
+    "table_error": 0.05,
+    "outside_share": 0.05,  # of the mass
+    "far_field_error": 5e-5,
+    "round_off": 1e-6,
+    "decay": 0.01,
+}
 _ULPS = 64.0  # measured, of a Chebyshev series, with sums by transforms and with a matrix alike
-_DECAY = 0.01
 _SURFACE = {1: 2.0, 2: 2.0 * np.pi, 3: 4.0 * np.pi}  # of the unit sphere
 
 
@@ -121,66 +125,75 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
     AccuracyWarning
         One for each estimate that is too large.
     """
-    h, value = case.particle_spacing, {name: number for name, (number, _) in found.items()}
-    complaints = []
+    for complaint in _complaints(
+        case, u0, u, {name: number for name, (number, _) in found.items()}
+    ):
+        warnings.warn(complaint, AccuracyWarning, stacklevel=4)
+
+
+def _complaints(
+    case: Case, u0: np.ndarray, u: np.ndarray, value: dict[str, float]
+) -> Iterator[str]:
+    """What to say of each estimate that is too large."""
+    h = case.particle_spacing
+    large = {name for name, limit in _LIMITS.items() if value.get(name, 0.0) > limit}
     if not np.any(u0):
-        complaints.append(
+        yield (
             f"the initial strengths are zero at all particles, |x| <= {case.reach:.6g}. "
             "Move the data onto the lattice, or widen it."
         )
-    if value["resolution"] > _RESOLUTION:
+    if "resolution" in large:
         theta = wavenumber(u0)
         smoothing = value["resolution"] / theta * h
-        complaints.append(
+        yield (
             f"the initial data vary over the length {h / theta:.3g}, which particles of spacing h = {h:.3g} and "
             f"smoothing length {smoothing:.3g} do not resolve. Take spacing <= "
             f"{0.25 * h / value['resolution']:.2g} and see whether the result changes, or wider data."
         )
-    if value.get("wave_error", 0.0) > _WAVE:
-        complaints.append(
+    if "wave_error" in large:
+        yield (
             f"waves of the length that the initial data hold come out wrong by {value['wave_error']:.2g} of their "
             f"amplitude. Take a smaller spacing, an overlap of about 2 (now {case.resolved_overlap:.3g}), a smaller "
             "time step, or another scheme."
         )
-    if value.get("table_error", 0.0) > _WAVE:
-        complaints.append(
+    if "table_error" in large:
+        yield (
             f"the kernels interpolated in a table of step {case.kernel_table:.3g} leave a relative error of up to "
             f"{value['table_error']:.2g} over this run. Take a smaller kernel_table, or leave it out."
         )
-    if value["growth"] > _GROWTH:
+    if "growth" in large:
         place = np.unravel_index(int(np.abs(u).argmax()), u.shape)
         where = ", ".join(f"{case.x[k]:.4g}" for k in place)
-        complaints.append(
+        yield (
             f"the greatest |u| has grown by the factor {value['growth']:.4g}, which the equation does not allow; it is "
             f"at x = {where} of |x| <= {case.reach:.4g}. At an end of the lattice it is a layer of the truncated "
             "scheme: take a wider lattice. Elsewhere the scheme is unstable: take a larger overlap or a smaller step."
         )
-    if value.get("outside_share", 0.0) > _OUTSIDE:
-        could_open = case.exterior != "open" and "open" in case.kind.exteriors
-        could_open = could_open and not case.is_graded
+    if "outside_share" in large:
+        could_open = (
+            case.exterior != "open" and "open" in case.kind.exteriors and not case.is_graded
+        )
         remedy = "take a wider lattice" + (" or exterior='open'" if could_open else "")
-        complaints.append(
+        yield (
             f"the solution does not fit on |x| <= {case.reach:.4g}: about {value['outside_share']:.2g} of it lies "
             f"beyond, or has left. To solve on the whole space, {remedy}."
         )
-    if value.get("far_field_error", 0.0) > _FAR_FIELD:
-        complaints.append(
+    if "far_field_error" in large:
+        yield (
             f"the far field leaves a relative error of about {value['far_field_error']:.1g}: the powers that continue "
             f"u beyond |x| = {case.reach:.4g} miss the strengths inside by {value['tail_misfit']:.1g}. "
             "Take a wider lattice."
         )
-    if value.get("decay", 0.0) > _DECAY:
-        complaints.append(
+    if "decay" in large:
+        yield (
             f"{case.scheme} of order {case.order} at overlap = {case.resolved_overlap:.4g} makes every constant decay, "
             f"by exp(-{value['decay']:.3g}) over this run. Take a larger overlap."
         )
-    if value.get("round_off", 0.0) > _ROUND_OFF:
-        complaints.append(
+    if "round_off" in large:
+        yield (
             f"the round-off of the operator may add up to {value['round_off']:.1g} over this run: T |lambda| = "
             f"{value['round_off'] / _ULPS * 2.0**52:.2g}. Take a larger spacing or a shorter time."
         )
-    for complaint in complaints:
-        warnings.warn(complaint, AccuracyWarning, stacklevel=4)
 
 
 def wavenumber(u: np.ndarray) -> float:

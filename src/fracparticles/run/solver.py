@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -95,15 +95,7 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
 
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:
-    """Run a case and return its arrays: `solve` without the data set.
-
-    Warns
-    -----
-    StabilityWarning
-        If some wave grows.
-    AccuracyWarning
-        If the strengths say that they may be far from the solution, see `reliability`.
-    """
+    """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
     u0, origin = initial_strengths(case, initial)
     particles = None
     if case.kind.moving:
@@ -163,7 +155,7 @@ def warn_if_unstable(case: Case) -> None:
     -----
     StabilityWarning
     """
-    if case.kind.self_timed and case.steps == 1:
+    if case.kind.self_timed and case.is_one_step:
         return
     low, high = case.symbol_range
     exponent = (case.t_final - case.t_initial) * case.setting.rate * high
@@ -179,7 +171,8 @@ def warn_if_unstable(case: Case) -> None:
     elif case.time_step > case.largest_stable_step:
         warnings.warn(
             f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
-            f"{case.resolved_integrator}: at most {case.largest_stable_step:.6g} is stable. The run is computed as it is.",
+            f"{case.resolved_integrator}: at most {case.largest_stable_step:.6g} is stable. "
+            "The run is computed as it is.",
             StabilityWarning,
             stacklevel=3,
         )
@@ -201,18 +194,17 @@ class Prepared:
         How often a solve applies it, unless the data ask for more pieces (`integrators.pieces`).
     advance : callable
         From the strengths at `t_initial`, shape (N^dim,), to those at `t_final`.
-    shape : tuple of int
-        The lattice, (N,) * dim.
     """
 
     case: Case
     operator: LatticeOperator
     operator_applications: int
     advance: Advance
-    shape: tuple[int, ...] = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "shape", self.case.shape)
+    @cached_property
+    def shape(self) -> tuple[int, ...]:
+        """The lattice, (N,) * dim."""
+        return self.case.shape
 
     def solve(self, u0: np.ndarray) -> np.ndarray:
         """Return the strengths at `t_final` from those at `t_initial`, both of the shape of the lattice.
@@ -293,7 +285,8 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         operator = SCHEMES[case.scheme].operator(case.setting)
     warn_if_unstable(case)
     if case.steps_taken:
-        polynomial, dt, steps = STEP_POLYNOMIALS[case.resolved_integrator], case.time_step, case.steps
+        polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
+        dt, steps = case.time_step, case.steps
         applications = steps * polynomial.stages
         if applications == 1:
             return Prepared(case, operator, 1, partial(single_pass, operator, dt, 1.0))
@@ -311,10 +304,8 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     except NonFiniteSolution as error:
         raise _named(case, error) from None
     except FracparticlesError as error:
-        reached, remedy = (
-            f"a time that can be reached: {error}",
-            "Take a shorter run, or a larger spacing.",
-        )
+        reached = f"a time that can be reached: {error}"
+        remedy = "Take a shorter run, or a larger spacing."
         raise InvalidInput("t_final", case.t_final, reached, remedy) from None
     return Prepared(case, operator, flow.operator_applications, flow)
 

@@ -14,17 +14,7 @@ from typing import Any
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
-from fracstudy.benchmarks.contenders import (
-    GRADED_FORMS,
-    graded,
-    lattice,
-    lent_exterior,
-    moving,
-    naive,
-    peer,
-    random_walkers,
-    whole_matrix,
-)
+from fracstudy.benchmarks import contenders
 from fracstudy.benchmarks.problem import Problem
 from fracstudy.benchmarks.trial import Ready, Trial
 from fracstudy.peers import PEERS, PLANE_PEERS, PlaneSolver, Solver, sinc_lattice
@@ -128,7 +118,7 @@ def scheme_trials(
         names = (scheme, f"order {order}, {_exterior(**way)}, {way['evaluation']}", "ours")
         fixed = {"scheme": scheme, "order": order, "integrator": "exponential", **way}
         for one in _grids(problem, **grid, smallest=_smallest(way)):
-            yield _trial(lattice, problem, names, **fixed, **one)
+            yield _trial(contenders.lattice, problem, names, **fixed, **one)
 
 
 def _exterior(exterior: str, far_terms: int | None = None, **_: Any) -> str:
@@ -142,23 +132,25 @@ def one_step_trials(problem: Problem, way: Mapping[str, Any], **grid: Any) -> It
     how = f", {way['evaluation']}" if "evaluation" in way else ""
     names = ("GPSE", f"one step, {_exterior(**way)}{how}", "ours")
     for one in _grids(problem, **grid):
-        yield _trial(lattice, problem, names, scheme="GPSE", dt=problem.time, **way, **one)
+        yield _trial(
+            contenders.lattice, problem, names, scheme="GPSE", dt=problem.time, **way, **one
+        )
 
 
 def tied_step_trials(problem: Problem, way: Mapping[str, Any], **grid: Any) -> Iterator[Trial]:
     """Yield GPSE as the paper has it, epsilon = 2 h, its steps in one series."""
     names = ("GPSE", f"epsilon = 2 h, {_exterior(**way)}", "ours")
     for one in _grids(problem, **grid, smallest=_smallest(way)):
-        yield _trial(lattice, problem, names, scheme="GPSE", overlap=2.0, **way, **one)
+        yield _trial(contenders.lattice, problem, names, scheme="GPSE", overlap=2.0, **way, **one)
 
 
 def graded_trials(
     problem: Problem, counts: Sequence[int], reaches: Sequence[float], scales: Sequence[float]
 ) -> Iterator[Trial]:
     """Yield GPSE in one step on graded particles, in all forms, where they reach over all that is judged."""
-    for form, count, reach, scale in product(GRADED_FORMS, counts, reaches, scales):
+    for form, count, reach, scale in product(contenders.GRADED_FORMS, counts, reaches, scales):
         if reach >= problem.error_radius:
-            make = partial(graded, problem, form, count, reach, scale)
+            make = partial(contenders.graded, problem, form, count, reach, scale)
             yield Trial("GPSE", f"one step, graded particles, {form}", "ours", make, count)
 
 
@@ -166,7 +158,7 @@ def matrix_trials(trials: Iterable[Trial], most: float) -> Iterator[Trial]:
     """Yield those trials once more, of up to so many points, each with its whole run as one matrix."""
     for trial in trials:
         if trial.points <= most:
-            make = partial(whole_matrix, trial.prepare)
+            make = partial(contenders.whole_matrix, trial.prepare)
             yield replace(trial, variant=f"{trial.variant}, matrix", prepare=make)
 
 
@@ -185,7 +177,7 @@ def stepped_trials(
         own = {**way, "dt": problem.time / count * _ONE_OF_N, **fields}
         case = problem.case(**own)
         if case.time_step <= case.largest_stable_step:
-            yield _trial(lattice, problem, names, **own)
+            yield _trial(contenders.lattice, problem, names, **own)
 
 
 def particle_trials(
@@ -199,7 +191,9 @@ def particle_trials(
     for order, spacing, count in product(orders, spacings, steps):
         names = ("DVM", f"order {order}, M4' remeshing", "ours")
         fixed = {"scheme": "DVM", "order": order, "dt": problem.time / count * _ONE_OF_N}
-        yield _trial(moving, problem, names, **fixed, truncation=truncation, spacing=spacing)
+        yield _trial(
+            contenders.moving, problem, names, **fixed, truncation=truncation, spacing=spacing
+        )
 
 
 def naive_trials(
@@ -211,7 +205,7 @@ def naive_trials(
     **grid: Any,
 ) -> Iterator[Trial]:
     """Yield the papers' way: sums over all pairs, midpoint steps, truncated; `steps` of them, the rest extrapolated."""
-    make = partial(naive, steps=steps)
+    make = partial(contenders.naive, steps=steps)
     for scheme, order in product(schemes, orders):
         if scheme == "FD" and order > 2:
             continue
@@ -223,7 +217,7 @@ def naive_trials(
 def walk_trials(problem: Problem, walkers: Sequence[int], cells: int) -> Iterator[Trial]:
     """Yield the random walk."""
     for count in walkers:
-        make = partial(random_walkers, problem, int(count), cells)
+        make = partial(contenders.random_walkers, problem, int(count), cells)
         yield Trial("random walk", "exact increments", "papers", make, count)
 
 
@@ -261,7 +255,9 @@ def _peer_trial(
     spacing = place["spacing"]
     task = {"alpha": problem.alpha, "time": problem.time, "half_width": half_width}
     points = (2.0 * half_width / spacing + 1.0) ** problem.dim
-    return Trial(*names, partial(peer, partial(make, **task, spacing=spacing)), points, **place)
+    return Trial(
+        *names, partial(contenders.peer, partial(make, **task, spacing=spacing)), points, **place
+    )
 
 
 def lent_exterior_trials(problem: Problem, **grid: Any) -> Iterator[Trial]:
@@ -269,5 +265,5 @@ def lent_exterior_trials(problem: Problem, **grid: Any) -> Iterator[Trial]:
     names = (sinc_lattice.PEER.name, "our exterior, 3 terms, convolution", "peers")
     for place in _grids(problem, **grid):
         half_width = problem.half_width(place["truncation"])
-        make = partial(lent_exterior, problem, half_width, place["spacing"])
+        make = partial(contenders.lent_exterior, problem, half_width, place["spacing"])
         yield Trial(*names, make, 2.0 * half_width / place["spacing"] + 1.0, **place)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from threading import Lock
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -75,7 +75,26 @@ class PlaneSolver:
 
 @dataclass(frozen=True)
 class Task:
-    """What a peer is asked for, checked: see `Peer.prepare`."""
+    """What a peer is asked for.
+
+    Attributes
+    ----------
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    half_width : float
+        Half the width of the grid; for a grid without ends its scale.
+    time : float
+        The time to go.
+    spacing, count : float or int
+        The distance of the points, or their number: just one of the two.
+    exterior, propagation : str
+        One of the peer's; the first if left out.
+
+    Raises
+    ------
+    InvalidInput
+        If one is outside its range.
+    """
 
     alpha: float
     half_width: float
@@ -128,45 +147,22 @@ class Peer:
     group: str = "peers"
     scaled: bool = False
 
-    def prepare(
-        self,
-        *,
-        alpha: float,
-        half_width: float,
-        time: float,
-        spacing: float | None = None,
-        count: int | None = None,
-        exterior: str | None = None,
-        propagation: str | None = None,
-    ) -> Solver:
-        """Return the peer made ready: all that does not depend on the initial data is done.
-
-        Parameters
-        ----------
-        alpha : float
-            Fractional order, 1 < alpha < 2.
-        half_width : float
-            Half the width of the grid; for a grid without ends its scale.
-        time : float
-            The time to go.
-        spacing, count : float or int
-            The distance of the points, or their number: just one of the two.
-        exterior, propagation : str, optional
-            One of the peer's; the first if left out.
+    def prepare(self, **asked: Any) -> Solver:
+        """Return the peer made ready for a `Task`: all that does not depend on the initial data is done.
 
         Raises
         ------
         InvalidInput
             If an argument is outside its range.
         """
-        exterior = _chosen("exterior", exterior, self.exteriors)
-        propagation = _chosen("propagation", propagation, self.propagations)
-        return self.make(Task(alpha, half_width, time, spacing, count, exterior, propagation))
+        for name, choices in (("exterior", self.exteriors), ("propagation", self.propagations)):
+            if asked.setdefault(name, choices[0]) not in choices:
+                allowed = f"one of {', '.join(choices)} for this peer"
+                raise InvalidInput(name, asked[name], allowed, "Choose one.")
+        return self.make(Task(**asked))
 
-    def prepare_plane(
-        self, *, alpha: float, half_width: float, time: float, spacing: float
-    ) -> PlaneSolver:
-        """Return the peer made ready in the plane, on a square of that half-width.
+    def prepare_plane(self, *, spacing: float, **asked: Any) -> PlaneSolver:
+        """Return the peer made ready in the plane, on a square of the half-width.
 
         The realised spacing is half_width / n; that of a periodic square may be smaller.
 
@@ -177,17 +173,7 @@ class Peer:
         """
         if self.make_plane is None:
             raise InvalidInput("peer", self.name, "one that exists in the plane", "Take another.")
-        spacing = positive_real("spacing", spacing)
-        return self.make_plane(Task(alpha, half_width, time, spacing))
-
-
-def _chosen(field: str, value: str | None, allowed: tuple[str, ...]) -> str:
-    if value is None:
-        return allowed[0]
-    if value not in allowed:
-        allowed_here = f"one of {', '.join(allowed)} for this peer"
-        raise InvalidInput(field, value, allowed_here, "Choose one.")
-    return value
+        return self.make_plane(Task(spacing=positive_real("spacing", spacing), **asked))
 
 
 def half_intervals(task: Task, points: int = 1, stretch: float = 1.0) -> int:

@@ -8,21 +8,16 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import NullLocator
 
-from fracstudy.style import COLOURS
+from fracstudy.style import COLOURS, panel_title
 
 __all__ = [
     "EXACT",
     "HOLLOW",
     "LOADING_LOOKS",
     "SHAPE_COLOURS",
-    "decimals",
     "draw",
-    "entry",
     "four_panels",
-    "note",
     "shape_panels",
     "strokes",
     "symbol",
@@ -64,25 +59,6 @@ def draw(ax: Axes, frame: pd.DataFrame, *line: str, **style: Any) -> None:
     ax.plot(frame["x"], frame["y"], *line, **style)
 
 
-def entry(label: str, **style: Any) -> Line2D:
-    """Return an entry of a legend."""
-    return Line2D([], [], label=label, **style)
-
-
-def note(
-    ax: Axes, text: str, at: tuple[float, float], shift: tuple[float, float], **style: Any
-) -> None:
-    """Write a text, `shift` points from a place."""
-    style = {"fontsize": 8, **style}
-    ax.annotate(text, at, xytext=shift, textcoords="offset points", **style)
-
-
-def decimals(ax: Axes, *values: float) -> None:
-    """Put plain numbers on a logarithmic axis of about a decade."""
-    ax.set_yticks(values, [f"{value:g}" for value in values])
-    ax.yaxis.set_minor_locator(NullLocator())
-
-
 def strokes(ax: Axes, x: pd.Series, colour: str) -> None:
     """Draw the markers as strokes below the axis."""
     level = np.full(len(x), -0.025)
@@ -94,7 +70,7 @@ def four_panels(width: float, height: float, *titles: str) -> tuple[Figure, list
     figure = Figure(figsize=(width, height), layout="constrained")
     axes = list(figure.subplots(2, 2).ravel())
     for letter, ax, title in zip("abcd", axes, titles, strict=True):
-        ax.set_title(f"({letter}) {title}", loc="left")
+        panel_title(ax, letter, title)
     return figure, axes
 
 

@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, decimals, draw, four_panels, note, symbol
+from fracstudy.style import name_ticks, note
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, four_panels, symbol
 from scenes.lewandowski.square_profile import LOADINGS, SquareRuns
 
 __all__ = ["figure"]
@@ -41,7 +42,7 @@ def _numbers(ax: Axes, series: pd.DataFrame) -> None:
             draw(ax, curve, f"o{line}", label=label, **style)
     ax.axvspan(10.0, 15.0, color="0.5", alpha=0.15, linewidth=0)
     ax.set(xscale="log", yscale="log", xlabel=r"markers per $\varepsilon$ at the end")
-    decimals(ax, 0.02, 0.05, 0.1, 0.2)
+    name_ticks(ax, (0.02, 0.05, 0.1, 0.2), "y")
     ax.legend(loc="lower left")
 
 
@@ -53,9 +54,8 @@ def _best(ax: Axes, series: pd.DataFrame) -> None:
         ax.plot(part["x"], part["predicted"], color=SHAPE_COLOURS[name], linewidth=1.0)
     ticks = sorted(series["x"].unique())
     ax.set(xscale="log", yscale="log", xlabel="distance of the markers $h$")
-    ax.set_xticks(ticks, [f"{h:g}" for h in ticks])
-    ax.minorticks_off()
-    decimals(ax, 0.1, 0.2, 0.5, 1.0)
+    name_ticks(ax, ticks)
+    name_ticks(ax, (0.1, 0.2, 0.5, 1.0), "y")
     ax.set_ylabel(r"best support parameter $\varepsilon$")
     ax.legend(loc="upper left", ncols=2)
 
@@ -71,7 +71,7 @@ def _parts(ax: Axes, series: pd.DataFrame) -> None:
             curve = pick(part, panel=f"{what} error")
             draw(ax, curve, f"o{line}", label=f"{symbol(name)}: {label}", **style)
     ax.set(yscale="log", xlabel="time $t$", ylabel="largest error")
-    decimals(ax, 0.002, 0.005, 0.01, 0.02, 0.05)
+    name_ticks(ax, (0.002, 0.005, 0.01, 0.02, 0.05), "y")
     ax.legend(loc="best")
 
 

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row
-from scenes.lewandowski.marker_style import LOADING_LOOKS, decimals, draw, entry, note, symbol
+from fracstudy.style import axes_row, entry, legend_below, name_ticks, note
+from scenes.lewandowski.marker_style import LOADING_LOOKS, draw, symbol
 
 __all__ = ["figure"]
 
@@ -27,7 +27,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
                 draw(ax, curve, color=colour, linewidth=width, alpha=opacity)
         ax.set(xlabel="time $t$", yscale="log", xlim=(0.0, None), ylim=(0.01, 0.4))
         ax.set_title(f"Fig. {number}: {symbol(shape)}", loc="left")
-        decimals(ax, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
+        name_ticks(ax, (0.01, 0.02, 0.05, 0.1, 0.2, 0.4), "y")
         printed = pick(later, panel="printed", series=shape)
         if len(printed):
             draw(ax, printed, "--", color="black", linewidth=1.2)
@@ -35,7 +35,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     _exponential(axes[-1], pick(series, panel="E", series="S8", loading="midpoints"))
     axes[0].set_ylabel("error norm $E(t)$")
     legend = [entry(label, color=colour) for label, colour, _ in LOADING_LOOKS.values()]
-    figure.legend(handles=legend, loc="outside lower center", ncols=3)
+    legend_below(figure, legend, 3)
     return figure
 
 

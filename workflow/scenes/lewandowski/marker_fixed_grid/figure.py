@@ -6,6 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
+from fracstudy.style import entry, legend_below
 from scenes.lewandowski import marker_style as look
 
 __all__ = ["figure"]
@@ -21,10 +22,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         look.draw(ax, pick(here, panel="field"), color=colour, linewidth=1.5)
         look.strokes(ax, pick(here, panel="markers")["x"], colour)
         ax.set(xlim=(-9.0, 9.0), ylim=(-0.045, 0.36))
-    entries = [
-        look.entry(f"$F$ with {look.symbol(s)}", color=look.SHAPE_COLOURS[s]) for s in shapes
-    ]
-    ticks = look.entry("markers", color="0.4", marker="|", linestyle="")
-    legend = [look.entry(**look.EXACT), *entries, ticks]
-    figure.legend(handles=legend, loc="outside lower center", ncols=5)
+    entries = [entry(f"$F$ with {look.symbol(s)}", color=look.SHAPE_COLOURS[s]) for s in shapes]
+    ticks = entry("markers", color="0.4", marker="|", linestyle="")
+    legend = [entry(**look.EXACT), *entries, ticks]
+    legend_below(figure, legend, 5)
     return figure

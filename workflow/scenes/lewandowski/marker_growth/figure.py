@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, decimals, draw, entry, note, symbol
+from fracstudy.style import axes_row, entry, legend_below, name_ticks, note
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
 
 __all__ = ["figure"]
 
@@ -26,7 +26,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         entry("measured", color="0.3", **_HOLLOW),
         *(entry(symbol(s), color=SHAPE_COLOURS[s]) for s in shapes),
     ]
-    figure.legend(handles=legend, loc="outside lower center", ncols=5)
+    legend_below(figure, legend, 5)
     return figure
 
 
@@ -56,4 +56,4 @@ def _steps(ax: Axes, errors: pd.DataFrame, limits: pd.Series) -> None:
         note(ax, text, at, (3 * side, -2), va="top", color=colour, **place)
     ax.set(yscale="log", xlabel=r"time step $\Delta t / \varepsilon^2$")
     ax.set_ylabel(f"error norm $E({errors['t'].iloc[0]:g})$")
-    decimals(ax, 0.02, 0.05, 0.1, 0.2)
+    name_ticks(ax, (0.02, 0.05, 0.1, 0.2), "y")

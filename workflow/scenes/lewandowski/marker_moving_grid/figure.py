@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
+from fracstudy.style import entry, legend_below, note
 from scenes.lewandowski import marker_style as look
 
 __all__ = ["figure"]
@@ -37,12 +38,12 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         _spectrum(ax, pick(series, series=shape), look.SHAPE_COLOURS[shape])
     spectra[0].set_ylabel("random: spectrum\nof the markers")
     legend = [
-        look.entry("$F$ at the markers", color="0.3", marker=".", linestyle=""),
-        look.entry(**look.EXACT),
-        look.entry("exact, represented by these markers", **_REPRESENTED),
-        look.entry("cluster", color="0.3", marker="v", linestyle="", markersize=4),
+        entry("$F$ at the markers", color="0.3", marker=".", linestyle=""),
+        entry(**look.EXACT),
+        entry("exact, represented by these markers", **_REPRESENTED),
+        entry("cluster", color="0.3", marker="v", linestyle="", markersize=4),
     ]
-    figure.legend(handles=legend, loc="outside lower center", ncols=4)
+    legend_below(figure, legend, 4)
     return figure
 
 
@@ -52,7 +53,7 @@ def _clusters(ax: Axes, centres: pd.DataFrame, colour: str) -> None:
         ax.plot(centres["x"], np.full(len(centres), 0.335), "v", color=colour, markersize=3.5)
         text = rf"clusters ${np.median(np.diff(centres['y'])):.2f}\,\varepsilon$ apart"
         place = {"xycoords": "axes fraction", "ha": "center"}
-        look.note(ax, text, (0.5, 1.0), (0, 2), color=colour, **place)
+        note(ax, text, (0.5, 1.0), (0, 2), color=colour, **place)
 
 
 def _spectrum(ax: Axes, series: pd.DataFrame, colour: str) -> None:

@@ -8,11 +8,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from fracstudy.panels import pick
-from fracstudy.style import slope_triangle
-from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels, note
+from fracstudy.style import name_ticks, note, slope_triangle
+from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels
 
 __all__ = ["figure"]
 
@@ -70,8 +69,7 @@ def _steps(ax: Axes, series: pd.DataFrame, printed: float) -> None:
         note(ax, text, (place, 1.0), (-4, -4), **beside)
     low, high = 0.99 * scan["x"].min(), 1.01 * scan["x"].max()
     ticks = [t for t in (0.0025, 0.003, 0.004, 0.006, 0.01, 0.02) if low <= t <= high]
-    ax.set_xticks(ticks, [f"{t:g}" for t in ticks])
-    ax.xaxis.set_minor_formatter(NullFormatter())
+    name_ticks(ax, ticks)
     ax.set(xlabel=r"time step $\Delta t$", ylabel=r"max $|F - f_\infty|$ in the core / peak")
     ax.legend(loc="center left", bbox_to_anchor=(0.4, 0.5), **_SMALL)
 

@@ -8,8 +8,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, note, symbol
+from fracstudy.style import axes_row, legend_below, note
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
 from scenes.lewandowski.square_profile import SHAPES
 
 __all__ = ["figure"]

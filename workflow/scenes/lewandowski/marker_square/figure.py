@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from scenes.lewandowski.marker_style import EXACT, LOADING_LOOKS, decimals, draw, entry
+from fracstudy.style import entry, legend_below, name_ticks
+from scenes.lewandowski.marker_style import EXACT, LOADING_LOOKS, draw
 from scenes.lewandowski.square_profile import SquareRuns
 
 __all__ = ["figure"]
@@ -49,7 +50,7 @@ def figure(
             ax.axhline(1.0, color="black", linewidth=1.0)
             ax.text(0.02, 1.0, "exact", transform=ax.get_yaxis_transform(), va="bottom", fontsize=8)
         ax.set(yscale="log", xlabel=r"support parameter $\varepsilon$", ylabel=label)
-        decimals(ax, *_TICKS[panel])
+        name_ticks(ax, _TICKS[panel], "y")
     legend = [entry(t, color=colour, marker=mark) for t, colour, mark in LOADING_LOOKS.values()]
-    figure.legend(handles=[entry(**EXACT), *legend], loc="outside lower center", ncols=4)
+    legend_below(figure, [entry(**EXACT), *legend], 4)
     return figure

@@ -7,11 +7,10 @@ from typing import Any
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from fracstudy.panels import pick
-from fracstudy.style import legend_below, slope_triangle
-from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels, note
+from fracstudy.style import legend_below, name_ticks, note, slope_triangle
+from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels
 
 __all__ = ["figure"]
 
@@ -96,6 +95,5 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
     counts = sorted(series.loc[~series["series"].str.startswith("KdV"), "x"].unique())
     ax.set(xscale="log", yscale="log", xlabel="number of markers $N$")
     ax.set_ylabel("relative $L^1$ error")
-    ax.set_xticks(counts, [f"{n:g}" for n in counts])
-    ax.xaxis.set_minor_formatter(NullFormatter())
+    name_ticks(ax, counts)
     slope_triangle(ax, 140.0, 0.75 * series["y"].min(), -1.0)

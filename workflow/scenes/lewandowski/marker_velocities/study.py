@@ -207,15 +207,8 @@ def _bare_soliton(
     except NonFiniteSolution as error:
         message = str(error).split(": ", 1)[1].split(" and ")[0]
     z = np.linspace(-half_width, half_width, 801) + soliton.c * t
-    row = {
-        "equation": "KdV",
-        "case": "soliton alone",
-        "N": markers,
-        "eps": support,
-        "dt": dt,
-        "t": t,
-    }
-    errors.add("", velocity.fields(x, w, z)[0], soliton.value(z, t), **row, stopped=message)
+    row = {"equation": "KdV", "case": "soliton alone", "N": markers, "eps": support, "dt": dt}
+    errors.add("", velocity.fields(x, w, z)[0], soliton.value(z, t), **row, t=t, stopped=message)
     return f"at t = {t:.2g} {message}" if message else ""
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -12,20 +12,24 @@ import pandas as pd
 from fracparticles.run.case import Case
 from fracparticles.schemes.base import lattice_radii
 from fracparticles.schemes.dd import DirectDifferentiation
-from fracstudy.inputs import Inputs, Result, observed_order, statement
-from scenes.beyond.solution_map_2d.study import with_count
+from fracstudy.claims import Finding
+from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.orders import orders_by
+from scenes.plane import particles_per_side
 
 __all__ = ["spurious_rate", "study"]
 
+_KERNELS = {"DD": "G", "FPSE": "F"}
+NEEDS = {"scheme": list(_KERNELS)}
+
 _VISIBLE = 0.05  # share of the error that a table may change and still be insignificant
 _DROP = 0.5  # of the order: an appreciable drop
-_SCHEMES = {"DD": "G", "FPSE": "F"}
 
 
 def spurious_rate(case: Case, step: float) -> float:
     """Return the rate of decay of a uniform strength that a table of this step adds to DD.
 
-    sum_j V_j (table - G)_epsilon(x_i - x_j) / epsilon^alpha over the square: the integral of G is nil, that of its
+    sum_j V_j (table - G)_epsilon(x_i - x_j) / epsilon^alpha over the square: the integral of G is zero, that of its
     chords is not, and by Euler and Maclaurin the difference is near (step^2 / 12) int G'' = pi step^2 G(0) / 6 < 0,
     over epsilon^alpha: it grows when h falls.
     """
@@ -40,108 +44,69 @@ def spurious_rate(case: Case, step: float) -> float:
 
 def study(inputs: Inputs) -> Result:
     """Errors (59) with exact kernels and with the tables, and the spurious decay of DD."""
-    runs = with_count(inputs.scalars)
-    runs["step"] = runs["kernel_table"].fillna(0.0)
-    steps = [0.0, *sorted(inputs.parameters["steps"])]
-    errors = runs.pivot_table(
-        index=["scheme", "N"], columns="step", values="relative_l1_error"
-    ).reset_index()
-    h = runs.groupby("N")["particle_spacing"].first()
-    table = pd.DataFrame(
-        {
-            "scheme": errors["scheme"],
-            "kernel": errors["scheme"].map(_SCHEMES),
-            "N": errors["N"],
-            "h": errors["N"].map(h),
-        }
-    )
-    for step in steps:
-        name = "exact kernel" if step == 0.0 else f"table, step {step:g}"
-        table[f"error (59), {name}"] = errors[step]
-        table[f"observed order, {name}"] = np.nan
-        for _, part in table.groupby("scheme"):
-            order = observed_order(part["h"], part[f"error (59), {name}"])
-            table.loc[part.index[1:], f"observed order, {name}"] = order
-    for step in steps[1:]:
-        table[f"spurious decay in the run, step {step:g}"] = [
-            _spurious(inputs.parameters, row, step) for row in table.to_dict("records")
-        ]
-    files = list(runs["run"])
-    findings = [
-        *_coarse(table, max(steps), files),
-        *_fine(table, steps[1], files),
-    ]
-    return Result(table, findings, _series(table, steps))
+    runs = inputs.scalars
+    runs = runs.assign(N=particles_per_side(runs), step=runs["kernel_table"].fillna(0.0))
+    runs = runs.sort_values(["step", "scheme", "N"], ignore_index=True)
+    runs["h"], runs["y"] = runs["particle_spacing"], runs["relative_l1_error"]
+    runs["order"] = orders_by(runs, ["step", "scheme"], "y")
+    runs["spurious"] = [_spurious_decay(run) for run in runs.itertuples()]
+    wide = runs.pivot(index=["scheme", "N"], columns="step")
+    first = wide.index.to_frame(index=False)
+    first.insert(1, "kernel", first["scheme"].map(_KERNELS))
+    columns: dict[str, Any] = {"h": wide["h"].bfill(axis=1).iloc[:, 0]}
+    for step in wide["y"]:
+        columns[f"error (59), {_name(step)}"] = wide["y"][step]
+        columns[f"observed order, {_name(step)}"] = wide["order"][step]
+    for step in wide["y"].columns[1:]:
+        columns[f"spurious decay in the run, step {step:g}"] = wide["spurious"][step]
+    table = first.join(pd.DataFrame(columns).reset_index(drop=True))
+    findings = _findings(runs, sorted(runs["step"].unique()), list(inputs.scalars["run"]))
+    return Result(table, inputs.judged(findings), runs[["scheme", "h", "step", "y", "spurious"]])
 
 
-def _spurious(parameters: Mapping[str, Any], row: dict[str, Any], step: float) -> float:
-    """1 - exp(-rate T) for DD; a flux of zero mean has none."""
-    if row["scheme"] != "DD":
+def _name(step: float) -> str:
+    return f"table, step {step:g}" if step else "exact kernel"
+
+
+def _spurious_decay(run: Any) -> float:
+    """1 - exp(-rate T) for DD with a table; a flux of zero mean has none."""
+    if run.scheme != "DD" or run.step == 0.0:
         return np.nan
-    case = Case(
-        scheme="DD",
-        beta=parameters["beta"],
-        dim=2,
-        truncation=parameters["truncation"],
-        spacing=row["h"],
-        integrator="exponential",
-    )
-    return float(-np.expm1(-spurious_rate(case, step) * (case.t_final - case.t_initial)))
+    grid = {"beta": run.beta, "dim": 2, "truncation": run.truncation, "spacing": run.h}
+    case = Case(scheme="DD", integrator="exponential", **grid)
+    return float(-np.expm1(-spurious_rate(case, run.step) * (run.t_final - run.t_initial)))
 
 
-def _series(table: pd.DataFrame, steps: list[float]) -> pd.DataFrame:
-    parts = []
-    for step in steps:
-        name = "exact kernel" if step == 0.0 else f"table, step {step:g}"
-        part = table[["scheme", "h"]].assign(step=step, y=table[f"error (59), {name}"])
-        if step > 0.0:
-            part["spurious"] = table[f"spurious decay in the run, step {step:g}"]
-        parts.append(part)
-    return pd.concat(parts, ignore_index=True)
-
-
-def _coarse(table: pd.DataFrame, step: float, files: list[str]) -> list:
+def _findings(runs: pd.DataFrame, steps: list[float], files: list[str]) -> list[Finding]:
+    """The coarsest table must spoil the order, every finer one must not be visible in the error."""
+    parts = {key: part.set_index("N") for key, part in runs.groupby(["scheme", "step"])}
     findings = []
-    for scheme, kernel_name in _SCHEMES.items():
-        part = table[table["scheme"] == scheme]
-        tabled, exact = part[f"error (59), table, step {step:g}"], part["error (59), exact kernel"]
-        order = part[f"observed order, table, step {step:g}"].iloc[-1]
-        usual = part["observed order, exact kernel"].iloc[-1]
-        ratio = tabled / exact
-        change = ", ".join(f"{value:.1e}" for value in (tabled - exact).iloc[1:])
-        findings.append(
-            statement(
-                f"L-2D-TAB.{kernel_name}.step{step:g}",
-                bool(usual - order > _DROP and ratio.iloc[-1] > 1.0 + _VISIBLE),
-                f"{scheme}: the error is {', '.join(f'{r:.3g}' for r in ratio)} times that with exact kernels at N = "
-                f"{', '.join(map(str, part['N']))}; the order between the two finest lattices is {order:.2f} instead "
-                f"of {usual:.2f}.",
+    for (scheme, kernel), step in product(_KERNELS.items(), steps[1:]):
+        tabled, exact = parts[scheme, step], parts[scheme, 0.0]
+        ratio, coarse = tabled["y"] / exact["y"], step == steps[-1]
+        order, usual = tabled["order"].iloc[-1], exact["order"].iloc[-1]
+        visible = ratio.index[(ratio - 1.0).abs() > _VISIBLE]
+        ratios = ", ".join(f"{r:.{3 if coarse else 4}g}" for r in ratio)
+        if coarse:
+            change = ", ".join(f"{value:.1e}" for value in (tabled["y"] - exact["y"]).iloc[1:])
+            holds = usual - order > _DROP and ratio.iloc[-1] > 1.0 + _VISIBLE
+            reason = (
                 "F is a vector kernel: in a uniform field the errors of its chords cancel, and what is left falls "
                 f"with h (the error changes by {change} from the second lattice on)."
                 if scheme == "FPSE"
-                else "On these lattices the order of DD does not drop.",
-                files,
+                else "On these lattices the order of DD does not drop."
             )
-        )
-    return findings
-
-
-def _fine(table: pd.DataFrame, step: float, files: list[str]) -> list:
-    findings = []
-    for scheme, kernel_name in _SCHEMES.items():
-        part = table[table["scheme"] == scheme]
-        ratio = part[f"error (59), table, step {step:g}"] / part["error (59), exact kernel"]
-        visible = part["N"][(ratio - 1.0).abs() > _VISIBLE]
-        order = part[f"observed order, table, step {step:g}"].iloc[-1]
-        findings.append(
-            statement(
-                f"L-2D-TAB.{kernel_name}.step{step:g}",
-                visible.empty,
-                f"{scheme}: the error is {', '.join(f'{r:.4g}' for r in ratio)} times that with exact kernels at N = "
-                f"{', '.join(map(str, part['N']))}; the order between the two finest lattices is {order:.2f}.",
+        else:
+            holds = visible.empty
+            reason = (
                 f"Visible with DD at N = {', '.join(map(str, visible))}: the chords of G have a negative integral, "
-                "which acts as a decay of u at a rate proportional to epsilon^-alpha.",
-                files,
+                "which acts as a decay of u at a rate proportional to epsilon^-alpha."
             )
+        evidence = (
+            f"{scheme}: the error is {ratios} times that with exact kernels at N = "
+            f"{', '.join(map(str, ratio.index))}; the order between the two finest lattices is {order:.2f}"
+            f"{f' instead of {usual:.2f}' if coarse else ''}."
         )
+        claim = f"L-2D-TAB.{kernel}.step{step:g}"
+        findings.append(statement(claim, holds, evidence, reason, files))
     return findings

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import panel_title, scheme_style, slope_triangle
-from scenes.plane import spacing_axis
+from scenes.plane import spacing_axes
 
 __all__ = ["figure"]
 
@@ -21,11 +21,7 @@ _PANELS = {
     "FPSE": ("diffusion rate, FPSE", _RATE, "Oranges", "lower right"),
 }
 # In the order of the table.
-_ERRORS = (
-    scheme_style("FPSE", 4, marker="v"),
-    scheme_style("DD"),
-    scheme_style("FPSE"),
-)
+_ERRORS = (scheme_style("FPSE", 4, marker="v"), scheme_style("DD"), scheme_style("FPSE"))
 
 
 def figure(
@@ -58,8 +54,8 @@ def _errors(ax: Axes, table: pd.DataFrame) -> None:
     column = next(name for name in table if name.startswith("largest error"))
     for (name, part), style in zip(table.groupby("quantity", sort=False), _ERRORS, strict=True):
         ax.plot(part["h"], part[column], label=name, **style)
-    ax.set(yscale="log", ylabel=r"largest error / largest value, $r \leq 5$")
-    spacing_axis(ax, table["h"])
+    spacing_axes(ax, table["h"])
+    ax.set_ylabel(r"largest error / largest value, $r \leq 5$")
     panel_title(ax, "d", "convergence")
     lowest = table.groupby("h")[column].min()
     slope_triangle(ax, 1.3 * lowest.index[0], 0.75 * lowest.iloc[0], 2.0)

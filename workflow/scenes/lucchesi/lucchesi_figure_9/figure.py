@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import (
+    COLOURS,
     axes_row,
     entry,
     legend_entries,
@@ -16,14 +18,22 @@ from fracstudy.style import (
     scheme_style,
     slope_triangle,
 )
-from scenes.plane import spacing_axis
+from scenes.plane import spacing_axes
 
 __all__ = ["figure"]
 
+_PAPER = ("DD", "FPSE")
 _SCHEMES = ("DD", "FPSE", "KPSE", "GPSE")
 _HOLLOW: dict[str, Any] = {"markerfacecolor": "white"}
 _LEGEND: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (-0.08, -0.17)}
 _POINT: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": ""}
+_FINER: dict[str, Any] = {
+    "xycoords": ("data", "axes fraction"),
+    "ha": "right",
+    "va": "top",
+    "color": "0.4",
+    "fontsize": 7.5,
+}
 _KEY = [
     *legend_entries((name, None) for name in _SCHEMES),
     entry("order II", color="0.3"),
@@ -38,7 +48,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -
     series = series[series["C"] == series["C"].min()].sort_values("h")
     groups = dict(iter(series.groupby(["scheme", "order", "exterior"])))
     figure, (paper, ours) = axes_row(2, width=4.3, height=4.3)
-    for scheme in ("DD", "FPSE"):
+    for scheme in _PAPER:
         part = groups[scheme, "II", "truncated"]
         style = scheme_style(scheme)
         paper.plot(part["h"], part["error (59)"], label=f"{scheme}, strengths", **style)
@@ -46,22 +56,19 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -
         style |= {"linestyle": "--", **_HOLLOW}
         paper.plot(part["h"], part["error of the field (7)"], label=f"{scheme}, field (7)", **style)
     dd = groups["DD", "II", "truncated"]
-    finest, error = dd.loc[dd["N"] == max(particles), ["h", "error (59)"]].iloc[0]
-    paper.axvspan(0.5 * series["h"].min(), finest / 1.3, color="0.95", zorder=0)
-    finer: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
-    finer |= {"color": "0.4", "fontsize": 7.5}
-    note(paper, "finer than\nin the paper", (finest / 1.36, 0.98), (0, 0), **finer)
-    slope_triangle(paper, 1.1 * finest, 0.4 * error, 2.0)
-    spacing_axis(paper, dd["h"])
+    for h, error in dd.loc[dd["N"] == max(particles), ["h", "error (59)"]].to_numpy():
+        paper.axvspan(0.5 * series["h"].min(), h / 1.3, color="0.95", zorder=0)
+        note(paper, "finer than\nin the paper", (h / 1.36, 0.98), (0, 0), **_FINER)
+        slope_triangle(paper, 1.1 * h, 0.4 * error, 2.0)
+    spacing_axes(paper, dd["h"])
 
-    for (scheme, order, exterior), part in groups.items():
-        shown = scheme in ("DD", "FPSE") and order == "II" and exterior == "truncated"
-        if not shown:  # nearly the open ones, and in (a)
-            face = {} if exterior == "truncated" else _HOLLOW
-            style = (
-                scheme_style(scheme, order, markerfacecolor=scheme_style(scheme)["color"]) | face
-            )
-            ours.plot(part["h"], part["error (59)"], **style)
+    for scheme, order, exterior in product(_SCHEMES, ("II", "IV"), ("truncated", "open")):
+        key = (scheme, order, exterior)
+        in_paper = scheme in _PAPER and key[1:] == ("II", "truncated")  # nearly the open ones
+        if key in groups and not in_paper:
+            filled = {"markerfacecolor": COLOURS[scheme]} if exterior == "truncated" else _HOLLOW
+            part = groups[key]
+            ours.plot(part["h"], part["error (59)"], **scheme_style(scheme, order, **filled))
     if ("GPSE", "II", "truncated") in groups:
         at = tuple(groups["GPSE", "II", "truncated"].iloc[0][["h", "error (59)"]])
         note(ours, "KPSE and GPSE,\ntruncated", at, (-6, 6), ha="left", fontsize=7.5)
@@ -69,13 +76,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -
         kpse = groups["KPSE", "IV", "open"]
         h, error = kpse.iloc[len(kpse) // 2][["h", "error (59)"]]
         slope_triangle(ours, 1.1 * h, 0.25 * error, 4.0)
-    spacing_axis(ours, series["h"])
-    for letter, ax, title in (
-        ("a", paper, "DD and FPSE, truncated"),
-        ("b", ours, "all schemes"),
-    ):
-        panel_title(ax, letter, title)
-        ax.set_yscale("log")
+    spacing_axes(ours, series["h"])
+    panel_title(paper, "a", "DD and FPSE, truncated")
+    panel_title(ours, "b", "all schemes")
     paper.set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (59)")
     paper.legend(ncols=2, **_LEGEND)
     ours.legend(handles=_KEY, ncols=4, **_LEGEND)

@@ -87,34 +87,28 @@ def benchmark(
         Whether to measure the peak memory: each dimension and kind then has a process of its own.
     """
     machine_memory = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
-    limits = naive_particles, most_solved, repeats, seconds, memory
+    limits = {"naive_particles": naive_particles, "most_solved": most_solved, "memory": memory}
+    often = repeats, seconds
     rows = []
     for (shape, dim), sizes in zip(_DIMENSIONS.items(), (lines, squares, cubes), strict=True):
         for kind in kinds.get(shape, ()):
-            task = kind, dim, [_TINY, *sorted(sizes)], *limits
+            task = kind, dim, [_TINY, *sorted(sizes)], limits, often
             measured = in_fresh_process(measure_sizes, *task) if memory else measure_sizes(*task)
             least = measured[0]["peak_memory"]
             for row in measured[1:]:
                 row["memory_per_particle"] = (row["peak_memory"] - least) / row["particles"]
                 rows.append({"kind": kind, "dim": dim, "machine_memory": machine_memory, **row})
     # Of the processes that measured, not of this one.
-    taken = {name: max(row[name] for row in rows) for name in conditions() if rows}
+    taken = {name: np.fmax.reduce([row[name] for row in rows]) for name in conditions() if rows}
     facts = {"repeats": repeats, "beta": _BETA, "spacing": _SPACING, **taken}
     title = "Run time and memory against the number of particles"
     return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
 
 
 def measure_sizes(
-    kind: str,
-    dim: int,
-    sizes: Sequence[int],
-    naive_particles: float,
-    most_solved: float,
-    repeats: int,
-    seconds: float,
-    memory: bool,
+    kind: str, dim: int, sizes: Sequence[int], limits: Mapping[str, float], often: tuple[int, float]
 ) -> list[dict[str, Any]]:
-    """Measure one kind on lattices of several sizes, the smallest first: one row a size, see `cost_growth`.
+    """Measure one kind on lattices of several sizes, the smallest first: one row a size, see `benchmark`.
 
     The smallest makes a short run: an open exterior would be too close for the whole one. The peak memory, nan if it
     is not wanted, is that of the process so far.
@@ -123,12 +117,12 @@ def measure_sizes(
     rows = []
     for number, size in enumerate(sizes):
         case = _case(kind, dim, size, _END if number else _START + _SHORT)
-        row: dict[str, Any] = {"particles": case.particles, **conditions()}
-        if case.particles <= naive_particles and case.exterior == "truncated":
-            row["naive_time"] = _naive_time(case, repeats, seconds)
-        row |= _run_times(case, most_solved, repeats, seconds)
-        row["peak_memory"] = peak_so_far() if memory else float("nan")
-        rows.append(row)
+        row: dict[str, Any] = {"particles": case.particles}
+        if case.particles <= limits["naive_particles"] and case.exterior == "truncated":
+            row["naive_time"] = _naive_time(case, *often)
+        row |= _run_times(case, limits["most_solved"], *often)
+        row["peak_memory"] = peak_so_far() if limits["memory"] else float("nan")
+        rows.append({**row, **conditions()})
     return rows
 
 

@@ -69,7 +69,7 @@ def _name(contender: str, group: str) -> str:
 
 
 def _times(ratio: float) -> str:
-    if ratio < 1e4:
+    if ratio < 1e3:
         return f"{ratio:.3g}"
     mantissa, exponent = f"{ratio:.0e}".split("e")
     return rf"${mantissa} \cdot 10^{{{int(exponent)}}}$"

@@ -1,0 +1,134 @@
+"""`fracparticles solve` and `limit`: the flags are fields of `Case`, made from the model itself."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Required, TypedDict
+
+from cyclopts import Parameter
+
+from fracparticles.arguments import positive_real
+from fracparticles.errors import InvalidInput, spelled
+from fracparticles.files import replaceable
+from fracparticles.run.case import Case
+from fracparticles.run.complaints import choices_of, takes_numbers
+from fracparticles.schemes import scheme as find_scheme
+from fracparticles.schemes.stability import stability_limit
+
+__all__ = ["limit", "number_or_text", "solve"]
+
+_ALIASES = {"dt": "--time-step"}
+_NEEDED = ("scheme", "beta")  # by `limit`; `Case` says itself what it needs
+_OF_A_LIMIT = (*_NEEDED, "order", "overlap", "dim", "kernel_family", "spacing", "diffusivity")
+_NUMBERS = {name for name, field in Case.model_fields.items() if takes_numbers(field.annotation)}
+
+
+def _flag(name: str, kind: Any = str) -> Any:
+    field = Case.model_fields[name]
+    choices = choices_of(field.annotation)
+    notes = [
+        f"[one of: {spelled(choices, ', ')}]" if choices else "",
+        f"[default: {field.default}]" if field.default and not field.is_required() else "",
+    ]
+    return Annotated[
+        kind,
+        Parameter(
+            alias=_ALIASES.get(name),
+            metavar="NUMBER" if name in _NUMBERS else "TEXT",
+            help=" ".join(filter(None, [field.description, *notes])),
+        ),
+    ]
+
+
+if TYPE_CHECKING:
+    Flags = dict[str, Any]
+    LimitFlags = dict[str, Any]
+else:
+    Flags = TypedDict("Flags", {name: _flag(name) for name in Case.model_fields}, total=False)
+    _LIMIT = {name: _flag(name) for name in _OF_A_LIMIT}
+    _LIMIT |= {name: _flag(name, Required[str]) for name in _NEEDED}
+    LimitFlags = TypedDict("LimitFlags", _LIMIT, total=False)
+
+
+def solve(
+    *,
+    flags: Annotated[Flags | None, Parameter(name="*")] = None,
+    output: Annotated[str | None, Parameter(alias="-o")] = None,
+) -> None:
+    """Run a case, write its file and print its path.
+
+    Parameters
+    ----------
+    output : str
+        The NetCDF file to write.
+    """
+    target = _writable(output)
+    case = Case(**_values(flags or {}))
+
+    from fracparticles.run.dataset import write
+    from fracparticles.run.solver import solve as run
+
+    write(run(case), target)
+    print(target)
+
+
+def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
+    """Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.
+
+    Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a, Eq. (56). A single step of GPSE, over the
+    whole time, has no limit.
+    """
+    given = _values(flags)
+    scheme = find_scheme(given["scheme"])
+    if "overlap" in given and not scheme.has_kernel:
+        without = f"nothing for {scheme.name}, which has no kernel"
+        raise InvalidInput("overlap", given["overlap"], without, "Leave it out.")
+    kernels = {name: given[name] for name in ("order", "overlap", "dim") if name in given}
+    a = stability_limit(scheme.name, given["beta"], family=given.get("kernel_family"), **kernels)
+    rate = positive_real("diffusivity", given.get("diffusivity", 1.0))
+    lines = [f"a = {a:.6g}"]
+    if "spacing" in given:
+        h = positive_real("spacing", given["spacing"])
+        lines.append(f"dt = {a * h ** (1.0 + given['beta']) / rate:.6g}")
+    print("\n".join(lines))
+    if scheme.self_timed:
+        whole = f"a single step of {scheme.name}, over the whole time, has no limit"
+        _note(f"this binds steps that are repeated; {whole}")
+    if a == 0.0:
+        _note("no step is stable, some wave grows: take a larger overlap or a lower order")
+
+
+def number_or_text(text: str) -> Any:
+    """Return the number that the text stands for, or the text if it stands for none."""
+    for number in (int, float):
+        try:
+            return number(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _values(flags: Mapping[str, str]) -> dict[str, Any]:
+    """Numbers of the flags, read as text: text where one belongs is then refused in the same words as in Python."""
+    return {
+        name: number_or_text(text) if name in _NUMBERS else text for name, text in flags.items()
+    }
+
+
+def _note(text: str) -> None:
+    print(f"note: {text}", file=sys.stderr)
+
+
+def _writable(output: str | None) -> Path:
+    """Return the path of the output if it can be written, before any work is done."""
+    if output is None:
+        raise InvalidInput("output", None, "the path of the file to write", "Give -o run.nc.")
+    folder, where = replaceable(output, "output").parent, "a file in a directory that"
+    if not folder.is_dir():
+        raise InvalidInput("output", output, f"{where} exists", f"Make {str(folder)!r} first.")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InvalidInput("output", output, f"{where} can be written", "Choose another one.")
+    return Path(output)

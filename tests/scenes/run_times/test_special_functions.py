@@ -1,0 +1,22 @@
+"""The times of the fundamental solution: structure and arithmetic, no run times."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from scenes.run_times.special_functions.benchmark import benchmark
+from scenes.run_times.special_functions.study import study
+
+
+def test_ours_and_scipy_s_are_timed_for_each_alpha():
+    data = benchmark(alpha=[1.2, 1.5], points=100, points_of_scipy=2, repeats=2)
+    assert data["alpha"].values.tolist() == [1.2, 1.5]
+    for name in ("table_time", "point_time", "scipy_time"):
+        assert (data[name] > 0.0).all(), name
+    frame = data.to_dataframe().reset_index()
+    table = study(SimpleNamespace(benchmarks={"special_functions": frame})).table
+    ratio = table["scipy / ns a point"] / table["ours / ns a point"]
+    assert np.allclose(table["scipy / ours"], ratio)
+    assert table["alpha"].tolist() == [1.2, 1.5]
