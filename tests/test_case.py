@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, one_of, spelled
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import choices_of, field_table, label_of, takes_numbers
 from fracparticles.special import mean_radius
@@ -285,6 +285,15 @@ def test_what_is_needed(name):
     with pytest.raises(InvalidInput, match=f"Give {name}") as refused:
         Case(**{key: value for key, value in GIVEN.items() if key != name})
     assert refused.value.field == name
+
+
+def test_lists_in_words():
+    assert [spelled(range(k)) for k in range(4)] == ["", "0", "0 or 1", "0, 1 or 2"]
+    assert spelled(("a", "b", "c"), " and ") == "a, b and c"
+    assert spelled((None, "rk2")) == "nothing or 'rk2'"
+    assert str(one_of("n", 3, (1, 2))) == "n = 3 is not allowed: one of 1, 2. Choose one of these."
+    refused = str(one_of("n", 3, (1, 2), "KPSE", "Take 1."))
+    assert refused == "n = 3 is not allowed: 1 or 2 for KPSE. Take 1."
 
 
 def test_long_and_multi_line_values_are_shown_in_one_short_line():

@@ -125,9 +125,8 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
     AccuracyWarning
         One for each estimate that is too large.
     """
-    for complaint in _complaints(
-        case, u0, u, {name: number for name, (number, _) in found.items()}
-    ):
+    value = {name: number for name, (number, _) in found.items()}
+    for complaint in _complaints(case, u0, u, value):
         warnings.warn(complaint, AccuracyWarning, stacklevel=4)
 
 

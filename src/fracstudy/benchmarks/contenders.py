@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.graded.field import green_step_of_field
-from fracparticles.graded.particles import FORMS, graded_particles, green_step
+from fracparticles.graded.field import GRADED_FORMS, graded_step
+from fracparticles.graded.particles import graded_particles
 from fracparticles.moving.random_walk import cell_counts, cell_masses, walk
 from fracparticles.run.case import Case
 from fracparticles.run.solver import advect, compute, matrix_of, prepare
@@ -28,10 +28,6 @@ __all__ = [
     "random_walkers",
     "whole_matrix",
 ]
-
-# The form in which not the sums over graded particles take the step but the field between them.
-_FIELD = "interpolated"
-GRADED_FORMS = (*FORMS, _FIELD)
 
 
 def lattice(case: Case) -> Ready:
@@ -66,9 +62,9 @@ def naive_steps(case: Case, steps: int) -> Case:
     return Case(**{**fields, **few})
 
 
-def _points(case: Case) -> tuple[np.ndarray, float]:
+def _points(case: Case) -> tuple[np.ndarray, np.ndarray | float]:
     radius = np.abs(case.x) if case.dim == 1 else case.radius
-    return radius, case.particle_spacing**case.dim
+    return radius, case.volumes
 
 
 def moving(case: Case) -> Ready:
@@ -83,10 +79,7 @@ def moving(case: Case) -> Ready:
 def graded(problem: Problem, form: str, count: int, reach: float, scale: float) -> Ready:
     """One Green step on graded particles, or of the field between them."""
     x, volumes = graded_particles(count, reach, scale)
-    if form == _FIELD:
-        matrix = green_step_of_field(count, reach, scale, problem.alpha, problem.time)
-    else:
-        matrix = green_step(x, volumes, problem.alpha, problem.time, form)
+    matrix = graded_step(count, reach, scale, problem.alpha, problem.time, form)
     return Ready(np.abs(x), volumes, matrix.dot)
 
 

@@ -48,10 +48,8 @@ LOADINGS = {
 }
 SHAPES = ("S4", "S7", "S8")  # of Figs. 8-16
 CLOSE = 0.05  # "good": an error of at most 5 % of the norm of f
-_GAP, _WITHIN = (
-    0.2,
-    3.0,
-)  # in units of eps: where gaps between the markers are looked for, and how wide
+# In units of eps: gaps between markers that count, and where they are looked for.
+_GAP, _WITHIN = 0.2, 3.0
 _CLUSTERED = 0.1  # of |x| < within empty: independent markers give a hundredth, clusters nearly all
 
 

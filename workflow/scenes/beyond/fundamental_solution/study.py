@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from time import perf_counter
-
 import numpy as np
 import pandas as pd
 
@@ -12,15 +10,12 @@ from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
 
-_TIMED_POINTS = 100_000
-_REPEATS = 5
-
 
 def study(inputs: Inputs, *, reference: str) -> Result:
     """Compare `reduced_green` and scipy's `levy_stable` with reference values of 25 digits.
 
-    `reference` is a CSV file with alpha, x and density; tools/make_stable_reference.py writes it. Times are given as
-    an order of magnitude only.
+    `reference` is a CSV file with alpha, x and density; tools/make_stable_reference.py writes it. Their run times
+    are those of the scene `special_functions`.
     """
     from scipy.stats import levy_stable
 
@@ -28,9 +23,7 @@ def study(inputs: Inputs, *, reference: str) -> Result:
     for alpha, points in pd.read_csv(reference).groupby("alpha"):
         x, exact = points["x"].to_numpy(), points["density"].to_numpy()
         ours = np.abs(reduced_green(x, alpha) / exact - 1.0)
-        start = perf_counter()
         theirs = np.abs(levy_stable.pdf(x, alpha, 0.0) / exact - 1.0)
-        slow = (perf_counter() - start) / x.size
         rows.append(
             {
                 "alpha": alpha,
@@ -40,20 +33,8 @@ def study(inputs: Inputs, *, reference: str) -> Result:
                 "scipy, largest error": theirs.max(),
                 "scipy's, at x": x[theirs.argmax()],
                 "scipy, median error": np.median(theirs),
-                "time, scipy / ours": f"10^{int(np.log10(slow / _time_of_ours(alpha)))}",
             }
         )
         for name, error in (("ours", ours), ("scipy", theirs)):
             series.append(pd.DataFrame({"alpha": alpha, "series": name, "x": x, "y": error}))
     return Result(pd.DataFrame(rows), series=pd.concat(series, ignore_index=True))
-
-
-def _time_of_ours(alpha: float) -> float:
-    """Least time per point of some runs over many points, the table of alpha already made."""
-    x = np.linspace(0.0, 100.0, _TIMED_POINTS)
-    times = []
-    for _ in range(_REPEATS):
-        start = perf_counter()
-        reduced_green(x, alpha)
-        times.append(perf_counter() - start)
-    return min(times) / _TIMED_POINTS

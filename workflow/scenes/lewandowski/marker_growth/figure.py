@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import cycle
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -47,7 +49,7 @@ def _rates(ax: Axes, series: pd.DataFrame, shapes: list[str]) -> None:
 
 
 def _steps(ax: Axes, errors: pd.DataFrame, limits: pd.Series) -> None:
-    for (name, limit), side in zip(limits.items(), (-1, 1), strict=False):
+    for (name, limit), side in zip(limits.items(), cycle((-1, 1)), strict=False):
         colour = SHAPE_COLOURS[name]
         draw(ax, pick(errors, series=name).dropna(), color=colour, marker="o", markersize=3.5)
         ax.axvline(limit, color=colour, linewidth=1.0, linestyle="--")
