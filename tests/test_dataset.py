@@ -18,7 +18,7 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.files import replaceable
 from fracparticles.run.case import Case
-from fracparticles.run.initial import read_strengths
+from fracparticles.run.initial import initial_strengths
 from fracparticles.run.solver import compute
 from fracparticles.special import mean_radius
 
@@ -179,7 +179,7 @@ def test_a_square_is_read_again(tmp_path):
     second = fp.solve(whole.model_copy(update={"t_initial": 1.0}), path)
     assert np.abs(second.u.values - fp.solve(whole).u.values).max() <= 1e-14
     with pytest.raises(InvalidInput, match=r"dim = 1, .* dim = 2"):
-        read_strengths(path, case())
+        initial_strengths(case(), path)
 
 
 def test_what_is_stored():
@@ -497,13 +497,13 @@ def test_a_file_of_something_else(tmp_path):
     with pytest.raises(InvalidInput, match="a run written by fracparticles"):
         fp.read_run(path)
     with pytest.raises(InvalidInput, match=r"u\(x\) and the coordinates x"):
-        read_strengths(path, case())
+        initial_strengths(case(), path)
 
 
 def test_strengths_on_another_lattice(run_file):
     for changes in ({"spacing": 0.125}, {"half_width": 11.0}):
         with pytest.raises(InvalidInput, match=r"u on the .* points of case\.positions"):
-            read_strengths(run_file, case(t_initial=1.5, t_final=2.0, **changes))
+            initial_strengths(case(t_initial=1.5, t_final=2.0, **changes), run_file)
 
 
 def test_strengths_that_are_not_finite(tmp_path):
@@ -512,7 +512,7 @@ def test_strengths_that_are_not_finite(tmp_path):
     u[3] = np.nan
     xr.Dataset({"u": ("x", u)}, {"x": c.x}).to_netcdf(path)
     with pytest.raises(InvalidInput, match="finite strengths"):
-        read_strengths(path, c)
+        initial_strengths(c, path)[0]
 
 
 @pytest.mark.parametrize("kind", ["text", "complex-pair", "empty"])
@@ -526,5 +526,5 @@ def test_strengths_of_another_kind(tmp_path, kind):
         data = xr.Dataset({"u": ("x", np.ones(0))}, {"x": np.ones(0)})
     data.to_netcdf(path)
     with pytest.raises(InvalidInput) as refused:
-        read_strengths(path, c)
+        initial_strengths(c, path)[0]
     assert "\n" not in str(refused.value)

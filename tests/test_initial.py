@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.case import Case
-from fracparticles.run.initial import initial_strengths, read_strengths
+from fracparticles.run.initial import initial_strengths
 
 GIVEN = {
     "scheme": "KPSE",
@@ -311,7 +311,7 @@ def test_a_file_is_taken_by_its_labels(tmp_path):
         as_file().expand_dims(time=[3.0]).transpose("x", "time"),
     ):
         path = stored(tmp_path, data)
-        assert np.array_equal(read_strengths(path, c), skew(c.x))
+        assert np.array_equal(initial_strengths(c, path)[0], skew(c.x))
         assert np.array_equal(u0_of(c, path), skew(c.x))
     assert np.array_equal(u0_of(case(initial=str(path)), None), skew(c.x))
     refused(c, stored(tmp_path, as_file().assign_coords(x=c.x + 0.25)), "up to 1 h off", "u.nc")
@@ -328,14 +328,14 @@ def test_variables_that_nobody_asked_for_are_left_alone(tmp_path):
     data = data.expand_dims(time=[0.5]).assign_coords(
         time=("time", [0.5], {"units": "hours since analysis", "calendar": "of one's own"})
     )
-    assert np.array_equal(read_strengths(stored(tmp_path, data), c), skew(c.x))
+    assert np.array_equal(initial_strengths(c, stored(tmp_path, data))[0], skew(c.x))
 
 
 def test_packed_numbers_are_unpacked_and_missing_ones_refused(tmp_path):
     c = case()
     packed = {"dtype": "i2", "scale_factor": 2.0**-14, "_FillValue": -1}
     path = stored(tmp_path, as_file(), u=packed)
-    assert np.abs(read_strengths(path, c) - skew(c.x)).max() <= 2.0**-15
+    assert np.abs(initial_strengths(c, path)[0] - skew(c.x)).max() <= 2.0**-15
     data = as_file()
     data["u"][5] = np.nan
     refused(c, stored(tmp_path, data, u=packed), "not finite at x = -8.75")
@@ -345,7 +345,7 @@ def test_what_is_no_file_is_refused(tmp_path):
     os.mkfifo(tmp_path / "pipe.nc")
     for path in (tmp_path / "pipe.nc", "/dev/null", "/dev/zero"):
         with pytest.raises(InvalidInput, match="a regular file"):
-            read_strengths(path, case())
+            initial_strengths(case(), path)
     with pytest.raises(InvalidInput, match="an existing file"):
         initial_strengths(case(), tmp_path / "none.nc")
 

@@ -260,7 +260,6 @@ def resolved(tree: _Tree, smoke: bool) -> _Tree:
 def call(function: Callable[..., Any], *arguments: Any, **parameters: Any) -> Any:
     """Call a study, figure or benchmark with those of the parameters that it takes."""
     taken = inspect.signature(function).parameters
-    parameters = {**parameters, "parameters": parameters}
     return function(*arguments, **{k: v for k, v in parameters.items() if k in taken})
 
 
@@ -293,8 +292,7 @@ def check_parameters(scene: Scene) -> None:
     """
     kinds = [kind for kind in ("study", "figure") if kind == "study" or scene.file("figure.py")]
     functions = [scene.function(kind) for kind in kinds]
-    if any(p.kind is p.KEYWORD_ONLY for p in inspect.signature(functions[0]).parameters.values()):
-        _check_keywords(scene, "parameters", scene.parameters, functions)
+    _check_keywords(scene, "parameters", scene.parameters, functions)
     if scene.benchmark is not None:
         _check_keywords(scene, "benchmark", scene.benchmark, [scene.function("benchmark")])
 

@@ -228,7 +228,7 @@ def _check_far_field(case: Parameters) -> None:
         short = f"a lattice of half-width {case.reach:.4g}, less than {_FAR_OVERLAPS} smoothing lengths, {least:.4g}"
         remedy = "Leave it out, or take a wider lattice or a smaller spacing."
         raise InvalidInput("far_terms", case.far_terms, f"nothing or 1 on {short}", remedy)
-    stiffness = (case.t_final - case.t_initial) * case.setting.rate
+    stiffness = case.span * case.setting.rate
     if stiffness > _FAR_STIFFEST:
         stiff = f"nothing or 1 where T D / h^alpha = {stiffness:.3g}, more than {_FAR_STIFFEST:g}"
         remedy = "Leave it out, or take a shorter run or a larger spacing."
@@ -237,7 +237,7 @@ def _check_far_field(case: Parameters) -> None:
 
 def _check_spread(case: Parameters) -> None:
     """A point mass must not spread beyond the lattice: no power of |x| continues a solution that is flat there."""
-    time = case.diffusivity * (case.t_final - case.t_initial)
+    time = case.diffusivity * case.span
     inside = float(central_mass(case.reach, time, case.alpha, case.dim))
     if inside < 0.5:
         given = "half_width" if case.truncation is None else "truncation"
@@ -252,11 +252,10 @@ def _check_spread(case: Parameters) -> None:
 
 
 def _check_work(case: Parameters) -> None:
-    span = case.t_final - case.t_initial
-    if not case.steps_taken and span * case.setting.rate > _STIFFEST:
+    if not case.steps_taken and case.span * case.setting.rate > _STIFFEST:
         latest = case.t_initial + _STIFFEST / case.setting.rate
         most = f"at most {latest:.6g} with this spacing and diffusivity"
         raise InvalidInput("t_final", case.t_final, most, "Take a shorter run or a larger spacing.")
-    if case.resolved_integrator != "exponential" and span / case.resolved_dt > _MOST_STEPS:
-        least = f"at least {span / _MOST_STEPS:.3g}: 2^53 steps"
+    if case.resolved_integrator != "exponential" and case.span / case.resolved_dt > _MOST_STEPS:
+        least = f"at least {case.span / _MOST_STEPS:.3g}: 2^53 steps"
         raise InvalidInput("dt", case.dt, least, "Take a larger step.")

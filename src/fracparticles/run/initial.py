@@ -34,7 +34,6 @@ __all__ = [
     "bare_strengths",
     "case_of_run",
     "initial_strengths",
-    "read_strengths",
     "refuse_non_finite",
 ]
 
@@ -72,8 +71,7 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     source = case.initial if initial is None else initial
     if isinstance(source, str) and source == FUNDAMENTAL:
         case.refuse_point_mass()
-        x = case.x if case.dim == 1 else case.radius
-        u0 = np.asarray(green(x, case.diffusivity * case.t_initial, case.alpha, case.dim))
+        u0 = np.asarray(green(case.radius, case.diffusivity * case.t_initial, case.alpha, case.dim))
         return u0, f"fundamental solution at t = {case.t_initial:g}"
     if isinstance(source, str) and source.startswith(_GIVEN):
         known = "'fundamental' or a file, unless the data come with the call: a stored case cannot hold them"
@@ -98,28 +96,12 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     if not has_time and "t_initial" not in case.model_fields_set:
         warnings.warn(
             f"the initial data are your own and t_initial was not given: they are taken as those at t_initial = "
-            f"{case.t_initial:g}, so that the run spans t_final - t_initial = {case.t_final - case.t_initial:g}. "
+            f"{case.t_initial:g}, so that the run spans t_final - t_initial = {case.span:g}. "
             "Give t_initial.",
             AccuracyWarning,
             stacklevel=4,
         )
     return u0, f"{what}, sha256 {digest}"
-
-
-def read_strengths(path: str | Path, case: Case) -> np.ndarray:
-    """Read initial strengths u from a NetCDF file whose points are those of the case, in any order.
-
-    Variables other than u, its coordinates and what a run says of itself are left alone.
-
-    Raises
-    ------
-    InvalidInput
-        If the file cannot be read, holds no u on x (y, z), lies on another lattice, holds values that are missing or
-        not finite, or is a run of another equation or time.
-    """
-    u0, _ = _on_lattice(case, _read(Path(path)), f"file {os.fspath(path)}")
-    refuse_non_finite(u0, case.x)
-    return u0
 
 
 def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:

@@ -143,6 +143,11 @@ class Parameters(BaseModel):
         return 1.0 + self.beta
 
     @property
+    def span(self) -> float:
+        """The time of the run, t_final - t_initial."""
+        return self.t_final - self.t_initial
+
+    @property
     def reach(self) -> float:
         """The half-width D, given or from C by Eq. (46): the outermost particles are at -D and D in each coordinate."""
         if self.half_width is not None:
@@ -212,6 +217,8 @@ class Parameters(BaseModel):
     @property
     def radius(self) -> np.ndarray:
         """The distances |x| of the particles from the origin, of that shape."""
+        if self.dim == 1:
+            return np.abs(self.x)  # does not underflow
         return np.sqrt(sum(np.square(part) for part in self.positions))
 
     @property
@@ -242,12 +249,12 @@ class Parameters(BaseModel):
         """The number of time steps; 0 for the exponential."""
         if self.resolved_integrator == "exponential":
             return 0
-        return max(1, ceil((self.t_final - self.t_initial) / self.resolved_dt * (1 - _STEP_SLACK)))
+        return max(1, ceil(self.span / self.resolved_dt * (1 - _STEP_SLACK)))
 
     @property
     def time_step(self) -> float:
         """The realised step (t_final - t_initial) / steps; 0 for the exponential."""
-        return (self.t_final - self.t_initial) / self.steps if self.steps else 0.0
+        return self.span / self.steps if self.steps else 0.0
 
     @property
     def resolved_dt(self) -> float:
@@ -255,7 +262,7 @@ class Parameters(BaseModel):
         if self.dt is not None:
             return self.dt
         if self.is_graded:
-            return self.t_final - self.t_initial
+            return self.span
         return ((self.overlap or 2.0) * self.particle_spacing) ** self.alpha / self.diffusivity
 
     @property

@@ -103,8 +103,7 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
 
 def _of_the_operator(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
     """What the symbol of the operator says, and its kernel table."""
-    span = case.t_final - case.t_initial
-    low, high = (span * case.setting.rate * value for value in case.symbol_range)
+    low, high = (case.span * case.setting.rate * value for value in case.symbol_range)
     round_off, error = -_ULPS * 2.0**-52 * low, wave_error(case, u0)
     found = {
         "decay": (max(0.0, -high), "exponent by which a constant decays on the infinite lattice"),
@@ -214,8 +213,7 @@ def table_error(case: Case, *strengths: np.ndarray) -> float:
         scheme.operator(replace(setting, kernel_table=step)) for step in (None, case.kernel_table)
     )
     flat = [u.reshape(-1) for u in strengths]
-    span = case.t_final - case.t_initial
-    return span * max(
+    return case.span * max(
         _ratio(np.abs(table.apply(u) - exact.apply(u)).sum(), np.abs(u).sum()) for u in flat
     )
 
@@ -249,7 +247,7 @@ def tail_misfit(case: Case, u: np.ndarray) -> float:
 
 def wave_error(case: Case, u: np.ndarray) -> float:
     """Return the greatest error in the amplitude of some waves that u holds, along an axis; see the module."""
-    tau = case.setting.rate * (case.t_final - case.t_initial)
+    tau = case.setting.rate * case.span
     # The wavenumber of data that vary along every axis alike.
     theta = np.sqrt(case.dim) * wavenumber(u) * np.array([1.0, 0.5, 0.25])
     theta = np.unique(np.append(theta, min(theta[0], tau ** (-1.0 / case.alpha))))
@@ -267,7 +265,7 @@ def wave_error(case: Case, u: np.ndarray) -> float:
 
 def _beyond(case: Case, radius: float) -> float:
     """int_{|x| > radius} of the fundamental solution for the time of the run."""
-    time = case.diffusivity * (case.t_final - case.t_initial)
+    time = case.diffusivity * case.span
     return 1.0 - float(central_mass(radius, time, case.alpha, case.dim))
 
 

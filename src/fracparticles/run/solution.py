@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -47,11 +48,12 @@ class Solution:
 
 def relative_l1_error(case: Case, u: np.ndarray) -> float:
     """Return `relative_l1_deviation` of the strengths of a case within `case.error_radius`: Eqs. (48), (59)."""
-    radius = np.abs(case.x) if case.dim == 1 else case.radius
-    time, within = case.diffusivity * case.t_final, case.error_radius
-    return relative_l1_deviation(
-        u, radius, case.volumes, within, time=time, alpha=case.alpha, dim=case.dim
-    )
+    whole: dict[str, Any] = {
+        "time": case.diffusivity * case.t_final,
+        "alpha": case.alpha,
+        "dim": case.dim,
+    }
+    return relative_l1_deviation(u, case.radius, case.volumes, case.error_radius, **whole)
 
 
 def relative_l1_deviation(

@@ -158,7 +158,7 @@ def warn_if_unstable(case: Case) -> None:
     if case.kind.self_timed and case.is_one_step:
         return
     low, high = case.symbol_range
-    exponent = (case.t_final - case.t_initial) * case.setting.rate * high
+    exponent = case.span * case.setting.rate * high
     if grows(low, high):
         if exponent > _NO_GROWTH:
             warnings.warn(
@@ -297,7 +297,7 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     most = largest_degree(case.scheme, case.setting, operator)
     try:
         if case.resolved_integrator == "exponential":
-            flow = exponential_flow(operator, case.t_final - case.t_initial, low, high, most)
+            flow = exponential_flow(operator, case.span, low, high, most)
         else:
             polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
             flow = power_flow(operator, polynomial, case.time_step, case.steps, low, high, most)
@@ -313,7 +313,7 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
 def _lattice_sum(case: Case) -> LatticeOperator:
     """Return the run on the infinite lattice as one lattice sum: exp(A t), or the steps of GPSE."""
     setting = case.setting
-    scaled_time = (case.t_final - case.t_initial) * setting.rate
+    scaled_time = case.span * setting.rate
 
     def amplification(theta: np.ndarray) -> np.ndarray:
         symbol = SCHEMES[case.scheme].symbol(theta, setting)
@@ -329,7 +329,7 @@ def _lattice_sum(case: Case) -> LatticeOperator:
 def _graded_step(case: Case) -> LatticeOperator:
     """Return the run on graded particles, one step, as an operator."""
     assert case.graded_scale is not None
-    time = case.diffusivity * (case.t_final - case.t_initial)
+    time = case.diffusivity * case.span
     form = case.graded_form or INTERPOLATED
     return MatrixOperator(
         graded_step(case.particles, case.reach, case.graded_scale, case.alpha, time, form)

@@ -63,8 +63,7 @@ def naive_steps(case: Case, steps: int) -> Case:
 
 
 def _points(case: Case) -> tuple[np.ndarray, np.ndarray | float]:
-    radius = np.abs(case.x) if case.dim == 1 else case.radius
-    return radius, case.volumes
+    return case.radius, case.volumes
 
 
 def moving(case: Case) -> Ready:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 import pandas as pd
@@ -10,68 +9,74 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, slope_triangle
+from fracstudy.inputs import NUMERALS
+from fracstudy.panels import pick
+from fracstudy.style import (
+    COLOURS,
+    axes_row,
+    entry,
+    legend_below,
+    log_log,
+    scheme_style,
+    slope_triangle,
+)
 
 __all__ = ["figure"]
 
-_NAMES = {2: "II", 4: "IV"}
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
-_FACES = {"truncated": (7.0, "none"), "open": (3.6, None)}
+_SIZES = {"truncated": 7.0, "open": 3.6}
+_NAMES = {"truncated": "truncated", "open": "open exterior"}
+_TRIANGLES = (("FPSE", 2, "truncated", 1.9), ("KPSE", 4, "open", 0.45))
+_SMALL: dict[str, Any] = {
+    "xycoords": ("data", "axes fraction"),
+    "ha": "center",
+    "fontsize": 7.5,
+    "color": COLOURS["GPSE"],
+}
+_ARROW = {"arrowstyle": "-|>", "color": COLOURS["GPSE"], "shrinkB": 0.0}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the error against h, (b) the error against the floating-point operations of the run."""
-    figure, (against_h, against_work) = axes_row(2, height=4.6, width=4.4, sharey=True)
+    figure, axes = axes_row(2, height=4.6, width=4.4, sharey=True)
+    series = series.sort_values("h")
     # GPSE with the open exterior has errors so small that the rest would be crowded: they are named instead.
     small = (series["scheme"] == "GPSE") & (series["exterior"] == "open")
-    shown = series[~small]
-    for ax, x in ((against_h, "h"), (against_work, "work")):
-        _lines(ax, shown, x)
-        ax.set(xscale="log", yscale="log")
-        ax.set_ylim(0.05 * shown["error"].min(), 2.5 * shown["error"].max())
+    errors = series.loc[~small, "error"]
+    for ax, x in zip(axes, ("h", "work"), strict=True):
+        for (scheme, order, exterior), points in series[~small].groupby(
+            ["scheme", "order", "exterior"]
+        ):
+            ax.plot(points[x], points["error"], **_look(scheme, order, exterior))
+        log_log(ax, ylim=(0.05 * errors.min(), 2.5 * errors.max()))
         _name_below(ax, series[small], x)
-    _sizes(against_h, series)
-    for scheme, order, exterior, shift in (
-        ("FPSE", 2, "truncated", 1.9),
-        ("KPSE", 4, "open", 0.45),
-    ):
-        points = _select(series, scheme, order, exterior).sort_values("h")
+    _sizes(axes[0], series)
+    for scheme, order, exterior, shift in _TRIANGLES:
+        points = pick(series, scheme=scheme, order=order, exterior=exterior)
         if len(points) > 1:
             h, error = points.iloc[0][["h", "error"]]
-            slope_triangle(against_h, h, shift * error, order, above=order == 2)
-    against_h.set_ylabel(r"relative error in the ball $|x| \leq 5$, Eq. (59)")
-    against_work.set_xlabel("floating-point operations of the run")
-    figure.legend(handles=_handles(series), loc="outside lower center", ncols=5)
+            slope_triangle(axes[0], h, shift * error, order, above=order == 2)
+    axes[0].set_ylabel(r"relative error in the ball $|x| \leq 5$, Eq. (59)")
+    axes[1].set_xlabel("floating-point operations of the run")
+    legend_below(figure, _entries(series), columns=5)
     return figure
 
 
-def _lines(ax: Axes, series: pd.DataFrame, x: str) -> None:
-    for (scheme, order, exterior), points in _groups(series):
-        points = points.sort_values("h")
-        ax.plot(points[x], points["error"], **_look(scheme, order, exterior))
+def _look(scheme: str, order: int, exterior: str) -> dict[str, Any]:
+    face = "none" if exterior == "truncated" else COLOURS[scheme]
+    return scheme_style(scheme, order, markersize=_SIZES[exterior], markerfacecolor=face)
 
 
 def _name_below(ax: Axes, points: pd.DataFrame, x: str) -> None:
     """Write errors below the axes at their places, each with an arrow down."""
-    at_bottom = ("data", "axes fraction")
     for place, error in zip(points[x], points["error"], strict=True):
-        ax.annotate(
-            _scientific(error),
-            (place, 0.0),
-            xycoords=at_bottom,
-            xytext=(place, 0.07),
-            textcoords=at_bottom,
-            ha="center",
-            fontsize=7.5,
-            color=COLOURS["GPSE"],
-            arrowprops={"arrowstyle": "-|>", "color": COLOURS["GPSE"], "shrinkB": 0.0},
-        )
+        mantissa, exponent = f"{error:.0e}".split("e")
+        text = rf"${mantissa} \cdot 10^{{{int(exponent)}}}$"
+        arrow = {"xytext": (place, 0.07), "textcoords": _SMALL["xycoords"], "arrowprops": _ARROW}
+        ax.annotate(text, (place, 0.0), **_SMALL, **arrow)
     if len(points):
         middle = (points[x].min() * points[x].max()) ** 0.5
-        ax.annotate(
-            "GPSE, open", (middle, 0.13), xycoords=at_bottom, ha="center", fontsize=7.5,
-            color=COLOURS["GPSE"],
-        )  # fmt: skip
+        ax.annotate("GPSE, open", (middle, 0.13), **_SMALL)
 
 
 def _sizes(ax: Axes, series: pd.DataFrame) -> None:
@@ -79,51 +84,20 @@ def _sizes(ax: Axes, series: pd.DataFrame) -> None:
     ticks = series.groupby("N")["h"].first()
     ax.set_xticks(ticks, [f"{h:.2g}\n{n}³" for n, h in ticks.items()])
     ax.minorticks_off()
-    ax.set_xlim(0.8 * ticks.min(), 1.25 * ticks.max())
+    ax.set(xlim=(0.8 * ticks.min(), 1.25 * ticks.max()))
     ax.set_xlabel("particle spacing $h$, and number of particles")
 
 
-def _select(series: pd.DataFrame, scheme: str, order: int, exterior: str) -> pd.DataFrame:
-    return series[
-        (series["scheme"] == scheme) & (series["order"] == order) & (series["exterior"] == exterior)
-    ]
-
-
-def _groups(series: pd.DataFrame) -> Iterable[tuple[Any, pd.DataFrame]]:
-    return series.groupby(["scheme", "order", "exterior"])
-
-
-def _look(scheme: str, order: int, exterior: str) -> dict[str, Any]:
-    size, face = _FACES[exterior]
-    return {
-        "color": COLOURS[scheme],
-        "marker": MARKERS[scheme],
-        "markersize": size,
-        "markerfacecolor": face or COLOURS[scheme],
-        "linestyle": "-" if order == 2 else "--",
-    }
-
-
-def _handles(series: pd.DataFrame) -> list[Line2D]:
-    handles = []
+def _entries(series: pd.DataFrame) -> list[Line2D]:
+    entries = []
     groups = series.groupby(["scheme", "order"]).groups
     for scheme, order in sorted(groups, key=lambda group: (group[0] == "GPSE", group)):
-        name = scheme if scheme == "GPSE" else f"{scheme} {_NAMES[order]}"
-        look = {**_look(scheme, order, "open"), "markersize": 4.5}
-        handles.append(Line2D([], [], **look, label=name))
-    if len(handles) % 2:
-        handles.append(Line2D([], [], linestyle="none", label=" "))  # columns of two
-    for exterior, name in (("truncated", "truncated"), ("open", "open exterior")):
-        size, face = _FACES[exterior]
-        handles.append(
-            Line2D(
-                [], [], color="0.3", marker="o", linestyle="none", markersize=size,
-                markerfacecolor=face or "0.3", label=name,
-            )
-        )  # fmt: skip
-    return handles
-
-
-def _scientific(value: float) -> str:
-    mantissa, exponent = f"{value:.0e}".split("e")
-    return rf"${mantissa} \cdot 10^{{{int(exponent)}}}$"
+        name = scheme if scheme == "GPSE" else f"{scheme} {NUMERALS[order]}"
+        entries.append(entry(name, **_look(scheme, order, "open") | {"markersize": 4.5}))
+    if len(entries) % 2:
+        entries.append(entry(" ", linestyle="none"))  # columns of two
+    point = {"color": "0.3", "marker": "o", "linestyle": "none"}
+    for exterior, face in (("truncated", "none"), ("open", "0.3")):
+        size = _SIZES[exterior]
+        entries.append(entry(_NAMES[exterior], markersize=size, markerfacecolor=face, **point))
+    return entries

@@ -15,7 +15,9 @@ import pandas as pd
 from fracparticles.lattice.banded import BandedConvolution
 from fracparticles.lattice.fourier import transform_length
 from fracparticles.special import green
-from fracstudy.inputs import ORDERS, Inputs, Result, observed_order
+from fracstudy.inputs import ORDERS, Inputs, Result
+from fracstudy.orders import orders_by
+from scenes.plane import particles_per_side
 
 __all__ = ["bytes_kept", "operations", "study"]
 
@@ -26,52 +28,40 @@ _VECTORS = 5  # strengths at t_initial and t_final, and three of the Chebyshev r
 
 def study(inputs: Inputs) -> Result:
     """Return the errors with their orders, what each run cost, and its mass beside the exact mass in the cube."""
-    runs = inputs.scalars.copy()
-    runs["N"] = 1 + 2 * (runs["half_width"] / runs["particle_spacing"]).round().astype(int)
-    runs["particles"] = runs["N"] ** runs["dim"]
-    per_application = [
-        operations(run.scheme, run.order, run.dim, run.N, run.overlap) for run in runs.itertuples()
-    ]
-    runs["work"] = runs["operator_applications"] * per_application
-    runs["memory"] = [
-        bytes_kept(run.scheme, run.order, run.dim, run.N, run.exterior) / run.particles
-        for run in runs.itertuples()
-    ]
-    runs["exact"] = [exact_mass(run) for run in runs.itertuples()]
-    runs = runs.sort_values([*_KEY, "particle_spacing"], ascending=[True, True, False, False])
-    runs["observed"] = np.nan
-    for _, part in runs.groupby(_KEY):
-        orders = observed_order(part["particle_spacing"], part["relative_l1_error"])
-        runs.loc[part.index[1:], "observed"] = orders
-    gpse = runs["scheme"] == "GPSE"
+    runs = inputs.scalars.rename(columns={"particle_spacing": "h", "relative_l1_error": "error"})
+    runs["N"] = particles_per_side(inputs.scalars)
+    runs = runs.sort_values([*_KEY, "h"], ascending=[True, True, False, False], ignore_index=True)
+    counted = [_counted(run) for run in runs.itertuples()]
+    applications, memory, exact = (np.array(part) for part in zip(*counted, strict=True))
+    runs["work"] = runs["operator_applications"] * applications
     table = pd.DataFrame(
         {
             "scheme": runs["scheme"],
-            "order": runs["order"].map(ORDERS).where(~gpse, "-"),
+            "order": runs["order"].map(ORDERS).where(runs["scheme"] != "GPSE", "-"),
             "exterior": runs["exterior"],
-            "N": [f"{n}^{dim}" for n, dim in zip(runs["N"], runs["dim"], strict=True)],
-            "h": runs["particle_spacing"],
-            "error (59)": runs["relative_l1_error"],
-            "order from the h above": runs["observed"],
+            "N": runs["N"].astype(str) + "^" + runs["dim"].astype(str),
+            "h": runs["h"],
+            "error (59)": runs["error"],
+            "order from the h above": orders_by(runs, _KEY, "error"),
             "operator applications": runs["operator_applications"],
             "work / 10^9 operations": 1e-9 * runs["work"],
-            "kept / bytes a particle": runs["memory"].round().astype(int),
+            "kept / bytes a particle": (memory / runs["N"] ** runs["dim"]).round().astype(int),
             "mass at t0": runs["mass_initial"],
             "mass at tf": runs["mass_final"],
-            "mass at tf, exact": runs["exact"],
+            "mass at tf, exact": exact,
         }
     )
-    columns = {"particle_spacing": "h", "relative_l1_error": "error"}
-    series = runs.rename(columns=columns)[[*_KEY, "N", "h", "error", "work"]]
-    return Result(table.reset_index(drop=True), (), series.reset_index(drop=True))
+    return Result(table, series=runs[[*_KEY, "N", "h", "error", "work"]])
 
 
-def exact_mass(run: Any) -> float:
-    """Return h^n sum_i G(x_i, t_f), the mass that the fundamental solution has on the lattice."""
-    x = (np.arange(run.N) - run.N // 2) * run.particle_spacing
+def _counted(run: Any) -> tuple[float, float, float]:
+    """Operations of one application, bytes kept, and h^n sum_i G(x_i, t_f), the mass of the solution on the lattice."""
+    work = operations(run.scheme, run.order, run.dim, run.N, run.overlap)
+    memory = bytes_kept(run.scheme, run.order, run.dim, run.N, run.exterior)
+    x = (np.arange(run.N) - run.N // 2) * run.h
     squares = sum(np.square(part) for part in np.meshgrid(*(x,) * run.dim, sparse=True))
     u = green(np.sqrt(squares), run.diffusivity * run.t_final, 1.0 + run.beta, run.dim)
-    return float(run.particle_spacing**run.dim * np.sum(u))
+    return work, memory, float(run.h**run.dim * np.sum(u))
 
 
 def operations(scheme: str, order: int, dim: int, size: int, overlap: float) -> float:
@@ -99,7 +89,8 @@ def operations(scheme: str, order: int, dim: int, size: int, overlap: float) -> 
 
 def bytes_kept(scheme: str, order: int, dim: int, size: int, exterior: str) -> float:
     """Return the memory that a run keeps after its set-up: the arrays of the sums and of the series, in bytes."""
-    particles, weights = size**dim, dim if scheme == "FPSE" else 1
+    flux, opened = scheme == "FPSE", exterior == "open"
+    weights = dim if flux else 1
     length = transform_length(2 * size - 1)
     half = length // 2 + 1
     columns = -(-half // _COLUMNS) * _COLUMNS
@@ -107,12 +98,7 @@ def bytes_kept(scheme: str, order: int, dim: int, size: int, exterior: str) -> f
     spectra = 2 * (1 + weights) * size ** (dim - 1) * columns
     blocks = 4 * length ** (dim - 1) * _COLUMNS + _ROWS * (length + 2 * half)
     vectors = weights + _VECTORS  # the sums themselves
-    if exterior == "open":
-        vectors += weights * (dim + 2)
-    if scheme == "FPSE":
-        vectors += (0 if exterior == "open" else dim) + (
-            3 if order == 2 else 5
-        )  # of the divergence
-    else:
-        vectors += 1  # the diagonal
-    return 8.0 * (symbols + spectra + blocks + vectors * particles)
+    vectors += weights * (dim + 2) if opened else 0
+    diagonal = 0 if opened and flux else weights
+    divergence = (3 if order == 2 else 5) if flux else 0
+    return 8.0 * (symbols + spectra + blocks + (vectors + diagonal + divergence) * size**dim)

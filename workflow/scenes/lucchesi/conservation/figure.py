@@ -8,72 +8,49 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row
+from fracstudy.style import axes_row, log_log, name_ticks, note, scheme_style
 
 __all__ = ["figure"]
 
-_FLOOR = float(np.finfo(float).eps) / 2.0  # a change of nil is drawn here
+_FLOOR = float(np.finfo(float).eps) / 2.0  # a change of zero is drawn here
+_OUTFLOW: dict[str, Any] = {"color": "black", "linewidth": 4.0, "alpha": 0.25}
+_RINGS: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "none"}
+_SIZES = {"DD": 9.0, "FPSE": 7.0, "KPSE": 5.0}  # of the rings
+_FREE: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "--"}  # not remeshed
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """|M / M0 - 1|: round-off below, what leaves the lattice above."""
-    figure, axes = axes_row(1, width=6.4, height=4.2)
-    ax = axes[0]
+    figure, (ax,) = axes_row(1, width=6.4, height=4.2)
+    series = series.sort_values("x").assign(y=series["y"].clip(lower=_FLOOR))
     moving = series["scheme"] == "DVM"
-    for part, style, label in (
+    for part, line, label in (
         (series[~moving], "-", "exact outflow"),
         (series[moving], ":", "exact outflow, DVM's $D$"),
     ):
         outflow = part.groupby("x")["outflow"].first()
-        ax.plot(
-            outflow.index, outflow, color="black", linewidth=4.0, alpha=0.25, linestyle=style, label=label
-        )  # fmt: skip
-    truncated = series[series["exterior"] == "truncated"]
-    for scheme, points in truncated.groupby("scheme"):
-        points = points.sort_values("x")
-        y = points["y"].clip(lower=_FLOOR)
-        ax.plot(points["x"], y, color=COLOURS[scheme], marker=MARKERS[scheme], label=scheme)
-    opened = series[series["exterior"] == "open"]
-    for scheme, size in (("DD", 9.0), ("FPSE", 7.0), ("KPSE", 5.0)):
-        points = opened[opened["scheme"] == scheme].sort_values("x")
-        ax.plot(
-            points["x"],
-            points["y"],
-            color=COLOURS[scheme],
-            marker=MARKERS[scheme],
-            markersize=size,
-            markerfacecolor="none",
-            linestyle="none",
-            label=f"{scheme}, open exterior",
-        )
-    for exterior, points in series[moving].groupby("exterior", sort=False):
-        points = points.sort_values("x")
-        if len(points) == 1:  # the table has it
-            continue
-        face = "none" if exterior == "remeshing none" else COLOURS["DVM"]
-        name = exterior.replace("M4'", "$M_4'$").replace("remeshing none", "no remeshing")
-        ax.plot(
-            points["x"], points["y"].clip(lower=_FLOOR), color=COLOURS["DVM"], marker=MARKERS["DVM"],
-            markerfacecolor=face, linestyle="--" if face == "none" else "-", label=f"DVM, {name}",
-        )  # fmt: skip
+        ax.plot(outflow.index, outflow, linestyle=line, label=label, **_OUTFLOW)
+    groups = dict(iter(series.groupby(["exterior", "scheme"])))
+    for (exterior, scheme), points in groups.items():
+        if exterior == "truncated":
+            ax.plot(points["x"], points["y"], **scheme_style(scheme, label=scheme))
+    for scheme, size in _SIZES.items():
+        points = groups["open", scheme]
+        style = scheme_style(scheme, markersize=size, **_RINGS)
+        ax.plot(points["x"], points["y"], label=f"{scheme}, open exterior", **style)
+    for exterior in series.loc[moving, "exterior"].sort_index().unique():
+        points = groups[exterior, "DVM"]
+        if len(points) > 1:  # the table has the others
+            name = exterior.replace("M4'", "$M_4'$").replace("remeshing none", "no remeshing")
+            style = scheme_style("DVM", **_FREE if exterior == "remeshing none" else {})
+            ax.plot(points["x"], points["y"], label=f"DVM, {name}", **style)
     ax.axhline(2.0 * _FLOOR, color="0.5", linewidth=0.8, linestyle=":")
-    ax.annotate(
-        "one unit in the last place",
-        (1.0, 2.0 * _FLOOR),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, 3),
-        textcoords="offset points",
-        ha="right",
-        va="bottom",
-        color="0.35",
-        fontsize=8,
-    )
-    ax.set(xscale="log", yscale="log", xlabel=r"time $t_f - t_0$")
+    style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "bottom", "color": "0.35"}
+    note(ax, "one unit in the last place", (1.0, 2.0 * _FLOOR), (0, 3), **style)
+    log_log(ax, xlabel=r"time $t_f - t_0$", ylim=(_FLOOR / 2.0, 0.1))
     ax.set_ylabel(r"change of the total strength, $|M(t_f) / M(t_0) - 1|$")
-    ax.set_ylim(_FLOOR / 2.0, 0.1)
     ax.set_xlim(right=1.6 * series["x"].max())
-    ticks = sorted(series["x"].unique())
-    ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    name_ticks(ax, sorted(series["x"].unique()))
     ax.minorticks_off()
     figure.legend(loc="outside right center")
     return figure

@@ -8,58 +8,47 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from fracstudy.style import axes_row, slope_triangle
+from fracstudy.panels import pick
+from fracstudy.style import axes_row, entry, legend_below, log_log, name_ticks, note, slope_triangle
 
 __all__ = ["figure"]
 
-_MARKERS = ("o", "s", "^", "D", "v")
-_LINES = {2: "-", 4: "--"}
+_LINES = {2: ("-", "order II"), 4: ("--", "order IV")}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, parameters: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) K for alpha towards 2 and Phi, (b) the error of (35), (c) the second moment up to r."""
     figure, (kernels, errors, moments) = axes_row(3, height=3.4, width=3.1)
-    alphas = sorted(series["alpha"].unique())
-    shades = mpl.colormaps["viridis"](np.linspace(0.88, 0.25, len(alphas) - 1))
-    styles = {
+    *below, limit = sorted(series["alpha"].unique())
+    shades = mpl.colormaps["viridis"](np.linspace(0.88, 0.25, len(below)))
+    styles: dict[float, dict[str, Any]] = {
         alpha: {"color": shade, "marker": marker}
-        for alpha, shade, marker in zip(alphas[:-1], shades, _MARKERS, strict=False)
+        for alpha, shade, marker in zip(below, shades, "os^Dv" * len(below), strict=False)
     }
-    styles[alphas[-1]] = {"color": "black", "marker": "*"}
-
-    for alpha, curve in series[series["panel"] == "kernel"].groupby("alpha"):
-        kernels.plot(curve["x"], curve["y"], color=styles[alpha]["color"])
-    kernels.set(xscale="log", yscale="log", xlim=(0.1, 100.0), ylim=(1e-10, 5.0))
-    kernels.set(xlabel="distance $r$", ylabel=r"kernel $K(r)$, and $\Phi(r)$ at $\alpha = 2$")
-
-    shown = series[series["panel"] == "error"]
-    for (alpha, order), curve in shown.groupby(["alpha", "order"]):
-        errors.plot(curve["x"], curve["y"], _LINES[order], markersize=3.5, **styles[alpha])
-    errors.set(
-        xscale="log", yscale="log", xlabel="particle spacing $h$", ylabel="relative error (48)"
-    )
-    limit = shown[shown["alpha"] == alphas[-1]].sort_values("x")
-    for order, label in ((2, "order II"), (4, "order IV")):
-        curve = limit[limit["order"] == order]
-        x, y = curve["x"].to_numpy(), curve["y"].to_numpy()
-        slope_triangle(errors, 1.2 * x[-2], 0.4 * y[-2], order)
-        errors.annotate(
-            label, (x[1], y[1]), xytext=(0, 7), textcoords="offset points", ha="right",
-            color="0.25", fontsize=8,
-        )  # fmt: skip
-    ticks = sorted(shown["x"].unique())
-    errors.set_xticks(ticks, [f"{h:g}" for h in ticks])
+    styles[limit] = {"color": "black", "marker": "*"}
+    for alpha, style in styles.items():
+        here = pick(series, alpha=alpha)
+        points = pick(here, panel="kernel")
+        kernels.plot(points["x"], points["y"], color=style["color"])
+        points = pick(here, panel="moment")
+        moments.plot(points["x"], points["y"], markersize=3.5, **style)
+        for order, (line, _) in _LINES.items():
+            points = pick(here, panel="error", series=order)
+            errors.plot(points["x"], points["y"], line, markersize=3.5, **style)
+    log_log(kernels, xlabel="distance $r$", xlim=(0.1, 100.0), ylim=(1e-10, 5.0))
+    kernels.set_ylabel(r"kernel $K(r)$, and $\Phi(r)$ at $\alpha = 2$")
+    moments.set(xscale="log", xlabel="distance $r$", ylabel=r"second moment up to $r$")
+    moments.set_ylim(bottom=0.0)
+    log_log(errors, xlabel="particle spacing $h$", ylabel="relative error (48)")
+    shown = pick(series, panel="error")
+    for order, (_, label) in _LINES.items():
+        points = pick(shown, alpha=limit, series=order).sort_values("x")[["x", "y"]].to_numpy()
+        if len(points) > 1:
+            x, y = points[-2]
+            slope_triangle(errors, 1.2 * x, 0.4 * y, order)
+            note(errors, label, tuple(points[1]), (0, 7), ha="right", color="0.25")
+    name_ticks(errors, sorted(shown["x"].unique()))
     errors.minorticks_off()
-
-    for alpha, curve in series[series["panel"] == "moment"].groupby("alpha"):
-        moments.plot(curve["x"], curve["y"], markersize=3.5, **styles[alpha])
-    moments.set(xscale="log", ylim=(0.0, None))
-    moments.set(xlabel="distance $r$", ylabel=r"second moment up to $r$")
-
-    entries = [
-        Line2D([], [], label=rf"$\alpha = {alpha:g}$", **style) for alpha, style in styles.items()
-    ]
-    figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
+    legend_below(figure, [entry(rf"$\alpha = {a:g}$", **style) for a, style in styles.items()])
     return figure

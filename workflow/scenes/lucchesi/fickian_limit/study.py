@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from math import pi, sqrt
 
@@ -16,20 +15,24 @@ from fracparticles.schemes.base import one_pass_operator
 from fracparticles.schemes.transform import lattice_transform
 from fracparticles.special import mean_radius
 from fracstudy.claims import Finding
-from fracstudy.inputs import ORDERS, Inputs, Result, observed_order, statement
+from fracstudy.inputs import ORDERS, Inputs, Result, listed, statement
+from fracstudy.orders import orders_by
+from fracstudy.panels import Panels
 
-__all__ = ["decade_moments", "fickian_error", "heat_kernel", "study"]
+__all__ = ["decade_moments", "fickian_error", "heat_kernel", "kernel_distance", "study"]
 
-_RADII = np.linspace(
-    0.0, 6.0, 1201
-)  # where the kernels differ at all; beyond, both are below 1e-2 (2 - alpha)
+NEEDS = {"scheme": ["KPSE"], "order": [2, 4]}
+
+# Where the kernels differ at all; beyond, both are below 1e-2 (2 - alpha).
+_RADII = np.linspace(0.0, 6.0, 1201)
 _DECADES = np.arange(-2.0, 7.0)
 _NODES = 60  # Gauss-Legendre in log r, a decade: smooth integrands, round-off reached
 _ORDER_TOLERANCE = 0.1
 _FICKIAN_RADIUS = 2.0 / sqrt(pi)  # R_alpha at alpha = 2
-_MOMENTS = (0, 1, 2, 3)
 _FARTHER = (1.1, 1.5)  # where the moments are looked at, besides near 2
 _ANY = 1.5  # Phi does not depend on alpha: any below 2 will do
+_DISTANCE, _SLOPE = "max |K - Φ|", "max |K - Φ| / (2 - alpha)"
+_SECOND = {exponent: f"second moment to r = 1e{exponent}" for exponent in (1, 3, 6)}
 
 
 def heat_kernel(x: np.ndarray, t: float) -> np.ndarray:
@@ -68,167 +71,106 @@ def decade_moments(name: str, alpha: float, power: int, order: int = 2) -> np.nd
     return np.log(10.0) * (values @ weights)
 
 
-def study(inputs: Inputs) -> Result:
-    """Follow the kernel, the error and the moments of (35) from alpha < 2 to alpha = 2.
-
-    Parameters of the scene: `half_width`, `spacing` (a list), `overlap`, `t_initial`, `t_final` of the lattices at
-    alpha = 2, the same as those of the runs. Runs: KPSE, orders 2 and 4, at several beta near 1 and these spacings.
-    """
-    parameters = inputs.parameters
-    spacings = sorted(map(float, parameters["spacing"]), reverse=True)
-    betas = sorted(set(inputs.scalars["beta"].round(9)))
-    errors = {
-        (1.0 + beta, order): _errors_of_runs(inputs, beta, order)
-        for beta in betas
-        for order in ORDERS
-    }
-    for order in ORDERS:
-        errors[2.0, order] = np.array(
-            [
-                fickian_error(
-                    float(parameters["half_width"]),
-                    h,
-                    order,
-                    float(parameters["overlap"]),
-                    float(parameters["t_initial"]),
-                    float(parameters["t_final"]),
-                )
-                for h in spacings
-            ]
-        )
-    alphas = [1.0 + beta for beta in betas]
-    table = pd.DataFrame(_row(alpha, errors, spacings) for alpha in [*alphas, 2.0])
-    findings = [_single_expression(inputs, table, errors), *_moments(alphas, table)]
-    return Result(table, findings, _series(alphas, errors, spacings))
-
-
-def _errors_of_runs(inputs: Inputs, beta: float, order: int) -> np.ndarray:
-    runs = inputs.select(scheme="KPSE", beta=beta, order=order)
-    return runs.sort_values("spacing", ascending=False)["relative_l1_error"].to_numpy(dtype=float)
-
-
-def _row(
-    alpha: float, errors: dict[tuple[float, int], np.ndarray], spacings: list[float]
-) -> dict[str, object]:
-    below = alpha < 2.0
-    distance = kernel_distance(alpha) if below else 0.0
-    second = np.cumsum(decade_moments("K", alpha, 2) if below else decade_moments("Phi", _ANY, 2))
-    h = spacings[-1]
-    row: dict[str, object] = {
-        "alpha": alpha,
-        "kernel": "K" if below else "Φ",
-        "max |K - Φ|": distance,
-        "max |K - Φ| / (2 - alpha)": distance / (2.0 - alpha) if below else np.nan,
-        "R": mean_radius(alpha) if below else _FICKIAN_RADIUS,
-    }
-    for order, name in ORDERS.items():
-        row[f"error {name}, h = {h:g}"] = errors[alpha, order][-1]
-        row[f"order {name}"] = observed_order(np.array(spacings), errors[alpha, order])[-1]
-    for exponent in (1, 3, 6):
-        row[f"second moment to r = 1e{exponent}"] = second[_DECADES[1:] == exponent].item()
-    return row
-
-
 def kernel_distance(alpha: float) -> float:
     """Return max_r |K(r) - Phi(r)|, order II."""
     return float(np.abs(kernel("K", _RADII, alpha) - kernel("Phi", _RADII, _ANY)).max())
 
 
-def _single_expression(
-    inputs: Inputs, table: pd.DataFrame, errors: dict[tuple[float, int], np.ndarray]
-) -> Finding:
-    deviations = {
-        name: (table[f"order {name}"] - order).abs().max() for order, name in ORDERS.items()
+def study(inputs: Inputs) -> Result:
+    """Follow the kernel, the error and the moments of (35) from alpha < 2, the runs, to alpha = 2."""
+    errors = inputs.scalars.assign(alpha=1.0 + inputs.scalars["beta"].round(9))
+    errors = errors.rename(columns={"spacing": "h", "relative_l1_error": "error"})
+    lattices = errors[errors["alpha"] == errors["alpha"].max()]
+    grid = ["half_width", "h", "order", "overlap", "t_initial", "t_final"]
+    at_two = [fickian_error(*lattice) for lattice in lattices[grid].itertuples(index=False)]
+    errors = pd.concat([errors, lattices.assign(alpha=2.0, error=at_two)])
+    errors = errors.sort_values(["alpha", "order", "h"], ascending=[1, 1, 0], ignore_index=True)
+    errors["observed"] = orders_by(errors, ["alpha", "order"], "error")
+
+    panels, rows = Panels(), []
+    r = np.geomspace(0.05, 100.0, 241)
+    for alpha, part in errors.groupby("alpha"):
+        name, of = ("K", alpha) if alpha < 2.0 else ("Phi", _ANY)
+        second = np.cumsum(decade_moments(name, of, 2))
+        panels.add("kernel", 2, r, kernel(name, r, of), alpha=alpha)
+        panels.add("moment", 2, 10.0 ** _DECADES[1:], second, alpha=alpha)
+        panels.add("error", part["order"], part["h"], part["error"], alpha=alpha)
+        rows.append(_row(alpha, part, dict(zip(_DECADES[1:], second, strict=True))))
+    table = pd.DataFrame(rows)
+    findings = [
+        _single_expression(table, list(inputs.scalars["run"])),
+        *_moments(table),
+    ]
+    return Result(table, inputs.judged(findings), panels.frame)
+
+
+def _row(alpha: float, errors: pd.DataFrame, second: dict[float, float]) -> dict[str, object]:
+    below = alpha < 2.0
+    distance = kernel_distance(alpha) if below else 0.0
+    row: dict[str, object] = {
+        "alpha": alpha,
+        "kernel": "K" if below else "Φ",
+        _DISTANCE: distance,
+        _SLOPE: distance / (2.0 - alpha) if below else np.nan,
+        "R": mean_radius(alpha) if below else _FICKIAN_RADIUS,
     }
+    for order, name in ORDERS.items():
+        finest = errors[errors["order"] == order].iloc[-1]
+        row[f"error {name}, h = {finest['h']:g}"] = finest["error"]
+        row[f"order {name}"] = finest["observed"]
+    return row | {column: second[exponent] for exponent, column in _SECOND.items()}
+
+
+def _single_expression(table: pd.DataFrame, files: list[str]) -> Finding:
+    off = [(table[f"order {name}"] - order).abs().max() for order, name in ORDERS.items()]
+    second, fourth = (listed(table[f"order {name}"], ".2f") for name in ORDERS.values())
+    column = next(name for name in table if name.startswith("error II,"))
     last, limit = table.iloc[-2], table.iloc[-1]
-    column = next(c for c in table.columns if c.startswith("error II,"))
     return statement(
         "L-C17.single_expression",
-        max(deviations.values()) <= _ORDER_TOLERANCE,
-        f"At alpha = {_list(table['alpha'])} the error of (35) falls with the orders {_list(table['order II'], '.2f')} "
-        f"(II) and {_list(table['order IV'], '.2f')} (IV); the {column}, is {last[column]:.3e} at alpha = "
-        f"{last['alpha']:g} and {limit[column]:.3e} at 2.",
+        max(off) <= _ORDER_TOLERANCE,
+        f"At alpha = {listed(table['alpha'])} the error of (35) falls with the orders {second} (II) and {fourth} (IV); "
+        f"the {column}, is {last[column]:.3e} at alpha = {last['alpha']:g} and {limit[column]:.3e} at 2.",
         "Some alpha does not converge with the order of its kernel.",
-        list(inputs.scalars["run"]),
+        files,
     )
 
 
-def _moments(alphas: list[float], table: pd.DataFrame) -> list[Finding]:
+def _moments(table: pd.DataFrame) -> list[Finding]:
     # A moment is finite where the decades' shares fall by a constant factor, and infinite where they do not.
-    orders = np.array([*_FARTHER, *alphas])
-    ratio = {
-        power: np.array([_last_ratio(decade_moments("K", alpha, power)) for alpha in orders])
-        for power in _MOMENTS
-    }
-    expected = {power: 10.0 ** (power - orders) for power in _MOMENTS}
-    as_tail = all(np.allclose(ratio[p], expected[p], rtol=1e-4) for p in _MOMENTS)
-    finite = all((ratio[p] < 1.0).all() for p in (0, 1))
-    infinite = all((ratio[p] > 1.0).all() for p in (2, 3))
-    first, last = table.iloc[0], table.iloc[-2]
-    phi = {
-        order: [decade_moments("Phi", _ANY, p, order)[-4:].sum() for p in range(9)]
-        for order in ORDERS
-    }
-    near, far = "second moment to r = 1e3", "second moment to r = 1e6"
+    alphas = np.array([*_FARTHER, *table["alpha"][:-1]])
+    shares = np.array([[decade_moments("K", a, p)[-2:] for a in alphas] for p in range(4)])
+    ratio = shares[..., 1] / shares[..., 0]
+    as_tail = np.allclose(ratio, 10.0 ** (np.arange(4.0)[:, None] - alphas), rtol=1e-4)
+    finite, infinite = (ratio[:2] < 1.0).all(), (ratio[2:] > 1.0).all()
+    phi = max(
+        decade_moments("Phi", _ANY, p, order)[-4:].sum() for order in ORDERS for p in range(9)
+    )
+    near, far = _SECOND[3], _SECOND[6]
+    first, last, limit = (table.iloc[k] for k in (0, -2, -1))
     return [
         statement(
             "L-C17.phi_moments",
-            max(map(max, phi.values())) == 0.0,
-            "Beyond r = 100 nothing is left, in double precision, of the moments 0 to 8 of Phi, order II or IV: "
-            "it falls "
-            "like a Gaussian.",
+            phi == 0.0,
+            "Beyond r = 100 nothing is left, in double precision, of the moments 0 to 8 of Phi, order II or IV: it "
+            "falls like a Gaussian.",
             "Some moment of Phi does not converge.",
         ),
         statement(
             "L-C17.K_moments",
             as_tail and finite and infinite,
-            f"At alpha = {_list(orders)} the share of moment p in a decade of r is 10^(p - alpha) times that of "
-            f"the decade "
-            f"before: at most {ratio[1].max():.3f} for p = 0 and 1, a finite moment; at least "
-            f"{ratio[2].min():.3f} for p = 2 "
-            "and 3, an infinite one.",
+            f"At alpha = {listed(alphas)} the share of moment p in a decade of r is 10^(p - alpha) times that of the "
+            f"decade before: at most {ratio[1].max():.3f} for p = 0 and 1, a finite moment; at least "
+            f"{ratio[2].min():.3f} for p = 2 and 3, an infinite one.",
             "The moments do not divide there.",
         ),
         statement(
             "L-C17.singular_limit",
-            bool(
-                infinite
-                and table["max |K - Φ|"].is_monotonic_decreasing
-                and table[far].iloc[-1] == table[near].iloc[-1]
-            ),
-            f"max |K - Phi| falls to {last['max |K - Φ|']:.1e} at alpha = {last['alpha']:g}, about "
-            f"{last['max |K - Φ| / (2 - alpha)']:.2f} (2 - alpha); yet the second moment up to r = 1e3 and 1e6 is "
-            f"{first[near]:.3f} and {first[far]:.3f} at alpha = {first['alpha']:g}, {last[near]:.4f} and "
-            f"{last[far]:.4f} at "
-            f"{last['alpha']:g}, always growing, and {table[far].iloc[-1]:.4f} in all at 2.",
+            infinite and table[_DISTANCE].is_monotonic_decreasing and limit[far] == limit[near],
+            f"max |K - Phi| falls to {last[_DISTANCE]:.1e} at alpha = {last['alpha']:g}, about {last[_SLOPE]:.2f} (2 - "
+            f"alpha); yet the second moment up to r = 1e3 and 1e6 is {first[near]:.3f} and {first[far]:.3f} at alpha = "
+            f"{first['alpha']:g}, {last[near]:.4f} and {last[far]:.4f} at {last['alpha']:g}, always growing, and "
+            f"{limit[far]:.4f} in all at 2.",
             "The second moment does not tell the limit from the limiting case.",
         ),
     ]
-
-
-def _last_ratio(shares: np.ndarray) -> float:
-    return float(shares[-1] / shares[-2])
-
-
-def _series(
-    alphas: list[float], errors: dict[tuple[float, int], np.ndarray], spacings: list[float]
-) -> pd.DataFrame:
-    """Panels "kernel", "error" (order as such) and "moment" (up to r)."""
-    rows = []
-    r = np.geomspace(0.05, 100.0, 241)
-    for alpha in [*alphas, 2.0]:
-        name, of = ("K", alpha) if alpha < 2.0 else ("Phi", _ANY)
-        values = np.asarray(kernel(name, r, of))
-        moments = np.cumsum(decade_moments(name, of, 2))
-        for x, y in zip(r, values, strict=True):
-            rows.append({"panel": "kernel", "alpha": alpha, "order": 2, "x": x, "y": y})
-        for x, y in zip(10.0 ** _DECADES[1:], moments, strict=True):
-            rows.append({"panel": "moment", "alpha": alpha, "order": 2, "x": x, "y": y})
-        for order in ORDERS:
-            for x, y in zip(spacings, errors[alpha, order], strict=True):
-                rows.append({"panel": "error", "alpha": alpha, "order": order, "x": x, "y": y})
-    return pd.DataFrame(rows)
-
-
-def _list(values: Iterable[float], form: str = "g") -> str:
-    return ", ".join(f"{v:{form}}" for v in values)

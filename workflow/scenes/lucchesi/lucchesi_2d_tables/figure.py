@@ -30,10 +30,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             ax.plot(part["h"], part["spurious"], color="0.45", linewidth=0.9, label=label)
         panel_title(ax, letter, scheme)
         spacing_axes(ax, here["h"])
-        ax.legend(loc=place, fontsize=7.5)
+        ax.legend(**{"loc": place, "fontsize": 7.5})
     axes[0].set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (59)")
-    for h, y in series.loc[
-        (series["scheme"] == "FPSE") & (series["step"] == 0.0), ["h", "y"]
-    ].to_numpy()[:1]:
-        slope_triangle(axes[1], 1.2 * h, 0.45 * y, 2.0)
+    exact = series[(series["scheme"] == "FPSE") & (series["step"] == 0.0)].iloc[0]
+    slope_triangle(axes[1], 1.2 * exact["h"], 0.45 * exact["y"], 2.0)
     return figure

@@ -20,7 +20,7 @@ from scenes.plane import particles_per_side
 __all__ = ["spurious_rate", "study"]
 
 _KERNELS = {"DD": "G", "FPSE": "F"}
-NEEDS = {"scheme": list(_KERNELS)}
+NEEDS: dict[str, list[Any]] = {"scheme": list(_KERNELS), "kernel_table": [None]}
 
 _VISIBLE = 0.05  # share of the error that a table may change and still be insignificant
 _DROP = 0.5  # of the order: an appreciable drop
@@ -45,7 +45,8 @@ def spurious_rate(case: Case, step: float) -> float:
 def study(inputs: Inputs) -> Result:
     """Errors (59) with exact kernels and with the tables, and the spurious decay of DD."""
     runs = inputs.scalars
-    runs = runs.assign(N=particles_per_side(runs), step=runs["kernel_table"].fillna(0.0))
+    steps = runs["kernel_table"].fillna(0.0) if "kernel_table" in runs else 0.0
+    runs = runs.assign(N=particles_per_side(runs), step=steps)
     runs = runs.sort_values(["step", "scheme", "N"], ignore_index=True)
     runs["h"], runs["y"] = runs["particle_spacing"], runs["relative_l1_error"]
     runs["order"] = orders_by(runs, ["step", "scheme"], "y")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +13,7 @@ from scenes.plane import DISK
 
 __all__ = ["figure"]
 
-_EXACT = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
+_EXACT: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 _NOTE = {
     "xycoords": ("data", "axes fraction"),
     "ha": "right",

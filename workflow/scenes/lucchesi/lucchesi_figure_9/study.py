@@ -90,7 +90,8 @@ def _shift(runs: pd.DataFrame) -> pd.DataFrame:
     for key, pair in runs.groupby(["scheme", "dim"]):
         files = pair.set_index("exterior")["run"]
         if len(files) == 2:
-            (_, r, truncated), (_, _, opened) = map(stored_field, files[NEEDS["exterior"]])
+            fields = [stored_field(files[exterior]) for exterior in NEEDS["exterior"]]
+            (_, r, truncated), (_, _, opened) = (field for field in fields if field)
             run = pair.iloc[0]
             inside = r <= DISK * (1.0 + 1e-12)
             change = (

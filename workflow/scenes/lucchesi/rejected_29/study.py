@@ -1,4 +1,4 @@
-"""The scheme of Eq. (29), which the paper rejects for its instability: eigenvalues above nil, runs that grow."""
+"""The scheme of Eq. (29), which the paper rejects for its instability: eigenvalues above zero, runs that grow."""
 
 from __future__ import annotations
 
@@ -19,15 +19,20 @@ from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special.stable import green
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.panels import Panels
 
 __all__ = ["study"]
+
+NEEDS = {"scheme": ["PSE29", "DD"]}
 
 _LARGE = 10.0  # an error this many times the exact value is large
 _NODES = np.linspace(0.0, 20.0, 4001)  # r; G is smooth on the scale 1
 _OVERLAP = 2.0
+_SHOWN = 5  # of the steps, one
+_EDGE = "|u| / exact at |x| = D"
 
 
-def study(inputs: Inputs) -> Result:
+def study(inputs: Inputs, *, shown_beta: float, dense: int, history: dict[str, Any]) -> Result:
     """Scheme (29): the kernel, the spectrum, the growth and the errors.
 
     On a bounded lattice -sum_j G_(i-j) > 0 stays on the diagonal near the ends, where half of the negative middle of G
@@ -37,31 +42,26 @@ def study(inputs: Inputs) -> Result:
     The kernel statement holds if G(0) < 0, G changes sign and is not monotonic, at every beta. The errors are called
     large if |u| is more than ten times the exact solution at |x| = D at the smallest h of every beta. The instability
     is shown if the greatest eigenvalue is positive at every beta and the growth of the runs has its rate to 1 %.
+
+    `dense` is the number of particles of the spectrum; `history` are the half-width and the spacings of the runs whose
+    growth is followed, and by how many powers of e.
     """
     runs = inputs.scalars
     betas = sorted(runs["beta"].unique())
-    size = int(inputs.parameters["dense"])
-    spectra = {beta: _spectrum("PSE29", beta, size) for beta in betas}
-    beta = float(inputs.parameters["beta"])
-    history = _history(beta, float(spectra[beta][-1]), **inputs.parameters["history"])
-    table = _table_29(runs, {b: float(eigenvalues[-1]) for b, eigenvalues in spectra.items()})
     kernels = {b: np.asarray(kernel("G", _NODES, 1.0 + b)) for b in betas}
-    blow_up = _blow_up(beta, float(spectra[beta][-1]))
-    findings = _findings_29(table, kernels, spectra, history, blow_up, list(runs["run"]))
+    greatest = {b: float(_spectrum("PSE29", b, dense)[-1]) for b in betas}
+    panels, growth = Panels(), _spectrum("PSE29", shown_beta, dense)[-1]
     near = _NODES <= 4.0
-    parts = [
-        pd.DataFrame({"panel": "kernel", "series": f"{b:g}", "x": _NODES[near], "y": G[near]})
-        for b, G in kernels.items()
-    ]
+    for beta, G in kernels.items():
+        panels.add("kernel", f"{beta:g}", _NODES[near], G[near])
     for name in ("PSE29", "DD"):
-        eigenvalues = spectra[beta] if name == "PSE29" else _spectrum(name, beta, size)
-        rank = np.arange(1, size + 1) / size
-        parts.append(
-            pd.DataFrame({"panel": "spectrum", "series": name, "x": rank, "y": eigenvalues})
-        )
-    every = max(1, len(history) // 400)
-    parts.append(history.iloc[::every].assign(panel="history"))
-    return Result(table, findings, pd.concat(parts, ignore_index=True))
+        rank = np.arange(1, dense + 1) / dense
+        panels.add("spectrum", name, rank, _spectrum(name, shown_beta, dense))
+    deviation = _follow(panels, shown_beta, growth, **history)
+    blow_up = _blow_up(shown_beta)
+    table = _table(runs, greatest)
+    findings = _findings(table, kernels, greatest, deviation, blow_up, list(runs["run"]))
+    return Result(table, inputs.judged(findings), panels.frame)
 
 
 def _spectrum(name: str, beta: float, size: int) -> np.ndarray:
@@ -70,14 +70,21 @@ def _spectrum(name: str, beta: float, size: int) -> np.ndarray:
     return np.linalg.eigvalsh(dense_matrix(SCHEMES[name].operator(setting)))
 
 
-def _history(
-    beta: float, growth: float, half_width: float, spacing: list[float], foldings: float
-) -> pd.DataFrame:
-    """|u(D, t)| of RK2 in time until it must have grown by exp(foldings), and the predicted growth.
+def _follow(
+    panels: Panels,
+    beta: float,
+    growth: float,
+    half_width: float,
+    spacing: list[float],
+    foldings: float,
+) -> float:
+    """Draw |u(D, t)| of RK2 in time until it must have grown by exp(foldings), and the predicted growth.
 
-    The step is a fiftieth of the growth time: p(lambda dt) is then exp(lambda dt) to 1e-6.
+    The step is a fiftieth of the growth time: p(lambda dt) is then exp(lambda dt) to 1e-6. Returns the largest
+    relative deviation of the measured rates.
     """
-    parts = []
+    deviations = []
+    rk2 = integrators.STEP_POLYNOMIALS["rk2"]
     for h in spacing:
         n = round(half_width / h)
         setting = Setting(n=n, spacing=half_width / n, alpha=1.0 + beta, overlap=_OVERLAP)
@@ -86,29 +93,24 @@ def _history(
         u = np.asarray(green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta))
         edge = [u[-1]]
         for _ in range(steps):
-            u = integrators.step(operator, integrators.STEP_POLYNOMIALS["rk2"], 0.02 / rate, 1, u)
+            u = integrators.step(operator, rk2, 0.02 / rate, 1, u)
             edge.append(u[-1])
-        time = 0.5 + 0.02 / rate * np.arange(steps + 1)
-        y = np.abs(edge)
+        time, y = 0.5 + 0.02 / rate * np.arange(steps + 1), np.abs(edge)
         predicted = y[-1] * np.exp(rate * (time - time[-1]))
         late = time > time[0] + 0.75 * (time[-1] - time[0])
-        measured = np.polyfit(time[late], np.log(y[late]), 1)[0]
-        parts.append(
-            pd.DataFrame({"series": f"{h:.3g}", "x": time, "y": y, "predicted": predicted}).assign(
-                deviation=measured / rate - 1.0
-            )
-        )
-    return pd.concat(parts, ignore_index=True)
+        deviations.append(np.polyfit(time[late], np.log(y[late]), 1)[0] / rate - 1.0)
+        shown = slice(None, None, _SHOWN)
+        panels.add("history", f"{h:.3g}", time[shown], y[shown], predicted=predicted[shown])
+    return float(np.abs(deviations).max())
 
 
-def _blow_up(beta: float, growth: float) -> dict[str, Any]:
+def _blow_up(beta: float) -> str:
     """Run (29) on a small lattice until it overflows: the step predicted from the growing modes, and the message."""
     case = Case(
         scheme="PSE29", beta=beta, half_width=10.0, spacing=0.2, overlap=_OVERLAP, dt=0.02, t_final=1000.0,
         evaluation="stepping", store="metrics",
     )  # fmt: skip
-    matrix = dense_matrix(SCHEMES["PSE29"].operator(case.setting))
-    values, modes = np.linalg.eigh(matrix)
+    values, modes = np.linalg.eigh(dense_matrix(SCHEMES["PSE29"].operator(case.setting)))
     amplitudes = modes.T @ initial_strengths(case)[0]
     factor = np.log(integrators.STEP_POLYNOMIALS["rk2"](values * case.time_step))
     largest = np.log(np.abs(amplitudes) * np.abs(modes).max(axis=0) + np.finfo(float).tiny)
@@ -116,19 +118,20 @@ def _blow_up(beta: float, growth: float) -> dict[str, Any]:
     steps = (np.log(np.finfo(float).max) - largest[growing]) / factor[growing]
     try:
         compute(case)
+        message = "no overflow"
     except NonFiniteSolution as error:
-        return {"predicted": float(steps.min()), "message": str(error)}
-    return {"predicted": float(steps.min()), "message": ""}
+        message = str(error).split(":")[1].strip()
+    return f"A run predicted to overflow at step {steps.min():.0f} ends with: {message}."
 
 
-def _table_29(runs: pd.DataFrame, greatest: dict[float, float]) -> pd.DataFrame:
+def _table(runs: pd.DataFrame, greatest: Mapping[float, float]) -> pd.DataFrame:
     rows = []
     for (beta, h), pair in runs.groupby(["beta", "particle_spacing"]):
         pair = pair.set_index("scheme")
         run = pair.loc["PSE29"]
-        u = read_run(run["run"])["u"].values
         exact = float(green(run["half_width"], run["t_final"], 1.0 + beta))
         rate = greatest[beta] * run["diffusivity"] / h ** (1.0 + beta)
+        time = run["t_final"] - run["t_initial"]
         ours, dd = pair["relative_l1_error"][["PSE29", "DD"]]
         rows.append(
             {
@@ -136,10 +139,8 @@ def _table_29(runs: pd.DataFrame, greatest: dict[float, float]) -> pd.DataFrame:
                 "h": h,
                 "greatest eigenvalue, λ h^α / D": greatest[beta],
                 "λ": rate,
-                "log10 of the growth exp(λ T)": rate
-                * (run["t_final"] - run["t_initial"])
-                / np.log(10.0),
-                "|u| / exact at |x| = D": abs(u[-1]) / exact,
+                "log10 of the growth exp(λ T)": rate * time / np.log(10.0),
+                _EDGE: abs(read_run(run["run"])["u"].values[-1]) / exact,
                 "error (48) of (29)": ours,
                 "error (48) of DD": dd,
                 "ratio": ours / dd,
@@ -148,22 +149,21 @@ def _table_29(runs: pd.DataFrame, greatest: dict[float, float]) -> pd.DataFrame:
     return pd.DataFrame(rows).sort_values(["beta", "h"], ascending=[True, False])
 
 
-def _findings_29(
+def _findings(
     table: pd.DataFrame,
     kernels: Mapping[float, np.ndarray],
-    spectra: Mapping[float, np.ndarray],
-    history: pd.DataFrame,
-    blow_up: Mapping[str, Any],
+    greatest: Mapping[float, float],
+    deviation: float,
+    blow_up: str,
     files: list[str],
 ) -> list[Finding]:
     origin = {beta: G[0] for beta, G in kernels.items()}
-    crossing = {beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))] for beta, G in kernels.items()}
-    turns = {beta: int((np.diff(np.sign(np.diff(G))) != 0).sum()) for beta, G in kernels.items()}
+    crossing = {
+        beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))][:1] for beta, G in kernels.items()
+    }
+    turns = {beta: (np.diff(np.sign(np.diff(G))) != 0).any() for beta, G in kernels.items()}
     top = {beta: _NODES[G.argmax()] for beta, G in kernels.items()}
     finest, coarsest = (table.groupby("beta").agg(which) for which in ("last", "first"))
-    greatest = {beta: eigenvalues[-1] for beta, eigenvalues in spectra.items()}
-    edge = "|u| / exact at |x| = D"
-    deviation = history.groupby("series")["deviation"].first().abs().max()
     return [
         statement(
             "L-C15.kernel",
@@ -174,25 +174,22 @@ def _findings_29(
         ),
         statement(
             "L-C15.errors",
-            bool((finest[edge] > _LARGE).all()),
-            f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[edge])}; the error (48), "
-            f"over that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[edge])} "
+            (finest[_EDGE] > _LARGE).all(),
+            f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[_EDGE])}; the error (48), "
+            f"over that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[_EDGE])} "
             f"and {_by_beta(coarsest['ratio'])}: the scheme diverges as h falls.",
             "Within the run the layer at the ends does not outgrow the solution at every beta.",
             files,
         ),
         statement(
             "L-C15.instability",
-            all(value > 0.0 for value in greatest.values()) and bool(deviation < 0.01),
+            min(greatest.values()) > 0.0 and deviation < 0.01,
             f"The greatest eigenvalue is {_by_beta(greatest, 4)} in units of D / h^alpha; runs grow at this rate to "
-            f"{100.0 * deviation:.2g} %. A run predicted to overflow at step {blow_up['predicted']:.0f} ends with: "
-            f"{blow_up['message'].split(':')[1].strip() if blow_up['message'] else 'no overflow'}.",
+            f"{100.0 * deviation:.2g} %. {blow_up}",
             "The runs do not grow at the rate of a positive eigenvalue.",
         ),
     ]
 
 
 def _by_beta(values: Mapping[float, float] | pd.Series, digits: int = 3) -> str:
-    return ", ".join(
-        f"{value:.{digits}g} (beta = {beta:g})" for beta, value in dict(values).items()
-    )
+    return ", ".join(f"{value:.{digits}g} (beta = {beta:g})" for beta, value in values.items())

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
@@ -12,14 +9,30 @@ from fracparticles.kernels.families import kernel
 from fracparticles.lattice.fourier import valid_convolution
 from fracparticles.schemes import riesz
 from fracparticles.special.stable import green, green_flux, mean_radius
-from fracstudy.inputs import Inputs, Result, observed_order, statement
+from fracstudy.claims import Finding
+from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.orders import orders_by
+from fracstudy.panels import Panels
 
 __all__ = ["study"]
 
+NEEDS = {"scheme": ["RIESZ", "KPSE"]}
+
 _POOR = 10.0  # times the error of the flux (19)
+_CUT_OFF, _MOLLIFIED = "error, cut-off", "error, mollified (KPSE)"
+_SERIES = {_CUT_OFF: "RIESZ", _MOLLIFIED: "KPSE"}
+_ORDER = "observed order, cut-off"
 
 
-def study(inputs: Inputs) -> Result:
+def study(
+    inputs: Inputs,
+    *,
+    alpha: list[float],
+    sum_half_width: float,
+    sum_spacing: list[float],
+    sum_overlap: float,
+    time: float,
+) -> Result:
     """The flux -v' of the potential cut off at epsilon, and of the mollified one, against Q = x u / (alpha t).
 
         Q_i = (1 / epsilon^alpha) sum_j V_j u_j r K(r),    r = (x_i - x_j) / epsilon,
@@ -29,124 +42,71 @@ def study(inputs: Inputs) -> Result:
     error over |x| <= 5 R_alpha is more than ten times that of (19), at every alpha and on every lattice; worst at large
     alpha if the error grows with alpha on every lattice.
     """
-    parameters = inputs.parameters
-    alphas = [float(alpha) for alpha in parameters["alpha"]]
-    rows = [
-        _flux_errors(alpha, float(h), parameters) for alpha in alphas for h in parameters["sum_spacing"]
-    ]
+    panels, rows = Panels(), []
+    for order in alpha:
+        for h in sum_spacing:
+            fluxes = _fluxes(order, h, round(sum_half_width / h), sum_overlap, time)
+            exact, size = fluxes["exact"], fluxes["exact"].abs().sum()
+            error = {name: (fluxes[s] - exact).abs().sum() / size for name, s in _SERIES.items()}
+            rows.append({"of": "flux", "alpha": order, "h": h, **error})
+            for name, series in _SERIES.items():
+                panels.add("flux", series, h, error[name], alpha=order)
+            if order == max(alpha) and h == min(sum_spacing):
+                shown = fluxes[(fluxes["x"] >= 0.0) & (fluxes["x"] <= 6.0)]
+                shown = shown[:: max(1, len(shown) // 200)]
+                for series in ("exact", *_SERIES.values()):
+                    panels.add("profile", series, shown["x"], shown[series], alpha=order)
     flux = pd.DataFrame(rows)
-    flux["observed order, cut-off"] = _orders(flux, "error, cut-off")
-    flux["observed order, (19)"] = _orders(flux, "error, (19)")
-    runs = inputs.scalars.assign(
-        alpha=1.0 + inputs.scalars["beta"], h=inputs.scalars["particle_spacing"]
-    )
-    solution = runs.pivot_table(
-        index=["alpha", "h"], columns="scheme", values="relative_l1_error"
-    ).reset_index()
-    solution["observed order, cut-off"] = _orders(solution, "RIESZ")
-    finest = flux[flux["h"] == flux["h"].min()].set_index("alpha")
-    table = pd.concat(
-        [
-            flux.assign(of="flux").rename(columns={"error, (19)": "error, mollified (KPSE)"}),
-            solution.assign(of="solution (48)").rename(
-                columns={"RIESZ": "error, cut-off", "KPSE": "error, mollified (KPSE)"}
-            ),
-        ]
+    runs = inputs.scalars.assign(alpha=1.0 + inputs.scalars["beta"])
+    runs = runs.rename(columns={"particle_spacing": "h", "relative_l1_error": "y"})
+    panels.add("solution", runs["scheme"], runs["h"], runs["y"], alpha=runs["alpha"])
+    solution = runs.pivot(index=["alpha", "h"], columns="scheme", values="y").reset_index()
+    solution = solution.rename(columns={series: name for name, series in _SERIES.items()})
+    table = pd.concat([flux, solution.assign(of="solution (48)")])
+    table = table.sort_values(
+        ["of", "alpha", "h"], ascending=[True, True, False], ignore_index=True
     )
     table["2 - α"] = 2.0 - table["alpha"]
-    columns = [
-        "of",
-        "alpha",
-        "h",
-        "error, cut-off",
-        "observed order, cut-off",
-        "2 - α",
-        "error, mollified (KPSE)",
-    ]
-    table = table[columns].sort_values(["of", "alpha", "h"], ascending=[True, True, False])
-    ratio = flux["error, cut-off"] / flux["error, (19)"]
-    by_lattice = flux.pivot_table(index="h", columns="alpha", values="error, cut-off")
-    rises = bool((np.diff(by_lattice.to_numpy(), axis=1) > 0.0).all())
-    errors = ", ".join(f"{e:.2g} (alpha = {a:g})" for a, e in finest["error, cut-off"].items())
-    orders = ", ".join(f"{p:.2f}" for p in finest["observed order, cut-off"])
-    others = ", ".join(f"{e:.1g}" for e in finest["error, (19)"])
-    findings = [
+    table[_ORDER] = orders_by(table, ["of", "alpha"], _CUT_OFF)
+    findings = inputs.judged(_findings(table[table["of"] == "flux"]))
+    columns = ["of", "alpha", "h", _CUT_OFF, _ORDER, "2 - α", _MOLLIFIED]
+    return Result(table[columns], findings, panels.frame)
+
+
+def _fluxes(alpha: float, h: float, n: int, overlap: float, time: float) -> pd.DataFrame:
+    """Positions within 5 R_alpha, the exact flux, that of the cut-off potential, that of (19)."""
+    x, r = np.arange(-n, n + 1) * h, np.arange(-2 * n, 2 * n + 1) / overlap
+    u = np.asarray(green(x, time, alpha))
+    scale = h / (overlap * h) ** alpha  # V_j / epsilon^alpha
+    fluxes = {
+        "x": x,
+        "exact": green_flux(x, time, alpha),
+        "RIESZ": scale * valid_convolution(u, r * riesz.kernel_star(r, alpha)),
+        "KPSE": -scale * valid_convolution(u, np.asarray(kernel("F", r, alpha))),
+    }
+    return pd.DataFrame(fluxes)[np.abs(x) <= 5.0 * mean_radius(alpha)]
+
+
+def _findings(flux: pd.DataFrame) -> list[Finding]:
+    finest = flux[flux["h"] == flux["h"].min()]
+    by_lattice = flux.pivot(index="h", columns="alpha", values=_CUT_OFF)
+    rises = bool((np.diff(by_lattice, axis=1) > 0.0).all())
+    errors = zip(finest["alpha"], finest[_CUT_OFF], strict=True)
+    found = ", ".join(f"{error:.2g} (alpha = {alpha:g})" for alpha, error in errors)
+    evidence = f"Relative error of the flux at h = {flux['h'].min():g}: {found}"
+    others = ", ".join(f"{error:.1g}" for error in finest[_MOLLIFIED])
+    orders = ", ".join(f"{order:.2f}" for order in finest[_ORDER])
+    return [
         statement(
             "L-C16.poor",
-            bool((ratio > _POOR).all()),
-            f"Relative error of the flux at h = {flux['h'].min():g}: {errors}; of the flux (19): {others}. It falls "
-            f"with the orders {orders}.",
+            (flux[_CUT_OFF] / flux[_MOLLIFIED] > _POOR).all(),
+            f"{evidence}; of the flux (19): {others}. It falls with the orders {orders}.",
             "On the coarsest lattice the flux (19) is not ten times better.",
         ),
         statement(
             "L-C16.worst_large_alpha",
             rises,
-            f"Relative error of the flux at h = {flux['h'].min():g}: {errors}; it rises with alpha on every lattice."
-            if rises
-            else f"Relative error of the flux at h = {flux['h'].min():g}: {errors}.",
+            f"{evidence}; it rises with alpha on every lattice." if rises else f"{evidence}.",
             "The error does not rise with alpha on every lattice.",
         ),
     ]
-    drawn = pd.concat(
-        [
-            flux.assign(panel="flux", series="RIESZ", x=flux["h"], y=flux["error, cut-off"]),
-            flux.assign(panel="flux", series="KPSE", x=flux["h"], y=flux["error, (19)"]),
-            runs.assign(
-                panel="solution", series=runs["scheme"], x=runs["h"], y=runs["relative_l1_error"]
-            ),
-            *_flux_profile(max(alphas), float(parameters["sum_spacing"][-1]), parameters),
-        ]
-    )
-    return Result(table, findings, drawn[["panel", "series", "alpha", "x", "y"]])
-
-
-def _fluxes(
-    alpha: float, h: float, parameters: Mapping[str, Any]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Positions within 5 R_alpha, the exact flux, that of the cut-off potential, that of (19)."""
-    n, s = round(float(parameters["sum_half_width"]) / h), float(parameters["sum_overlap"])
-    x, time = np.arange(-n, n + 1) * h, float(parameters["time"])
-    u = np.asarray(green(x, time, alpha))
-    r = np.arange(-2 * n, 2 * n + 1) / s
-    scale = h / (s * h) ** alpha  # V_j / epsilon^alpha
-    cut_off = scale * valid_convolution(u, r * riesz.kernel_star(r, alpha))
-    mollified = -scale * valid_convolution(u, np.asarray(kernel("F", r, alpha)))
-    inside = np.abs(x) <= 5.0 * mean_radius(alpha)
-    return (
-        x[inside],
-        np.asarray(green_flux(x, time, alpha))[inside],
-        cut_off[inside],
-        mollified[inside],
-    )
-
-
-def _flux_errors(alpha: float, h: float, parameters: Mapping[str, Any]) -> dict[str, float]:
-    _, exact, cut_off, mollified = _fluxes(alpha, h, parameters)
-    size = np.abs(exact).sum()
-    return {
-        "alpha": alpha,
-        "h": h,
-        "error, cut-off": float(np.abs(cut_off - exact).sum() / size),
-        "error, (19)": float(np.abs(mollified - exact).sum() / size),
-    }
-
-
-def _flux_profile(alpha: float, h: float, parameters: Mapping[str, Any]) -> list[pd.DataFrame]:
-    x, exact, cut_off, mollified = _fluxes(alpha, h, parameters)
-    shown = np.flatnonzero((x >= 0.0) & (x <= 6.0))
-    shown = shown[:: max(1, shown.size // 200)]
-    return [
-        pd.DataFrame(
-            {"panel": "profile", "series": name, "alpha": alpha, "x": x[shown], "y": y[shown]}
-        )
-        for name, y in (("exact", exact), ("RIESZ", cut_off), ("KPSE", mollified))
-    ]
-
-
-def _orders(table: pd.DataFrame, column: str) -> np.ndarray:
-    """The observed order against the next larger h of the same alpha, nan at the largest."""
-    out = pd.Series(np.nan, index=table.index)
-    for _, part in table.groupby("alpha"):
-        part = part.sort_values("h", ascending=False)
-        out[part.index[1:]] = observed_order(part["h"].to_numpy(), part[column].to_numpy())
-    return out.to_numpy()
