@@ -7,20 +7,16 @@ from math import gamma, log, pi, sqrt
 import numpy as np
 import pytest
 
-import fracparticles as fp
 from fracparticles.kernels.families import kernel
 from fracstudy.inputs import Inputs
-from fracstudy.scene import expand
-from scene_functions import figure
+from scenes.lucchesi.fickian_limit.figure import figure
 from scenes.lucchesi.fickian_limit.study import (
     decade_moments,
     fickian_error,
-    fickian_limit,
     heat_kernel,
     kernel_distance,
+    study,
 )
-
-LATTICE = {"half_width": 15.0, "overlap": 2.0, "t_initial": 0.5, "t_final": 1.5}
 
 
 def test_second_order_error_of_the_fickian_sum():
@@ -56,27 +52,11 @@ def test_distance_of_the_kernels_is_of_first_order():
     assert log(ratio) / log(10.0) == pytest.approx(1.0, abs=0.01)
 
 
-def test_fickian_limit(tmp_path):
-    blocks = [
-        {
-            "scheme": "KPSE",
-            "order": [2, 4],
-            "beta": [0.9, 0.99],
-            "half_width": 15.0,
-            "spacing": [0.2, 0.1],
-            "overlap": 2.0,
-            "integrator": "exponential",
-            "exterior": "open",
-            "store": "metrics",
-        }
-    ]
-    runs = []
-    for number, case in enumerate(expand(blocks)):
-        runs.append(str(tmp_path / f"{number}.nc"))
-        fp.write(fp.solve(case), runs[-1])
-    parameters = {**LATTICE, "spacing": [0.2, 0.1]}
-    result = fickian_limit(Inputs("f", ["L-C17"], parameters, runs))
+def test_fickian_limit(computed):
+    lattice = {"half_width": 15.0, "spacing": [0.2, 0.1], "overlap": 2.0, "exterior": "open"}
+    block = {"scheme": "KPSE", "order": [2, 4], "beta": [0.9, 0.99], **lattice}
+    files = computed([{**block, "integrator": "exponential", "store": "metrics"}])
+    result = study(Inputs("fickian_limit", ["L-C17"], runs=files))
     assert list(result.table["alpha"]) == [1.9, 1.99, 2.0]
     assert all(finding.verdict for finding in result.findings)
-    drawn = figure("fickian_limit")(result.series, result.table, parameters)
-    drawn.draw_without_rendering()
+    figure(result.series, result.table).draw_without_rendering()

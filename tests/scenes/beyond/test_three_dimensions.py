@@ -7,34 +7,21 @@ import pytest
 
 from fracparticles.lattice.fourier import transform_length
 from fracparticles.run.case import Case
-from fracparticles.run.dataset import write
-from fracparticles.run.solver import solve
 from fracparticles.schemes import SCHEMES
 from fracstudy.inputs import Inputs
-from fracstudy.scene import expand
-from scene_functions import figure, study
-from scenes.beyond.three_dimensions.study import bytes_kept, operations
+from scenes.beyond.three_dimensions.figure import figure
+from scenes.beyond.three_dimensions.study import bytes_kept, operations, study
 
 
 @pytest.fixture(scope="module")
-def inputs(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("three_dimensions")
+def result(computed):
     common = {"beta": 0.5, "dim": 3, "truncation": 4.0, "store": "metrics"}
     blocks = [
         {"scheme": ["DD", "FPSE", "KPSE"], "order": [2, 4], "spacing": [1.1, 0.7], **common}
         | {"integrator": "exponential"},
         {"scheme": "GPSE", "spacing": 0.7, "exterior": ["truncated", "open"], **common},
     ]
-    paths = []
-    for case in expand(blocks):
-        paths.append(str(folder / case.path))
-        write(solve(case), paths[-1])
-    return Inputs("three_dimensions", [], {}, paths)
-
-
-@pytest.fixture(scope="module")
-def result(inputs):
-    return study("three_dimensions")(inputs)
+    return study(Inputs("three_dimensions", runs=computed(blocks)))
 
 
 def test_truncated_exchanges_keep_the_mass_that_should_leave(result):
@@ -49,14 +36,13 @@ def test_truncated_exchanges_keep_the_mass_that_should_leave(result):
     assert abs(excess["open"]) < excess["truncated"] / 16.0
 
 
-def test_sizes_orders_and_figure(inputs, result):
+def test_sizes_orders_and_figure(result):
     table, series = result.table, result.series
     assert set(table["N"]) == {"17^3", "27^3"}
-    assert (
-        table["order from the h above"].notna().sum() == 6
-    )  # two h for six pairs of scheme and order
+    # Two h for six pairs of scheme and order.
+    assert table["order from the h above"].notna().sum() == 6
     assert (series["work"] > 0.0).all()
-    assert len(figure("three_dimensions")(series, table, inputs.parameters).axes) == 2
+    assert len(figure(series, table).axes) == 2
 
 
 def test_operations_of_a_square_are_those_of_its_transforms():

@@ -5,14 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.run.dataset import write
-from fracparticles.run.solver import solve
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracstudy.inputs import Inputs
-from fracstudy.scene import expand
-from scene_functions import figure, study
-from scenes.lucchesi.conservation.study import weight_sum
+from scenes.lucchesi.conservation.figure import figure
+from scenes.lucchesi.conservation.study import study, weight_sum
 
 
 @pytest.mark.parametrize("scheme", ["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD"])
@@ -23,42 +20,23 @@ def test_the_sum_of_absolute_weights_bounds_the_rows(scheme):
     assert rows <= weight_sum(scheme, n, h, alpha, 2, 2.0) * (1.0 + 1e-12)
 
 
-MOVING = {
-    "scheme": "DVM",
-    "beta": 0.5,
-    "half_width": 10.0,
-    "spacing": 0.2,
-    "dt": 0.01,
-    "store": "metrics",
-}
-
-
 @pytest.fixture(scope="module")
-def inputs(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("conservation")
-    common = {
-        "beta": 0.5,
-        "half_width": 20.0,
-        "spacing": 0.1,
-        "t_final": [0.75, 1.5],
-        "store": "metrics",
-    }
+def result(computed):
+    fixed = {"beta": 0.5, "half_width": 20.0, "spacing": 0.1, "t_final": [0.75, 1.5]}
+    fixed |= {"store": "metrics"}
+    moving = {"scheme": "DVM", "beta": 0.5, "half_width": 10.0, "spacing": 0.2, "dt": 0.01}
+    moving |= {"store": "metrics"}
     blocks = [
-        {"scheme": ["DD", "DPSE", "FPSE", "KPSE", "FD"], "dt": 1e-3, **common},
-        {"scheme": ["DD", "FPSE", "KPSE"], "dt": 1e-3, "exterior": "open", **common},
-        {"scheme": "GPSE", **common},
-        {**MOVING, "t_final": [0.75, 1.5], "remeshing": ["none", "M4'"]},
-        {**MOVING, "remeshing": "M4'", "threshold": 1e-3},
+        {"scheme": ["DD", "DPSE", "FPSE", "KPSE", "FD"], "dt": 1e-3, **fixed},
+        {"scheme": ["DD", "FPSE", "KPSE"], "dt": 1e-3, "exterior": "open", **fixed},
+        {"scheme": "GPSE", **fixed},
+        {**moving, "t_final": [0.75, 1.5], "remeshing": ["none", "M4'"]},
+        {**moving, "remeshing": "M4'", "threshold": 1e-3},
     ]
-    paths = []
-    for case in expand(blocks):
-        paths.append(str(folder / case.path))
-        write(solve(case), paths[-1])
-    return Inputs("conservation", ["L-C18"], {"beta": 0.5}, paths)
+    return study(Inputs("conservation", ["L-C18"], runs=computed(blocks)), shown_beta=0.5)
 
 
-def test_exchange_keeps_the_strength_and_dd_loses_what_flows_out(inputs):
-    result = study("conservation")(inputs)
+def test_exchange_keeps_the_strength_and_dd_loses_what_flows_out(result):
     assert {finding.claim for finding in result.findings} == {
         f"L-C18.{scheme}"
         for scheme in (
@@ -72,8 +50,8 @@ def test_exchange_keeps_the_strength_and_dd_loses_what_flows_out(inputs):
     assert leak == pytest.approx(table.loc[("DD", "truncated"), "exact outflow / M(t_0)"], rel=0.1)
 
 
-def test_dvm_loses_what_remeshing_puts_beyond_the_lattice_or_leaves_out(inputs):
-    table = study("conservation")(inputs).table
+def test_dvm_loses_what_remeshing_puts_beyond_the_lattice_or_leaves_out(result):
+    table = result.table
     moving = table[table["scheme"] == "DVM"].set_index("exterior")
     change = moving["M(t_f) / M(t_0) - 1"]
     assert abs(change["remeshing none"]) < 1e-14
@@ -83,14 +61,13 @@ def test_dvm_loses_what_remeshing_puts_beyond_the_lattice_or_leaves_out(inputs):
     assert moving.loc["remeshing M4'", "left out as too weak / M(t_0)"] == 0.0
 
 
-def test_with_the_open_exterior_the_strength_leaves_as_in_the_exact_solution(inputs):
-    table = study("conservation")(inputs).table
+def test_with_the_open_exterior_the_strength_leaves_as_in_the_exact_solution(result):
+    table = result.table
     opened = table[table["exterior"] == "open"]
     # The continuation of the far field leaves a relative error of about (t / D^alpha)^2 = 3e-4 of the outflow.
     missed = opened["change + exact outflow"].abs() / opened["exact outflow / M(t_0)"]
     assert (missed < 1e-2).all()
 
 
-def test_the_figure_is_drawn(inputs):
-    result = study("conservation")(inputs)
-    assert figure("conservation")(result.series, result.table, inputs.parameters).axes
+def test_the_figure_is_drawn(result):
+    assert figure(result.series, result.table).axes

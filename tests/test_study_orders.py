@@ -1,0 +1,19 @@
+"""Observed orders in a table of errors."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+
+from fracstudy.orders import orders_by
+
+
+def test_orders_are_those_within_each_group():
+    rows = {
+        "scheme": ["a", "b", "a", "b"],
+        "h": [0.2, 0.4, 0.1, 0.2],
+        "error": [4.0, 8.0, 1.0, 1.0],
+    }
+    orders = orders_by(pd.DataFrame(rows, index=[3, 1, 2, 0]), "scheme", "error")
+    assert orders[[3, 1]].isna().all()
+    assert orders[[2, 0]].to_numpy() == pytest.approx([2.0, 3.0])
