@@ -54,7 +54,7 @@ lint: $(INSTALLED) ## check style, types, layers and the workflow
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/snakemake --lint
+	$(BIN)/snakemake --dry-run --quiet all
 
 # Not part of the environment: the compiler of the lock lives in an environment of its own.
 lock: ## resolve requirements.lock anew from pyproject.toml

@@ -39,7 +39,7 @@ def test_the_truncation_error_of_an_exchange_scheme_is_predicted():
     case = Case(scheme="KPSE", integrator="exponential", **grid)
     error = relative_l1_error(case, compute(case).u)
     # Beside it: its next term, a few times (T / D^alpha) = 1 % of it, and the spatial error, 2 to 3 % of it.
-    assert error == pytest.approx(square_exchange_error(case.domain, ALPHA, 1.0), rel=0.1)
+    assert error == pytest.approx(square_exchange_error(case.reach, ALPHA, 1.0), rel=0.1)
 
 
 @pytest.mark.parametrize("alpha", [1.2, 1.5, 1.8])

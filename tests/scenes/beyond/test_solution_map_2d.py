@@ -23,7 +23,7 @@ def test_maps(computed):
     assert len(result.series) == 3 * 2 * 17**2
     kpse = result.table.set_index(["scheme", "exterior"]).loc[("KPSE", "truncated")]
     # The exchange conserves: at t_f it holds the mass inside the square at t_0, up to the midpoint rule.
-    half = Case(scheme="KPSE", **GRID).domain
+    half = Case(scheme="KPSE", **GRID).reach
     assert kpse["mass at t_f"] == pytest.approx(1.0 - square_tail_mass(half, 0.5, 1.5), abs=2e-3)
     figure(result.series, result.table, maps=MAPS).draw_without_rendering()
 

@@ -159,7 +159,7 @@ def test_orders(computed):
     # Three lattices: only h as the middle level can be had, and no tables.
     assert result.table[["ours, h as middle level", "deviation"]].notna().all(axis=None)
     assert result.table[["h as coarse level", "with kernel tables"]].isna().all(axis=None)
-    half = Case(scheme="DD", spacing=1.0, **COMMON).domain
+    half = Case(scheme="DD", spacing=1.0, **COMMON).reach
     assert findings(result)["L-2D-ORD.spacing.h0.223"].ours == pytest.approx(2.0 * half / 32.0)
 
 
