@@ -48,13 +48,12 @@ bench: $(INSTALLED) ## time the schemes; wants the machine to itself
 report: $(INSTALLED) ## build the report
 	$(SNAKEMAKE) report
 
-lint: $(INSTALLED) ## check style, types, layers and the workflow
+lint: $(INSTALLED) ## check style, types and layers
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/snakemake --dry-run --quiet all
 
 # Not part of the environment: the compiler of the lock lives in an environment of its own.
 lock: ## resolve requirements.lock anew from pyproject.toml
