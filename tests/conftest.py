@@ -11,8 +11,7 @@ from hypothesis import settings
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
-from fracparticles.kernels.families import PAPER_ORDERS  # noqa: E402
-from fracparticles.schemes import SCHEMES  # noqa: E402
+from combinations import COMBINATIONS  # noqa: E402
 
 settings.register_profile("fracparticles", deadline=None, derandomize=True)
 settings.load_profile("fracparticles")
@@ -21,25 +20,6 @@ settings.load_profile("fracparticles")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the complete workflow, which takes longest, so that another process does the rest meanwhile."""
     items.sort(key=lambda item: item.path.stem != "test_workflow")
-
-
-COMBINATIONS = [
-    pytest.param((name, order, exterior), id=f"{name}-{order}-{exterior}")
-    for name, scheme in SCHEMES.items()
-    for order in scheme.orders
-    if order in PAPER_ORDERS
-    for exterior in scheme.exteriors
-]
-
-
-def combinations_without(*schemes: str, exterior: str | None = None) -> list:
-    """The combinations of the other schemes, with one exterior or all."""
-    return [
-        parameter
-        for parameter in COMBINATIONS
-        if parameter.values[0][0] not in schemes
-        and parameter.values[0][2] == (exterior or parameter.values[0][2])
-    ]
 
 
 @pytest.fixture(params=COMBINATIONS)

@@ -6,13 +6,13 @@ from math import factorial
 
 import numpy as np
 import pytest
-from conftest import combinations_without
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm, toeplitz
 from scipy.special import ive
 from test_spectrum import case_of
 
+from combinations import combinations_without
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.run.solver import prepare

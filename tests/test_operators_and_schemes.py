@@ -6,11 +6,11 @@ from math import cos, gamma, pi
 
 import numpy as np
 import pytest
-from conftest import combinations_without
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from combinations import combinations_without
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import FAMILIES, kernel
 from fracparticles.schemes import SCHEMES, Setting, dpse, fpse, riesz, scheme

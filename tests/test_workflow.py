@@ -58,6 +58,7 @@ def planned(project: Path, *arguments: str) -> str:
 
 
 def copy(target: Path) -> Path:
+    target.mkdir(exist_ok=True)
     for part in PARTS:
         source = ROOT / part
         if source.is_dir():
@@ -172,7 +173,7 @@ def test_a_killed_workflow_carries_on(finished):
     process.wait()
     for path in runs.rglob("[!.]*.nc"):
         assert "mass_final" in read_run(path)
-    done = snakemake(finished, *call)
+    done = snakemake(finished, *call, "--workflow-profile", "workflow/profiles/default")
     assert done.returncode == 0, done.stderr[-4000:]
 
 
@@ -181,7 +182,7 @@ def test_a_killed_workflow_carries_on(finished):
 NEW_SCENE = """
 title: "Errors of a scheme of one's own"
 runs:
-  - {scheme: [KPSE, GAUSS], beta: 0.5, truncation: 10.0, spacing: [0.4, 0.2], integrator: exponential, store: metrics}
+  - {scheme: [KPSE, SMEAR], beta: 0.5, truncation: 10.0, spacing: [0.4, 0.2], integrator: exponential, store: metrics}
 """
 
 NEW_FIGURE = """
@@ -199,7 +200,7 @@ def test_a_new_scheme_and_a_new_scene_run_to_a_figure_and_nothing_else_is_touche
     """One module, one folder."""
     from test_new_scheme import MODULE
 
-    (finished / "src/fracparticles/schemes/gauss.py").write_text(MODULE)
+    (finished / "src/fracparticles/schemes/smear.py").write_text(MODULE)
     folder = finished / "workflow/scenes/beyond/of_my_own"
     folder.mkdir()
     (folder / "scene.yaml").write_text(NEW_SCENE)
@@ -207,7 +208,7 @@ def test_a_new_scheme_and_a_new_scene_run_to_a_figure_and_nothing_else_is_touche
     done = snakemake(finished, "of_my_own", "--config", "results_dir=mine")
     assert done.returncode == 0, done.stderr[-4000:]
     table = pd.read_csv(finished / "mine/tables/of_my_own.csv")
-    assert set(table["scheme"]) == {"KPSE", "GAUSS"}
+    assert set(table["scheme"]) == {"KPSE", "SMEAR"}
     assert len(table) == 4
     assert (table["relative error"] < 0.5).all()
     assert (finished / "mine/figures/of_my_own.png").stat().st_size > 5000

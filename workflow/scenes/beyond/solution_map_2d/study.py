@@ -11,7 +11,7 @@ from fracparticles.errors import FracparticlesError
 from fracparticles.special.plane import square_exchange_error, square_tail_mass
 from fracparticles.special.stable import green
 from fracstudy.inputs import ORDERS, Inputs, Result
-from scenes.plane import DISK, particles_per_side, stored_field
+from scenes.plane import DISK, particles_per_side
 
 __all__ = ["study"]
 
@@ -29,10 +29,11 @@ def study(inputs: Inputs, *, maps: list[list[str | int]]) -> Result:
     runs = inputs.scalars
     rows, parts = [], []
     for run in runs.assign(N=particles_per_side(runs)).itertuples():
-        stored = stored_field(run.run)
-        if stored is None:
+        stored = inputs.open(scheme=run.scheme, order=run.order, exterior=run.exterior)
+        if "u" not in stored:
             raise FracparticlesError(f"{inputs.scene}: a run without u; its runs must store: field")
-        x, r, u = stored
+        x, u = stored["x"].values, stored["u"].values
+        r = np.hypot(x[:, None], x[None, :])
         exact = np.asarray(green(r, run.t_final, 1.0 + run.beta, 2))
         error = np.abs(u / exact - 1.0)
         rows.append(_row(run, x, u, r, error))

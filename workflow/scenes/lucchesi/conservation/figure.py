@@ -35,9 +35,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         if exterior == "truncated":
             ax.plot(points["x"], points["y"], **scheme_style(scheme, label=scheme))
     for scheme, size in _SIZES.items():
-        points = groups["open", scheme]
-        style = scheme_style(scheme, markersize=size, **_RINGS)
-        ax.plot(points["x"], points["y"], label=f"{scheme}, open exterior", **style)
+        if ("open", scheme) in groups:
+            points = groups["open", scheme]
+            style = scheme_style(scheme, markersize=size, **_RINGS)
+            ax.plot(points["x"], points["y"], label=f"{scheme}, open exterior", **style)
     for exterior in series.loc[moving, "exterior"].sort_index().unique():
         points = groups[exterior, "DVM"]
         if len(points) > 1:  # the table has the others

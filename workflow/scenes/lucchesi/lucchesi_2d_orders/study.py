@@ -59,7 +59,8 @@ def study(inputs: Inputs, *, particles: dict[str, int]) -> Result:
                 }
             )
     table = pd.DataFrame(rows)
-    return Result(table, inputs.judged(_findings(table, particles, list(runs["run"]))))
+    findings = _findings(table, particles, list(runs["run"])) if rows else []
+    return Result(table, inputs.judged(findings))
 
 
 def _read(runs: pd.DataFrame) -> _Levels:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from fracparticles.run.dataset import read_run
 from fracparticles.special.stable import green
 from fracstudy.claims import Finding
 from fracstudy.inputs import Inputs, Result, statement
@@ -29,7 +28,8 @@ def study(inputs: Inputs) -> Result:
     """Errors along the two lines near and far from the origin, truncated and open."""
     parts, rows = [], []
     for run in inputs.scalars.to_dict("records"):
-        stored = read_run(run["run"])
+        key = {"scheme": run["scheme"], "exterior": run["exterior"]}
+        stored = inputs.open(**key)
         x, n = stored["x"].values, stored["x"].size // 2
         for line, (name, stretch) in _LINES.items():
             if "u" in stored:  # a run that another scene shares may hold the whole field
@@ -39,11 +39,10 @@ def study(inputs: Inputs) -> Result:
                 u = stored[name].values
             r = x[n:] * stretch
             exact = np.asarray(green(r, run["t_final"], 1.0 + run["beta"], 2))
-            key = {"scheme": run["scheme"], "exterior": run["exterior"], "line": line}
-            part = pd.DataFrame({**key, "r": r, "u": u[n:], "exact": exact})
+            part = pd.DataFrame({**key, "line": line, "r": r, "u": u[n:], "exact": exact})
             part["error"] = part["u"] / part["exact"] - 1.0
             parts.append(part)
-            rows.append({**key, **_row(part, x[-1] * (1.0 + 1e-12))})
+            rows.append({**key, "line": line, **_row(part, x[-1] * (1.0 + 1e-12))})
     series = pd.concat(parts, ignore_index=True)
     table = pd.DataFrame(rows).sort_values(
         ["exterior", "scheme", "line"], ascending=[False, True, True], ignore_index=True
@@ -175,7 +174,7 @@ def _directions(curves: _Curves, scheme: str) -> tuple[float, float]:
     other = np.interp(far["r"], diagonal["r"], diagonal["error"].abs())
     # The last point where y = 0 is the more accurate one.
     last = np.flatnonzero(far["error"].abs() <= other)
-    first = float(far["r"].iloc[last[-1] + 1 if last.size else 0])
+    first = float(far["r"].iloc[last[-1] + 1 if last.size else 0 :].min())
     return float(far["error"].abs().mean() / other.mean()), first
 
 

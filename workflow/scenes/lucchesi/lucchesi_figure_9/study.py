@@ -46,24 +46,18 @@ def study(inputs: Inputs, *, particles: list[int]) -> Result:
     runs = runs.assign(C=runs["truncation"].round(6), N=particles_per_side(runs))
     least = runs["C"] == runs["C"].min()
     plane = runs[runs["dim"] == 2]
-    errors = pd.DataFrame(
-        {
-            "scheme": plane["scheme"],
-            "order": plane["order"].map(ORDERS),
-            "exterior": plane["exterior"],
-            "C": plane["C"],
-            "N": plane["N"],
-            "h": plane["particle_spacing"],
-            _ERROR: plane["relative_l1_error"],
-            _FIELD: [_field_error(run) for run in plane.assign(least=least).itertuples()],
-        }
-    )
+    errors = plane.rename(columns={"particle_spacing": "h", "relative_l1_error": _ERROR})
+    errors["order"] = plane["order"].map(ORDERS)
+    errors[_FIELD] = [_field_error(run) for run in plane.assign(least=least).itertuples()]
     key = ["exterior", "C", "scheme", "order"]
-    errors = errors.sort_values([*key, "N"], ascending=[False, *[True] * 4], ignore_index=True)
+    errors = errors[[*key, "N", "h", _ERROR, _FIELD]].sort_values(
+        [*key, "N"], ascending=[False, *[True] * 4], ignore_index=True
+    )
     errors[_ORDER] = orders_by(errors, key, _ERROR)
     errors[_FIELD_ORDER] = orders_by(errors, key, _FIELD)
     wide = errors.pivot(index=["order", "scheme", "C", "N", "h"], columns="exterior")
-    table = pd.DataFrame({name: wide[column] for name, column in _COLUMNS.items()}).reset_index()
+    wide = wide.reindex(columns=pd.MultiIndex.from_tuples(_COLUMNS.values()))
+    table = wide.set_axis(list(_COLUMNS), axis=1).reset_index()
     table = table[["scheme", "order", "C", "N", "h", *_COLUMNS]]
     findings = _findings(errors, _shift(runs[least]), particles, list(runs["run"]))
     return Result(table, inputs.judged(findings), errors)

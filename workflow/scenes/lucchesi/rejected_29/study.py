@@ -57,10 +57,12 @@ def study(inputs: Inputs, *, shown_beta: float, dense: int, history: dict[str, A
     for name in ("PSE29", "DD"):
         rank = np.arange(1, dense + 1) / dense
         panels.add("spectrum", name, rank, _spectrum(name, shown_beta, dense))
-    deviation = _follow(panels, shown_beta, growth, **history)
-    blow_up = _blow_up(shown_beta)
     table = _table(runs, greatest)
-    findings = _findings(table, kernels, greatest, deviation, blow_up, list(runs["run"]))
+    findings = [
+        _kernel(kernels),
+        _errors(table, list(runs["run"])),
+        _instability(greatest, _follow(panels, shown_beta, growth, history), _blow_up(shown_beta)),
+    ]
     return Result(table, inputs.judged(findings), panels.frame)
 
 
@@ -70,25 +72,18 @@ def _spectrum(name: str, beta: float, size: int) -> np.ndarray:
     return np.linalg.eigvalsh(dense_matrix(SCHEMES[name].operator(setting)))
 
 
-def _follow(
-    panels: Panels,
-    beta: float,
-    growth: float,
-    half_width: float,
-    spacing: list[float],
-    foldings: float,
-) -> float:
-    """Draw |u(D, t)| of RK2 in time until it must have grown by exp(foldings), and the predicted growth.
+def _follow(panels: Panels, beta: float, growth: float, history: Mapping[str, Any]) -> float:
+    """Draw |u(D, t)| of RK2 in time until it must have grown by exp(`foldings`), and the predicted growth.
 
     The step is a fiftieth of the growth time: p(lambda dt) is then exp(lambda dt) to 1e-6. Returns the largest
     relative deviation of the measured rates.
     """
-    deviations = []
+    deviations, half_width = [], history["half_width"]
     rk2 = integrators.STEP_POLYNOMIALS["rk2"]
-    for h in spacing:
+    for h in history["spacing"]:
         n = round(half_width / h)
         setting = Setting(n=n, spacing=half_width / n, alpha=1.0 + beta, overlap=_OVERLAP)
-        rate, steps = growth * setting.rate, round(50.0 * foldings)
+        rate, steps = growth * setting.rate, round(50.0 * history["foldings"])
         operator = SCHEMES["PSE29"].operator(setting)
         u = np.asarray(green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta))
         edge = [u[-1]]
@@ -149,46 +144,42 @@ def _table(runs: pd.DataFrame, greatest: Mapping[float, float]) -> pd.DataFrame:
     return pd.DataFrame(rows).sort_values(["beta", "h"], ascending=[True, False])
 
 
-def _findings(
-    table: pd.DataFrame,
-    kernels: Mapping[float, np.ndarray],
-    greatest: Mapping[float, float],
-    deviation: float,
-    blow_up: str,
-    files: list[str],
-) -> list[Finding]:
+def _kernel(kernels: Mapping[float, np.ndarray]) -> Finding:
     origin = {beta: G[0] for beta, G in kernels.items()}
-    crossing = {
-        beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))][:1] for beta, G in kernels.items()
-    }
-    turns = {beta: (np.diff(np.sign(np.diff(G))) != 0).any() for beta, G in kernels.items()}
+    signs = {beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))] for beta, G in kernels.items()}
+    turns = [(np.diff(np.sign(np.diff(G))) != 0).any() for G in kernels.values()]
     top = {beta: _NODES[G.argmax()] for beta, G in kernels.items()}
+    crossing = {beta: r[0] for beta, r in signs.items() if r.size}
+    return statement(
+        "L-C15.kernel",
+        max(origin.values()) < 0.0 and len(crossing) == len(kernels) and all(turns),
+        f"The kernel of (29) is G of (11): G(0) = {_by_beta(origin)}; it changes sign at r = {_by_beta(crossing)} and "
+        f"has its maximum at r = {_by_beta(top)}.",
+        "G does not have all three properties.",
+    )
+
+
+def _errors(table: pd.DataFrame, files: list[str]) -> Finding:
     finest, coarsest = (table.groupby("beta").agg(which) for which in ("last", "first"))
-    return [
-        statement(
-            "L-C15.kernel",
-            all(origin[beta] < 0.0 and crossing[beta].size and turns[beta] for beta in kernels),
-            f"The kernel of (29) is G of (11): G(0) = {_by_beta(origin)}; it changes sign at r = "
-            f"{_by_beta({b: c[0] for b, c in crossing.items() if c.size})} and has its maximum at r = {_by_beta(top)}.",
-            "G does not have all three properties.",
-        ),
-        statement(
-            "L-C15.errors",
-            (finest[_EDGE] > _LARGE).all(),
-            f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[_EDGE])}; the error (48), "
-            f"over that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[_EDGE])} "
-            f"and {_by_beta(coarsest['ratio'])}: the scheme diverges as h falls.",
-            "Within the run the layer at the ends does not outgrow the solution at every beta.",
-            files,
-        ),
-        statement(
-            "L-C15.instability",
-            min(greatest.values()) > 0.0 and deviation < 0.01,
-            f"The greatest eigenvalue is {_by_beta(greatest, 4)} in units of D / h^alpha; runs grow at this rate to "
-            f"{100.0 * deviation:.2g} %. {blow_up}",
-            "The runs do not grow at the rate of a positive eigenvalue.",
-        ),
-    ]
+    return statement(
+        "L-C15.errors",
+        (finest[_EDGE] > _LARGE).all(),
+        f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[_EDGE])}; the error (48), "
+        f"over that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[_EDGE])} "
+        f"and {_by_beta(coarsest['ratio'])}: the scheme diverges as h falls.",
+        "Within the run the layer at the ends does not outgrow the solution at every beta.",
+        files,
+    )
+
+
+def _instability(greatest: Mapping[float, float], deviation: float, blow_up: str) -> Finding:
+    return statement(
+        "L-C15.instability",
+        min(greatest.values()) > 0.0 and deviation < 0.01,
+        f"The greatest eigenvalue is {_by_beta(greatest, 4)} in units of D / h^alpha; runs grow at this rate to "
+        f"{100.0 * deviation:.2g} %. {blow_up}",
+        "The runs do not grow at the rate of a positive eigenvalue.",
+    )
 
 
 def _by_beta(values: Mapping[float, float] | pd.Series, digits: int = 3) -> str:
