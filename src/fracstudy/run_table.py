@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from fracparticles.run.case import Case
 from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
 
-# What is shown of every run; the parameters that differ between the runs come before.
+# What is shown of every run: parameters, and what came of it.
+_ALWAYS = ("scheme", "order", "beta")
 _SHOWN = {
     "relative_l1_error": "relative error",
     "mass_initial": "mass at the start",
@@ -16,13 +18,14 @@ _SHOWN = {
 
 
 def study(inputs: Inputs) -> Result:
-    """Return one row a run: the parameters that differ, the error (48), the masses, the operator applications."""
+    """Return one row a run: scheme, order, beta and what else differs, the error (48), the masses, the applications.
+
+    A figure draws the same rows.
+    """
     runs = inputs.scalars
+    names = dict.fromkeys([*_ALWAYS, *Case.model_fields, "particle_spacing"])
+    differ = [name for name in names if name in runs and runs[name].nunique(dropna=False) > 1]
+    lead = [name for name in names if name in _ALWAYS or name in differ]
     shown = [name for name in _SHOWN if name in runs]
-    differ = [
-        name
-        for name in runs
-        if name not in (*shown, "run") and runs[name].nunique(dropna=False) > 1
-    ]
-    constant = [name for name in ("scheme", "order", "beta") if name not in differ]
-    return Result(runs[[*constant, *differ, *shown]].rename(columns=_SHOWN))
+    table = runs[[*lead, *shown]].rename(columns=_SHOWN)
+    return Result(table, series=table)
