@@ -17,8 +17,7 @@ INSTALLED := $(VENV)/.installed
 PIP       := $(BIN)/python -m pip --disable-pip-version-check
 
 # Shell commands of the workflow find the environment's programs first.
-SNAKEMAKE = PATH="$(abspath $(BIN)):$$PATH" $(BIN)/snakemake -j$(JOBS) \
-            --workflow-profile workflow/profiles/default
+SNAKEMAKE = PATH="$(abspath $(BIN)):$$PATH" $(BIN)/snakemake -j$(JOBS)
 # One thread each: the tests already run in $(JOBS) processes, each module of tests in one of them.
 PYTEST    = OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
             $(BIN)/python -m pytest -n $(JOBS) --dist loadscope --no-loadscope-reorder

@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from fracstudy.inputs import Inputs, Result
+from fracstudy.inputs import Result
 from fracstudy.scene import Scene, call, read_scenes
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -21,9 +21,9 @@ def scenes() -> dict[str, Scene]:
     return read_scenes(ROOT / "workflow/scenes", list(documents), smoke=True)
 
 
-def study(name: str) -> Callable[[Inputs], Result]:
+def study(name: str) -> Callable[..., Result]:
     function = scenes()[name].function("study")
-    return lambda inputs: call(function, inputs, **inputs.parameters)
+    return lambda inputs, **parameters: call(function, inputs, **parameters)
 
 
 def figure(name: str) -> Callable[..., Any]:

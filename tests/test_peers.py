@@ -12,11 +12,11 @@ from scipy.sparse.linalg import LinearOperator, expm_multiply
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import kernel
 from fracparticles.lattice.exterior import tabulated_far_field
+from fracparticles.run.orders import observed_order
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special import central_mass, green, mean_radius
 from fracparticles.special.tails import tail_constant
 from fracparticles.time.propagator import propagator_weights
-from fracstudy.inputs import observed_order
 from fracstudy.peers import (
     PEERS,
     duo_wyk_zhang,

@@ -10,8 +10,8 @@ from scipy.integrate import quad
 from scipy.special import factorial, gamma, poch
 
 from fracparticles.errors import InvalidInput
+from fracparticles.run.orders import observed_order
 from fracparticles.special import green
-from fracstudy.inputs import observed_order
 from fracstudy.peers import PLANE_PEERS, peer
 from fracstudy.peers.plane import plane_weights
 

@@ -89,7 +89,7 @@ def test_a_mistake_is_named_in_one_line(tmp_path, scene, words):
         ({"parameters": {"width": "1e-4"}}, ("parameters.width", "'1e-4'", "number")),
         ({"parameters": {"width": 1.0, "widht": 1.0}}, ("widht", "Did you mean 'width'?")),
         ({"parameters": {"width": 1.0, "counts": [1.5]}}, ("counts", "integer")),
-        ({"parameters": {"width": 1.0, "beta": 0.3}}, ("parameters.beta = 0.3", "have, 0.5")),
+        ({"parameters": {"width": 1.0, "beta": 0.3}}, ("parameters.beta = 0.3", "the runs say")),
         (
             {"parameters": {"width": 1.0}, "runs": [{**BLOCK, "exterior": "open"}]},
             ("runs: exterior", "open", "truncated", "Add runs"),
@@ -160,6 +160,13 @@ def test_a_variant_is_laid_over_the_common_part_block_by_block():
         "items": ["x"],
         "runs": [{"h": 0.1, "beta": 0.5, "smoke": {"dt": 1.0, "h": 0.4}}, {"h": 0.2}],
     }
+
+
+def test_a_title_says_what_the_runs_say(tmp_path):
+    config = write(tmp_path, title="at beta = {beta}, C = {truncation:g}")
+    assert read_config(config)[1]["one"].heading == "at beta = 0.5, C = 10"
+    write(tmp_path, "two", title="h = {spacing}")  # there are two of them
+    assert "title = 'h = {spacing}'" in refusal(config)
 
 
 def test_variants_are_scenes_of_one_folder(tmp_path):

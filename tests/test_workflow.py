@@ -19,7 +19,7 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
-PARTS = ("Snakefile", "config", "workflow", "report", "src")
+PARTS = ("Snakefile", "config", "profiles", "workflow", "report", "src")
 SMOKE = ("--configfile", "config/smoke.yaml")
 # A few of each kind: with runs, variants, tables of others, a benchmark, a study alone; one of each document.
 KEPT = {
@@ -173,7 +173,7 @@ def test_a_killed_workflow_carries_on(finished):
     process.wait()
     for path in runs.rglob("[!.]*.nc"):
         assert "mass_final" in read_run(path)
-    done = snakemake(finished, *call, "--workflow-profile", "workflow/profiles/default")
+    done = snakemake(finished, *call)
     assert done.returncode == 0, done.stderr[-4000:]
 
 

@@ -20,12 +20,10 @@ from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_s
 __all__ = ["Document", "StudyConfig", "batches", "jobs", "read_config", "targets"]
 
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
-_AT_ONCE = {
-    1: 24,
-    2: 8,
-    3: 4,
-}  # runs of a job by dimension: its start takes as long as a few of them
-_MOVING_AT_ONCE = 3  # of particles that move, which take a hundred times as long
+# Runs of a job by dimension: its start takes as long as a few of them. Those of particles that move take a hundred
+# times as long.
+_AT_ONCE = {1: 24, 2: 8, 3: 4}
+_MOVING_AT_ONCE = 3
 _SMOKE_JOBS = 2  # where it takes longer than all of them
 
 
@@ -116,19 +114,16 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
 
 
 def _check_runs(scene: Scene) -> None:
-    """Refuse parameters that say what the runs are not, and runs that lack what the study compares."""
+    """Refuse parameters that say what the runs say, and runs that lack what the study compares."""
     where = f"{scene.folder / 'scene.yaml'}"
-    cases = scene.cases
+    cases, _ = scene.cases, scene.heading
     for name in Case.model_fields.keys() & scene.parameters.keys() if cases else ():
-        given, found = scene.parameters[name], {getattr(case, name) for case in cases} - {None}
-        one_by_one = given if isinstance(given, list) else [given]
-        if found and not isinstance(given, dict) and not found.issuperset(one_by_one):
-            raise InvalidInput(
-                f"{where}: parameters.{name}",
-                given,
-                f"what the runs have, {' or '.join(map(str, found))}",
-                "Change the runs, too: they are what is shown.",
-            )
+        raise InvalidInput(
+            f"{where}: parameters.{name}",
+            scene.parameters[name],
+            "nothing that the runs say themselves",
+            "Leave it out, or give it a name of its own.",
+        )
     for name, needed in scene.needs.items():
         found = {getattr(case, name) for case in cases}
         if missing := [value for value in needed if value not in found]:

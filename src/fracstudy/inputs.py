@@ -13,7 +13,6 @@ import pandas as pd
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
-from fracparticles.run.orders import observed_order
 from fracstudy.claims import Claim, Finding, judge
 
 if TYPE_CHECKING:
@@ -26,7 +25,6 @@ __all__ = [
     "Result",
     "excuse",
     "listed",
-    "observed_order",
     "spelled",
     "statement",
     "value",
@@ -49,8 +47,6 @@ class Inputs:
         Name of the scene.
     items : sequence of str
         The items of the documents that it judges.
-    parameters : mapping
-        The block `parameters` of the scene.
     runs : sequence of str
         The run files of the scene, in the order of its configuration.
     tables : mapping
@@ -63,7 +59,6 @@ class Inputs:
 
     scene: str
     items: Sequence[str] = ()
-    parameters: Mapping[str, Any] = field(default_factory=dict)
     runs: Sequence[str] = ()
     tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     benchmarks: Mapping[str, pd.DataFrame] = field(default_factory=dict)

@@ -52,7 +52,6 @@ def make(
             other: read_benchmark(results / f"benchmarks/{other}.nc")
             for other in scene.all_benchmarks
         },
-        parameters=scene.parameters,
     )
     result: Result = call(scene.function("study"), inputs, **scene.parameters)
     found = excuse(result.findings, claims) if smoke else result.findings

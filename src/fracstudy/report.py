@@ -160,7 +160,7 @@ def _section(scene: Scene, df: pd.DataFrame, results: Path, out: Path) -> _Secti
     rows = df[df["item"].isin(list(scene.items))]
     return _Section(
         name=scene.name,
-        title=scene.title,
+        title=scene.heading,
         items=scene.items,
         document=scene.document,
         caption=_caption(scene, df),

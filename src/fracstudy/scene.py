@@ -71,7 +71,7 @@ class Scene(BaseModel):
     folder : Path
         Where its files are.
     title : str
-        Heading in the report.
+        Heading in the report; `{beta}` in it is what all runs have, or a parameter, of that name.
     place : int
         Where in its document it stands: smaller numbers first, then by name.
     items : list of str
@@ -129,6 +129,28 @@ class Scene(BaseModel):
         except InvalidInput as error:
             where = f"{self.folder / 'scene.yaml'}: runs: {error.field}"
             raise InvalidInput(where, error.value, error.allowed, error.remedy) from None
+
+    @property
+    def heading(self) -> str:
+        """The title, with the values that it asks for.
+
+        Raises
+        ------
+        InvalidInput
+            If it asks for what is no parameter, and not the same in all runs.
+        """
+        known = dict(self.parameters)
+        for name in Case.model_fields.keys() - known.keys() if self.cases else ():
+            first, *others = {getattr(case, name) for case in self.cases}
+            if not others:
+                known[name] = first
+        try:
+            return self.title.format(**known)
+        except (KeyError, IndexError, ValueError) as error:
+            where, allowed = f"{self.folder / 'scene.yaml'}: title", ", ".join(sorted(known))
+            raise InvalidInput(
+                where, self.title, f"text with {{}} around {allowed}", str(error)
+            ) from None
 
     @property
     def needs(self) -> dict[str, list[Any]]:
@@ -297,9 +319,6 @@ def check_parameters(scene: Scene) -> None:
         _check_keywords(scene, "benchmark", scene.benchmark, [scene.function("benchmark")])
 
 
-_ANYTHING = inspect.Parameter("anything", inspect.Parameter.KEYWORD_ONLY)
-
-
 def _check_keywords(
     scene: Scene, key: str, given: Mapping[str, Any], functions: list[Callable[..., Any]]
 ) -> None:
@@ -308,11 +327,8 @@ def _check_keywords(
         name: (parameter, function.__globals__)
         for function in functions
         for name, parameter in inspect.signature(function).parameters.items()
-        if name not in ("inputs", "series", "table") and parameter.kind is not parameter.VAR_KEYWORD
+        if name not in ("inputs", "series", "table")
     }
-    parameters = [p for f in functions for p in inspect.signature(f).parameters.values()]
-    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
-        keywords = {**dict.fromkeys(given, (_ANYTHING, {})), **keywords}
     for name in given:
         if name not in keywords:
             remedy = closest(name, keywords) or "Remove it."

@@ -26,7 +26,7 @@ for batch, cases in BATCHES.items():
         log:
             RESULTS / f"logs/solve_{batch}.log",
         # Particles that move take the longest: first.
-        priority: 1 if any(case.scheme == "DVM" for case in cases) else 0
+        priority: 1 if any(case.kind.moving for case in cases) else 0
         params:
             cases=[case.to_json() for case in cases],
         script:

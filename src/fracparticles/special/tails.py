@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import gamma
@@ -37,6 +35,4 @@ def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) 
     time : float
         Time of the run, t_f - t_0, times the diffusivity.
     """
-    # As `tail_constant`, which is one rounding away: tables hold these digits.
-    constant = math.gamma(1.0 + alpha) * math.sin(0.5 * math.pi * alpha) / math.pi
-    return time * 2.0 * constant / alpha * np.asarray(half_width, dtype=float) ** -alpha
+    return time * 2.0 * tail_constant(alpha) / alpha * np.asarray(half_width, dtype=float) ** -alpha

@@ -32,7 +32,7 @@ def test_particles_follow_the_exact_paths_in_the_bulk_and_tear_at_the_ends(runs)
         if "DVM-2" in path and "h0.199" in path and "dt0.01" in path and "Lambda3" not in path
     ]
     parameters = {"times": [0.51, 0.6], "every": 10}
-    result = study("dvm_particles")(Inputs("p", parameters=parameters, runs=chosen))
+    result = study("dvm_particles")(Inputs("p", runs=chosen), **parameters)
     table = result.table
     assert table["exact spacing / h"].to_numpy() == pytest.approx(spread(table["t"], 0.5, 1.5))
     # The smoothing changes the velocity by about (k epsilon)^2 / 4 = 4 % at epsilon = 0.4, over a stretch of 13 %.
@@ -46,7 +46,7 @@ def test_particles_follow_the_exact_paths_in_the_bulk_and_tear_at_the_ends(runs)
 
 def test_remeshing_table_has_every_run_and_its_orders(runs):
     parameters = {"shown": 0.2}
-    result = study("dvm_remeshing")(Inputs("r", parameters=parameters, runs=runs))
+    result = study("dvm_remeshing")(Inputs("r", runs=runs), **parameters)
     table = result.table
     assert len(table) == len(runs)
     by_run = table.set_index(["order", "remeshing", "h", "Δt"]).sort_index()

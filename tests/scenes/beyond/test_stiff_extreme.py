@@ -18,7 +18,7 @@ PARAMETERS = {
 
 @pytest.fixture(scope="module")
 def result():
-    return study("stiff_extreme")(Inputs("stiff_extreme", parameters=PARAMETERS))
+    return study("stiff_extreme")(Inputs("stiff_extreme"), **PARAMETERS)
 
 
 def test_every_case_comes_out_as_expected(result):

@@ -30,7 +30,7 @@ def run(name, items, **parameters):
         for key, claim in CLAIMS.items()
         if claim.item in items and claim.printed is not None
     }
-    result = study(name)(Inputs("scene", items, parameters, printed=printed))
+    result = study(name)(Inputs("scene", items, printed=printed), **parameters)
     answered = [finding.claim for finding in result.findings]
     assert sorted(answered) == sorted(key for key, c in CLAIMS.items() if c.item in items)
     statuses = {f.claim: judge(CLAIMS[f.claim], f)[0] for f in result.findings}

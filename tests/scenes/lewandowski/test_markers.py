@@ -113,8 +113,8 @@ PARAMETERS = {
 
 @cache
 def result(name):
-    inputs = Inputs(name, scenes()[name].items, PARAMETERS[name])
-    return study(name)(inputs)
+    inputs = Inputs(name, scenes()[name].items)
+    return study(name)(inputs, **PARAMETERS[name])
 
 
 def verdicts(name):
@@ -140,8 +140,8 @@ def test_the_figure_is_drawn(name):
 
 
 def test_a_claim_of_another_scene_is_not_answered():
-    inputs = Inputs("marker_loading", ["M-F4"], PARAMETERS["marker_loading"])
-    findings = study("marker_loading")(inputs).findings
+    inputs = Inputs("marker_loading", ["M-F4"])
+    findings = study("marker_loading")(inputs, **PARAMETERS["marker_loading"]).findings
     assert {finding.claim for finding in findings} == {"M-F4.better", "M-F4.degrades"}
 
 

@@ -38,7 +38,7 @@ def test_table_2_of_dvm_needs_its_three_levels(computed):
     )  # fmt: skip
     parameters = {"judged_remeshing": "M4'", "printed_spacing": {0.5: 0.2}}
     printed = {"L-T2.DVM.II.beta0.5": "2.00"}
-    result = study("lucchesi_table_2")(Inputs("t", ["L-T2"], parameters, runs, printed=printed))
+    result = study("lucchesi_table_2")(Inputs("t", ["L-T2"], runs, printed=printed), **parameters)
     ours = result.table.set_index("scheme")["ours"]
     # Epsilon = 2 h = 0.4 on the middle level: the next term of the smoothing error is of relative size 0.4^2.
     assert ours["DVM, M4'"] == pytest.approx(2.0, abs=0.16)

@@ -46,7 +46,7 @@ def test_gpse_amplifies_no_wave(alpha, overlap):
 
 
 def test_gpse_is_stable_and_dvm_is_not():
-    result = study("dvm_stability")(Inputs("s", ["L-C11"], STABILITY))
+    result = study("dvm_stability")(Inputs("s", ["L-C11"]), **STABILITY)
     verdicts = {finding.claim: finding.verdict for finding in result.findings}
     assert verdicts == {
         "L-C11.GPSE": True,
@@ -65,7 +65,7 @@ def test_gpse_is_stable_and_dvm_is_not():
 def test_statements_on_stability_can_turn_out_otherwise():
     harmless = {**STABILITY, "factors": [0.3, 0.8]}
     harmless["stop"] = {**STABILITY["stop"], "dt": 1e-3, "t_final": 0.51}
-    findings = study("dvm_stability")(Inputs("s", ["L-C11"], harmless)).findings
+    findings = study("dvm_stability")(Inputs("s", ["L-C11"]), **harmless).findings
     verdicts = {finding.claim: finding.verdict for finding in findings}
     assert verdicts["L-C11.DVM"] is True  # no run above the limit
     assert verdicts["L-C11.DVM_divergence"] is False  # nothing stops

@@ -35,7 +35,7 @@ def result(computed):
         "store": "field",
     }
     runs = computed([block])
-    return study("random_walk")(Inputs("random_walk", ["L-C3"], PARAMETERS, runs=runs))
+    return study("random_walk")(Inputs("random_walk", ["L-C3"], runs=runs), **PARAMETERS)
 
 
 def test_rows(result):

@@ -65,7 +65,7 @@ REFUTED = {
 @pytest.fixture(scope="module")
 def results():
     items = {name: scenes()[name].items for name in SCENES}
-    return {name: study(name)(Inputs(name, items[name], given)) for name, given in SCENES.items()}
+    return {name: study(name)(Inputs(name, items[name]), **given) for name, given in SCENES.items()}
 
 
 def test_every_claim_of_the_note_has_one_finding(results):

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from scipy.linalg import expm
 
+from fracparticles.lattice.dense import Spectrum, norms_of_powers, spectrum
 from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, power_iteration
@@ -18,7 +19,7 @@ from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.claims import Finding, judge_value, unit_of_last_digit
 from fracstudy.inputs import ORDERS, Inputs, Result, listed, statement, value
 
-__all__ = ["Spectrum", "spectrum", "study", "truncated_print"]
+__all__ = ["study", "truncated_print"]
 
 _SCHEMES = ("DD", "FPSE", "KPSE")
 _STEPS = ("euler", "rk2")
@@ -38,48 +39,9 @@ _COMPARABLE = 10.0
 _BETAS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
 
-class Spectrum(NamedTuple):
-    """The matrix A h^alpha / D of N particles: what Sec. 4.4 says of it.
-
-    Attributes
-    ----------
-    particles : int
-    lowest, highest : float
-        Least and greatest real part of its eigenvalues.
-    imaginary : float
-        Greatest imaginary part.
-    asymmetry : float
-        |A - A^T| / |A|, Frobenius norms.
-    departure : float
-        |A A^T - A^T A| / |A|^2, the departure from normality.
-    """
-
-    particles: int
-    lowest: float
-    highest: float
-    imaginary: float
-    asymmetry: float
-    departure: float
-
-
 def _matrix(scheme: str, alpha: float, order: int, particles: int) -> np.ndarray:
     setting = Setting(n=particles // 2, spacing=1.0, alpha=alpha, order=order, overlap=_OVERLAP)
     return dense_matrix(SCHEMES[scheme].operator(setting))
-
-
-def spectrum(scheme: str, alpha: float, order: int, particles: int) -> Spectrum:
-    """Return the `Spectrum` of a scheme on N particles, all eigenvalues computed."""
-    a = _matrix(scheme, alpha, order, particles)
-    eigenvalues = np.linalg.eigvals(a)
-    size = np.linalg.norm(a)
-    return Spectrum(
-        particles,
-        float(eigenvalues.real.min()),
-        float(eigenvalues.real.max()),
-        float(np.abs(eigenvalues.imag).max()),
-        float(np.linalg.norm(a - a.T) / size),
-        float(np.linalg.norm(a @ a.T - a.T @ a) / size**2),
-    )
 
 
 class _Growth(NamedTuple):
@@ -92,11 +54,11 @@ class _Growth(NamedTuple):
 def _growths(a: np.ndarray, lowest: float) -> dict[str, _Growth]:
     """Norms of the powers of one step just below and just above dt = 2 / |lambda_min|, Eq. (54)."""
     below, above = (share * 2.0 / abs(lowest) * a for share in (_BELOW, _ABOVE))
-    flow = max(_norms(expm(below), _SQUARINGS, _EVERY))
+    flow = max(norms_of_powers(expm(below), _SQUARINGS, _EVERY))
     growths = {}
     for integrator in _STEPS:
-        norms = _norms(_step(below, integrator), _SQUARINGS, _EVERY)
-        last = _norms(_step(above, integrator), _FEW_SQUARINGS, _FEW_SQUARINGS)[-1]
+        norms = norms_of_powers(_step(below, integrator), _SQUARINGS, _EVERY)
+        last = norms_of_powers(_step(above, integrator), _FEW_SQUARINGS, _FEW_SQUARINGS)[-1]
         saturated = norms[-1] <= (1.0 + _SATURATED) * norms[-2]
         growths[integrator] = _Growth(max(norms), flow, saturated, last)
     return growths
@@ -106,15 +68,6 @@ def _step(z: np.ndarray, integrator: str) -> np.ndarray:
     """p(z), z = A dt, Eq. (52)."""
     one = np.eye(len(z))
     return one + z if integrator == "euler" else one + z + 0.5 * z @ z
-
-
-def _norms(step: np.ndarray, squarings: int, every: int) -> list[float]:
-    norms = []
-    for k in range(squarings + 1):
-        if k % every == 0:
-            norms.append(float(np.linalg.norm(step, 2)))
-        step = step @ step
-    return norms
 
 
 def truncated_print(printed: str, ours: float) -> bool:
@@ -141,7 +94,7 @@ def study(
     """
     size = sorted(dense)[-2]
     spectra = {
-        (scheme, b, order): [spectrum(scheme, 1.0 + b, order, n) for n in sorted(dense)]
+        (scheme, b, order): [spectrum(_matrix(scheme, 1.0 + b, order, n)) for n in sorted(dense)]
         for b in beta
         for scheme in (*_SCHEMES, "GPSE")
         for order in ORDERS
