@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import yaml
 
 from fracparticles.errors import InvalidInput
 from fracstudy.config import batches, jobs, read_config
-from fracstudy.scene import expand, merged, resolved
+from fracstudy.scene import Scene, expand, merged, resolved
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = {
@@ -226,6 +227,16 @@ def test_a_scene_computes_nothing_that_it_does_not_need(ours):
         for batch in made.values():
             computed = {case.path for case in batch}
             assert computed <= wanted or not computed & wanted
+
+
+def test_a_job_takes_the_scene_as_it_is(ours):
+    """Numbers that are keys of a parameter, too: as JSON they were text, and looked up in vain."""
+    for scene in ours.values():
+        taken = pickle.loads(pickle.dumps(scene.packed(runs=True)))
+        assert Scene(**taken) == scene
+        assert Scene(**scene.packed()).parameters == scene.parameters
+    keys = ours["lucchesi_table_2"].parameters["printed_spacing"]
+    assert all(isinstance(key, float) for key in keys)
 
 
 @pytest.mark.parametrize("smoke", [False, True])

@@ -22,7 +22,7 @@ __all__ = ["Document", "StudyConfig", "batches", "jobs", "read_config", "targets
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 # Runs of a job by dimension: its start takes as long as a few of them. Those of particles that move take a hundred
 # times as long.
-_AT_ONCE = {1: 24, 2: 8, 3: 4}
+_AT_ONCE = {1: 60, 2: 12, 3: 4}
 _MOVING_AT_ONCE = 3
 _SMOKE_JOBS = 2  # where it takes longer than all of them
 

@@ -93,7 +93,7 @@ class Scene(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     name: str
-    folder: Path
+    folder: Path = Field(strict=False)
     title: str = Field(min_length=1)
     place: int = 100
     items: list[str] = []
@@ -103,6 +103,14 @@ class Scene(BaseModel):
     tables: list[str] = []
     benchmarks: list[str] = []
     benchmark: dict[str, Any] | None = None
+
+    def packed(self, runs: bool = False) -> dict[str, Any]:
+        """Return what `Scene(**packed)` makes the scene of, in another process; its runs are left out unless asked for.
+
+        Not as JSON, in which the numbers that are keys of a parameter would become text.
+        """
+        fields = self.model_dump(exclude=None if runs else {"runs"}, exclude_none=True)
+        return {**fields, "folder": str(self.folder)}
 
     @property
     def document(self) -> str:

@@ -11,7 +11,7 @@ rule benchmark:
     threads: workflow.cores  # all: nothing else runs while the clock does
     params:
         code=lambda wildcards: code(SCENES[wildcards.scene].file("benchmark.py")),
-        scene=lambda wildcards: as_json(wildcards.scene),
+        scene=lambda wildcards: SCENES[wildcards.scene].packed(),
     script:
         "../scripts/benchmark.py"
 

@@ -72,11 +72,6 @@ def run_files(name):
     return [RESULTS / "runs" / case.path for case in CASES[name]]
 
 
-def as_json(name):
-    """A scene as a job takes it; its runs are files by then."""
-    return SCENES[name].model_dump_json(exclude={"runs"})
-
-
 def printed_files(name):
     """The file of the claims of a scene's document, if it has any."""
     printed = STUDY.documents[SCENES[name].document].printed

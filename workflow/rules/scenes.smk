@@ -27,7 +27,7 @@ for job, names in JOBS.items():
             RESULTS / f"logs/make_{job}.log",
         params:
             results=str(RESULTS),
-            scenes=[as_json(name) for name in names],
+            scenes=[SCENES[name].packed() for name in names],
             runs=[list(map(str, run_files(name))) for name in names],
             smoke=STUDY.smoke,
             code=code(
@@ -94,7 +94,7 @@ rule report:
     log:
         RESULTS / "logs/report.log",
     params:
-        scenes=[scene.model_dump_json(exclude_none=True) for scene in SCENES.values()],
+        scenes=[scene.packed(runs=True) for scene in SCENES.values()],
         code=code("src/fracstudy/report.py"),
         documents=STUDY.model_dump(mode="json")["documents"],
     script:

@@ -9,5 +9,5 @@ from fracstudy.scene import Scene
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
-scene = Scene.model_validate_json(snakemake.params.scene)
+scene = Scene(**snakemake.params.scene)
 write(scene.function("benchmark")(**scene.benchmark), snakemake.output[0])

@@ -13,7 +13,7 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM1
 params = snakemake.params
 for scene, runs in zip(params.scenes, params.runs, strict=True):
     make(
-        Scene.model_validate_json(scene),
+        Scene(**scene),
         Path(params.results),
         runs,
         snakemake.input.printed,

@@ -13,7 +13,7 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM1
 
 documents = snakemake.params.documents.items()
 build(
-    [Scene.model_validate_json(scene) for scene in snakemake.params.scenes],
+    [Scene(**scene) for scene in snakemake.params.scenes],
     {name: Document(**document) for name, document in documents},
     results_dir=Path(snakemake.input.ledger).parent,
     template_dir=Path("report/template"),
