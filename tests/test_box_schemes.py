@@ -8,7 +8,6 @@ import pytest
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import PAPER_ORDERS, kernel
 from fracparticles.kernels.tabulated import tabulated
-from fracparticles.lattice.exterior_box import box_far_field
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute
 from fracparticles.schemes import SCHEMES, Setting
@@ -120,24 +119,6 @@ def test_the_open_operator_is_that_of_a_very_wide_lattice(name, order, mode):
     assert np.abs(ours - expected).max() <= 1e-8 * np.abs(expected).max()
     cut = box(name, order, n=n).apply(u[inner].ravel()).reshape(shape)
     assert np.abs(cut - expected).max() > 1e-3 * np.abs(expected).max()
-
-
-def test_the_sums_of_a_weight_that_is_known():
-    """With w = |m|^-4 at one target far from the others, term by term over a large square."""
-    n, alpha = 6, 1.5
-    far = box_far_field(
-        [lambda *m: 1.0 / (1.0 + m[0] ** 2 + m[1] ** 2) ** 2], [None], 4.0, alpha, n, 2
-    )
-    wide = 1200
-    j = np.indices((2 * wide + 1,) * 2) - wide
-    outside = np.abs(j).max(axis=0) > n
-    rho = np.sqrt(np.square(j).sum(axis=0))[outside] / n
-    for target in ((0, 0), (-6, 2)):
-        m = [part[outside] - t for part, t in zip(j, target, strict=True)]
-        w = 1.0 / (1.0 + m[0] ** 2.0 + m[1] ** 2.0) ** 2
-        ours = far.sums[0].reshape(4, 13, 13)[:, target[0] + n, target[1] + n]
-        expected = [(rho**-3.5 * w).sum(), (rho**-5.0 * w).sum()]
-        assert ours[:2] == pytest.approx(expected, rel=2e-6)
 
 
 @pytest.mark.parametrize(("scheme", "order"), [("DD", 4), ("FPSE", 4), ("KPSE", 4), ("GPSE", 2)])

@@ -257,7 +257,7 @@ REFUSED = [
     ({"diffusivity": 0.0}, "diffusivity", "a number between"),
     ({"initial": 5}, "initial", "text"),
     ({"integrator": "rk3"}, "integrator", "Did you mean 'rk"),
-    ({"evaluation": "steps"}, "evaluation", "one of series, stepping"),
+    ({"evaluation": "steps"}, "evaluation", "one of auto, series, stepping"),
     ({"summation": "FFT"}, "summation", "Did you mean 'fft'?"),
     ({"exterior": "opn"}, "exterior", "Did you mean 'open'?"),
     ({"scheme": "DPSE", "exterior": "open"}, "exterior", "truncated for DPSE"),
@@ -374,3 +374,17 @@ def test_any_junk_is_refused_or_a_case(changes):
 )
 def test_any_numbers_are_refused_or_a_case(given_):
     valid_or_refused(given_)
+
+
+@pytest.mark.parametrize(("fields", "stands_for"), [
+    ({"scheme": "KPSE", "exterior": "open", "integrator": "exponential"}, "convolution"),
+    ({"scheme": "GPSE", "exterior": "open", "dt": 1.0, "dim": 2}, "convolution"),
+    ({"scheme": "KPSE", "exterior": "truncated", "integrator": "exponential"}, None),
+    ({"scheme": "KPSE", "exterior": "open", "dt": 0.01}, None),
+    ({"scheme": "DVM", "dt": 0.01}, None),
+])  # fmt: skip
+def test_auto_is_the_fastest_evaluation_that_is_allowed(fields, stands_for):
+    given = {"beta": 0.5, "truncation": 5.0, "spacing": 0.2, **fields}
+    case = Case(**given, evaluation="auto")
+    assert case.evaluation == stands_for
+    assert case == Case(**given, evaluation=stands_for)

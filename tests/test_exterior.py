@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fracparticles.errors import InvalidInput
-from fracparticles.lattice.exterior import _expansion, far_field, tabulated_far_field
+from fracparticles.lattice.exterior import far_field
 from fracparticles.run.case import Case
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
@@ -133,26 +133,6 @@ def test_a_field_that_is_the_expansion_is_continued_exactly(alpha, terms, parity
     relative = 7.0 / 5760.0 * ((6.0 + (terms - 1) * alpha) / (3.0 * n)) ** 3
     scale = np.abs(expansion(float(n), alpha, 1)) * np.abs(weight(points - j[-1])).max()
     assert np.abs(y[points + n] - right - left).max() <= cut + relative * n * scale + 1e-14
-
-
-@pytest.mark.parametrize("terms", [1, 2, 3])
-def test_a_table_and_a_function_give_the_same_far_field(terms):
-    """w_m = b m^(-1-alpha) beyond the table: both sums end with the same integral, but for Euler-Maclaurin's rest."""
-    alpha, n = 1.5, 30
-
-    def weight(m):
-        return np.where(m == 0, 1.0, np.maximum(np.abs(m), 1.0)) ** (-1.0 - alpha)
-
-    by_function = far_field(weight, 1.0 + alpha, alpha, n, terms=terms)
-    table = weight(np.arange(8.0 * n))
-    by_table = tabulated_far_field(table, n, alpha, [1.0], terms)
-    assert np.array_equal(by_table.depth, by_function.depth)
-    # The trapezoidal end at M leaves a twelfth of the summand's slope there: (1+alpha+q) / (12 M^2) of a sum that is
-    # (n / M)^q of the first term.
-    room = 5.0 / (12.0 * (8.0 * n) ** 2) * 8.0**-alpha * np.abs(by_function.right).max()
-    # The fit to the strengths magnifies it by the sum over a column of the coefficients, at most.
-    _, _, fit = _expansion(n, alpha, terms)
-    assert np.abs(by_table.right - by_function.right).max() <= np.abs(fit).sum(axis=0).max() * room
 
 
 @pytest.mark.parametrize("scheme", ["DD", "FPSE", "KPSE", "GPSE"])

@@ -11,14 +11,14 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.graded.particles import graded_particles, green_step
 from fracparticles.run.solver import prepare
-from fracstudy.benchmarks.problem import Problem
+from fracstudy.race.problems.fundamental import Fundamental
 
 
 def error(beta, count, reach, scale, form):
-    problem = Problem(beta)
+    problem = Fundamental(beta)
     x, volumes = graded_particles(count, reach, scale)
-    u = green_step(x, volumes, problem.alpha, problem.time, form) @ problem.initial(np.abs(x))
-    return problem.error(np.abs(x), volumes, u)
+    u = green_step(x, volumes, problem.alpha, problem.time, form) @ problem.initial((x,))
+    return problem.error((x,), volumes, u)
 
 
 def test_particles_are_symmetric_and_their_volumes_fill_the_line():

@@ -21,14 +21,14 @@ from fracparticles.graded.field import (
     green_step_of_field,
 )
 from fracparticles.graded.particles import graded_particles, green_step
-from fracstudy.benchmarks.problem import Problem
+from fracstudy.race.problems.fundamental import Fundamental
 
 
 def error(beta, count, reach, scale):
-    problem = Problem(beta)
+    problem = Fundamental(beta)
     x, volumes = graded_particles(count, reach, scale)
     matrix = green_step_of_field(count, reach, scale, problem.alpha, problem.time)
-    return problem.error(np.abs(x), volumes, matrix @ problem.initial(np.abs(x)))
+    return problem.error((x,), volumes, matrix @ problem.initial((x,)))
 
 
 @pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
@@ -222,10 +222,10 @@ def test_the_error_falls_exponentially(beta, scale):
 
 
 def test_where_the_sums_have_lost_it_the_field_has_ten_digits():
-    problem = Problem(0.1)
+    problem = Fundamental(0.1)
     x, volumes = graded_particles(113, 5000.0, 0.5)
-    sums = green_step(x, volumes, problem.alpha, 1.0, "quadrature") @ problem.initial(np.abs(x))
-    assert problem.error(np.abs(x), volumes, sums) > 1e-3
+    sums = green_step(x, volumes, problem.alpha, 1.0, "quadrature") @ problem.initial((x,))
+    assert problem.error((x,), volumes, sums) > 1e-3
     assert error(0.1, 113, 5000.0, 0.5) < 1e-10
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import errno
+import importlib
 import importlib.util
 import math
 import os
+import pkgutil
 import re
 import shutil
 import subprocess
@@ -14,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba.core.registry import CPUDispatcher
 
 import fracparticles
 from fracparticles import _compiled
@@ -90,10 +93,65 @@ def test_importing_the_package_imports_no_compiler():
 
 
 def test_every_compiled_function_has_that_cache():
-    """One way to compile: no module takes numba's own."""
+    """One way to compile: no module takes numba's own; and each function has a folder for its code."""
     direct = re.compile(r"\b(nb|numba)\.(njit|jit|vectorize|guvectorize|cfunc|stencil)\b")
     others = [path for path in PACKAGE.rglob("*.py") if path.name != "_compiled.py"]
     assert [path.name for path in others if direct.search(path.read_text())] == []
+    modules = [
+        importlib.import_module(found.name)
+        for found in pkgutil.walk_packages(fracparticles.__path__, "fracparticles.")
+    ]
+    compiled = [
+        one for module in modules for one in vars(module).values() if isinstance(one, CPUDispatcher)
+    ]
+    assert compiled
+    assert {type(one._cache) for one in compiled} == {_compiled._Cache}
+
+
+CALLING = """\
+from typing import NamedTuple
+
+import inner
+from fracparticles._compiled import njit
+
+
+class Pair(NamedTuple):
+    total: float
+
+
+@njit()
+def total(pair):  # calls itself as little as `pair.total` does
+    return inner.times(pair.total)
+
+
+@njit()
+def outer(pair):
+    return total(pair)
+"""
+CALLED = """\
+from fracparticles._compiled import njit
+
+
+@njit()
+def times(x):
+    return {factor} * x
+"""
+
+
+def test_an_edit_of_what_a_function_calls_is_noticed(tmp_path):
+    """Of a module, too; and the name of an attribute is not taken for a call."""
+    (tmp_path / "outer.py").write_text(CALLING)
+    program = (
+        "from outer import Pair, outer\n"
+        "print(outer(Pair(1.0)), sum(outer.stats.cache_hits.values()))"
+    )
+    path = os.pathsep.join([str(PACKAGE.parent), str(tmp_path)])
+    printed = []
+    for factor in ("2.0", "30.0"):
+        (tmp_path / "inner.py").write_text(CALLED.format(factor=factor))
+        for _ in range(2):
+            printed.append(run(tmp_path, program, PYTHONPATH=path).stdout.strip())
+    assert printed == ["2.0 0", "2.0 1", "30.0 0", "30.0 1"]
 
 
 # --- a damaged cache ------------------------------------------------------------------------------

@@ -11,11 +11,26 @@ import pytest
 
 import fracparticles as fp
 
-HEAVY = {"cyclopts", "matplotlib", "netCDF4", "numba", "pandas", "pyfftw", "scipy", "xarray"}
+HEAVY = {
+    *("cyclopts", "finufft", "matplotlib", "netCDF4", "numba", "pandas", "pydantic", "pyfftw"),
+    *("scipy", "xarray"),
+}
+# Of the libraries that a run needs, what no run on a line needs: numba's functions to be compiled, scipy's packages.
+UNNEEDED = {
+    *("numba.np.arraymath", "numba.np.arrayobj", "numba.np.linalg"),
+    *("scipy.integrate", "scipy.linalg", "scipy.optimize", "scipy.sparse"),
+}
+CASES = {
+    "GPSE in one step": "scheme='GPSE', dt=1.0, exterior='open', far_terms=3, evaluation='convolution'",
+    "DD": "scheme='DD', order=4, dt=0.001",
+    "KPSE": "scheme='KPSE', order=4, dt=0.001, exterior='open'",
+    "the gamma kernels": "scheme='KPSE', order=8, integrator='exponential', exterior='open'",
+    "graded particles": "scheme='GPSE', graded_scale=2.0",
+}
 
 
-def imported_by(program: str) -> set[str]:
-    """Return the heavy libraries that a program imports."""
+def modules_of(program: str) -> set[str]:
+    """Return the modules that a program imports."""
     done = subprocess.run(
         [
             sys.executable,
@@ -26,7 +41,12 @@ def imported_by(program: str) -> set[str]:
         text=True,
         check=True,
     )
-    return HEAVY & set(json.loads(done.stdout.splitlines()[-1]))
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+def imported_by(program: str) -> set[str]:
+    """Return the heavy libraries that a program imports."""
+    return HEAVY & modules_of(program)
 
 
 @pytest.mark.parametrize("name", fp.__all__)
@@ -62,7 +82,7 @@ def test_a_case_needs_no_tables_and_no_figures():
         "import fracparticles as fp\n"
         "fp.Case(scheme='KPSE', beta=0.5, half_width=4.0, spacing=0.1, dt=0.001)"
     )
-    assert imported_by(program) <= {"numba", "scipy", "pyfftw"}
+    assert imported_by(program) <= {"numba", "pydantic", "pyfftw", "scipy"}
 
 
 def test_a_run_needs_no_figures_and_no_command_line():
@@ -70,7 +90,17 @@ def test_a_run_needs_no_figures_and_no_command_line():
         "import fracparticles as fp\n"
         "fp.solve(fp.Case(scheme='KPSE', beta=0.5, half_width=4.0, spacing=0.1, dt=0.001))"
     )
-    assert not imported_by(program) & {"matplotlib", "cyclopts"}
+    assert not imported_by(program) & {"cyclopts", "finufft", "matplotlib", "netCDF4"}
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+def test_a_run_loads_no_more_of_them_than_it_needs(case):
+    program = (
+        "import fracparticles as fp\n"
+        f"fp.solve(fp.Case(beta=0.5, half_width=40.0, spacing=0.4, {case}))"
+    )
+    modules_of(program)  # compiles what is not yet in the cache
+    assert modules_of(program) & UNNEEDED == set()
 
 
 def test_the_help_of_the_command_line_is_light():

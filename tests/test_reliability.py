@@ -13,8 +13,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.reliability import estimates, wavenumber
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
-from fracparticles.special.stable import central_mass, green
-from fracparticles.time.propagator import propagator
+from fracparticles.special.stable import green
 
 
 def bump(*x):
@@ -167,26 +166,6 @@ def test_the_estimates_are_stored_and_cost_little():
     for name in names:
         assert float(run[name]) == pytest.approx(found[name][0], rel=1e-12)
         assert run[name].attrs["long_name"]
-
-
-# --- one lattice sum -------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("tau", [1e-3, 1.0, 1e4, 1e6])
-def test_one_lattice_sum_is_right_however_wide_it_is(tau):
-    """Of constant data a truncated sum keeps what of a point mass stays on the lattice."""
-    alpha, n = 1.5, 100
-    run = propagator(lambda theta: np.exp(-tau * theta**alpha), alpha, tau, n, "truncated")
-    middle = run.apply(np.ones(2 * n + 1))[n]
-    # The trapezoidal rule of the density over |m| <= n + 1/2, exact where it is smooth.
-    exact = float(central_mass(n + 0.5, tau, alpha))
-    assert middle == pytest.approx(exact, rel=1e-3 if tau > 1.0 else 1e-2)
-    assert 0.0 < middle <= 1.0 + 1e-12
-
-
-def test_a_circle_that_would_not_fit_is_refused():
-    with pytest.raises(InvalidInput, match="scaled_time"):
-        propagator(lambda theta: np.exp(-1e12 * theta**1.5), 1.5, 1e12, 100, "truncated")
 
 
 # --- the error does not depend on the units --------------------------------------------------------------------------

@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fracstudy.claims import Claim, Finding, read_claims
+from fracstudy.claims import read_printed
 from fracstudy.config import Document
+from fracstudy.criteria import Convention, Status
+from fracstudy.findings import measured
 from fracstudy.ledger import ledger, write_ledger
 from fracstudy.report import ReportError, build
 from fracstudy.scene import Scene
@@ -20,6 +22,21 @@ TEMPLATES = ROOT / "report/template"
 SCENES = ROOT / "workflow/scenes"
 
 LIMITS = "limits_beta0.5"  # a dot is no suffix
+WORDS = {"much_smaller": Convention(at_most=0.1, means="At most a tenth.")}
+PRINTED = """
+- {id: L-T3.DD, where: Table 3, what: A limit., printed: "4.81"}
+- sentence: L-4.4.symmetric
+  where: Sec. 4.4
+  quote: A on |x| < D is symmetric with real eigenvalues.
+  statements:
+  - id: L-C12.sym
+    what: A is symmetric.
+    holds: [{of: asymmetry, means: asymmetry of A, word: much_smaller}]
+    reason: A product.
+  - id: L-C12.real
+    what: Its eigenvalues are real.
+    holds: [{of: imaginary, means: largest imaginary part, at_most: 0.1, why: round-off}]
+"""
 
 
 class Page(HTMLParser):
@@ -43,21 +60,18 @@ class Page(HTMLParser):
 
 @pytest.fixture
 def study(tmp_path):
-    """Write a study of one table, one figure and two claims; what `build` takes."""
+    """Write a study of one table, one figure, a printed number and a sentence; what `build` takes."""
     results, paper, own = tmp_path / "results", tmp_path / "paper", tmp_path / "own"
     for folder in (results / "tables", results / "figures", paper / "limits", own / "extreme"):
         folder.mkdir(parents=True)
-    shared = {"where": "Table 3", "what": "A limit."}
-    of_value = {"id": "L-T3.DD", "item": "L-T3", "kind": "value", "printed": "4.81"}
-    says = {"kind": "statement", "statement": "A on |x| < D is symm."}
-    given = [{**of_value, **shared}, {"id": "L-C12.sym", "item": "L-C12", **says, **shared}]
-    printed = tmp_path / "paper.yaml"
-    printed.write_text(yaml.safe_dump(given))
+    printed = tmp_path / "limits.yaml"
+    printed.write_text(PRINTED)
     findings = [
-        Finding(claim="L-T3.DD", ours=4.8161),
-        Finding(claim="L-C12.sym", verdict=False, evidence="Off by 0.3.", reason="A product."),
+        measured("L-T3.DD", ours=4.8161),
+        measured("L-C12.sym", asymmetry=0.3),
+        measured("L-C12.real", imaginary=0.0),
     ]
-    rows = ledger(read_claims(str(printed)), findings)
+    rows = ledger(read_printed(printed), findings, WORDS)
     write_ledger(rows, results / "claims.csv", results / "claims.md")
     (results / f"tables/{LIMITS}.md").write_text("| s | a |\n|:--|--:|\n| DD | 4.8161 |\n")
     (results / f"tables/{LIMITS}.csv").write_text("s,a\nDD,4.8161\n")
@@ -76,8 +90,9 @@ def study(tmp_path):
             Scene(name=LIMITS, folder=paper / "limits", title=title, items=["L-T3", "L-C12"]),
             Scene(name="extreme", folder=own / "extreme", title="Stiff and extreme cases"),
         ],
+        "conventions": WORDS,
         "documents": {
-            "paper": Document(title="The paper", printed=str(printed)),
+            "paper": Document(title="The paper", printed=str(tmp_path)),
             "own": Document(title="Studies of our own"),
         },
         "results_dir": results,
@@ -90,12 +105,14 @@ def test_the_report_shows_every_part(study):
     paths = build(**study)
     assert [path.name for path in paths] == ["report.md", "report.html"]
     text = paths[0].read_text("utf-8")
-    assert "2 claims: 0 reproduced, 1 within the print's rounding, 0 deviate, 1 refuted" in text
+    counts = "1 printed number: 1 within the print's rounding; 1 sentence: 1 true in part."
+    assert text.count(counts) == 4  # of everything, of the document, of the scene, of the ledger
     assert "Printed 4.81, ours 4.8161." in text
     assert "| DD | 4.8161 |" in text
     assert "### Claims: L-T3, L-C12" in text
     order = [
         "## Summary",
+        "## How verdicts are made",
         "## Table 3: the stability limit",
         "## Stiff and extreme cases",
         "## The full ledger",
@@ -103,8 +120,10 @@ def test_the_report_shows_every_part(study):
     assert [text.index(heading) for heading in order] == sorted(map(text.index, order))
     summary = text[text.index(order[0]) : text.index(order[1])]
     assert "L-C12.sym" in summary
+    assert "as a whole: ◐ true in part" in summary
+    assert "L-C12.real" not in summary
     assert "L-T3.DD" not in summary
-    extreme = text[text.index(order[2]) : text.index(order[3])]
+    extreme = text[text.index(order[3]) : text.index(order[4])]
     assert "Claims" not in extreme
 
 
@@ -122,17 +141,17 @@ def test_every_link_of_the_page_leads_somewhere_in_the_study(study):
     }
     assert all((page_path.parent / link).resolve().is_file() for link in local + page.images)
     inner = [link[1:] for link in page.links if link.startswith("#")]
-    assert inner == ["summary", "ledger", LIMITS, "extreme"]
+    assert list(dict.fromkeys(inner)) == ["summary", "verdicts", "ledger", LIMITS, "extreme"]
     assert {*inner} <= {*page.anchors}
     assert not {"script", "link", "iframe"} & {*page.tags}
 
 
 def test_the_page_renders_tables_and_escapes(study):
     html = build(**study)[1].read_text("utf-8")
-    assert ">A on |x| &lt; D is symm.</td>" in html
+    assert "“A on |x| &lt; D is symmetric with real eigenvalues.” (Sec. 4.4)<br>" in html
     assert "<code>L-C12.sym</code><br>" in html.replace("<br />", "<br>")
-    # a table of each scene; values and statements of its claims and of the full ledger; exceptions
-    assert html.count("<table>") == 2 + 2 + 2 + 1
+    # a table of each scene; numbers and sentences of its claims and of the full ledger; exceptions; verdicts and words
+    assert html.count("<table>") == 2 + 2 + 2 + 1 + 2
     assert not re.search(r"^\|", html, flags=re.MULTILINE)
     assert "{{" not in html
 
@@ -148,12 +167,66 @@ def test_a_figure_may_come_as_png_alone(study):
     assert page.images == ["../results/figures/limits_beta0.5.png"]
 
 
-def test_nothing_to_explain_is_said(study):
-    claims = [Claim(id="L-T3.DD", item="L-T3", kind="value", what="A.", where="T", printed="4.81")]
-    df = ledger(claims, [Finding(claim="L-T3.DD", ours=4.81)])
+def test_every_verdict_and_every_word_is_explained(study):
+    text = build(**study)[0].read_text("utf-8")
+    section = text[text.index("## How verdicts are made") : text.index("## Table 3")]
+    for status in Status:
+        assert f"| {status.sign} {status} | {status.meaning} |" in section
+    assert "| much smaller | at most 0.1 | At most a tenth. |" in section
+    assert "1.5 times as large or as small" in section
+
+
+def test_the_words_are_those_of_the_project(study):
+    del study["conventions"]
+    text = build(**study)[0].read_text("utf-8")
+    assert "| several | at least 2 |" in text
+
+
+EXCEPTIONS = {
+    "deviates": ({"ours": 5.0}, {}),
+    "not testable": ({}, {}),
+    "refuted": ({"ours": 4.81}, {"m": 2.0, "meant": 2.0}),
+    "true in part": ({"ours": 4.81}, {"m": {"DD": 0.1, "KPSE": 2.0}, "meant": 2.0}),
+    "misprint": ({"ours": 4.81}, {"m": 2.0, "meant": 0.0}),
+}
+
+
+@pytest.mark.parametrize("status", [None, *EXCEPTIONS])
+def test_the_exceptions_are_all_that_is_not_simply_reproduced(study, status):
+    of_value, of_statement = EXCEPTIONS.get(status, ({"ours": 4.81}, {}))
+    condition = {"means": "an error", "at_most": 1.0, "why": "as it is"}
+    given = [
+        {"id": "L-T3.DD", "where": "T", "what": "A.", "printed": "4.81", "reason": "So."},
+        {
+            "sentence": "L-5.law",
+            "where": "Sec. 5",
+            "quote": "This is the law.",
+            "statements": [
+                {
+                    "id": "L-C12.law",
+                    "what": "A law.",
+                    "holds": [{"of": "m", **condition}],
+                    "intended": {"what": "Its root.", "holds": [{"of": "meant", **condition}]},
+                    "reason": "So it is.",
+                }
+            ],
+        },
+    ]
+    path = study["results_dir"] / "one.yaml"
+    path.write_text(yaml.safe_dump(given))
+    findings = [
+        measured("L-T3.DD", **of_value),
+        measured("L-C12.law", **(of_statement or {"m": 0.0, "meant": 0.0})),
+    ]
+    df = ledger(read_printed(path), findings, WORDS)
     write_ledger(df, study["results_dir"] / "claims.csv", study["results_dir"] / "claims.md")
-    text = build(**(study | {"scenes": study["scenes"][1:]}))[0].read_text("utf-8")
-    assert "Nothing deviates, is refuted or is left untested." in text
+    text = build(**study)[0].read_text("utf-8")
+    summary = text[text.index("### The paper") : text.index("## How verdicts")]
+    if status is None:
+        assert "Everything that it prints is reproduced." in summary
+    else:
+        assert f"{Status(status).sign} {status} | So" in summary
+        assert summary.count("| So") == 1
 
 
 @pytest.mark.parametrize(

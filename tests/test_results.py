@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from html.parser import HTMLParser
 from pathlib import Path
+from string import Formatter
 
+import pandas as pd
 import pytest
 import yaml
 
-from fracstudy.claims import Status, read_claims
+from fracstudy.claims import Statement, Value, read_claims, read_printed
 from fracstudy.config import read_config
+from fracstudy.criteria import Status
+from fracstudy.findings import read_findings
+from fracstudy.ledger import ledger as made_ledger
 from fracstudy.ledger import read_ledger, summary_line
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCUMENTS = [
-    ROOT / f"report/printed/{name}.yaml"
-    for name in ("lucchesi2020", "lewandowski2005", "ghorbani", "particle_note")
-]
 CONFIG = yaml.safe_load((ROOT / "config/study.yaml").read_text())
-SCENES = read_config(CONFIG | {"scenes_dir": str(ROOT / "workflow/scenes"), "grids": None})[1]
+STUDY, SCENES = read_config(CONFIG | {"scenes_dir": str(ROOT / "workflow/scenes"), "grids": None})
+PRINTED = [ROOT / path for path in STUDY.all_printed(SCENES.values())]
 
 
 @pytest.fixture(scope="module")
@@ -28,8 +31,68 @@ def ledger():
 
 
 def test_every_printed_claim_has_its_row(ledger):
-    printed = [claim.id for claim in read_claims(*DOCUMENTS)]
-    assert list(ledger["id"]) == printed
+    assert list(ledger["id"]) == [claim.id for claim in read_claims(*PRINTED)]
+
+
+def test_the_rows_quote_what_is_printed_and_name_what_made_the_numbers(ledger):
+    columns = ["sentence", "printed", "where", "what", "made_by"]
+    rows = list(ledger[columns].itertuples(index=False, name=None))
+    expected = []
+    for record in read_printed(*PRINTED):
+        if isinstance(record, Value):
+            head = ("", record.printed, record.where)
+            claims: Sequence[Value | Statement] = [record]
+        else:
+            head = (record.sentence, record.words, record.where)
+            claims = record.statements
+        expected += [(*head, claim.what, "; ".join(claim.by or record.by)) for claim in claims]
+    assert rows == expected
+
+
+def test_every_number_of_ours_says_what_made_it(ledger):
+    judged = ledger[ledger["status"] != Status.NOT_TESTABLE]
+    assert list(judged[(judged["runs"] == "") & (judged["made_by"] == "")]["id"]) == []
+
+
+def test_every_verdict_on_a_statement_has_its_criterion(ledger):
+    judged = ledger[(ledger["sentence"] != "") & (ledger["status"] != Status.NOT_TESTABLE)]
+    assert (judged["criterion"] != "").all()
+    assert (judged["ours"] != "").all()
+
+
+def asked_for(claim: Value | Statement) -> set[str]:
+    """The numbers that the criteria and the texts of a claim ask for."""
+    if isinstance(claim, Value):
+        names = {"ours"}
+    else:
+        names = {condition.of for condition in claim.holds}
+        names |= {c.of for c in claim.intended.holds} if claim.intended else set()
+    for field in ("reason", "note", "evidence", "untestable", "changed"):
+        fields = [name for _, name, _, _ in Formatter().parse(getattr(claim, field, ""))]
+        names |= {re.split(r"[.\[]", name)[0] for name in fields if name}
+    return names
+
+
+@pytest.fixture(scope="module")
+def findings():
+    """The findings of each scene that judges claims; they are not tracked."""
+    files = [ROOT / f"results/findings/{n}.json" for n, scene in SCENES.items() if scene.items]
+    if not all(file.exists() for file in files):
+        pytest.skip("the study has not been run here")
+    return {file.stem: read_findings([file]) for file in files}
+
+
+def test_the_ledger_is_what_the_findings_give(ledger, findings):
+    made = made_ledger(read_printed(*PRINTED), [f for found in findings.values() for f in found])
+    pd.testing.assert_frame_equal(ledger, made, check_exact=False, rtol=1e-15)
+
+
+def test_no_scene_measures_what_none_of_its_claims_asks_for(findings):
+    claims = {claim.id: claim for claim in read_claims(*PRINTED)}
+    for scene, found in findings.items():
+        measured = {name for finding in found for name in finding.numbers}
+        needed = {name for finding in found for name in asked_for(claims[finding.claim])}
+        assert measured - needed == set(), scene
 
 
 def test_a_deviation_has_a_reason_of_its_own(ledger):
@@ -42,8 +105,7 @@ def test_a_deviation_has_a_reason_of_its_own(ledger):
 def test_a_claim_is_judged_by_one_scene_only():
     items = [item for scene in SCENES.values() for item in scene.items]
     assert len(items) == len(set(items))
-    printed = {claim.item for claim in read_claims(*DOCUMENTS)}
-    assert set(items) == printed
+    assert set(items) == {claim.item for claim in read_claims(*PRINTED)}
 
 
 def test_every_scene_has_its_table_and_figure():

@@ -115,6 +115,24 @@ def test_a_claim_is_judged_on_the_grid_that_it_speaks_of(tmp_path):
     assert "one" in read_config({**config, "smoke": True})[1]
 
 
+def test_what_a_scene_measures_is_printed_in_the_file_of_its_folder(tmp_path):
+    write(tmp_path, "own")
+    halves = {"left": {"items": ["L-F1"]}, "right": {"items": ["L-F2"]}}
+    config = write(tmp_path, "two", variants=halves)
+    config["documents"]["mine"]["printed"] = "report/printed/mine"
+    study, scenes = read_config(config)
+    file = Path("report/printed/mine/two.yaml")
+    assert {name: study.printed(scene) for name, scene in scenes.items()} == {
+        "own": None,
+        "left": file,
+        "right": file,
+    }
+    assert study.all_printed(scenes.values()) == [file]
+    del config["documents"]["mine"]["printed"]
+    study, scenes = read_config(config)
+    assert study.all_printed(scenes.values()) == []
+
+
 def test_a_scene_needs_a_title_and_runs_and_nothing_else(tmp_path):
     _, scenes = read_config(write(tmp_path))
     assert len(scenes["one"].cases) == 8

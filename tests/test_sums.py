@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fracparticles.lattice.banded import BandedConvolution
 from fracparticles.lattice.direct import MatrixConvolution, NaiveConvolution
-from fracparticles.lattice.fourier import FourierConvolution, transform_length
+from fracparticles.lattice.fourier import FourierConvolution, complex_length, transform_length
 from fracparticles.lattice.sums import SUMMATIONS, fast_convolution
 
 
@@ -134,6 +134,25 @@ def test_transform_lengths_are_even_smooth_and_close(least):
             rest //= prime
     assert rest == 1
     assert length <= max(2 * least, 2)  # there is a power of two
+
+
+@given(st.integers(1, 10**6))
+def test_complex_lengths_are_multiples_of_128_and_close(least):
+    length = complex_length(least)
+    assert least <= length <= max(2 * least, 128)
+    assert length % 128 == 0
+    assert max(prime_factors(length)) <= 7
+
+
+def prime_factors(number):
+    """The prime factors of a number, by trial division."""
+    factor, found = 2, {1}
+    while number > 1:
+        while number % factor == 0:
+            number //= factor
+            found.add(factor)
+        factor += 1
+    return found
 
 
 def test_the_same_sum_gives_the_same_bits():

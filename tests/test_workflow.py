@@ -110,6 +110,38 @@ def test_every_scene_has_its_table_findings_and_figure(finished):
             assert (results / f"figures/{name}.svg").stat().st_size > 5000
 
 
+@pytest.fixture(scope="module")
+def reported(finished):
+    done = snakemake(finished, "report", *SMOKE)
+    assert done.returncode == 0, done.stderr[-4000:]
+    return finished
+
+
+def test_the_ledger_judges_every_claim_and_the_report_shows_it(reported):
+    from fracstudy.claims import read_claims
+    from fracstudy.ledger import read_ledger, summary_line
+
+    df = read_ledger(reported / "results-smoke/claims.csv")
+    printed = [
+        reported / f"report/printed/{document}/{name}.yaml"
+        for document, names in KEPT.items()
+        for name in names
+    ]
+    claims = read_claims(*(path for path in printed if path.exists()))
+    assert sorted(df["id"]) == sorted(claim.id for claim in claims)
+    assert summary_line(df) in (reported / "results-smoke/claims.md").read_text("utf-8")
+    assert summary_line(df) in (reported / "results-smoke/report/report.md").read_text("utf-8")
+
+
+def test_another_meaning_of_a_word_is_judged_anew_and_nothing_measured(reported):
+    change(reported / "report/printed/conventions.yaml")
+    jobs = planned(reported, "report", *SMOKE)
+    assert "rule ledger:" in jobs
+    assert "rule report:" in jobs
+    assert "rule make_" not in jobs
+    snakemake(reported, "report", *SMOKE)
+
+
 def test_nothing_is_left_to_do_and_nothing_half_written(finished):
     assert "Nothing to be done" in planned(finished, *TARGETS, *SMOKE)
     stray = [path for path in (finished / "results-smoke").rglob(".*") if path.name != ".compiled"]

@@ -21,6 +21,8 @@ _HOME = {
     "InvalidInput": "errors",
     "NonFiniteSolution": "errors",
     "StabilityWarning": "errors",
+    "WholeSpace": "time.whole_space",
+    "evolve": "time.whole_space",
     "graded_particles": "graded.particles",
     "green": "special.stable",
     "green_flux": "special.stable",

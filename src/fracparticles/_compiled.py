@@ -12,11 +12,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.registry import CPUDispatcher
+from numba.core.runtime.nrt import rtsys
 
 __all__ = ["njit"]
 
@@ -32,8 +34,10 @@ class _Cache(FunctionCache):
         )
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
+        # numba's own first loads all that it can compile, 0.2 s. Code that is ready needs the run-time system only.
+        rtsys.initialize(target_context)
         try:
-            return super().load_overload(sig, target_context)
+            return self._load_overload(sig, target_context)
         except Exception:  # of a damaged file unpickling raises nearly anything
             with suppress(OSError):
                 self.flush()
@@ -45,10 +49,19 @@ class _Cache(FunctionCache):
 
 
 def _files(function: Callable[..., Any]) -> set[Path]:
-    """The files of a function and of the compiled functions that it calls, directly or not."""
-    called = [function.__globals__.get(name) for name in function.__code__.co_names]
-    inner = [_files(one.py_func) for one in called if isinstance(one, CPUDispatcher)]
-    return {Path(function.__code__.co_filename)}.union(*inner)
+    """The files of a function and of the compiled functions that it calls, by name or of a module, directly or not."""
+    found: set[Callable[..., Any]] = set()
+    waiting = [function]
+    while waiting:
+        one = waiting.pop()
+        if one not in found:
+            found.add(one)
+            names = one.__code__.co_names  # those of attributes, too
+            called = [one.__globals__.get(name) for name in names]
+            modules = [module for module in called if isinstance(module, ModuleType)]
+            called += [vars(module).get(name) for module in modules for name in names]
+            waiting += [other.py_func for other in called if isinstance(other, CPUDispatcher)]
+    return {Path(one.__code__.co_filename) for one in found}
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -1,279 +1,237 @@
-"""Claims: what the documents print, against what we find.
+"""What the documents print: numbers, and sentences that make statements (`report/printed/<document>/*.yaml`).
 
-A claim is a printed number or a checkable statement (`report/printed/*.yaml`); a finding is what a
-study measured for it (`results/findings/*.json`). `ledger` joins the two, one row a claim.
+A file is a list. A number of a table or a text stands alone; a sentence is quoted whole and holds the statements that
+it makes, each with the criterion by which it is judged:
 
-With p the printed number, u one unit of its last printed digit and o ours, a value is
+    - id: L-T3.DD.beta0.1
+      where: Table 3
+      what: Stability limit a (55) of DD at beta = 0.1.
+      printed: "4.81"
+    - sentence: L-4.4.several_times
+      where: Sec. 4.4, before Table 3
+      quote: The FPSE method allows a time step that is several times larger ...
+      statements:
+        - id: L-T3.several_times
+          what: FPSE's stability limit is several times that of DD and of KPSE.
+          holds: [{of: ratio, means: FPSE's limit over that of the other scheme, word: several}]
 
-    reproduced                               |o - p| <= u/2   (o rounds to the printed digits),
-    reproduced within the print's rounding   |o - p| <= u     (a truncated print, 8.83 for 8.8354),
-    deviates                                 otherwise,
-
-and a statement is reproduced or refuted as its verdict says. Either may turn out not testable.
+The part of an id before the first dot is the item, a figure, table or statement of the inventory.
 """
 
 from __future__ import annotations
 
-import json
-import math
 import os
 from collections import Counter
-from collections.abc import Iterable
-from enum import StrEnum
-from fractions import Fraction
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Literal, Self
+from typing import Any, Self
 
 import yaml
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    TypeAdapter,
-    ValidationError,
-    model_validator,
-)
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
-from fracparticles.errors import FracparticlesError
-from fracparticles.files import write_text
+from fracstudy.criteria import CONVENTIONS, Condition, Convention, LedgerError
 
 __all__ = [
     "PRINTED_NUMBER",
-    "Claim",
-    "Finding",
+    "Intended",
     "LedgerError",
-    "Status",
-    "judge",
-    "judge_value",
+    "Sentence",
+    "Statement",
+    "Value",
     "read_claims",
-    "read_findings",
+    "read_conventions",
+    "read_printed",
     "refuse_repeats",
-    "write_findings",
 ]
 
 PRINTED_NUMBER = r"^-?[0-9]+(\.[0-9]+)?(e-?[0-9]{1,3})?$"
-
-
-class LedgerError(FracparticlesError, ValueError):
-    """Claims and findings that do not fit together; says which claim and why."""
-
-
-class Status(StrEnum):
-    """What became of a claim, in the words of the ledger."""
-
-    REPRODUCED = "reproduced"
-    WITHIN_ROUNDING = "reproduced within the print's rounding"
-    DEVIATES = "deviates"
-    REFUTED = "refuted"
-    NOT_TESTABLE = "not testable"
-
-    @property
-    def sign(self) -> str:
-        """The sign that stands before the word in a table."""
-        return _SIGNS[self]
-
-    @property
-    def needs_reason(self) -> bool:
-        """Whether the ledger must say why."""
-        return self in (Status.DEVIATES, Status.REFUTED, Status.NOT_TESTABLE)
-
-
-_SIGNS = {
-    Status.REPRODUCED: "✓",
-    Status.WITHIN_ROUNDING: "≈",
-    Status.DEVIATES: "≠",
-    Status.REFUTED: "✗",
-    Status.NOT_TESTABLE: "?",
-}
+_ID = r"^[LMSP]-[A-Z0-9-]+[a-z]?(\.[A-Za-z0-9_]+)+$"
+_TEXT = r"^\S(.*\S)?$"
 
 
 class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
-class Claim(_Record):
-    """One printed number or one checkable statement of a document.
+class _Claim(_Record):
+    """What values and statements share.
 
-    Parameters
+    Attributes
     ----------
     id : str
         The item and what of it, in dots: ``L-T3.DD.beta0.1``.
-    item : str
-        The figure, table or statement it belongs to: ``L-T3``.
-    kind : {"value", "statement"}
-        Whether a number or a sentence is claimed.
     what : str
-        One plain sentence of what is claimed.
+        One plain sentence of what is claimed, in our words.
+    reason : str
+        Why it is not simply reproduced. Text in which ``{name:.2f}`` stands for a number that was measured.
+    note : str
+        A remark of wording or rounding, shown whatever the verdict.
+    by : list of str
+        What made its number, where no run did: dotted names of functions, and tests as ``tests/file.py::name``.
+    """
+
+    id: str = Field(pattern=_ID)
+    what: str = Field(pattern=_TEXT)
+    reason: str = ""
+    note: str = ""
+    by: list[str] = []
+
+    @property
+    def item(self) -> str:
+        """The figure, table or statement that it belongs to."""
+        return self.id.partition(".")[0]
+
+
+class Value(_Claim):
+    """A printed number; its tolerance follows from its digits.
+
+    Attributes
+    ----------
     where : str
         Table, section or equation.
-    printed : str, for a value
+    printed : str
         The number with exactly the digits of the print.
-    statement : str, for a statement
-        What the document says.
     """
 
-    id: str = Field(min_length=1)
-    item: str = Field(min_length=1)
-    kind: Literal["value", "statement"]
-    what: str = Field(min_length=1)
-    where: str = Field(min_length=1)
-    printed: str | None = Field(default=None, pattern=PRINTED_NUMBER)
-    statement: str | None = Field(default=None, min_length=1)
+    where: str = Field(pattern=_TEXT)
+    printed: str = Field(pattern=PRINTED_NUMBER)
+
+
+class Intended(_Record):
+    """What a misprinted formula was meant to be, and the criterion that shows it to be right."""
+
+    what: str = Field(pattern=_TEXT)
+    holds: list[Condition] = Field(min_length=1)
+
+
+class Statement(_Claim):
+    """Something that a sentence says and that can be checked.
+
+    Attributes
+    ----------
+    holds : list of Condition
+        It holds where all of these do.
+    intended : Intended, optional
+        For a misprint: the statement as it was meant.
+    evidence : str
+        What we found, with the numbers looked up like those of a reason; empty for the numbers of the conditions alone.
+    untestable : str
+        Why it cannot be judged; empty if it can.
+    changed : str
+        The criterion before it was changed, with the verdict that it gave, where it was changed after the result
+        was known.
+    """
+
+    holds: list[Condition] = []
+    intended: Intended | None = None
+    evidence: str = ""
+    untestable: str = ""
+    changed: str = ""
 
     @model_validator(mode="after")
-    def _is_consistent(self) -> Self:
-        if not self.id.startswith(f"{self.item}."):
-            raise ValueError(f"the id {self.id} does not begin with its item {self.item}")
-        if (self.kind == "value") != (self.printed is not None):
-            raise ValueError(f"{self.id}: a value, and nothing else, has `printed`")
-        if (self.kind == "statement") != (self.statement is not None):
-            raise ValueError(f"{self.id}: a statement, and nothing else, has `statement`")
+    def _is_judged_or_says_why_not(self) -> Self:
+        if bool(self.holds) == bool(self.untestable):
+            raise ValueError(f"{self.id}: a statement has either `holds` or `untestable`")
+        if self.intended and self.untestable:
+            raise ValueError(f"{self.id}: a misprint has `holds`, which the printed formula fails")
         return self
 
-    @property
-    def text(self) -> str:
-        """What is printed: the digits of a value, the words of a statement."""
-        text = self.printed if self.kind == "value" else self.statement
-        assert text is not None  # by _is_consistent
-        return text
 
+class Sentence(_Record):
+    """A sentence of a document, and the statements that it makes.
 
-class Finding(_Record):
-    """What a study found for one claim.
-
-    Parameters
+    Attributes
     ----------
-    claim : str
-        Id of the claim.
-    ours : float, optional
-        Our number for a value; None where it could not be had (then not testable).
-    verdict : bool, optional
-        Whether a statement holds; None where it cannot be tested. Left out for values.
-    evidence : str
-        One sentence with our figures; statements only.
-    reason : str
-        Why it deviates, is refuted or cannot be tested; kept only if it does or is.
-    runs : tuple of str
-        Relative paths of the runs behind it.
+    sentence : str
+        Its name: document and section, then a word.
+    where : str
+        Section, figure or equation.
+    quote : str
+        The sentence as printed, whole.
+    statements : list of Statement
+        What it says, one thing each.
+    by : list of str
+        What made the numbers of all of them, as for one.
     """
 
-    claim: str = Field(min_length=1)
-    ours: float | None = Field(default=None, allow_inf_nan=False)
-    verdict: bool | None = None
-    evidence: str = ""
-    reason: str = ""
-    runs: tuple[str, ...] = Field(default=(), strict=False)
+    sentence: str = Field(min_length=1)
+    where: str = Field(pattern=_TEXT)
+    quote: str = Field(min_length=1)
+    statements: list[Statement] = Field(min_length=1)
+    by: list[str] = []
 
     @property
-    def has_verdict(self) -> bool:
-        """Whether a verdict was given, be it None: what tells a statement's finding."""
-        return "verdict" in self.model_fields_set
+    def words(self) -> str:
+        """The quote on one line."""
+        return " ".join(self.quote.split())
 
 
-def read_claims(*paths: str | os.PathLike[str]) -> list[Claim]:
-    """Read the claims of documents, each from its YAML file.
+def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
+    """Read what documents print, each from the YAML files of its folder in the order of their names, or one file.
+
+    Two files may hold one sentence, each with statements of its own.
 
     Raises
     ------
     LedgerError
-        If a file is not a list of valid claims, or an id occurs twice.
+        If a file is not a list of valid records, if an id occurs twice, or a sentence twice in a file, or in two files
+        in different words.
     """
-    claims: list[Claim] = []
-    for path in map(Path, paths):
+    found: list[Value | Sentence] = []
+    quotes: dict[str, str] = {}
+    for path in _files(paths):
         try:
-            found = yaml.safe_load(path.read_text("utf-8"))
-            claims += TypeAdapter(list[Claim]).validate_python(found)
+            tree = yaml.safe_load(path.read_text("utf-8"))
+            records = [_record(record) for record in TypeAdapter(list[dict]).validate_python(tree)]
         except (yaml.YAMLError, ValidationError) as error:
             raise LedgerError(f"{path}: {error}") from error
-        refuse_repeats([claim.id for claim in claims], f"{path}: claimed twice")
-    return claims
+        found += records
+        refuse_repeats([claim.id for _, claim in _pairs(found)], f"{path}: claimed twice")
+        sentences = [record for record in records if isinstance(record, Sentence)]
+        refuse_repeats([sentence.sentence for sentence in sentences], f"{path}: named twice")
+        for sentence in sentences:
+            if quotes.setdefault(sentence.sentence, sentence.words) != sentence.words:
+                raise LedgerError(f"{path}: {sentence.sentence} is quoted in other words elsewhere")
+    return found
 
 
-def read_findings(paths: Iterable[str | os.PathLike[str]]) -> list[Finding]:
-    """Read the findings of several scenes, each a JSON list.
+def _files(paths: Iterable[str | os.PathLike[str]]) -> Iterator[Path]:
+    for path in map(Path, paths):
+        yield from sorted(path.glob("*.yaml")) if path.is_dir() else [path]
+
+
+def _record(record: dict[str, Any]) -> Value | Sentence:
+    return (Sentence if "sentence" in record else Value).model_validate(record)
+
+
+def _pairs(
+    records: Iterable[Value | Sentence],
+) -> Iterator[tuple[Value | Sentence, Value | Statement]]:
+    for record in records:
+        if isinstance(record, Value):
+            yield record, record
+        else:
+            yield from ((record, statement) for statement in record.statements)
+
+
+def read_claims(*paths: str | os.PathLike[str]) -> list[Value | Statement]:
+    """Read the values and statements of documents, without the sentences that hold them."""
+    return [claim for _, claim in _pairs(read_printed(*paths))]
+
+
+def read_conventions(path: str | os.PathLike[str] = CONVENTIONS) -> dict[str, Convention]:
+    """Read what the words of the documents are taken to mean, the same in every row.
 
     Raises
     ------
     LedgerError
-        If a file is not a list of valid findings.
+        If the file is not a mapping of words to valid conventions.
     """
-    findings: list[Finding] = []
-    for path in map(Path, paths):
-        try:
-            findings += TypeAdapter(list[Finding]).validate_json(path.read_text("utf-8"))
-        except ValidationError as error:
-            raise LedgerError(f"{path}: {error}") from error
-    return findings
-
-
-def write_findings(findings: Iterable[Finding], path: str | os.PathLike[str]) -> None:
-    """Write the findings of a scene as a JSON list, with the fields that were given."""
-    records = [finding.model_dump(mode="json", exclude_unset=True) for finding in findings]
-    write_text(path, json.dumps(records, indent=2, ensure_ascii=False) + "\n")
-
-
-def unit_of_last_digit(printed: str) -> Fraction:
-    """One unit of the last printed digit: 1/100 for 8.83, 1/10000 for 1.11e-2."""
-    mantissa, _, exponent = printed.partition("e")
-    decimals = len(mantissa.partition(".")[2])
-    return Fraction(10) ** (int(exponent or 0) - decimals)
-
-
-def judge_value(printed: str, ours: float) -> Status:
-    """Hold our number against the printed digits, in exact arithmetic.
-
-    Parameters
-    ----------
-    printed : str
-        The number as printed.
-    ours : float
-        Our number, finite.
-
-    Returns
-    -------
-    Status
-        REPRODUCED up to half a unit of the last printed digit, WITHIN_ROUNDING up to one unit,
-        DEVIATES beyond.
-    """
-    units = abs(Fraction(ours) - Fraction(printed)) / unit_of_last_digit(printed)
-    if units <= Fraction(1, 2):
-        return Status.REPRODUCED
-    return Status.WITHIN_ROUNDING if units <= 1 else Status.DEVIATES
-
-
-def relative_deviation(printed: str, ours: float) -> float:
-    """(ours - printed)/printed; nan where 0 is printed."""
-    p = float(printed)
-    return (ours - p) / p if p else math.nan
-
-
-def judge(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
-    """Return the status of a claim, our number or evidence, and the relative deviation."""
-    if claim.kind == "value":
-        return _judge_number(claim, finding)
-    return _judge_statement(claim, finding)
-
-
-def _judge_number(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
-    if finding.has_verdict:
-        raise LedgerError(f"{claim.id}: a value has a number of ours, not a verdict")
-    if finding.evidence:
-        raise LedgerError(f"{claim.id}: evidence is for statements; a value explains by its reason")
-    if finding.ours is None:
-        return Status.NOT_TESTABLE, "", math.nan
-    status = judge_value(claim.text, finding.ours)
-    return status, finding.ours, relative_deviation(claim.text, finding.ours)
-
-
-def _judge_statement(claim: Claim, finding: Finding) -> tuple[Status, float | str, float]:
-    if not finding.has_verdict:
-        raise LedgerError(f"{claim.id}: a statement needs a verdict: true, false or null")
-    if finding.ours is not None:
-        raise LedgerError(f"{claim.id}: a statement has no number of ours; put it in the evidence")
-    if not finding.evidence.strip():
-        raise LedgerError(f"{claim.id}: a statement needs evidence, one sentence with our figures")
-    words = {True: Status.REPRODUCED, False: Status.REFUTED, None: Status.NOT_TESTABLE}
-    return words[finding.verdict], finding.evidence.strip(), math.nan
+    try:
+        tree = yaml.safe_load(Path(path).read_text("utf-8"))
+        return TypeAdapter(dict[str, Convention]).validate_python(tree)
+    except (yaml.YAMLError, ValidationError) as error:
+        raise LedgerError(f"{path}: {error}") from error
 
 
 def refuse_repeats(ids: Iterable[str], complaint: str) -> None:

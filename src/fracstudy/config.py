@@ -6,7 +6,7 @@ product. Cases that several scenes need are computed once.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +39,7 @@ class Document(_Strict):
     title : str
         Heading in the report.
     printed : str, optional
-        The file of the claims that the document prints; left out for studies of our own.
+        The folder of what the document prints, one file a folder of scenes; left out for studies of our own.
     """
 
     title: str = Field(min_length=1)
@@ -75,10 +75,15 @@ class StudyConfig(_Strict):
     smoke: bool = False
     dvm_dt: float | None = Field(default=None, gt=0.0)
 
-    @property
-    def printed(self) -> list[str]:
-        """The files of the printed claims."""
-        return [document.printed for document in self.documents.values() if document.printed]
+    def printed(self, scene: Scene) -> Path | None:
+        """Return the file of what is printed that a scene measures, None for a study of our own."""
+        folder = self.documents[scene.document].printed
+        return Path(folder) / f"{scene.folder.name}.yaml" if folder and scene.items else None
+
+    def all_printed(self, scenes: Iterable[Scene]) -> list[Path]:
+        """Return those of scenes, in their order, each once."""
+        files = (self.printed(scene) for scene in scenes)
+        return list(dict.fromkeys(file for file in files if file is not None))
 
 
 def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene]]:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import yaml
 
-from fracstudy.claims import read_claims
+from fracstudy.claims import Value, read_printed
 from fracstudy.config import read_config
 from fracstudy.scene import Scene
 
@@ -50,21 +50,25 @@ def index(project: Path) -> str:
             for number, places in sorted(equations[name].items(), key=lambda pair: _split(pair[0]))
         ]
         lines += ["", "| item | printed in | scene | claims |", "|---|---|---|---|"]
-        lines += _items(project / document.printed, scenes, project)
+        printed = [
+            project / p for p in study.all_printed(s for s in scenes.values() if s.document == name)
+        ]
+        lines += _items(printed, scenes, project)
     own = [scene for scene in scenes.values() if not scene.items]
     lines += ["", "## Studies of our own", "", "| scene | title |", "|---|---|"]
     lines += [f"| {_link(scene, project)} | {scene.heading} |" for scene in own]
     return "\n".join(lines) + "\n"
 
 
-def _items(printed: Path, scenes: dict[str, Scene], project: Path) -> Iterator[str]:
+def _items(printed: list[Path], scenes: dict[str, Scene], project: Path) -> Iterator[str]:
     by_item = defaultdict(list)
-    for claim in read_claims(str(printed)):
-        by_item[claim.item].append(claim)
+    for record in read_printed(*printed):
+        for claim in [record] if isinstance(record, Value) else record.statements:
+            by_item[claim.item].append((record.where, claim.id))
     home = {item: scene for scene in scenes.values() for item in scene.items}
     for item, claims in by_item.items():
-        places = ", ".join(dict.fromkeys(claim.where for claim in claims))
-        names = ", ".join(f"`{claim.id.removeprefix(item + '.')}`" for claim in claims)
+        places = ", ".join(dict.fromkeys(where for where, _ in claims))
+        names = ", ".join(f"`{name.removeprefix(item + '.')}`" for _, name in claims)
         yield f"| {item} | {places} | {_link(home[item], project)} | {names} |"
 
 

@@ -13,7 +13,7 @@ import pandas as pd
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
-from fracstudy.claims import Claim, Finding, judge
+from fracstudy.findings import Finding
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,11 +23,6 @@ __all__ = [
     "ORDERS",
     "Inputs",
     "Result",
-    "excuse",
-    "listed",
-    "spelled",
-    "statement",
-    "value",
     "write_table",
 ]
 
@@ -130,51 +125,6 @@ class Result:
     table: pd.DataFrame
     findings: Sequence[Finding] = ()
     series: pd.DataFrame | None = None
-
-
-def value(claim: str, ours: float, reason: str = "", runs: Iterable[str] = ()) -> Finding:
-    """Return our number for a printed one; `reason` says why it deviates if it does."""
-    return Finding(claim=claim, ours=float(ours), reason=reason, runs=tuple(runs))
-
-
-def statement(
-    claim: str,
-    holds: bool | np.bool_ | None,
-    evidence: str,
-    reason: str = "",
-    runs: Iterable[str] = (),
-) -> Finding:
-    """Return our verdict on a statement; `reason` is kept only if the statement does not hold."""
-    verdict = None if holds is None else bool(holds)
-    return Finding(
-        claim=claim,
-        verdict=verdict,
-        evidence=evidence,
-        reason="" if verdict else reason,
-        runs=tuple(runs),
-    )
-
-
-def listed(values: Iterable[float], form: str = "g") -> str:
-    """Return numbers in words: 0.1, 0.5, 0.9."""
-    return ", ".join(f"{v:{form}}" for v in values)
-
-
-def spelled(values: pd.Series, form: str = ".3g") -> str:
-    """Return named numbers in words: DD 0.1, FPSE 0.5."""
-    return ", ".join(f"{name} {v:{form}}" for name, v in values.items())
-
-
-def excuse(findings: Iterable[Finding], claims: Iterable[Claim]) -> list[Finding]:
-    """Give a reason to the findings of a smoke run that deviate for want of resolution."""
-    known = {claim.id: claim for claim in claims}
-    reason = "The grids of the smoke run are too coarse to judge this."
-    return [
-        finding.model_copy(update={"reason": reason})
-        if not finding.reason and judge(known[finding.claim], finding)[0].needs_reason
-        else finding
-        for finding in findings
-    ]
 
 
 def write_table(table: pd.DataFrame, csv: Path, md: Path | None = None) -> None:

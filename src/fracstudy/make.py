@@ -8,8 +8,9 @@ from pathlib import Path
 import pandas as pd
 
 from fracparticles.run.dataset import read_benchmark
-from fracstudy.claims import read_claims, write_findings
-from fracstudy.inputs import Inputs, Result, excuse, write_table
+from fracstudy.claims import Value, read_claims
+from fracstudy.findings import write_findings
+from fracstudy.inputs import Inputs, Result, write_table
 from fracstudy.scene import Scene, call
 
 __all__ = ["made", "make"]
@@ -23,9 +24,7 @@ def made(scene: Scene, results: Path) -> list[Path]:
     return [results / kind.format(scene.name) for kind in kinds]
 
 
-def make(
-    scene: Scene, results: Path, runs: Sequence[str], printed: Sequence[str], smoke: bool
-) -> None:
+def make(scene: Scene, results: Path, runs: Sequence[str], printed: Path | None) -> None:
     """Run the study of a scene, write what it gives, and draw its figure from what was written.
 
     Parameters
@@ -35,17 +34,15 @@ def make(
         The folder of the results: tables and benchmarks of other scenes are read there, and its own files written.
     runs : sequence of str
         Its run files, in the order of its cases.
-    printed : sequence of str
-        The files of the claims of the documents.
-    smoke : bool
-        Whether the grids are too coarse to judge the claims.
+    printed : Path, optional
+        The file of what is printed that the scene measures.
     """
     csv, md, findings, series, *figures = made(scene, results)
-    claims = [claim for claim in read_claims(*printed) if claim.item in scene.items]
+    claims = [] if printed is None else read_claims(printed)
     inputs = Inputs(
         scene=scene.name,
         items=scene.items,
-        printed={claim.id: claim.printed for claim in claims if claim.printed is not None},
+        printed={claim.id: claim.printed for claim in claims if isinstance(claim, Value)},
         runs=runs,
         tables={other: pd.read_csv(results / f"tables/{other}.csv") for other in scene.tables},
         benchmarks={
@@ -54,8 +51,7 @@ def make(
         },
     )
     result: Result = call(scene.function("study"), inputs, **scene.parameters)
-    found = excuse(result.findings, claims) if smoke else result.findings
-    write_findings(found, findings)
+    write_findings(result.findings, findings)
     write_table(pd.DataFrame() if result.series is None else result.series, series)
     write_table(result.table, csv, md)
     if figures:

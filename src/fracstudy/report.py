@@ -18,8 +18,9 @@ import markdown
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
-from fracstudy.claims import Status, read_claims
+from fracstudy.claims import read_conventions
 from fracstudy.config import Document
+from fracstudy.criteria import CLOSE, Convention, Status
 from fracstudy.ledger import ledger_markdown, ours_text, read_ledger, summary_line
 from fracstudy.scene import Scene
 
@@ -79,6 +80,7 @@ def build(
     results_dir: str | os.PathLike[str],
     template_dir: str | os.PathLike[str],
     out_dir: str | os.PathLike[str],
+    conventions: Mapping[str, Convention] | None = None,
 ) -> list[Path]:
     """Build ``report.md`` and ``report.html`` from the results, the captions and the templates.
 
@@ -94,6 +96,8 @@ def build(
         Holds ``report.md.j2``, ``report.html.j2`` and ``style.css``.
     out_dir : path
         Where the report goes; its links to the results are relative to it.
+    conventions : mapping, optional
+        What the words of the documents mean; by default those of the project.
 
     Returns
     -------
@@ -114,10 +118,13 @@ def build(
     sections = [_section(scene, df, results, out) for scene in scenes]
     parts = _parts(documents, sections, df)
     templates = _templates(Path(template_dir))
+    words = read_conventions() if conventions is None else conventions
     text = _render(
         templates["report.md.j2"],
         summary=summary_line(df),
-        statuses=[(status.sign, str(status)) for status in Status],
+        statuses=list(Status),
+        close=CLOSE,
+        conventions=[(word.replace("_", " "), of, *of.threshold) for word, of in words.items()],
         documents=parts,
         sections=[section for part in parts for section in part.sections],
         ledger=ledger_markdown(df),
@@ -143,21 +150,21 @@ def _parts(
     for name, document in documents.items():
         own = [section for section in sections if section.document == name]
         if document.printed is None:
-            summary, exceptions = "", df[:0]
+            summary = exceptions = ""
         else:
-            rows = df[df["id"].isin([claim.id for claim in read_claims(document.printed)])]
-            summary = summary_line(rows)
-            exceptions = rows[[Status(word).needs_reason for word in rows["status"]]]
-        text = ledger_markdown(exceptions) if len(exceptions) else ""
+            rows = df["item"].isin([item for section in own for item in section.items])
+            summary = summary_line(df, rows) if rows.any() else ""
+            needs_reason = df["status"].map(lambda word: Status(word).needs_reason)
+            exceptions = ledger_markdown(df, rows & needs_reason)
         if own or summary:
-            parts.append(_Part(document.title, own, summary, text))
+            parts.append(_Part(document.title, own, summary, exceptions))
     return parts
 
 
 def _section(scene: Scene, df: pd.DataFrame, results: Path, out: Path) -> _Section:
     if strangers := sorted(set(scene.items) - set(df["item"])):
         raise ReportError(f"scene {scene.name}: no claims for the item {', '.join(strangers)}")
-    rows = df[df["item"].isin(list(scene.items))]
+    rows = df["item"].isin(list(scene.items))
     return _Section(
         name=scene.name,
         title=scene.heading,
@@ -168,8 +175,8 @@ def _section(scene: Scene, df: pd.DataFrame, results: Path, out: Path) -> _Secti
         if scene.file("figure.py")
         else [],
         tables=[_table(results / "tables" / scene.name, scene, out)],
-        summary=summary_line(rows),
-        claims=ledger_markdown(rows),
+        summary=summary_line(df, rows),
+        claims=ledger_markdown(df, rows),
     )
 
 

@@ -12,6 +12,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMB
 
 from fracparticles.errors import InvalidInput
 from fracstudy.config import batches, jobs, read_config, targets
+from fracstudy.criteria import CONVENTIONS
 from fracstudy.make import made
 from fracstudy.sources import sources_of
 
@@ -70,9 +71,3 @@ def code(*files):
 def run_files(name):
     """The run files of a scene."""
     return [RESULTS / "runs" / case.path for case in CASES[name]]
-
-
-def printed_files(name):
-    """The file of the claims of a scene's document, if it has any."""
-    printed = STUDY.documents[SCENES[name].document].printed
-    return [] if printed is None else [printed]

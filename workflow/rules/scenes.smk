@@ -13,7 +13,7 @@ for job, names in JOBS.items():
                 for n in names
                 for other in SCENES[n].all_benchmarks
             ],
-            printed=sorted({file for n in names for file in printed_files(n)}),
+            printed=STUDY.all_printed(SCENES[name] for name in names),
             reference=[SCENES[name].parameters.get("reference", []) for name in names],
             style="src/fracstudy/fracstudy.mplstyle",
             compiled=rules.compile.output,
@@ -29,7 +29,7 @@ for job, names in JOBS.items():
             results=str(RESULTS),
             scenes=[SCENES[name].packed() for name in names],
             runs=[list(map(str, run_files(name))) for name in names],
-            smoke=STUDY.smoke,
+            printed=[str(STUDY.printed(SCENES[name]) or "") for name in names],
             code=code(
                 "src/fracstudy/make.py", *(SCENES[n].file(f) for n in names for f in FUNCTIONS)
             ),
@@ -50,13 +50,15 @@ for target, names in targets(SCENES).items():
 rule ledger:
     input:
         findings=expand(RESULTS / "findings/{scene}.json", scene=SCENES),
-        printed=STUDY.printed,
+        printed=STUDY.all_printed(SCENES.values()),
+        conventions=CONVENTIONS,
     output:
         csv=report(LEDGER[0], category="Claims ledger"),
         md=LEDGER[1],
     log:
         RESULTS / "logs/ledger.log",
     params:
+        smoke=STUDY.smoke,
         code=code("src/fracstudy/ledger.py"),
     script:
         "../scripts/ledger.py"
@@ -82,6 +84,7 @@ rule report:
         rules.tables.input,
         rules.figures.input,
         ledger=LEDGER[0],
+        conventions=CONVENTIONS,
         captions=[scene.file("caption.md") or [] for scene in SCENES.values()],
         template=[
             "report/template/report.md.j2",

@@ -3,11 +3,16 @@
 import sys
 from typing import Any
 
-from fracstudy.claims import read_claims, read_findings
+from fracstudy.claims import read_printed
+from fracstudy.findings import read_findings
 from fracstudy.ledger import ledger, write_ledger
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
-rows = ledger(read_claims(*snakemake.input.printed), read_findings(snakemake.input.findings))
+rows = ledger(
+    read_printed(*snakemake.input.printed),
+    read_findings(snakemake.input.findings),
+    smoke=snakemake.params.smoke,
+)
 write_ledger(rows, snakemake.output.csv, snakemake.output.md)

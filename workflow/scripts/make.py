@@ -11,11 +11,5 @@ snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
 params = snakemake.params
-for scene, runs in zip(params.scenes, params.runs, strict=True):
-    make(
-        Scene(**scene),
-        Path(params.results),
-        runs,
-        snakemake.input.printed,
-        params.smoke,
-    )
+for scene, runs, printed in zip(params.scenes, params.runs, params.printed, strict=True):
+    make(Scene(**scene), Path(params.results), runs, Path(printed) if printed else None)

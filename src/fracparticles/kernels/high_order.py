@@ -40,15 +40,14 @@ from fracparticles._compiled import njit
 from fracparticles.arguments import elementwise
 from fracparticles.kernels.rules import FloatArray, KernelFamily
 from fracparticles.special import chebyshev
+from fracparticles.special.hypergeometric import WIDTH, poisson_weights
 
 __all__ = ["GAMMA", "NAMES", "ORDERS", "kernel", "kernel_transform", "wavenumber_reach"]
 
 ORDERS = (2, 4, 6, 8, 10, 12)
 _ZERO = 750.0  # exp(-x) and any Laguerre polynomial times it is zero beyond
 _FAR = 80.0  # beyond, 48 terms of the asymptotic series leave 1e-19 at order 12
-_WIDTH = 2.0
 _TERMS = 48
-_LAST = 260  # p_k(80) < 1e-50 beyond
 
 
 class _Table(NamedTuple):
@@ -61,27 +60,16 @@ class _Table(NamedTuple):
     far: FloatArray
 
 
-@lru_cache(maxsize=1)
-def _poisson() -> FloatArray:
-    """p_k(x) = e^-x x^k / k! at the sample points, shape (k, points): the same for every kernel."""
-    x = chebyshev.sample_points(_WIDTH, int(_FAR / _WIDTH)).reshape(-1)
-    p = np.empty((_LAST, x.size))
-    p[0] = 1.0
-    for k in range(1, _LAST):  # whole rows, one after the other: faster than cumprod along them
-        np.multiply(p[k - 1], x / k, out=p[k])
-    p *= np.exp(-x)
-    return p
-
-
 @lru_cache(maxsize=256)
 def _table(c: float, b: float, m: int) -> _Table:
     """Return the table of W_m(b - c, b, .); c = b - a keeps its digits as alpha nears 2."""
     a = b - c
-    k, j = np.arange(_LAST - 1)[:, None], np.arange(m)
+    weights = poisson_weights(int(_FAR / WIDTH))
+    k, j = np.arange(weights.shape[0] - 1)[:, None], np.arange(m)
     # (c-j)_k / (b)_k. k - j first: c itself, and c + 1, enter as exact factors.
     ratios = np.vstack([np.ones(m), np.cumprod(((k - j) + c) / (b + k), axis=0)])
     q = ratios @ (poch(a, j) / gamma(j + 1.0))
-    samples = (q @ _poisson()).reshape(-1, chebyshev.DEGREE + 1)
+    samples = (q @ weights).reshape(-1, chebyshev.DEGREE + 1)
     terms = np.arange(m, _TERMS)
     far = poch(a, terms) * poch(1.0 - c, terms) / gamma(terms + 1.0) * binom(terms - 1, m - 1)
     return _Table(
@@ -98,7 +86,7 @@ def _table(c: float, b: float, m: int) -> _Table:
 def _evaluate(x: FloatArray, table: _Table, out: FloatArray) -> None:
     for i in range(x.size):
         if x[i] < _FAR:
-            out[i] = chebyshev.horner(x[i] / _WIDTH, table.near)
+            out[i] = chebyshev.horner(x[i] / WIDTH, table.near)
             continue
         power, correction = x[i] ** -table.m, 0.0
         for k in range(table.far.size):

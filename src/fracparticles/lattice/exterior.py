@@ -13,28 +13,20 @@ particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p. Wi
 a rank-two update of the operator, computed once; each further term makes it two larger. Not in the papers, which
 truncate the lattice. A step of GPSE without the exterior lacks int_D E u dy ~ D^(-1-2 alpha); what each term leaves is
 smaller by another D^(-alpha).
-
-`far_field` takes w as a function of any real offset. `tabulated_far_field` takes a table of w_m, m = 0 .. M, beyond
-which w_m is a sum of powers b_l m^(-1-l alpha): with one, and one term of u, Huang & Oberman's far-field condition.
-The sum goes on to the offset M, and what is beyond is an integral. For one term of each and q = 1 + alpha,
-
-    right_i = sum''_{m <= M, i + m > n} w_m (n / (i + m))^q + b_1 int_M^inf (n / (i + y))^q y^(-1-alpha) dy,
-
-where '' halves the term m = M; the integral is n^q M^(-alpha-q) / (alpha + q) 2F1(q, alpha+q; alpha+q+1; -i/M).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import hyp2f1, roots_jacobi
 
 from fracparticles._compiled import njit
 from fracparticles.lattice.fourier import valid_convolution
+from fracparticles.special.quadrature import gauss_jacobi
 
-__all__ = ["LineFarField", "continuation", "far_field", "tabulated_far_field"]
+__all__ = ["LineFarField", "continuation", "far_field"]
 
 # Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
 # varies on the scale n and two terms leave a relative error of order n^-4.
@@ -127,49 +119,13 @@ def _tails(
     """
     start = _NEAR * n + 0.5
     exponent = power + decay - 2.0
-    nodes, quadrature = roots_jacobi(_NODES, 0.0, exponent)
-    v = 0.5 * (1.0 + nodes)
+    v, quadrature = gauss_jacobi(_NODES, exponent)
     ends = np.array([start - 0.5, start + 0.5])
     w = weight(i[:, None] - np.concatenate([start / v, ends]))
     smooth = w[:, :-2] * v**-decay
-    integral = start * (n / start) ** power * (smooth @ quadrature) / 2.0 ** (exponent + 1.0)
+    integral = start * (n / start) ** power * (smooth @ quadrature)
     f = (n / ends) ** power * w[:, -2:]
     return np.asarray(integral + (f[:, 1] - f[:, 0]) / 24.0)
-
-
-def tabulated_far_field(
-    w: np.ndarray, n: int, alpha: float, amplitudes: Sequence[float], terms: int = 1
-) -> LineFarField:
-    """Return the exterior sums for the lattice -n .. n at its own points, for an even w.
-
-    Parameters
-    ----------
-    w : array, shape (M + 1,)
-        w_m for m = 0 .. M, M > 2 n.
-    n : int
-        Half the number of lattice intervals.
-    alpha : float
-        Fractional order.
-    amplitudes : sequence of float
-        b_l of w_m ~ sum_l b_l m^(-1-l alpha), l = 1, 2, ...
-    terms : {1, 2, 3}
-        Of the expansion that continues the solution.
-    """
-    depth, powers, fit = _expansion(n, alpha, terms)
-    last = w.size - 1
-    i = np.arange(-n, n + 1)
-    k = np.arange(n + 1, n + last + 1)
-    present = np.zeros(
-        2 * n + last
-    )  # w_{i-k} for the offsets i - k = -2 n - M .. -1, zero beyond M
-    present[2 * n :] = w[:0:-1]
-    present[2 * n] *= 0.5
-    sums = valid_convolution((n / k) ** powers[:, None], present)
-    for mode, q in zip(sums, powers, strict=True):
-        for decay, b in zip(alpha * np.arange(1, len(amplitudes) + 1), amplitudes, strict=True):
-            beyond = hyp2f1(q, decay + q, decay + q + 1.0, -i / last)
-            mode += b * n**q * float(last) ** (-decay - q) / (decay + q) * beyond
-    return _far_field_of(depth, fit.T @ sums, parity=1)
 
 
 def continuation(

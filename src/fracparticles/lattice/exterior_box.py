@@ -1,51 +1,74 @@
-"""The far-field closure of a square or cubic lattice, the analogue of `exterior` for n = 2, 3.
+"""The far-field closure of a square or cubic lattice, the analogue of `exterior` for dim = 2, 3.
 
-Far away the solution is that of a point mass: u ~ c r^(-n-alpha) (1 + c' r^-alpha + ...), about a centre that need
-not be the origin. Continue the lattice to infinity with
+Far away the solution is that of a point mass: u ~ c r^(-dim-alpha) (1 + c' r^-alpha + ...), about a centre that need
+not be the origin. Continue the lattice -n .. n to infinity with
 
-    u_j = a_1 phi_1(j) + ... + a_{n+2} phi_{n+2}(j),
-    phi_1 = rho^(-n-alpha), phi_2 = rho^(-n-2 alpha), phi_{2+d} = rho^(-n-alpha-2) j_d / N,   rho = |j| / N,
+    u_j = a_1 phi_1(j) + ... + a_{dim+2} phi_{dim+2}(j),
+    phi_1 = rho^(-dim-alpha), phi_2 = rho^(-dim-2 alpha), phi_{2+d} = rho^(-dim-alpha-2) j_d / n,   rho = |j| / n,
 
-where the a_k fit the outermost particles of the lattice -N .. N in the least-squares sense. A sum over particles
-gains sum_k a_k S_k(i), S_k(i) = sum_{j outside} w_{i-j} phi_k(j): an update of rank n + 2, computed once. Not in the
-paper, which truncates the lattice.
+where the a_k fit the outermost particles of the lattice in the least-squares sense. An operator A then gains
+sum_k a_k S_k(i), S_k = A (phi_k outside of the lattice): an update of rank dim + 2, computed once. Not in the paper,
+which truncates the lattice.
+
+The outside is all there is less the inside. Let psi_k be phi_k made smooth within the lattice, a mixture of Gaussians:
+
+    rho^(-2p)  ->  1/Gamma(p) int_0^c t^(p-1) exp(-t rho^2) dt,
+
+the same to round-off of rho >= 1. On the infinite lattice A psi_k is an integral over the wave vectors, whose
+integrand is the transform of psi_k times the symbol of A; inside it is one application of A. So
+
+    S_k = A psi_k - A (psi_k on the lattice).
+
+The transform is radial, and so is the symbol where the lattice has no aliases; what these add is a short Fourier
+series.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, reduce
+from itertools import permutations
 
 import numpy as np
-from scipy.special import roots_jacobi, roots_legendre
+from scipy.special import gamma, gammaincc, j0, j1, spherical_jn
 
 from fracparticles._compiled import njit
-from fracparticles.lattice.box import BoxConvolution
 
 __all__ = ["BoxFarField", "box_continuation", "box_far_field"]
 
-# Lattice points up to this many times the cube wanted are summed one by one, those beyond by an integral whose
-# relative error is of order (2 N)^-4. In three dimensions a larger cube would take too much memory.
-_NEAR = {2: 3, 3: 2}
-# The sum over the points beyond is a smooth function of i and of N / j.
-_TARGET_NODES = {2: 14, 3: 9}
-_NODES = {2: 16, 3: 9}
+# At the faces, rho = 1, the smooth mode differs from phi_k by exp(-c) c^(p-1) / Gamma(p): 1e-10.
+# On a lattice of few points c = pi n: the transform has then fallen as far at 2 pi, where the symbol is that of 0.
+_SHARPNESS = 30.0  # the greatest c
+# The transform falls like exp(-k^2 / 4 c): 1e-16 at this k, which is in units of 1 / n.
+_HIGHEST = 66.0
+_WAVES = 160  # nodes of the radial integral
+_BLOCK = 128  # points at a time, so that their sums stay in the first-level cache
+# What the aliases add falls fast in space: as a Fourier series of this period, in units of n, its images are small.
+_PERIOD = {2: 8.0, 3: 4.0}
+# Below this share of the integrand it is round-off. Not more, since psi_k is some thousand times larger in the
+# middle than at the faces, and the sums are the difference of what is large there.
+_ROUND_OFF = 1e-13
 
-Weight = Callable[..., np.ndarray]
+Symbol = Callable[[np.ndarray], np.ndarray]
+Sums = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
 class BoxFarField:
-    """The sums over the exterior of a square or a cube, sum_k a_k S_k with a = fit u_boundary.
+    """What the exterior of a square or a cube adds to A u, sum_k a_k S_k with a = fit u_boundary.
+
+    S_1 and S_2 are even in every coordinate; S_{2+d} is odd in j_d, even in the others, and for all d the same function
+    of (j_d, the others in any order). So i >= 0 and d = 1 are enough.
 
     Attributes
     ----------
     boundary : array of int, shape (B,)
         The outermost particles.
-    fit : array, shape (K, B)
-        From their strengths to the amplitudes of the K modes.
-    sums : array, shape (weights, K, points)
-        S_k for each weight.
+    fit : array, shape (dim + 2, B)
+        From their strengths to the amplitudes a_k.
+    sums : array, shape (4, n + 1, 1 or n + 1, n + 1)
+        S_1, S_2, S_3 and the sum that is odd in the last coordinate, for i >= 0 in each of them.
     """
 
     boundary: np.ndarray
@@ -53,45 +76,49 @@ class BoxFarField:
     sums: np.ndarray
 
     def add(self, u: np.ndarray, y: np.ndarray) -> None:
-        """Add the contribution of the exterior to the sums y of every weight."""
-        amplitudes = self.fit @ u[self.boundary]
-        for sums, total in zip(self.sums, y.reshape(self.sums.shape[0], -1), strict=True):
-            _add(amplitudes, sums, total)
+        """Add the contribution of the exterior to y, shape (points,)."""
+        _, n, middle, _ = np.array(self.sums.shape) - 1
+        _add(self.fit @ u[self.boundary], self.sums, y.reshape(2 * n + 1, 2 * middle + 1, -1))
 
 
-def box_far_field(
-    weights: Sequence[Weight],
-    odd_axes: Sequence[int | None],
-    decay: float,
-    alpha: float,
-    n: int,
-    dim: int,
-    pad: int = 0,
-) -> BoxFarField:
-    """Return the exterior sums for the lattice -n .. n, at i = -n-pad .. n+pad in each coordinate.
+def box_far_field(symbol: Symbol, inside: Sums, alpha: float, n: int, dim: int) -> BoxFarField:
+    """Return the exterior sums of an operator for the lattice -n .. n in each coordinate.
 
     Parameters
     ----------
-    weights : sequence of callable
-        Each w_m as a function of the `dim` coordinates of any real offset m.
-    odd_axes : sequence of int or None
-        The coordinate in which each weight is odd, None if it is even.
-    decay : float
-        w_m ~ |m|^(-decay) far away.
+    symbol : callable
+        That of A, for wave vectors theta in -pi .. pi, shape (.., dim).
+    inside : callable
+        A u for strengths on the lattice alone, shape (2 n + 1,) * dim; it may return a buffer.
     alpha : float
         Fractional order.
     n : int
         Half the number of lattice intervals.
     dim : {2, 3}
         Space dimension.
-    pad : int
-        How many points beyond each face are wanted.
     """
     boundary, edge = _shell(n, dim, n)
-    fit = np.linalg.pinv(np.array(list(_modes(edge / n, alpha, dim))).T)
-    near = _near_sums(weights, odd_axes, alpha, n, dim, pad)
-    near += _tail_sums(weights, odd_axes, decay, alpha, n, dim, pad)
-    return BoxFarField(boundary, fit, near.reshape(len(weights), dim + 2, -1))
+    modes = _modes(edge / n, alpha)
+    k = _radial_integral(dim)[0]
+    directions = np.stack([np.eye(dim)[0], np.full(dim, dim**-0.5)])  # an axis and a diagonal
+    along, across = _periodic(symbol, directions[:, None] * (k[:, None] / n))
+    sharpness = min(_SHARPNESS, np.pi * n)
+    transforms = _transforms(k, alpha, dim, sharpness)
+    values, number = _radial_parts(along, transforms, dim, alpha, n)
+    sums = np.empty((4, n + 1, n + 1 if dim == 3 else 1, n + 1))
+    # One application for two modes: of psi_1 the sums are even along the first axis, of psi_3 they are odd.
+    u = np.empty((2 * n + 1,) * dim)
+    _psi(values[[3, 5]], number, _as_planes(u))
+    _outside(values[[0, 2]], number, _as_planes(inside(u)), sums[0], sums[2])
+    _psi(values[[4]], number, _as_planes(u))
+    _outside(values[[1]], number, _as_planes(inside(u)), sums[1], sums[3])
+    size = transforms[0] * k**dim
+    aliased = k[np.abs(across - along) * size > _ROUND_OFF * np.abs(along * size).max()]
+    if aliased.size:
+        shell = aliased[0], aliased[-1]
+        _add_aliases(symbol, alpha, n, sharpness, shell, sums[:3])
+    sums[3] = sums[2].transpose(1, 2, 0) if dim == 3 else sums[2].transpose(2, 1, 0)
+    return BoxFarField(boundary, np.linalg.solve(modes @ modes.T, modes), sums)
 
 
 def box_continuation(u: np.ndarray, n: int, alpha: float) -> tuple[np.ndarray, np.ndarray]:
@@ -105,139 +132,223 @@ def box_continuation(u: np.ndarray, n: int, alpha: float) -> tuple[np.ndarray, n
         What the modes say there.
     """
     boundary, edge = _shell(n, u.ndim, n)
-    modes = np.array(list(_modes(edge / n, alpha, u.ndim))).T
+    modes = _modes(edge / n, alpha).T
     amplitudes = np.linalg.lstsq(modes, u.reshape(-1)[boundary], rcond=None)[0]
     inner, position = _shell(n, u.ndim, round(0.75 * n))
-    return inner, amplitudes @ np.array(list(_modes(position / n, alpha, u.ndim)))
+    return inner, amplitudes @ _modes(position / n, alpha)
 
 
-def _modes(position: Iterable[np.ndarray], alpha: float, dim: int) -> Iterator[np.ndarray]:
-    """phi_1 .. phi_{n+2}, one after the other, at the positions j / N, `dim` arrays that broadcast."""
-    square = sum(np.square(part) for part in position)
-    yield square ** (-0.5 * (dim + alpha))
-    yield square ** (-0.5 * (dim + 2.0 * alpha))
-    for part in position:
-        yield square ** (-0.5 * (dim + alpha + 2.0)) * part
+def _modes(position: np.ndarray, alpha: float) -> np.ndarray:
+    """phi_1 .. phi_{dim+2} at the positions j / n, shape (dim, points)."""
+    dim = position.shape[0]
+    square = np.square(position).sum(axis=0)
+    first = square ** (-0.5 * (dim + alpha))
+    return np.stack([first, first * square ** (-0.5 * alpha), *(first / square * position)])
 
 
 def _shell(n: int, dim: int, distance: int) -> tuple[np.ndarray, np.ndarray]:
     """The flat indices and the coordinates of the particles with max |j_d| = distance."""
-    lattice = np.indices((2 * n + 1,) * dim).reshape(dim, -1) - n
-    there = np.flatnonzero(np.abs(lattice).max(axis=0) == distance)
-    return there, lattice[:, there].astype(float)
+    there = np.zeros((2 * n + 1,) * dim, dtype=bool)
+    there[(slice(n - distance, n + distance + 1),) * dim] = True
+    there[(slice(n - distance + 1, n + distance),) * dim] = False
+    places = np.flatnonzero(there)
+    return places, np.array(np.unravel_index(places, there.shape)) - float(n)
 
 
-def _near_sums(
-    weights: Sequence[Weight],
-    odd_axes: Sequence[int | None],
+def _radial_parts(
+    symbol: np.ndarray, transforms: np.ndarray, dim: int, alpha: float, n: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return A psi_k, then psi_k, k = 1, 2, 3, at every |j|^2 there is, those of k = 3 without the factor j_1 / n.
+
+    (2 pi)^-dim int A psi^ e^{ik.x} dk is a Chebyshev series in |x|^2. psi_3 is -d psi_1 / dx_1 / (dim + alpha).
+
+    Parameters
+    ----------
+    symbol : array, shape (_WAVES,)
+        That of A along an axis, at the nodes of the radial integral.
+    transforms : array, shape (2, _WAVES)
+        Those of psi_1 and psi_2.
+    dim, alpha, n
+        As for `box_far_field`.
+
+    Returns
+    -------
+    values : array, shape (6, distinct)
+    number : array of int, shape (dim n^2 + 1,)
+        The column for each |j|^2.
+    """
+    k, volume, mean, slope = _radial_integral(dim)
+    first, second = transforms * volume
+    third = first * k * k / (dim + alpha)
+    means = np.stack([symbol * first, symbol * second, first, second]) @ mean
+    slopes = np.stack([symbol * third, third]) @ slope
+    coefficients = np.stack([means[0], means[1], slopes[0], means[2], means[3], slopes[1]])
+    present = np.zeros(dim * n * n + 1, dtype=bool)
+    present[reduce(np.add.outer, [np.square(np.arange(n + 1))] * dim)] = True
+    distinct = np.flatnonzero(present)
+    values = np.empty((6, distinct.size))
+    _sum_series(coefficients, distinct * (2.0 / (dim * n * n)) - 1.0, values)
+    return values, np.cumsum(present) - 1
+
+
+@cache
+def _radial_integral(dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The nodes |k| of the integral over all k, their volumes, and for each the Chebyshev coefficients of its waves.
+
+    Of e^{ik.x} averaged over the directions of k, and of minus its derivative along x_1 over x_1 k^2, as functions of
+    |x|^2 where |x_d| <= 1; both shape (_WAVES, terms).
+    """
+    # k = _HIGHEST s^4 and equal steps of s: powers k^alpha at the origin become smooth enough for equal weights.
+    s = np.arange(1, _WAVES + 1) / _WAVES
+    k = _HIGHEST * s**4
+    surface = {2: 2.0 * np.pi, 3: 4.0 * np.pi}[dim]
+    volume = surface * k ** (dim - 1) * (4.0 * k / s / _WAVES) / (2.0 * np.pi) ** dim
+    terms = 24 + int(
+        0.5 * _HIGHEST * np.sqrt(dim)
+    )  # the waves of half the diagonal, and some to spare
+    angle = (np.arange(terms) + 0.5) * (np.pi / terms)
+    z = np.outer(k, np.sqrt(dim) * np.cos(0.5 * angle))
+    mean, slope = (j0(z), j1(z) / z) if dim == 2 else (spherical_jn(0, z), spherical_jn(1, z) / z)
+    to_series = (2.0 / terms) * np.cos(np.outer(angle, np.arange(terms)))
+    to_series[:, 0] *= 0.5
+    return k, volume, mean @ to_series, slope @ to_series
+
+
+def _transforms(k: np.ndarray, alpha: float, dim: int, sharpness: float) -> np.ndarray:
+    """The transforms of psi_1 and psi_2, shape (2, ..): pi^(dim/2) c^q E_{1+q}(k^2 / 4 c) / Gamma(dim/2 + q).
+
+    q = alpha / 2 and alpha. The exponential integral E_p is a gamma function for p < 1, and from there
+    p E_{p+1}(z) = e^-z - z E_p(z).
+    """
+    z = k * k / (4.0 * sharpness)
+    decay = np.exp(-z)
+    found = []
+    for q in (0.5 * alpha, alpha):
+        p = q % 1.0
+        integral = z ** (p - 1.0) * gammaincc(1.0 - p, z) * gamma(1.0 - p)
+        for order in (p, p + 1.0)[: 1 + int(q)]:
+            integral = (decay - z * integral) / order
+        found.append(np.pi ** (0.5 * dim) * sharpness**q / gamma(0.5 * dim + q) * integral)
+    return np.array(found)
+
+
+def _periodic(symbol: Symbol, theta: np.ndarray) -> np.ndarray:
+    return symbol(theta - 2.0 * np.pi * np.round(theta / (2.0 * np.pi)))
+
+
+def _add_aliases(
+    symbol: Symbol,
     alpha: float,
     n: int,
-    dim: int,
-    pad: int,
-) -> np.ndarray:
-    """The sums over the lattice points outside -N .. N and inside _NEAR times that, one mode at a time."""
-    wide = _NEAR[dim] * (n + pad)
-    sources, targets = 2 * wide + 1, 2 * (n + pad) + 1
-    offsets = np.arange((sources + targets) // 2, dtype=float)
-    convolve = BoxConvolution(
-        [weight(*np.meshgrid(*(offsets,) * dim, indexing="ij", sparse=True)) for weight in weights],
-        odd_axes,
-        sources,
-        targets,
-    )
-    axis = np.arange(-wide, wide + 1) / n
-    inside = (slice(wide - n, wide + n + 1),) * dim
-    sums = np.empty((len(weights), dim + 2, *(targets,) * dim))
-    with np.errstate(divide="ignore", invalid="ignore"):  # at the origin, which is inside
-        for k, mode in enumerate(
-            _modes(np.meshgrid(*(axis,) * dim, indexing="ij", sparse=True), alpha, dim)
-        ):
-            mode[inside] = 0.0
-            sums[:, k] = convolve(mode)
-    return sums
+    sharpness: float,
+    shell: tuple[float, float],
+    sums: np.ndarray,
+) -> None:
+    """Add what A psi_k, k = 1, 2, 3, has from the part of the symbol that is not radial: that of |k| in a shell.
 
-
-def _tail_sums(
-    weights: Sequence[Weight],
-    odd_axes: Sequence[int | None],
-    decay: float,
-    alpha: float,
-    n: int,
-    dim: int,
-    pad: int,
-) -> np.ndarray:
-    """The sums over the lattice points beyond, at Chebyshev points of i >= 0, mirrored, and from there at every i."""
-    nodes = np.polynomial.chebyshev.chebpts1(_TARGET_NODES[dim]) * (n + pad)
-    right = nodes[nodes.size // 2 :]
-    j, volume = _midpoint_points(
-        *_exterior_quadrature(_NEAR[dim] * (n + pad) + 0.5, dim, alpha + decay - 1.0)
-    )
-    modes = np.array(list(_modes(j / n, alpha, dim))) * volume
-    tail = np.empty((len(weights), dim + 2, *(right.size,) * dim))
-    for place in np.ndindex(*(right.size,) * dim):
-        offset = right[list(place)][:, None] - j
-        for k, weight in enumerate(weights):
-            tail[(k, slice(None), *place)] = modes @ weight(*offset)
-    for axis in range(dim):
-        tail = _with_mirror_image(tail, odd_axes, axis, nodes.size % 2)
-    lattice = np.arange(-n - pad, n + pad + 1) / (n + pad)
-    polynomials = np.polynomial.chebyshev.chebvander(nodes / (n + pad), nodes.size - 1)
-    interpolate = np.linalg.solve(
-        polynomials.T, np.polynomial.chebyshev.chebvander(lattice, nodes.size - 1).T
-    )
-    for axis in range(dim):
-        tail = np.moveaxis(np.tensordot(tail, interpolate, axes=(2 + axis, 0)), -1, 2 + axis)
-    return tail
-
-
-def _with_mirror_image(
-    tail: np.ndarray, odd_axes: Sequence[int | None], axis: int, shared: int
-) -> np.ndarray:
-    """Continue the sums from i_d >= 0 to all i_d; `shared` counts the nodes at 0, which are their own image.
-
-    Mirror i and j: the sum gets the sign of the weight times that of the mode, of which only phi_{2+d} is odd.
+    The symbol less that along an axis is of fourth order in k, so that its image of psi_k falls fast.
     """
-    sign = np.ones(tail.shape[:2])
-    sign[[odd == axis for odd in odd_axes]] *= -1.0
-    sign[:, 2 + axis] *= -1.0
-    image = np.flip(tail, 2 + axis) * sign.reshape(*sign.shape, *(1,) * (tail.ndim - 2))
-    kept = np.take(image, range(image.shape[2 + axis] - shared), axis=2 + axis)
-    return np.concatenate([kept, tail], axis=2 + axis)
+    dim = 2 if sums.shape[2] == 1 else 3
+    step = 2.0 * np.pi / _PERIOD[dim]
+    k = step * np.arange(int(shell[1] / step) + 1)
+    # Of the vectors that are alike but for the order of their components, one.
+    place = np.indices((k.size,) * dim).reshape(dim, -1)
+    length = np.sqrt(np.square(k[place]).sum(axis=0))
+    inner = (shell[0] <= length) & (length <= shell[1]) & (np.diff(place, axis=0) >= 0).all(axis=0)
+    place, length = place[:, inner], length[inner]
+    along = np.outer(length, np.eye(dim)[0])
+    rest = _periodic(symbol, k[place].T / n) - _periodic(symbol, along / n)
+    values = rest * _transforms(length, alpha, dim, sharpness)
+    series = np.zeros((2, *(k.size,) * dim))
+    for order in permutations(range(dim)):
+        series[(slice(None), *place[list(order)])] = values
+
+    waves = np.outer(k, np.arange(n + 1) / n)
+    both = np.where(k > 0.0, 2.0, 1.0)[:, None] / _PERIOD[dim]  # k and -k
+    cosines, sines = both * np.cos(waves), both * k[:, None] / (dim + alpha) * np.sin(waves)
+    for image, total, first in zip(series[[0, 1, 0]], sums, (cosines, cosines, sines), strict=True):
+        for factor in (first, *(cosines,) * (dim - 1)):
+            image = np.tensordot(image, factor, axes=(0, 0))
+        total += image.reshape(total.shape)
 
 
-def _exterior_quadrature(start: float, dim: int, exponent: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points, shape (dim, points), and volumes for the integral over the outside of the cube |j_d| < X = start.
-
-    On the face of direction d, j_d = +-X / v and j_e = eta_e X / v with 0 < v < 1 and
-    -1 < eta_e < 1, so that dj = X^n / v^(n+1) dv deta, and the integrand is v^exponent times a smooth function.
-    """
-    t, jacobi = roots_jacobi(_NODES[dim], 0.0, exponent)
-    v = 0.5 * (1.0 + t)
-    radial = jacobi / 2.0 ** (exponent + 1.0) * start**dim / v ** (dim + 1.0 + exponent)
-    eta, legendre = roots_legendre(_NODES[dim])
-    grid = np.meshgrid(v, *(eta,) * (dim - 1), indexing="ij")
-    volumes = np.meshgrid(radial, *(legendre,) * (dim - 1), indexing="ij")
-    along, across = start / grid[0], [eta * start / grid[0] for eta in grid[1:]]
-    points = []
-    for axis in range(dim):
-        for sign in (-1.0, 1.0):
-            face = [*across[:axis], sign * along, *across[axis:]]
-            points.append(np.stack([part.ravel() for part in face]))
-    volume = np.prod(volumes, axis=0).ravel()
-    return np.concatenate(points, axis=1), np.tile(volume, 2 * dim)
+def _as_planes(block: np.ndarray) -> np.ndarray:
+    return block if block.ndim == 3 else block[:, None, :]
 
 
-def _midpoint_points(j: np.ndarray, volume: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """From int g to sum_j g(j) = int (g - Laplacian(g) / 24) + ..., the Laplacian by central differences."""
-    dim = j.shape[0]
-    steps = np.concatenate([np.zeros((1, dim)), np.eye(dim), -np.eye(dim)])
-    factors = np.array([1.0 + 2.0 * dim / 24.0, *[-1.0 / 24.0] * (2 * dim)])
-    return (j[:, None, :] + steps.T[:, :, None]).reshape(dim, -1), np.outer(factors, volume).ravel()
+@njit()
+def _sum_series(coefficients, x, out):
+    """out = sum_m c_m T_m(x) for each row of the coefficients."""
+    last, new = np.empty(_BLOCK), np.empty(_BLOCK)
+    for start in range(0, x.size, _BLOCK):
+        part = x[start : start + _BLOCK]
+        before = np.ones(_BLOCK)
+        last[: part.size] = part
+        for f in range(coefficients.shape[0]):
+            total = out[f, start : start + _BLOCK]
+            for i in range(part.size):
+                total[i] = coefficients[f, 0] + coefficients[f, 1] * part[i]
+        for m in range(2, coefficients.shape[1]):
+            for i in range(part.size):
+                new[i] = 2.0 * part[i] * last[i] - before[i]
+                before[i] = last[i]
+                last[i] = new[i]
+            for f in range(coefficients.shape[0]):
+                c, total = coefficients[f, m], out[f, start : start + _BLOCK]
+                for i in range(part.size):
+                    total[i] += c * last[i]
+
+
+@njit()
+def _psi(values, number, u):
+    """u = psi, and with a second row of values j_1 / n times those more."""
+    n, middle = u.shape[0] // 2, u.shape[1] // 2
+    for i in range(u.shape[0]):
+        x = (i - n) / n
+        for j in range(u.shape[1]):
+            square = (i - n) ** 2 + (j - middle) ** 2
+            for k in range(u.shape[2]):
+                column = number[square + (k - n) ** 2]
+                u[i, j, k] = values[0, column]
+                if values.shape[0] == 2:
+                    u[i, j, k] += x * values[1, column]
+
+
+@njit()
+def _outside(values, number, y, even, odd):
+    """A psi less the inside's part y of it, for i >= 0: the part that is even along the first axis, and the odd one."""
+    n, middle = y.shape[0] // 2, y.shape[1] // 2
+    for i in range(even.shape[0]):
+        for j in range(even.shape[1]):
+            right, left = y[n + i, middle + j], y[n - i, middle + j]
+            for k in range(even.shape[2]):
+                column = number[i * i + j * j + k * k]
+                even[i, j, k] = values[0, column] - 0.5 * (right[n + k] + left[n + k])
+                if values.shape[0] == 2:
+                    inner = 0.5 * (right[n + k] - left[n + k])
+                    odd[i, j, k] = i / n * values[1, column] - inner
 
 
 @njit()
 def _add(amplitudes, sums, y):
-    for k in range(amplitudes.size):
-        amplitude, mode = amplitudes[k], sums[k]
-        for i in range(y.size):
-            y[i] += amplitude * mode[i]
+    n, middle = y.shape[0] // 2, y.shape[1] // 2
+    a, b, c, last = amplitudes[0], amplitudes[1], amplitudes[2], amplitudes[-1]
+    row = np.empty(n + 1)
+    for i in range(y.shape[0]):
+        p = abs(i - n)
+        along = c if i > n else -c
+        for j in range(y.shape[1]):
+            q = abs(j - middle)
+            first, second, third, odd = sums[0, p, q], sums[1, p, q], sums[2, p, q], sums[3, p, q]
+            for k in range(n + 1):
+                row[k] = a * first[k] + b * second[k] + along * third[k]
+            if middle > 0:
+                across = amplitudes[3] if j > middle else -amplitudes[3]
+                other = sums[2, q, p]
+                for k in range(n + 1):
+                    row[k] += across * other[k]
+            y[i, j, n] += row[0]
+            right, left = y[i, j, n:], y[i, j, : n + 1][::-1]
+            for k in range(1, n + 1):
+                right[k] += row[k] + last * odd[k]
+                left[k] += row[k] - last * odd[k]

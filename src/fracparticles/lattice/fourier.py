@@ -11,26 +11,32 @@ from fracparticles._compiled import njit
 __all__ = [
     "PLAN",
     "FourierConvolution",
+    "complex_length",
     "line_plans",
-    "shares_memory",
     "transform_length",
     "valid_convolution",
 ]
 
-# FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths chosen below its plans take about a tenth longer to run
+# FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths chosen below its plans take up to a tenth longer to run
 # (`benchmarks.reference`), but they are made in milliseconds instead of seconds, and they are the same every time, so
 # that the same case gives the same bytes.
 PLAN = ("FFTW_ESTIMATE",)
 _CLOSE = 1.03  # a power of two is taken up to this ratio
-_LONG = 10**6
 _SHORT = 1000  # up to here the next length counts more than its factors
+_FACTOR = 128  # of every complex length
 
 
 class FourierConvolution:
     """y_i = sum_{j=0}^{N-1} w_{i-j} u_j for i = -pad .. N-1+pad, with w_{-m} = parity * w_m.
 
-    The sum is a circular convolution of length L >= 2 N - 1 + 2 pad. An even w has a real spectrum, an odd
-    one an imaginary spectrum: either is kept as one real array.
+    The sum is a circular convolution of length 2 M >= 2 N - 1 + 2 pad. Two real numbers in a row are taken for a
+    complex one, z_p = x_{2p} + i x_{2p+1}, since estimated plans of complex transforms of length M are better than
+    those of real ones of length 2 M: the pair takes two thirds of the time. An even w has a real spectrum S_k,
+    k = 0 .. M, and multiplies the spectrum Z of z as
+
+        Z_k <- (a_k - b_k sin(pi k / M)) Z_k + i b_k cos(pi k / M) conj(Z_{M-k}),   a_k, b_k = (S_k +- S_{M-k}) / 2;
+
+    an odd w has an imaginary one, i S_k, and multiplies as i times this with a_k, b_k = (S_k -+ S_{M-k}) / 2.
 
     Parameters
     ----------
@@ -46,20 +52,27 @@ class FourierConvolution:
 
     def __init__(self, weights: np.ndarray, size: int, parity: int = 1, pad: int = 0) -> None:
         self.size, self.pad = size, pad
-        length = transform_length(2 * (size + pad) - 1)
-        self._real, self._spectrum = _buffers(length)
-        self._forward, self._backward = line_plans(self._real, self._spectrum)
-        self._particles = self._real[pad : pad + size]
-        self._before, self._after = self._real[:pad], self._real[pad + size :]
-        self._sums = self._real[: size + 2 * pad]
+        length = complex_length(size + pad)
+        numbers = pyfftw.empty_aligned(length, dtype=complex)
+        self._spectrum = pyfftw.empty_aligned(length, dtype=complex)
+        self._forward = pyfftw.FFTW(numbers, self._spectrum, flags=PLAN)
+        back = {"direction": "FFTW_BACKWARD", "flags": PLAN}
+        self._backward = pyfftw.FFTW(self._spectrum, numbers, **back)
+        real = numbers.view(float)
+        self._before, self._after = real[:pad], real[pad + size :]
+        self._particles, self._sums = real[pad : pad + size], real[: size + 2 * pad]
+
         reach = size - 1 + pad
-        self._real[:] = 0.0
-        self._real[: reach + 1] = weights
-        self._real[length - reach :] = parity * weights[:0:-1]
-        self._forward.execute()
-        part = self._spectrum.real if parity > 0 else self._spectrum.imag
-        self._symbol = part / length
-        self._multiply = _multiply_real if parity > 0 else _multiply_imaginary
+        real[:] = 0.0
+        real[: reach + 1] = weights
+        real[2 * length - reach :] = parity * weights[:0:-1]
+        transform = rfft(real)
+        symbol = (transform.real if parity > 0 else transform.imag) / length
+        a = 0.5 * (symbol + parity * symbol[::-1])
+        b = 0.5 * (symbol - parity * symbol[::-1])
+        angle = np.pi / length * np.arange(length + 1)
+        self._own, self._mirrored = a - b * np.sin(angle), (b * np.cos(angle))[: length // 2 + 1]
+        self._multiply = _multiply_even if parity > 0 else _multiply_odd
 
     def __call__(self, u: np.ndarray) -> np.ndarray:
         """Return y, shape (N + 2 pad,): a view of a buffer that the next call overwrites."""
@@ -68,7 +81,7 @@ class FourierConvolution:
             self._before.fill(0.0)
         self._after.fill(0.0)
         self._forward.execute()
-        self._multiply(self._spectrum, self._symbol)
+        self._multiply(self._spectrum, self._own, self._mirrored)
         self._backward.execute()
         return self._sums
 
@@ -103,19 +116,19 @@ def _is_smooth(length: int) -> bool:
     return length == 1
 
 
-def shares_memory(length: int) -> bool:
-    """Return whether the real array and its spectrum share their memory: powers of two and long ones are faster so.
+def complex_length(least: int) -> int:
+    """Return a length >= least whose complex transforms are fast.
 
-    Beyond the caches it halves the traffic.
+    The next power of two if it is close; else the next multiple of 128 whose only prime factors are 2, 3, 5 and 7.
+    FFTW's estimated plans of those take half to two thirds of the time that they take for most of their neighbours.
     """
-    return length & (length - 1) == 0 or length >= _LONG
-
-
-def _buffers(length: int) -> tuple[np.ndarray, np.ndarray]:
-    spectrum = pyfftw.empty_aligned(length // 2 + 1, dtype=complex)
-    if shares_memory(length):
-        return spectrum.view(float)[:length], spectrum
-    return pyfftw.empty_aligned(length), spectrum
+    power = max(_FACTOR, 1 << (least - 1).bit_length())
+    if power <= _CLOSE * least:
+        return power
+    length = -(-least // _FACTOR) * _FACTOR
+    while not _is_smooth(length):
+        length += _FACTOR
+    return length
 
 
 def valid_convolution(u: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -129,12 +142,23 @@ def valid_convolution(u: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 @njit()
-def _multiply_real(spectrum, symbol):
-    for k in range(spectrum.size):
-        spectrum[k] = complex(spectrum[k].real * symbol[k], spectrum[k].imag * symbol[k])
+def _multiply_even(z, own, mirrored):
+    length = z.size
+    for k in range(length // 2 + 1):
+        m = length - k if k > 0 else 0
+        first, second, q = z[k], z[m], mirrored[k]
+        p, r = own[k], own[m]
+        z[k] = complex(p * first.real + q * second.imag, p * first.imag + q * second.real)
+        z[m] = complex(r * second.real + q * first.imag, r * second.imag + q * first.real)
 
 
 @njit()
-def _multiply_imaginary(spectrum, symbol):
-    for k in range(spectrum.size):
-        spectrum[k] = complex(-spectrum[k].imag * symbol[k], spectrum[k].real * symbol[k])
+def _multiply_odd(z, own, mirrored):
+    length = z.size
+    for k in range(length // 2 + 1):
+        m = length - k if k > 0 else 0
+        first, second, q = z[k], z[m], mirrored[k]
+        p, r = own[k], own[m]
+        # For M - k the factor of the mirrored number has the other sign; 0 and M / 2 are their own images.
+        z[m] = complex(q * first.real - r * second.imag, r * second.real - q * first.imag)
+        z[k] = complex(-p * first.imag - q * second.real, p * first.real + q * second.imag)

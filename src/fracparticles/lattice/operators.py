@@ -49,7 +49,7 @@ class FarField(Protocol):
     """The sums over what is beyond the lattice, see `exterior`. A truncated problem has none: None instead."""
 
     def add(self, u: np.ndarray, y: np.ndarray) -> None:
-        """Add the contribution of the exterior to the sums y."""
+        """Add the contribution of the exterior to the sums y, or to A u."""
 
 
 class LatticeOperator(ABC):
@@ -177,7 +177,7 @@ class TwoPassOperator(LatticeOperator):
 
 
 class FluxDivergenceOperator(LatticeOperator):
-    """A u = sum_d (S_d q_d + c_d q_d) with the flux q = (w_d * u + far field)_d, on a square or cubic lattice.
+    """A u = sum_d (S_d q_d + c_d q_d) + far field with the flux q_d = w_d * u, on a square or cubic lattice.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ class FluxDivergenceOperator(LatticeOperator):
     diagonal : array, shape (dim, N, .., N), or None
         c_d; None if it is zero.
     far_field : FarField or None
-        The contribution of the exterior to q.
+        The contribution of the exterior to A u.
     shape : tuple of int
         The lattice.
     """
@@ -211,12 +211,12 @@ class FluxDivergenceOperator(LatticeOperator):
         self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
     ) -> None:
         q = self.convolve(u.reshape(self._shape))
-        if self._far is not None:
-            self._far.add(u, q)
         y = self._divergence(q)
         if self._diagonal is not None:
             for part, component in zip(self._diagonal, q, strict=True):
                 _add_product(part.reshape(-1), component.reshape(-1), y.reshape(-1))
+        if self._far is not None:
+            self._far.add(u, y.reshape(-1))
         _combine(y.reshape(-1), u, out, scale, shift, keep)
 
 

@@ -46,6 +46,7 @@ __all__ = [
 REMESHING, REMESH_ABOVE, THRESHOLD = "M4'", 1.5, 0.0
 
 Velocity = Callable[[np.ndarray, np.ndarray], np.ndarray]
+Continued = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 Observer = Callable[[float, np.ndarray, np.ndarray], None]
 
 
@@ -67,18 +68,23 @@ class Remeshing:
         Remesh after a step that leaves two neighbours farther apart than `above` h.
     ends : tuple of two floats or None
         The first and last lattice point kept; None: the lattice goes on as far as the particles need.
+    continued : callable or None
+        continued(x, strength) returns these particles and more, of what lies beyond them: all are redistributed.
     """
 
     name: str
     spacing: float
     above: float = REMESH_ABOVE
     ends: tuple[float, float] | None = None
+    continued: Continued | None = None
 
     def __post_init__(self) -> None:
         check.choice("remeshing", self.name, REMESHINGS)
         check.fields(self, spacing=check.scale, above=_above_one)
         if self.ends is not None:
             check.fields(self, ends=partial(check.pair, rising=True))
+        if self.continued is not None:
+            check.function("continued", self.continued)
 
 
 def _above_one(_: str, value: Any) -> float:
@@ -100,7 +106,7 @@ class History:
     eliminated_count, eliminated_strength
         Particles left out because of the threshold, and their total strength.
     lost_strength : float
-        Total strength of what remeshing put beyond its ends.
+        Total strength of what remeshing put beyond its ends, less what it took from there.
     overtaking_steps : int
         Steps that changed the order of the particles: two that were in different places changed sides.
     largest_spacing : float
@@ -149,10 +155,11 @@ def quotient_velocity(flux: Any, u: Any, x: Any, accuracy: float = 0.0) -> np.nd
     u = u if isinstance(u, np.ndarray) else check.vector("u", u)
     u = check.operand("u", u, (max(u.size, 1),))
     flux, x = check.operand("flux", flux, u.shape), check.operand("x", x, u.shape)
-    top = int(np.argmax(np.abs(u)))
-    signed = np.copysign(1.0, u[top]) * u
-    worst = int(np.argmin(signed))
-    if not signed[worst] > accuracy * signed[top]:
+    low, high = float(u.min()), float(u.max())
+    enough = accuracy * max(high, -low)
+    if not (low > enough or high < -enough):
+        top = int(np.argmax(np.abs(u)))
+        worst = int(np.argmin(np.copysign(1.0, u[top]) * u))
         raise FieldNotPositive(
             f"the field is {u[worst]:.3g} at the particle x = {x[worst]:.6g} and {u[top]:.3g} at its peak "
             f"x = {x[top]:.6g}: a velocity Q / u needs a field of one sign, larger than "
@@ -266,7 +273,13 @@ def _keep(
 def _redistribute(
     x: np.ndarray, strength: np.ndarray, remeshing: Remeshing, history: History
 ) -> tuple[np.ndarray, np.ndarray]:
+    added = 0.0
+    if remeshing.continued is not None:
+        own = float(strength.sum())
+        x, strength = remeshing.continued(x, strength)
+        added = float(strength.sum()) - own
     x, strength = remesh(x, strength, remeshing.spacing, remeshing.name)
+    history.lost_strength -= added
     if remeshing.ends is None:
         return x, strength
     slack = 0.25 * remeshing.spacing  # the ends are lattice points, up to round-off

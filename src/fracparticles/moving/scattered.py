@@ -11,8 +11,10 @@ for one or several kernels K with the same sources x_j, strengths q_j and points
       y(z) = sum_k c_k q^_k exp(i k z),     q^_k = sum_j q_j exp(-i k x_j),
 
   with the Fourier coefficients c_k of the kernel is the free-space sum, to round-off. Both sums are non-uniform
-  fast Fourier transforms (Barnett, Magland & af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479). Two real
-  kernels take one complex transform, as K_1 + i K_2.
+  transforms: the particles are spread over a lattice by a window (`moving.gridding`), a real fast Fourier transform
+  follows, the window is divided out, and so back. A library of such transforms (finufft) takes complex strengths and
+  a lattice half as fine again; the Gaussian in c_k makes that needless, and this is four times faster.
+  Particles that lie on a lattice already, as after a remeshing, are one convolution (`moving.equally_spaced`).
 - `NeighbourSum`, O(N times neighbours), for kernels that are zero, to round-off, beyond a distance. Where the sum
   is small it stays accurate relative to its own terms, not only to the maximum.
 - `NaiveScatteredSum`: the papers' own double loop over all pairs, the oracle of the other two.
@@ -30,13 +32,22 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.fft import next_fast_len
+from pyfftw import empty_aligned
+from scipy.fft import next_fast_len, rfft
 from scipy.special import erfc
 
 from fracparticles import arguments as check
 from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import KERNELS, kernel
+from fracparticles.moving.equally_spaced import EquallySpacedSum, equal_spacing, transforms
+from fracparticles.moving.gridding import (
+    WIDTH,
+    interpolate,
+    spread,
+    window_transform,
+    window_weights,
+)
 
 __all__ = [
     "NaiveScatteredSum",
@@ -52,10 +63,8 @@ __all__ = [
 _GAUSSIAN_BAND = 12.0
 # exp(-r^2) is 4e-19 at r = 6.5; the order-IV kernels hold exp(-r^2/2), which is that at 9.2.
 _GAUSSIAN_REACH = {2: 6.5, 4: 9.2}
-_TOLERANCE = 1e-12  # of the non-uniform transforms
-_OVERSAMPLING = 1.5  # measured: faster than 2, and 1.25 cannot reach the tolerance
 _EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: the cut-off is 1 on one side of this, 0 on the other
-# How much wider than the set the box is made, so that it is not made anew at every step.
+# How much wider than a set that grew the box is made, so that it is not made anew at every step.
 _MARGIN = 1.125
 _MOST_MODES = 2**24  # about 1 GiB of buffers
 _LARGEST = float(np.finfo(float).max)
@@ -73,7 +82,7 @@ class ScatteredKernel:
     profile : callable
         K(r) for an array of signed distances.
     bandwidth : float
-        Wavenumber beyond which the transform is zero, to round-off; infinite if there is none.
+        Wavenumber beyond which the transform is zero, to round-off, falling like a Gaussian; infinite if there is none.
     reach : float
         Distance beyond which the kernel is zero, to round-off; infinite if there is none.
     """
@@ -168,8 +177,8 @@ def scattered_sum(
 class NonuniformFourierSum(ScatteredSum):
     """The sums by non-uniform fast Fourier transforms, for kernels of finite bandwidth.
 
-    The accuracy is relative to the largest value of each. The periodic box is made when it is needed, an eighth wider
-    than the set, and made anew when particles leave it.
+    The accuracy is relative to the largest value of each. The periodic box is made when it is needed, and made anew, an
+    eighth wider than the set, when particles leave it. Sums at particles that lie on a lattice are one convolution.
     """
 
     accuracy = 1e-11
@@ -183,7 +192,8 @@ class NonuniformFourierSum(ScatteredSum):
                 raise InvalidInput("bandwidth", k.bandwidth, allowed, remedy)
         self._band = max(k.bandwidth for k in self._kernels) / self._epsilon
         self._low, self._high = math.inf, -math.inf
-        self._in_use = threading.Lock()  # box and plans belong to one call at a time
+        self._lattice: EquallySpacedSum | None = None
+        self._in_use = threading.Lock()  # box and buffers belong to one call at a time
 
     def _add_to(self, out, x, q, z):
         with self._in_use:
@@ -192,27 +202,35 @@ class NonuniformFourierSum(ScatteredSum):
     def _transform(
         self, out: np.ndarray, x: np.ndarray, q: np.ndarray, z: np.ndarray | None
     ) -> None:
+        spacing = equal_spacing(x) if z is None else None
+        if spacing is not None:
+            if self._lattice is None or not self._lattice.holds(spacing, x.size):
+                profiles = [k.profile for k in self._kernels]
+                self._lattice = EquallySpacedSum(profiles, self._epsilon, spacing, x.size)
+            self._lattice.add_to(out, q)
+            return
         ends = [x.min(), x.max(), *(() if z is None else (z.min(), z.max()))]
         low, high = min(ends), max(ends)
         if not (self._low <= low and high <= self._high):
-            self._make_box(min(low, self._low), max(high, self._high))
-        angle = (x - self._centre) * self._wavenumber
-        self._forward.setpts(angle)
-        self._backward.setpts(angle if z is None else (z - self._centre) * self._wavenumber)
-        modes = self._forward.execute(q.astype(complex))
-        for row, coefficients in zip(range(0, len(out), 2), self._coefficients, strict=True):
-            pair = self._backward.execute(modes * coefficients)
-            out[row] = pair.real
-            if row + 1 < len(out):
-                out[row + 1] = pair.imag
+            margin = 1.0 if self._low > self._high else _MARGIN
+            self._make_box(min(low, self._low), max(high, self._high), margin)
+        at = self._places(x)
+        spread(*at, q, self._particles)
+        self._forward.execute()
+        np.multiply(self._coefficients, self._modes, out=self._products)
+        self._backward.execute()
+        if z is not None:
+            at = self._places(z)
+        interpolate(*at, self._fields, out)
 
-    def _make_box(self, low: float, high: float) -> None:
+    def _places(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return window_weights((z - self._low) / self._step + WIDTH)
+
+    def _make_box(self, low: float, high: float, margin: float) -> None:
         """Fourier coefficients of the kernels and plans for a set within [low, high], and a little more."""
-        import finufft  # no other scheme needs it
-
         scale = _GAUSSIAN_BAND / self._band  # of the cut-off, which must not exceed the band either
-        half = 0.5 * _MARGIN * (high - low) + scale
-        self._centre = low + 0.5 * (high - low)
+        half = 0.5 * margin * (high - low) + scale
+        centre = low + 0.5 * (high - low)
         period = 2.0 * (2.0 * half + 2.0 * _EDGE * scale)
         needed = self._band * period / math.pi
         if not needed <= _MOST_MODES:
@@ -221,21 +239,18 @@ class NonuniformFourierSum(ScatteredSum):
             allowed = f"a set no wider than {2.0 * widest:.4g}, for this smoothing length"
             remedy = "Look for a particle that ran away, or take summation='naive'."
             raise InvalidInput("x", shown, allowed, remedy)
-        self._low, self._high = self._centre - half, self._centre + half
-        self._wavenumber = 2.0 * math.pi / period
-        size = next_fast_len(math.ceil(needed))
-        r = np.fft.fftfreq(size, 1.0 / size) * (period / size)
+        self._low, self._high = centre - half, centre + half
+        size = 2 * next_fast_len(math.ceil(0.5 * needed), real=True)  # even: odd ones take longer
+        self._step = period / size
+        r = np.fft.fftfreq(size, 1.0 / size) * self._step
         cut_off = 0.5 * erfc((np.abs(r) - (0.5 * period - _EDGE * scale)) / scale)
-        values = [cut_off * k.profile(r / self._epsilon) for k in self._kernels]
-        if len(values) % 2:
-            values.append(np.zeros(size))
-        self._coefficients = [
-            np.fft.fftshift(np.fft.fft(a + 1j * b)) / (size * self._epsilon)
-            for a, b in zip(values[::2], values[1::2], strict=True)
-        ]
-        options = {"eps": _TOLERANCE, "nthreads": 1, "upsampfac": _OVERSAMPLING}
-        self._forward = finufft.Plan(1, (size,), isign=-1, **options)
-        self._backward = finufft.Plan(2, (size,), isign=1, **options)
+        kernels = np.array([cut_off * k.profile(r / self._epsilon) for k in self._kernels])
+        window = window_transform(2.0 * math.pi / size * np.arange(size // 2 + 1))
+        self._coefficients = rfft(kernels) / (size * self._epsilon * window**2)
+        self._particles = empty_aligned(size)
+        self._modes, self._forward, self._products, self._backward, self._fields = transforms(
+            self._particles, self._coefficients
+        )
 
 
 class _PairSum(ScatteredSum):

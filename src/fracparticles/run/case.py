@@ -13,7 +13,7 @@ from pydantic import ValidationError, model_validator
 from fracparticles.errors import InvalidInput
 from fracparticles.run.checks import check
 from fracparticles.run.complaints import allowed, first_complaint
-from fracparticles.run.parameters import FUNDAMENTAL, Parameters
+from fracparticles.run.parameters import FUNDAMENTAL, Parameters, fastest_evaluation
 
 __all__ = ["FUNDAMENTAL", "Case"]
 
@@ -46,7 +46,10 @@ class Case(Parameters):
         for name, field in cls.model_fields.items():
             if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
                 raise InvalidInput(name, data[name], allowed(field), "Give such a value.")
-        return {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+        plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+        if plain.get("evaluation") == "auto":
+            plain["evaluation"] = fastest_evaluation(plain)
+        return plain
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:

@@ -28,6 +28,7 @@ _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square roo
 _ROUNDED = 1e-9  # of an overlap that is a quotient
 _OPEN = tuple(name for name, scheme in ALL_SCHEMES.items() if "open" in scheme.exteriors)
 _MOVING = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.moving)
+_ONE_SUM = tuple(name for name in _OPEN if name not in _MOVING)
 _SELF_TIMED = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.self_timed)
 
 
@@ -78,6 +79,7 @@ def _rules(case: Parameters) -> Iterator[Rule]:
         lattice = "particles on a lattice"
         yield Rule("graded_form", nothing, lattice, "Leave it out, or give graded_scale.")
     if kind.moving:
+        yield Rule("far_terms", nothing, f"{scheme}, whose far field has one term")
         yield Rule("integrator", (None, "rk2"), scheme)
         stepping = f"{scheme}, whose velocity is not linear"
         yield Rule("evaluation", (None, "stepping", "convolution"), stepping)
@@ -111,15 +113,14 @@ def _graded_rules() -> Iterator[Rule]:
 
 
 def _convolution_rules(self_timed: bool) -> Iterator[Rule]:
-    """One lattice sum is that of the infinite lattice, of exact kernels; GPSE's steps are exponentials themselves."""
+    """A run at once is one on the infinite lattice, with exact kernels; GPSE's steps are exponentials themselves."""
     whom = "evaluation='convolution'"
-    yield Rule("scheme", _OPEN, whom, "Take one of these.")
+    yield Rule("scheme", _ONE_SUM, whom, "Take one of these.")
     if self_timed:
         yield Rule("integrator", ("euler",), whom, "Leave integrator out.")
     else:
         yield Rule("integrator", ("exponential",), whom, "Take it.")
     yield Rule("exterior", ("open",), whom, "Take exterior='open', or evaluation='series'.")
-    yield Rule("dim", (1,), whom, "Take evaluation='series', or GPSE in one step.")
     yield Rule("summation", ("fft",), whom)
     yield Rule("kernel_table", (None,), whom)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from math import ceil
 from typing import TYPE_CHECKING, Any, Literal
@@ -12,7 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from fracparticles.errors import spelled
 from fracparticles.graded.particles import graded_particles
-from fracparticles.moving.lagrangian import REMESH_ABOVE, REMESHING, THRESHOLD
+from fracparticles.moving.dvm import largest_gap
+from fracparticles.moving.lagrangian import REMESHING, THRESHOLD
 from fracparticles.schemes import ALL_SCHEMES, Scheme, Setting
 from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.special.stable import mean_radius
@@ -39,81 +40,139 @@ _REJECTED = _schemes(lambda scheme: scheme.rejected)
 _WITH_FAMILIES = _schemes(lambda scheme: scheme.families)
 _IN_A_BOX = _schemes(lambda scheme: scheme.box_orders)
 _OPEN = _schemes(lambda scheme: "open" in scheme.exteriors)
+_ONE_SUM = _schemes(lambda scheme: "open" in scheme.exteriors and not scheme.moving)
+
+
+def fastest_evaluation(fields: Mapping[str, Any]) -> str | None:
+    """Return what evaluation="auto" stands for: "convolution" where it is allowed, nothing elsewhere."""
+    scheme = ALL_SCHEMES.get(fields.get("scheme", ""))
+    allowed = (
+        scheme is not None
+        and not scheme.moving
+        and fields.get("exterior") == "open"
+        and fields.get("kernel_table") is None
+        and fields.get("graded_scale") is None
+        and fields.get("summation", "fft") == "fft"
+        and (scheme.self_timed or fields.get("integrator") == "exponential")
+    )
+    return "convolution" if allowed else None
 
 
 class Parameters(BaseModel):
     """What a `Case` holds; see there. Not checked here against each other.
 
-    The docstring or `description` of a field is written once. Its first sentence names the field: it is the label in a
-    data set. All of it is the help of the flag, and stands in the table of the configuration.
+    The `description` of a field is written once. (pydantic would take docstrings, too, but reads the source for them in
+    each process, 40 ms.) Its first sentence names the field: it is the label in a data set. All of it is the help of
+    the flag, and stands in the table of the configuration.
     """
 
-    model_config = ConfigDict(
-        frozen=True,
-        extra="forbid",
-        strict=True,
-        allow_inf_nan=False,
-        use_attribute_docstrings=True,
-    )
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     scheme: SchemeName = Field(description=f"Particle scheme. The paper rejects {_REJECTED}.")
-    order: Literal[2, 4, 6, 8, 10, 12] = 2
-    """Order of the kernels. 2 or 4; of some schemes up to 12."""
+    order: Literal[2, 4, 6, 8, 10, 12] = Field(
+        default=2, description="Order of the kernels. 2 or 4; of some schemes up to 12."
+    )
     kernel_family: Literal["printed", "gamma"] | None = Field(
         default=None,
         description=f"Family of the kernels. For {_WITH_FAMILIES}: printed, the paper's of orders 2 and 4, or gamma, "
         "of all orders; if left out printed for 2 and 4, gamma beyond.",
     )
-    beta: float = Field(gt=0.0, lt=1.0)
-    """Fractional order beta = alpha - 1. Between 0 and 1 (exclusive)."""
+    beta: float = Field(
+        gt=0.0,
+        lt=1.0,
+        description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive).",
+    )
     dim: Literal[1, 2, 3] = Field(
         default=1,
         description=f"Space dimension. For {_IN_A_BOX} also 2 and 3: the lattice is a square or a cube.",
     )
-    truncation: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
-    """Truncation factor C = D / ((diffusivity t_final)^(1/alpha) R_alpha), Eq. (46). Either this or half_width."""
-    half_width: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
-    """Half-width D of the lattice in each coordinate. Graded particles end there, too."""
-    spacing: float = Field(ge=SIZES[0], le=SIZES[1])
-    """Particle spacing h. The nearest that divides D is taken. Graded particles have it in the middle."""
-    overlap: float | None = Field(default=None, ge=OVERLAPS[0], le=OVERLAPS[1])
-    """Overlap epsilon / h. 2 if left out; for GPSE it follows from dt if that is given."""
-    dt: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
-    """Time step. The explicit integrators need it; GPSE takes epsilon^alpha / diffusivity if left out."""
-    diffusivity: float = Field(default=1.0, ge=SIZES[0], le=SIZES[1])
-    """Diffusivity D of Eq. (2). A constant."""
-    t_initial: float = Field(default=0.5, ge=0.0, le=SIZES[1])
-    """Initial time."""
-    t_final: float = Field(default=1.5, ge=SIZES[0], le=SIZES[1])
-    """Final time."""
-    initial: str = FUNDAMENTAL
-    """Initial data. "fundamental" for the fundamental solution at t_initial, or the path of a NetCDF file that holds u
-    on the same particles."""
-    integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = None
-    """Time integrator. rk2 if left out; GPSE is an Euler step by construction."""
-    evaluation: Literal["series", "stepping", "convolution"] | None = Field(
+    truncation: float | None = Field(
+        default=None,
+        ge=SIZES[0],
+        le=SIZES[1],
+        description="Truncation factor C = D / ((diffusivity t_final)^(1/alpha) R_alpha), Eq. (46). "
+        "Either this or half_width.",
+    )
+    half_width: float | None = Field(
+        default=None,
+        ge=SIZES[0],
+        le=SIZES[1],
+        description="Half-width D of the lattice in each coordinate. Graded particles end there, too.",
+    )
+    spacing: float = Field(
+        ge=SIZES[0],
+        le=SIZES[1],
+        description="Particle spacing h. The nearest that divides D is taken. Graded particles have "
+        "it in the middle.",
+    )
+    overlap: float | None = Field(
+        default=None,
+        ge=OVERLAPS[0],
+        le=OVERLAPS[1],
+        description="Overlap epsilon / h. 2 if left out; for GPSE it follows from dt if that is "
+        "given.",
+    )
+    dt: float | None = Field(
+        default=None,
+        ge=SIZES[0],
+        le=SIZES[1],
+        description="Time step. The explicit integrators need it; GPSE takes epsilon^alpha / "
+        "diffusivity if left out.",
+    )
+    diffusivity: float = Field(
+        default=1.0, ge=SIZES[0], le=SIZES[1], description="Diffusivity D of Eq. (2). A constant."
+    )
+    t_initial: float = Field(default=0.5, ge=0.0, le=SIZES[1], description="Initial time.")
+    t_final: float = Field(default=1.5, ge=SIZES[0], le=SIZES[1], description="Final time.")
+    initial: str = Field(
+        default=FUNDAMENTAL,
+        description='Initial data. "fundamental" for the fundamental solution at t_initial, or the '
+        "path of a NetCDF file that holds u on the same particles.",
+    )
+    integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = Field(
+        default=None,
+        description="Time integrator. rk2 if left out; GPSE is an Euler step by construction.",
+    )
+    evaluation: Literal["auto", "series", "stepping", "convolution"] | None = Field(
         default=None,
         description="Evaluation of the time integrator. As one Chebyshev series (if left out) or step by step (always "
-        "DVM, and a single step): the same discrete solution to round-off. By convolution the whole run is one lattice "
-        f"sum, from the symbol: {_OPEN} on the line, exponential but for GPSE, with an open exterior.",
+        "DVM, and a single step): the same discrete solution to round-off. By convolution the whole run is one "
+        f"pair of transforms with the symbol: {_ONE_SUM}, exponential but for GPSE, with an open exterior. With auto "
+        "that where it is allowed, and the series elsewhere.",
     )
-    summation: Literal["fft", "naive"] = "fft"
-    """Sum over particles. The fast Fourier transform of DVM is a non-uniform one."""
+    summation: Literal["fft", "naive"] = Field(
+        default="fft",
+        description="Sum over particles. The fast Fourier transform of DVM is a non-uniform one.",
+    )
     exterior: Literal["truncated", "open"] = Field(
         default="truncated",
         description=f"What lies beyond the lattice. The papers' truncation, or the far-field closure: {_OPEN}.",
     )
-    far_terms: Literal[1, 2, 3] | None = None
-    """Terms that continue the solution beyond the lattice. For an open exterior on the line; 1 if left out."""
-    kernel_table: float | None = Field(default=None, ge=1e-6, le=1.0)
-    """Step of the kernel table, in units of epsilon. Kernels are interpolated in it (paper, Sec. 5); exact if left
-    out."""
-    graded_scale: float | None = Field(default=None, ge=SIZES[0], le=SIZES[1])
-    """Length L of particles graded like sinh. They lie at x_j = L sinh(s_j), s_j equally spaced, instead of on a
-    lattice; for one step of GPSE on the line."""
-    graded_form: Literal["exchange", "quadrature", "interpolated"] | None = None
-    """Form of the step on graded particles. The exchange (41), its plain sum, or that of the field between them, which
-    need not resolve the Green's function; interpolated if left out."""
+    far_terms: Literal[1, 2, 3] | None = Field(
+        default=None,
+        description="Terms that continue the solution beyond the lattice. For an open exterior on "
+        "the line; 1 if left out.",
+    )
+    kernel_table: float | None = Field(
+        default=None,
+        ge=1e-6,
+        le=1.0,
+        description="Step of the kernel table, in units of epsilon. Kernels are interpolated in it "
+        "(paper, Sec. 5); exact if left out.",
+    )
+    graded_scale: float | None = Field(
+        default=None,
+        ge=SIZES[0],
+        le=SIZES[1],
+        description="Length L of particles graded like sinh. They lie at x_j = L sinh(s_j), s_j "
+        "equally spaced, instead of on a lattice; for one step of GPSE on the line.",
+    )
+    graded_form: Literal["exchange", "quadrature", "interpolated"] | None = Field(
+        default=None,
+        description="Form of the step on graded particles. The exchange (41), its plain sum, or that "
+        "of the field between them, which need not resolve the Green's function; "
+        "interpolated if left out.",
+    )
     remeshing: Literal["M4'", "Lambda3", "none"] | None = Field(
         default=None, description=f"Remeshing kernel of DVM. {REMESHING} if left out."
     )
@@ -122,7 +181,7 @@ class Parameters(BaseModel):
         gt=1.0,
         le=100.0,
         description="Spacing between two neighbours above which DVM remeshes, in units of h. "
-        f"{REMESH_ABOVE:g} if left out.",
+        f"{largest_gap('truncated'):g} if left out, {largest_gap('open'):g} with an open exterior.",
     )
     threshold: float | None = Field(
         default=None,
@@ -131,9 +190,11 @@ class Parameters(BaseModel):
         description="Share of the greatest strength up to which DVM leaves a particle out when it remeshes. "
         f"{THRESHOLD:g} if left out.",
     )
-    store: Literal["field", "profile", "metrics"] = "field"
-    """What a data set keeps. u everywhere; u for |x| <= 5 R_alpha, beyond the line along an axis and a diagonal; or
-    scalars only."""
+    store: Literal["field", "profile", "metrics"] = Field(
+        default="field",
+        description="What a data set keeps. u everywhere; u for |x| <= 5 R_alpha, beyond the line "
+        "along an axis and a diagonal; or scalars only.",
+    )
 
     # --- what follows from the parameters -------------------------------------------------------------------
 
@@ -278,7 +339,7 @@ class Parameters(BaseModel):
         """What DVM does with particles that are too far apart or too weak, the defaults resolved."""
         return {
             "remeshing": self.remeshing or REMESHING,
-            "remesh_above": self.remesh_above or REMESH_ABOVE,
+            "remesh_above": self.remesh_above or largest_gap(self.exterior),
             "threshold": self.threshold or THRESHOLD,
         }
 

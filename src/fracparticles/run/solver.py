@@ -35,7 +35,8 @@ from fracparticles.time import (
     single_pass,
     step,
 )
-from fracparticles.time.propagator import propagator
+from fracparticles.time.stepping import all_finite
+from fracparticles.time.whole_space import WholeSpace
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -139,6 +140,7 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
             dt=case.time_step,
             steps=case.steps,
             summation=case.summation,
+            exterior=case.exterior,
             observe=observe,
             **case.redistribution,
         )
@@ -188,8 +190,8 @@ class Prepared:
     Attributes
     ----------
     case : Case
-    operator : LatticeOperator
-        A; for a run as one sum its propagator, on graded particles the matrix of the step.
+    operator : LatticeOperator or None
+        A; on graded particles the matrix of the step; None for a run by one pair of transforms.
     operator_applications : int
         How often a solve applies it, unless the data ask for more pieces (`integrators.pieces`).
     advance : callable
@@ -197,7 +199,7 @@ class Prepared:
     """
 
     case: Case
-    operator: LatticeOperator
+    operator: LatticeOperator | None
     operator_applications: int
     advance: Advance
 
@@ -278,9 +280,11 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         resting = "a scheme whose particles stay on the lattice"
         remedy = f"Use solve: the operator of {case.scheme} depends on the solution."
         raise InvalidInput("scheme", case.scheme, resting, remedy)
-    if case.is_graded or case.evaluation == "convolution":
-        whole = _graded_step(case) if case.is_graded else _lattice_sum(case)
+    if case.is_graded:
+        whole = _graded_step(case)
         return Prepared(case, whole, 1, partial(single_pass, whole, 1.0, 0.0))
+    if case.evaluation == "convolution":
+        return Prepared(case, None, 1, _on_the_whole_space(case))
     if operator is None:
         operator = SCHEMES[case.scheme].operator(case.setting)
     warn_if_unstable(case)
@@ -310,8 +314,8 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     return Prepared(case, operator, flow.operator_applications, flow)
 
 
-def _lattice_sum(case: Case) -> LatticeOperator:
-    """Return the run on the infinite lattice as one lattice sum: exp(A t), or the steps of GPSE."""
+def _on_the_whole_space(case: Case) -> Advance:
+    """Return the run on the infinite lattice, exp(A t) or the steps of GPSE, by one pair of transforms."""
     setting = case.setting
     scaled_time = case.span * setting.rate
 
@@ -321,9 +325,23 @@ def _lattice_sum(case: Case) -> LatticeOperator:
             return np.exp(scaled_time * symbol)
         return (1.0 + scaled_time / case.steps * symbol) ** case.steps
 
-    return propagator(
-        amplification, case.alpha, scaled_time, setting.n, setting.exterior, setting.far_terms
+    run = WholeSpace(
+        setting.size,
+        case.dim,
+        case.alpha,
+        scaled_time,
+        amplification=amplification,
+        terms=setting.far_terms,
     )
+
+    def advance(u0: np.ndarray) -> np.ndarray:
+        with np.errstate(invalid="ignore", over="ignore"):  # said below
+            u = run.solve(u0.reshape(case.shape)).reshape(-1)
+        if not all_finite(u):
+            raise NonFiniteSolution("the particle strengths are not finite at the final time")
+        return u
+
+    return advance
 
 
 def _graded_step(case: Case) -> LatticeOperator:

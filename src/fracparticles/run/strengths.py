@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fracparticles.moving.remeshing import remesh
+from fracparticles.moving.tail import TailModel
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,6 +35,11 @@ def lattice_strengths(run: xr.Dataset, name: str | None = None) -> np.ndarray:
     h, x = float(run["particle_spacing"]), run["x"].values
     wanted = str(run["remeshing"].values) if name is None else name
     particles = run["particle_position"].values, run["particle_strength"].values
+    if (
+        str(run["exterior"].values) == "open"
+    ):  # what lies beyond has its share of the outermost lattice points
+        beyond = TailModel(1.0 + float(run["beta"]), float(run["overlap"]) * h)
+        particles = beyond.continued(*particles)
     z, strength = remesh(*particles, h, wanted)
     total = np.zeros(x.size)
     place = np.rint((z - x[0]) / h).astype(int)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from fracparticles.schemes.transform import lattice_transform
 
 __all__ = ["Exchange", "LatticeScheme", "OnePass", "Scheme", "Sum", "one_pass_operator", "radius"]
 
-Weights = Callable[[np.ndarray], np.ndarray]
+Function = Callable[[np.ndarray], np.ndarray]
 
 
 class Scheme:
@@ -153,13 +154,23 @@ class OnePass(LatticeScheme):
     def _scale(self, setting: Setting) -> float:
         return self.factor(setting) * setting.overlap**-setting.alpha
 
+    def _operator(self, setting: Setting, exchange_sum: float | None) -> LatticeOperator:
+        exact = replace(setting, kernel_table=None)
+        return one_pass_operator(
+            setting,
+            lambda m: self.weights(m, setting),
+            exchange_sum,
+            lambda theta: self.scaled_transform(theta, setting),
+            lambda m: self.weights(m, exact),
+        )
+
 
 class Sum(OnePass):
     """du_i/dt = (c D / epsilon^alpha) sum_j V_j u_j K_epsilon(x_i - x_j)."""
 
     def operator(self, setting: Setting) -> LatticeOperator:
         """Return A."""
-        return one_pass_operator(setting, lambda m: self.weights(m, setting))
+        return self._operator(setting, None)
 
     def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
         """Return A(theta) h^alpha / D = c s^(-alpha) sum_l K^(s (theta + 2 pi l))."""
@@ -174,7 +185,7 @@ class Exchange(OnePass):
     def operator(self, setting: Setting) -> LatticeOperator:
         """Return A."""
         total = self.scaled_transform(np.zeros((1, setting.dim)), setting).flat[0]
-        return one_pass_operator(setting, lambda m: self.weights(m, setting), float(total))
+        return self._operator(setting, float(total))
 
     def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
         """Return A(theta) h^alpha / D = c s^(-alpha) sum_l [K^(s (theta + 2 pi l)) - K^(2 pi l s)]."""
@@ -183,7 +194,11 @@ class Exchange(OnePass):
 
 
 def one_pass_operator(
-    setting: Setting, weights: Weights, exchange_sum: float | None = None
+    setting: Setting,
+    weights: Function,
+    exchange_sum: float | None = None,
+    transform: Function | None = None,
+    exact_weights: Function | None = None,
 ) -> ConvolutionOperator:
     """Return the operator of a single even sum, du_i/dt = sum_j w_{i-j} (u_j - [u_i]).
 
@@ -196,32 +211,37 @@ def one_pass_operator(
     exchange_sum : float, optional
         For a particle strength exchange, sum_j a_j (u_j - u_i): the sum of a_m over the infinite lattice, from
         the transform. None if the scheme has no - u_i.
+    transform : callable, optional
+        sum_m a_m e^{-i m.theta}, for an open exterior in two and three dimensions.
+    exact_weights : callable, optional
+        Those that have this transform, since `weights` may come from a table.
     """
     size, dim = setting.size, setting.dim
-    decay = dim + setting.alpha
     far: FarField | None = None
 
     def scaled(m: np.ndarray) -> np.ndarray:
         return setting.rate * weights(m)
 
-    def scaled_vector(*m: np.ndarray) -> np.ndarray:
-        return scaled(radius(m))
-
-    convolve: Callable[[np.ndarray], np.ndarray]
+    convolve: Function
     if dim == 1:
         w = scaled(np.arange(size, dtype=float))
         convolve = SUMMATIONS[setting.summation](w, size)
         if setting.is_open:
-            far = far_field(scaled, decay, setting.alpha, setting.n, terms=setting.far_terms)
+            far = far_field(
+                scaled, 1.0 + setting.alpha, setting.alpha, setting.n, terms=setting.far_terms
+            )
     else:
-        w = scaled(lattice_radii(size, dim))
-        sums = BOX_SUMMATIONS[setting.summation]([w], [None], size, size)
-
-        def convolve(u: np.ndarray) -> np.ndarray:
-            return sums(u.reshape(setting.shape)).reshape(-1)
-
-        if setting.is_open:
-            far = box_far_field([scaled_vector], [None], decay, setting.alpha, setting.n, dim)
+        convolve = _box_sums(setting, weights)
+        if setting.is_open and transform is not None and exact_weights is not None:
+            exact = exactly_summed(setting)
+            inside = convolve if exact == setting else _box_sums(exact, exact_weights)
+            far = box_far_field(
+                lambda theta: setting.rate * transform(theta),
+                lambda u: inside(u).reshape(u.shape),
+                setting.alpha,
+                setting.n,
+                dim,
+            )
     particles = size**dim
     if exchange_sum is None:
         return ConvolutionOperator(convolve, np.zeros(particles), far, dim=dim)
@@ -233,6 +253,17 @@ def one_pass_operator(
     else:
         diagonal = -convolve(np.ones(particles))
     return ConvolutionOperator(convolve, diagonal, far, infinite, dim)
+
+
+def exactly_summed(setting: Setting) -> Setting:
+    """Return the setting without a table and with fast sums: of these is what the exterior of a box adds."""
+    return replace(setting, kernel_table=None, summation="fft")
+
+
+def _box_sums(setting: Setting, weights: Function) -> Function:
+    w = setting.rate * weights(lattice_radii(setting.size, setting.dim))
+    sums = BOX_SUMMATIONS[setting.summation]([w], [None], setting.size, setting.size)
+    return lambda u: sums(u.reshape(setting.shape)).reshape(-1)
 
 
 def radius(m: tuple[np.ndarray, ...]) -> np.ndarray:

@@ -12,6 +12,7 @@ class DiffusionVelocityMethod(Scheme):
     title = "Diffusion velocity method"
     equation, kernel = "Eqs. (42)-(45)", "Eqs. (8), (9), (20), (21)"
     orders = (2, 4)
+    exteriors = ("truncated", "open")
     conservative = True
     moving = True
     symbol_of = "DD"

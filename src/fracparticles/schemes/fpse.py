@@ -10,18 +10,22 @@ Stable for D dt / h^alpha <= a; order II, aliases neglected: a = 2 (s/2)^alpha (
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import e
 
 import numpy as np
 
 from fracparticles.kernels.families import kernel
 from fracparticles.lattice.banded import BandedConvolution
-from fracparticles.lattice.exterior import far_field
+from fracparticles.lattice.exterior import LineFarField, far_field
 from fracparticles.lattice.exterior_box import box_far_field
-from fracparticles.lattice.operators import FluxDivergenceOperator, LatticeOperator, TwoPassOperator
+from fracparticles.lattice.operators import (
+    ConvolutionOperator,
+    FluxDivergenceOperator,
+    LatticeOperator,
+    TwoPassOperator,
+)
 from fracparticles.lattice.sums import BOX_SUMMATIONS, SUMMATIONS, sums_of_weights
-from fracparticles.schemes.base import LatticeScheme, radius
+from fracparticles.schemes.base import Function, LatticeScheme, exactly_summed, lattice_radii
 from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.transform import lattice_transform
 
@@ -61,7 +65,9 @@ class FluxExchange(LatticeScheme):
         pad = 0
         if setting.is_open:
             pad = self.padding(setting.order, setting.overlap, setting.dim, setting.family)
-        return (_line_operator if setting.dim == 1 else _box_operator)(setting, pad)
+        if setting.dim == 1:
+            return _line_operator(setting, pad)
+        return _box_operator(setting, pad, lambda theta: self.symbol(theta, setting))
 
     def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
         """Return A(theta) h^alpha / D = -s^(-alpha) f(theta) . e(theta).
@@ -96,39 +102,54 @@ def _line_operator(setting: Setting, pad: int) -> LatticeOperator:
         return setting.rate * flux_weights(m, setting)
 
     b = flux(np.arange(size + pad, dtype=float))
-    convolve = SUMMATIONS[setting.summation](b, size, parity=-1, pad=pad)
     c = divergence_weights(np.arange(reach + 1, dtype=float), setting)
+    divergence = BandedConvolution(c, parity=-1)
     far, diagonal = None, np.zeros(size)
     if setting.is_open:
         far = far_field(flux, alpha, alpha, setting.n, -1, pad, setting.far_terms)
+        if setting.summation == "fft":
+            # With all of the flux that the divergence reaches the two sums are one, with the weights c * b.
+            both = divergence(np.concatenate([-b[:0:-1], b]), np.empty(2 * size - 1))
+            convolve = SUMMATIONS["fft"](both[size - 1 :], size)
+            ends = (
+                np.array([divergence(sums, np.empty(size)) for sums in side])
+                for side in (far.right, far.left)
+            )
+            return ConvolutionOperator(convolve, diagonal, LineFarField(far.depth, *ends))
     else:
         diagonal = sums_of_weights(c, parity=-1, size=size)
-    return TwoPassOperator(convolve, BandedConvolution(c, parity=-1), diagonal, far)
+    flux_sums = SUMMATIONS[setting.summation](b, size, parity=-1, pad=pad)
+    return TwoPassOperator(flux_sums, divergence, diagonal, far)
 
 
-def _box_operator(setting: Setting, pad: int) -> LatticeOperator:
-    alpha, dim, size = setting.alpha, setting.dim, setting.size
-
-    def component(axis: int) -> Callable[..., np.ndarray]:
-        def flux(*m: np.ndarray) -> np.ndarray:
-            r = radius(m)
-            radial = setting.rate * flux_weights(r, setting)
-            return radial * (m[axis] / np.where(r > 0.0, r, 1.0))
-
-        return flux
-
-    weights = [component(axis) for axis in range(dim)]
-    offsets = np.arange(size + pad, dtype=float)
-    grid = np.meshgrid(*(offsets,) * dim, indexing="ij", sparse=True)
-    b = [flux(*grid) for flux in weights]
-    convolve = BOX_SUMMATIONS[setting.summation](b, range(dim), size, size + 2 * pad)
+def _box_operator(setting: Setting, pad: int, symbol: Function) -> LatticeOperator:
+    dim, size, shape = setting.dim, setting.size, setting.shape
     divergence = _Divergence(setting.order, setting.overlap, dim, size)
+    convolve = _box_flux(setting, pad)
     far, diagonal = None, None
     if setting.is_open:
-        far = box_far_field(weights, range(dim), dim + alpha - 1.0, alpha, setting.n, dim, pad=pad)
+        exact = exactly_summed(setting)
+        inside = convolve if exact == setting else _box_flux(exact, pad)
+        far = box_far_field(
+            lambda theta: setting.rate * symbol(theta),
+            lambda u: divergence(inside(u)),
+            setting.alpha,
+            setting.n,
+            dim,
+        )
     else:
-        diagonal = np.array([divergence.part(np.ones(setting.shape), axis) for axis in range(dim)])
-    return FluxDivergenceOperator(convolve, divergence, diagonal, far, setting.shape)
+        diagonal = np.array([divergence.part(np.ones(shape), axis) for axis in range(dim)])
+    return FluxDivergenceOperator(convolve, divergence, diagonal, far, shape)
+
+
+def _box_flux(setting: Setting, pad: int) -> Function:
+    dim, size = setting.dim, setting.size
+    offsets = np.arange(size + pad, dtype=float)
+    m = np.meshgrid(*(offsets,) * dim, indexing="ij", sparse=True)
+    r = lattice_radii(size + pad, dim)
+    radial = setting.rate * flux_weights(r, setting) / np.where(r > 0.0, r, 1.0)
+    b = [radial * part for part in m]
+    return BOX_SUMMATIONS[setting.summation](b, range(dim), size, size + 2 * pad)
 
 
 class _Divergence:

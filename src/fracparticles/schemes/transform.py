@@ -39,13 +39,15 @@ def lattice_transform(name: str, theta: np.ndarray, setting: Setting) -> np.ndar
         return total
     total = np.zeros(theta.shape[:-1] if even else theta.shape)
     # Aliases that stay beyond the reach for all theta are left out.
-    nearest = 2.0 * np.pi * np.maximum(np.abs(np.arange(-last, last + 1)) - 0.5, 0.0)
+    greatest = np.abs(theta).max(initial=0.0)
+    nearest = np.maximum(2.0 * np.pi * np.abs(np.arange(-last, last + 1)) - greatest, 0.0)
     for place in np.ndindex(*(2 * last + 1,) * dim):
         if overlap * np.sqrt(np.square(nearest[list(place)]).sum()) > reach:
             continue
         k = overlap * (theta + 2.0 * np.pi * (np.array(place) - last))
         size = np.sqrt(np.square(k).sum(axis=-1))
-        value = kernel_transform(name, size, setting.alpha, **setting.kernels)
+        value, near = np.zeros_like(size), size <= reach
+        value[near] = kernel_transform(name, size[near], setting.alpha, **setting.kernels)
         if even:
             total += value
         else:

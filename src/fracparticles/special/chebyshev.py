@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from fracparticles._compiled import njit
 
-__all__ = ["DEGREE", "evaluate", "fit", "horner", "sample_points"]
+__all__ = ["DEGREE", "fit", "horner", "sample_points"]
 
 DEGREE = 17
 
@@ -22,9 +22,9 @@ _POINTS = chebyshev.chebpts1(DEGREE + 1)
 # Chebyshev coefficients from samples (discrete orthogonality at the points), then powers of t.
 _TO_CHEBYSHEV = chebyshev.chebvander(_POINTS, DEGREE).T * (2.0 / (DEGREE + 1))
 _TO_CHEBYSHEV[0] /= 2.0
-_TO_POWERS = np.zeros((DEGREE + 1, DEGREE + 1))
-for _k in range(DEGREE + 1):
-    _TO_POWERS[: _k + 1, _k] = chebyshev.cheb2poly(np.eye(DEGREE + 1)[_k])[: _k + 1]
+_TO_POWERS = np.eye(DEGREE + 1)  # column k holds T_k = 2 t T_{k-1} - T_{k-2}
+for _k in range(2, DEGREE + 1):
+    _TO_POWERS[:, _k] = 2.0 * np.roll(_TO_POWERS[:, _k - 1], 1) - _TO_POWERS[:, _k - 2]
 
 
 def sample_points(width: float, pieces: int) -> NDArray[np.float64]:
@@ -46,14 +46,3 @@ def horner(pieces_x: float, coefficients: NDArray[np.float64]) -> float:
     for k in range(DEGREE - 1, -1, -1):
         value = value * t + coefficients[piece, k]
     return value
-
-
-@njit()
-def evaluate(
-    pieces_x: NDArray[np.float64], coefficients: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Apply `horner` to an array of any shape."""
-    out = np.empty_like(pieces_x)
-    for i in range(pieces_x.size):
-        out.flat[i] = horner(pieces_x.flat[i], coefficients)
-    return out

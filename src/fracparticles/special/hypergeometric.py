@@ -26,12 +26,13 @@ from fracparticles.arguments import elementwise, real_array
 from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
 
-__all__ = ["kummer", "kummer_order_four", "kummer_transformed"]
+__all__ = ["WIDTH", "kummer", "kummer_order_four", "kummer_transformed", "poisson_weights"]
 
 _FAR = 64.0  # beyond, the asymptotic series falls to 1e-17 before it diverges, in at most 40 terms
-_WIDTH = 2.0
-_PIECES = int(_FAR / _WIDTH)
+WIDTH = 2.0
+_PIECES = int(_FAR / WIDTH)
 _TERMS = 40
+_WEIGHTS = 260  # p_k(80) < 1e-50 beyond
 
 
 class _Table(NamedTuple):
@@ -44,19 +45,16 @@ class _Table(NamedTuple):
     far_order_four: NDArray[np.float64]
 
 
-@njit()
-def _series(c: float, b: float, z: NDArray[np.float64], out: NDArray[np.float64]) -> None:
-    """exp(-z) sum_k (c)_k / (b)_k z^k / k!."""
-    for i in range(z.size):
-        term = 1.0
-        total = 1.0
-        k = 0
-        # The first terms may grow: stop only once the ratio of terms is below one half.
-        while abs(term) > 1e-18 * abs(total) or (c + k) * z[i] > 0.5 * (b + k) * (k + 1):
-            term *= (c + k) * z[i] / ((b + k) * (k + 1))
-            total += term
-            k += 1
-        out[i] = np.exp(-z[i]) * total
+@lru_cache(maxsize=2)
+def poisson_weights(pieces: int) -> NDArray[np.float64]:
+    """p_k(z) = e^-z z^k / k! at the points of `chebyshev.sample_points(WIDTH, pieces)`, shape (k, points)."""
+    z = chebyshev.sample_points(WIDTH, pieces).reshape(-1)
+    p = np.empty((_WEIGHTS, z.size))
+    p[0] = 1.0
+    for k in range(1, _WEIGHTS):  # whole rows, one after the other: faster than cumprod along them
+        np.multiply(p[k - 1], z / k, out=p[k])
+    p *= np.exp(-z)
+    return p
 
 
 @njit(inline="always")
@@ -75,7 +73,7 @@ def _far(z: float, table: _Table, series: NDArray[np.float64]) -> float:
 @njit(inline="always")
 def _value(z: float, table: _Table) -> float:
     if z < _FAR:
-        return chebyshev.horner(z / _WIDTH, table.near)
+        return chebyshev.horner(z / WIDTH, table.near)
     return _far(z, table, table.far)
 
 
@@ -99,15 +97,15 @@ def _evaluate_order_four(z: NDArray[np.float64], table: _Table, out: NDArray[np.
 @lru_cache(maxsize=512)
 def _table(c: float, b: float) -> _Table:
     a = b - c
-    z = chebyshev.sample_points(_WIDTH, _PIECES)
-    samples = np.empty(z.size)
-    _series(c, b, z.reshape(-1), samples)
+    # exp(-z) sum_k (c)_k / (b)_k z^k / k!
+    k = np.arange(_WEIGHTS - 1)
+    samples = np.append(1.0, np.cumprod((c + k) / (b + k))) @ poisson_weights(_PIECES)
     k = np.arange(_TERMS)
     # 1 / Gamma(c) by two steps of the recurrence: keeps its digits where c is close to 0 or -1.
     reciprocal_gamma = c * (c + 1.0) * rgamma(c + 2.0)
     far = poch(a, k) * poch(1.0 - c, k) / gamma(k + 1.0)
     return _Table(
-        near=chebyshev.fit(samples.reshape(z.shape)),
+        near=chebyshev.fit(samples.reshape(_PIECES, -1)),
         prefactor=float(gamma(b) * reciprocal_gamma),
         a=a,
         far=far,

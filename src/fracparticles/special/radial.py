@@ -26,7 +26,7 @@ import numpy as np
 from scipy.special import gamma
 
 from fracparticles._compiled import njit
-from fracparticles.arguments import FloatArray
+from fracparticles.arguments import FloatArray, elementwise
 from fracparticles.special import chebyshev
 from fracparticles.special.contour import density_and_tail
 
@@ -174,38 +174,6 @@ def mass(r: FloatArray, table: RadialTable, inside: bool, out: FloatArray) -> No
 # --- tables ---------------------------------------------------------------------------------------
 
 
-@njit()
-def _integrate_over_the_axis(
-    r: FloatArray, above: RadialTable, densities: FloatArray, tails: FloatArray
-) -> None:
-    n = above.n - 1
-    rho, cosh = np.empty(_BLOCK), np.empty(_BLOCK)
-    density_there, tail_there = np.empty(_BLOCK), np.empty(_BLOCK)
-    for i in range(r.size):
-        scale = min(r[i], 1.0)
-        densities[i] = tails[i] = 0.0
-        first, more = 0, True
-        while more:
-            for j in range(_BLOCK):
-                v = _STEP * (first + j)
-                cosh[j] = scale * _STEP * math.cosh(v)
-                rho[j] = math.hypot(r[i], scale * math.sinh(v))
-            if first == 0:
-                cosh[0] *= 0.5
-            density(rho, above, density_there)
-            mass(rho, above, False, tail_there)
-            for j in range(_BLOCK):
-                density_there[j] *= cosh[j]
-                tail_there[j] *= cosh[j] * (r[i] / rho[j]) ** n / rho[j]
-                densities[i] += density_there[j]
-                tails[i] += tail_there[j]
-            more = (
-                density_there[-1] > _NEGLIGIBLE * densities[i]
-                or tail_there[-1] > _NEGLIGIBLE * tails[i]
-            )
-            first += _BLOCK
-
-
 def _project(r: FloatArray, alpha: float, n: int) -> tuple[FloatArray, FloatArray]:
     """Phi_n and the mass outside as marginals of n + 1 dimensions, with rho^2 = r^2 + y^2.
 
@@ -216,10 +184,26 @@ def _project(r: FloatArray, alpha: float, n: int) -> tuple[FloatArray, FloatArra
     All is positive. The trapezoidal rule in v, y = min(r, 1) sinh(v): the integrands are analytic
     for |Im v| < pi/4 at least, and decay like exp(-(n + alpha) v).
     """
-    densities, tails = np.empty(r.size), np.empty(r.size)
-    _integrate_over_the_axis(r.ravel(), radial_table(alpha, n + 1), densities, tails)
+    above = radial_table(alpha, n + 1)
+    densities, tails = np.zeros(r.shape), np.zeros(r.shape)
+    r, scale = r[..., None], np.minimum(r, 1.0)[..., None]
+    first, more = 0, True
+    while more:
+        v = _STEP * np.arange(first, first + _BLOCK)
+        rho, step = np.hypot(r, scale * np.sinh(v)), scale * (_STEP * np.cosh(v))
+        if first == 0:
+            step[..., 0] *= 0.5
+        density_there = step * elementwise(density, rho, above)
+        tail_there = step * elementwise(mass, rho, above, False) * (r / rho) ** n / rho
+        densities += density_there.sum(axis=-1)
+        tails += tail_there.sum(axis=-1)
+        more = bool(
+            (density_there[..., -1] > _NEGLIGIBLE * densities).any()
+            or (tail_there[..., -1] > _NEGLIGIBLE * tails).any()
+        )
+        first += _BLOCK
     constant = 2.0 * gamma(0.5 * (n + 1)) / (math.sqrt(math.pi) * gamma(0.5 * n))
-    return 2.0 * densities.reshape(r.shape), constant * tails.reshape(r.shape)
+    return 2.0 * densities, constant * tails
 
 
 @lru_cache(maxsize=512)
@@ -233,18 +217,11 @@ def radial_table(alpha: float, n: int) -> RadialTable:
     values[0], masses[0] = _near_terms(alpha, n, r[0])
     between = _project if n % 2 == 0 else density_and_tail
     values[1:], masses[1:] = between(r[1:], alpha, n)
-    coefficients = chebyshev.fit(values)
-    # Mass inside over r^n: S_n int_0^1 s^(n-1) Phi_n(r s) ds.
     inside_pieces = 1 + int((masses[1:, 0] > _MOSTLY_OUTSIDE).sum())
-    s, weight = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
-    points = r[1:inside_pieces, :, None] * s
-    masses[1:inside_pieces] = chebyshev.evaluate(points / _WIDTH, coefficients) @ (
-        _SURFACE[n] * weight * s ** (n - 1)
-    )
     m = np.arange(1.0, _FAR_TERMS + 1.0)
-    return RadialTable(
-        density=coefficients,
-        mass=chebyshev.fit(masses),
+    table = RadialTable(
+        density=chebyshev.fit(values),
+        mass=np.empty_like(values),
         far_density=far_density,
         far_mass=_SURFACE[n] * far_density / (alpha * m),
         far_bound=far_bound,
@@ -252,3 +229,8 @@ def radial_table(alpha: float, n: int) -> RadialTable:
         n=n,
         inside_pieces=inside_pieces,
     )
+    # Mass inside over r^n: S_n int_0^1 s^(n-1) Phi_n(r s) ds.
+    s, weight = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+    within = np.asarray(elementwise(density, r[1:inside_pieces, :, None] * s, table))
+    masses[1:inside_pieces] = within @ (_SURFACE[n] * weight * s ** (n - 1))
+    return table._replace(mass=chebyshev.fit(masses))

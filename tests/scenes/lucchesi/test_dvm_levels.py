@@ -22,9 +22,9 @@ def test_truncation_acts_on_dvm_as_on_dd(computed):
             {**common, "scheme": "DVM", "truncation": [5.0, 20.0], "remeshing": "none"},
         ],
     )
-    effect, error = truncation_effect(Inputs("t", runs=paths).scalars)
+    effect = truncation_effect(Inputs("t", runs=paths).scalars)
     assert list(effect.columns) == [5.0]
-    assert set(effect.index) == {"DD", "KPSE", "DVM, none"} == set(error.index)
+    assert set(effect.index) == {"DD", "KPSE", "DVM, none"}
     # DD and DVM miss the tail itself, KPSE its exchange: an order of magnitude apart.
     assert effect.loc["KPSE", 5.0] > 10.0 * effect.loc[["DD", "DVM, none"], 5.0].max()
 
@@ -43,11 +43,17 @@ def test_table_2_of_dvm_needs_its_three_levels(computed):
     # Epsilon = 2 h = 0.4 on the middle level: the next term of the smoothing error is of relative size 0.4^2.
     assert ours["DVM, M4'"] == pytest.approx(2.0, abs=0.16)
     assert np.isnan(ours["DVM, Lambda3"])
-    assert {finding.claim for finding in result.findings} == {
-        "L-T2.DVM.II.beta0.5",
-        "L-T2.expected",
-        "L-T2.DVM.rate",
+    findings = {finding.claim: finding for finding in result.findings}
+    assert set(findings) == {"L-T2.DVM.II.beta0.5", "L-T2.expected", "L-T2.DVM.rate"}
+    assert findings["L-T2.DVM.II.beta0.5"].numbers["nearest"] == "middle level and M4'"
+    assert findings["L-T2.expected"].numbers["away"]["DVM, II, beta = 0.5"] < 0.16
+    assert findings["L-T2.expected"].others["the printed orders"]["away"] == {
+        "DVM, II, beta = 0.5": 0.0
     }
+    rate = findings["L-T2.DVM.rate"]
+    assert rate.numbers["away"]["beta = 0.5"] < 0.16
+    # Lambda3 leaves a spike at x = 0 in the strengths.
+    assert rate.others["remeshing by Lambda3, strengths"]["away"]["beta = 0.5"] > 0.5
 
 
 def test_lattices_that_do_not_match_are_refused():

@@ -15,9 +15,13 @@ def test_expansions(alpha, item):
     shown = {"series_terms": [5, 80], "asymptotic_terms": [1, 20]}
     result = study(Inputs("a", [item]), alpha=alpha, terms=[1, 5, 20, 80, 320], **shown)
     assert [f.claim for f in result.findings] == [
-        f"{item}.{n}" for n in ("series", "asymptotic", "overlap")
+        f"{item}.{n}" for n in ("series", "even", "asymptotic", "overlap")
     ]
-    assert all(finding.verdict for finding in result.findings)
+    series, even, asymptotic, overlap = (finding.numbers for finding in result.findings)
+    assert series["gain"] > 1.0
+    assert asymptotic["gain"] > 1.0
+    assert max(even.values()) < 1e-13
+    assert overlap["far"] > overlap["near"]
     drawn = figure(result.series, result.table, alpha=alpha)
     assert isinstance(drawn, Figure)
     drawn.draw_without_rendering()
@@ -26,5 +30,4 @@ def test_expansions(alpha, item):
 def test_too_few_terms_do_not_overlap():
     shown = {"series_terms": [1], "asymptotic_terms": [1]}
     overlap = study(Inputs("a", ["L-FA11"]), alpha=1.5, terms=[1, 2, 3], **shown).findings[-1]
-    assert not overlap.verdict
-    assert overlap.reason
+    assert overlap.numbers["ratio"] < 1.0

@@ -41,9 +41,13 @@ def test_mean_radius_table():
     printed = {"L-TA4.alpha1.5": "1.705"}
     result = study(Inputs("a4", ["L-TA4"], printed=printed), alpha=[1.5, 1.9])
     assert list(result.table["printed"].isna()) == [False, True]
-    assert [finding.claim for finding in result.findings] == [
-        "L-TA4.alpha1.5",
-        "L-TA4.alpha1.9",
-        "L-TA4.series",
-    ]
-    assert result.findings[-1].verdict
+    found = {finding.claim: finding.numbers for finding in result.findings}
+    assert found["L-TA4.alpha1.5"]["ours"] == mean_radius(1.5)
+    assert max(found["L-TA4.series"]["difference"].values()) <= 1e-6
+    moments = found["L-TA4.moments"]
+    assert max(*moments["inner"].values(), *moments["outer"].values()) < 2e-6
+    assert max(found["L-TA4.unit_mass"]["difference"].values()) < 1e-11
+    # Each decade far out has 10^(p - alpha) times the moment p of the one before.
+    second = found["L-TA4.second_moment"]
+    assert second["second"]["alpha = 1.9"] == pytest.approx(10.0**0.1, rel=1e-5)
+    assert second["first"]["alpha = 1.5"] == pytest.approx(10.0**-0.5, rel=1e-5)

@@ -34,11 +34,13 @@ def test_gpse_keeps_the_overlap_asked_for(result):
     assert gpse.filter(like="error, ε").notna().all(axis=None)
 
 
-def test_every_claim_has_a_verdict_and_the_figure_is_drawn(result):
-    verdicts = {finding.claim: finding.verdict for finding in result.findings}
-    # On a short lattice truncation hides the smoothing error of KPSE, not those of DD and FPSE.
-    assert verdicts["L-C9.DD"] is False
-    assert verdicts["L-C9.FPSE"] is False
-    assert "L-C9.KPSE" in verdicts
-    assert all(finding.reason for finding in result.findings if not finding.verdict)
+def test_how_sensitive_each_scheme_is(result):
+    numbers = {finding.claim: finding.numbers for finding in result.findings}
+    # From epsilon = 2 h to 4 h the smoothing error grows by 2^2 and 2^4; DD and FPSE show it whatever the truncation.
+    assert numbers["L-C9.FPSE"]["change"]["II"] == pytest.approx(3.0, abs=0.3)
+    assert numbers["L-C9.DD"]["change"]["IV"] > 5.0
+    # On a short lattice truncation hides it in KPSE IV.
+    assert numbers["L-C9.KPSE"]["change"]["IV"] < 0.25
+    # At these overlaps the quadrature error is exp(-(2 pi)^2), and the order that of the kernel.
+    assert max(numbers["L-C9.DD"]["order"].values()) < 0.15
     assert len(figure(result.series, result.table, shown_beta=0.5).axes) == 2

@@ -50,12 +50,27 @@ def test_rows(result):
 
 
 def test_findings(result):
-    findings = {finding.claim: finding for finding in result.findings}
-    assert set(findings) == {"L-C3.matches", "L-C3.visible", "L-C3.tails"}
-    # 50000 walkers are not within 1 %: the verdict can fail.
-    assert not findings["L-C3.matches"].verdict
-    assert findings["L-C3.matches"].reason
-    assert findings["L-C3.tails"].verdict
+    numbers = {finding.claim: finding.numbers for finding in result.findings}
+    assert set(numbers) == {"L-C3.matches", "L-C3.visible", "L-C3.tails"}
+    # The spread of one ensemble's error is a few per cent of it, and three numbers of walkers give the rate.
+    assert numbers["L-C3.matches"]["rate"] == pytest.approx(-0.5, abs=0.05)
+    # 50000 walkers are not within 1 %: the error that is measured can be too large.
+    assert min(numbers["L-C3.matches"]["error"].values()) > 0.01
+    few, *_, many = numbers["L-C3.visible"]["deviation"].values()
+    # One ensemble of 1000 walkers, a few in each of the outer cells: its deviation varies itself.
+    assert 0.4 < few / (many * np.sqrt(50.0)) < 2.5
+    assert numbers["L-C3.tails"]["ratio"] > 10.0
+
+
+def test_another_seed_and_the_absolute_deviation_are_other_readings(result):
+    others = {finding.claim: finding.others for finding in result.findings}
+    seed = "another seed, 1e+04 walkers"
+    assert [*others["L-C3.matches"]] == [*others["L-C3.visible"]] == [seed]
+    assert (
+        others["L-C3.tails"][seed]["ratio"]
+        > 1.0
+        > others["L-C3.tails"]["the absolute deviation"]["ratio"]
+    )
 
 
 def test_figure(result):

@@ -43,10 +43,13 @@ def test_dpse(computed):
          "dt": 1e-3, "store": "field"},
     ]  # fmt: skip
     result = dpse(Inputs("rejected_dpse", ["L-C14"], runs=computed(blocks)))
-    assert {f.claim: f.verdict for f in result.findings} == {
-        "L-C14.edges": True,
-        "L-C14.cause": True,
-    }
+    found = {f.claim: f.numbers for f in result.findings}
+    case = "beta = 0.5, C = 10"
+    assert found["L-C14.edges"]["error"][case] > 10.0 > found["L-C14.edges"]["kpse"][case]
+    assert found["L-C14.cause"]["difference"][case] < 0.2
+    # FPSE has the same layer.
+    assert found["L-C14.mitigation"]["ratio"][case] == pytest.approx(1.0, rel=0.5)
+    assert found["L-C14.remedy"]["gain"][case] > 10.0
     row = result.table.set_index("scheme").loc["DPSE"]
     assert row["u / exact at |x| = D"] > 10.0
     assert abs(row["the same, v continued"]) < 0.1 * row["error of du/dt at D"]
@@ -61,12 +64,16 @@ def test_scheme_29(computed):
     history = {"half_width": 5.0, "spacing": [0.3575667, 0.1787833], "foldings": 40}
     inputs = Inputs("rejected_29", ["L-C15"], runs=computed(blocks))
     result = scheme_29(inputs, shown_beta=0.5, dense=61, history=history)
-    verdicts = {f.claim: f.verdict for f in result.findings}
-    assert verdicts == {"L-C15.kernel": True, "L-C15.errors": True, "L-C15.instability": True}
+    found = {f.claim: f.numbers for f in result.findings}
+    assert found["L-C15.kernel"]["origin"]["beta = 0.5"] < 0.0
+    assert found["L-C15.kernel"]["turns"]["beta = 0.5"] == 1
+    assert found["L-C15.errors"]["ratio"]["beta = 0.5"] > 10.0
+    assert found["L-C15.errors"]["coarse"]["beta = 0.5"] < 2.0
+    instability = found["L-C15.instability"]
+    assert instability["deviation"] < 0.01
+    assert "no longer finite after step" in instability["message"]
     growing = result.table["greatest eigenvalue, λ h^α / D"]
     assert (growing > 0.09).all()
-    instability = next(f for f in result.findings if f.claim == "L-C15.instability")
-    assert "no longer finite after step" in instability.evidence
     assert len(draw_29(result.series, result.table, shown_beta=0.5).axes) == 3
 
 
@@ -81,5 +88,8 @@ def test_riesz(computed):
     flux = result.table[(result.table["of"] == "flux") & (result.table["h"] == 0.02)]
     # a epsilon^(2-alpha) + b epsilon^2: the second is epsilon^alpha = 0.015 of the first at most.
     np.testing.assert_allclose(flux["observed order, cut-off"], flux["2 - α"], atol=0.03)
-    assert all(f.verdict for f in result.findings)
+    poor, worst = (f.numbers for f in result.findings)
+    assert min(poor["ratio"].values()) > 10.0
+    assert list(worst["rise"]) == ["alpha = 1.5", "alpha = 1.9"]
+    assert min(worst["rise"].values()) > 1.0
     assert len(draw_riesz(result.series, result.table).axes) == 3

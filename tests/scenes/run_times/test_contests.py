@@ -6,38 +6,42 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from fracparticles.errors import FracparticlesError
 from fracstudy.inputs import Inputs
 from fracstudy.style import save
 from scenes.run_times.contests import best, front, trials_of
+from scenes.run_times.first_call.benchmark import benchmark as first_call
+from scenes.run_times.first_call.study import study as first_calls
 from scenes.run_times.reference_times.study import study as reference_times
-from scenes.run_times.run_time_goals.study import off_the_front
+from scenes.run_times.run_time_goals.study import behind
 from scenes.run_times.run_time_goals.study import study as run_time_goals
 from scenes.run_times.scattered_sums.study import study as scattered_sums
-from scenes.run_times.time_to_accuracy.figure import figure as draw_bars
+from scenes.run_times.step_times.benchmark import benchmark as step_times
+from scenes.run_times.step_times.study import study as steps
 from scenes.run_times.time_to_accuracy.study import study as time_to_accuracy
 from scenes.run_times.which_method.study import study as which_method
 from scenes.run_times.work_precision.figure import figure as draw_fronts
 from scenes.run_times.work_precision.study import study as work_precision
 
 NAN = float("nan")
-# contender, variant, group, error, set-up, solve, extrapolated
+# contender, variant, group, error, set-up, solve, block
 TRIALS = [
-    ("GPSE", "one step, open, 3 terms, convolution", "ours", 1e-4, 1e-3, 3e-6, 1.0),
-    ("GPSE", "one step, open, 3 terms, convolution", "ours", 1e-10, 2e-3, 4e-6, 1.0),
-    ("KPSE", "order 12, open, 3 terms, series", "ours", 1e-9, 5e-3, 2e-3, 1.0),
-    ("KPSE", "order 2, naive sums, RK2 steps", "papers", 1e-4, 1e-3, 30.0, 1e4),
-    ("sinc-lattice", "open, convolution", "peers", 1e-4, 1e-4, 2e-6, 1.0),
-    ("sinc-lattice", "open, convolution", "peers", 1e-9, 2e-4, 8e-6, 1.0),
-    ("exact-symbol", "periodic, exact", "limit", 1e-3, 1e-4, 1e-6, 1.0),
-    ("DVM", "order 4, M4' remeshing", "ours", NAN, 1e-3, NAN, NAN),
+    ("evolve", "2 terms", "ours", 1e-4, 1e-4, 1e-5, 1e-6),
+    ("evolve", "4 terms", "ours", 1e-10, 2e-4, 1e-5, 4e-6),
+    ("KPSE", "order 12, series", "schemes", 1e-9, 5e-3, 2e-3, NAN),
+    ("papers' way", "DD 2", "papers", 1e-4, 1e-3, 30.0, NAN),
+    ("rational functions", "", "peers", 1e-4, 5e-5, 5e-6, 5e-7),
+    ("rational functions", "", "peers", 1e-9, 3e-4, 3e-5, 1e-6),
+    ("DVM", "order 4", "schemes", NAN, 1e-3, NAN, NAN),
 ]
 
 
-def frame(beta: float = 0.5) -> pd.DataFrame:
-    columns = ["contender", "variant", "group", "error", "setup_time", "solve_time", "extrapolated"]
-    data = pd.DataFrame(TRIALS, columns=columns).assign(beta=beta, particles=57.0, solves=9)
+def frame(problem: str = "mixture", beta: float = 0.5) -> pd.DataFrame:
+    columns = ["contender", "variant", "group", "error", "setup_time", "solve_time", "block_time"]
+    data = pd.DataFrame(TRIALS, columns=columns)
+    data = data.assign(problem=problem, beta=beta, points=57.0, peak_memory=2e4, tail_error=0.1)
     data["failure"] = np.where(np.isfinite(data["error"]), "", "it blew up")
-    data.attrs = {"cpu": "a processor", "repeats": 9}
+    data.attrs = {"cpu": "a processor", "repeats": 9, "dim": 1}
     return data
 
 
@@ -47,20 +51,20 @@ def inputs(**benchmarks) -> Inputs:
 
 def test_the_best_is_the_fastest_that_is_good_enough():
     trials = trials_of(frame())
-    assert best(trials, 1e-4, "solve_time")["contender"] == "sinc-lattice"
-    assert best(trials, 1e-9, "solve_time")["contender"] == "GPSE"
-    assert best(trials, 1e-9, "total_time")["contender"] == "sinc-lattice"
-    none = best(trials, 1e-11, "solve_time")
+    assert best(trials, 1e-4)["name"] == "rational functions"
+    assert best(trials, 1e-9)["name"] == "evolve, 4 terms"
+    assert best(trials, 1e-9, "block_time")["name"] == "rational functions"
+    none = best(trials, 1e-11)
     assert none["name"] == "none"
-    assert np.isnan(none["solve_time"])
+    assert np.isnan(none["total_time"])
     assert trials["failed"].sum() == 1
 
 
 def test_nothing_is_faster_and_better_than_the_front():
     trials = trials_of(frame())
-    on_front = trials[front(trials, "solve_time")]
+    on_front = trials[front(trials, "total_time")]
     assert list(zip(on_front["contender"], on_front["error"], strict=True)) == [
-        ("GPSE", 1e-10), ("sinc-lattice", 1e-4), ("exact-symbol", 1e-3)
+        ("evolve", 1e-10), ("rational functions", 1e-4)
     ]  # fmt: skip
     random = np.random.default_rng(0)
     many = pd.DataFrame(
@@ -72,72 +76,64 @@ def test_nothing_is_faster_and_better_than_the_front():
         assert chosen[place] == (better.sum() == 1)
 
 
-def test_a_row_for_each_beta_and_error(tmp_path):
-    both = pd.concat([frame(0.5), frame(0.9)], ignore_index=True)
+@pytest.mark.parametrize("betas", [(0.5,), (0.5, 0.9)])
+def test_a_row_for_each_problem_beta_and_error(tmp_path, betas):
+    both = pd.concat(
+        [frame(name, b) for name in ("mixture", "compact") for b in betas], ignore_index=True
+    )
     both.attrs = frame().attrs
-    result = work_precision(inputs(b=both), errors=[1e-3, 1e-4, 1e-9])
-    assert len(result.table) == 6
-    row = result.table.iloc[1]
-    assert row["ours"] == "GPSE, one step, open, 3 terms, convolution"
-    assert row["peer"] == "sinc-lattice, open, convolution"
-    assert row["ours / peer"] == pytest.approx(1.5)
-    assert row["ours / ms"] == pytest.approx(3e-3)
-    assert row["the papers' way / ours"] == pytest.approx(1e7)
-    assert np.isnan(row["limit / ms"])
-    assert row["ours / peer, with set-up"] == pytest.approx(1.003e-3 / 1.02e-4)
-    assert result.table["limit / ms"][0] == pytest.approx(1e-3)
-    assert set(result.series["note"]) == {"a processor, one core; minimum of up to 9 repeats"}
-    assert result.series["on front of solve_time"].sum() == 6
-    save(draw_fronts(result.series, result.table, ylabel="error"), tmp_path / "fronts")
+    result = work_precision(inputs(b=both), errors=[1e-4, 1e-9], time="total_time")
+    assert len(result.table) == 4 * len(betas)
+    first, second = result.table.iloc[0], result.table.iloc[1]
+    assert first["ours"] == "evolve, 2 terms"
+    assert first["ours / ms"] == pytest.approx(0.11)
+    assert first["ours / peer"] == pytest.approx(2.0)
+    assert second["scheme of the papers"] == "KPSE, order 12, series"
+    assert second["ours / peer"] == pytest.approx(0.21 / 0.33)
+    blocks = work_precision(inputs(b=both), errors=[1e-9], time="block_time").table
+    assert blocks["ours / peer"][0] == pytest.approx(4.0)
+    assert blocks["scheme of the papers"][0] == "none"
+    drawn = draw_fronts(result.series, result.table, time="total_time", ylabel="error")
+    save(drawn, tmp_path / "fronts")
     assert (tmp_path / "fronts.svg").stat().st_size > 0
 
 
-def test_bars_and_a_row_for_each_variant(tmp_path):
-    result = time_to_accuracy(inputs(b=frame()), errors=[1e-3, 1e-9], beta=0.5)
-    table = result.table.set_index("contender")
-    assert table.loc["DVM", "failed"] == 1
-    assert table.loc["GPSE", "trials"] == 2
-    assert table.loc["GPSE", "least error"] == 1e-10
-    assert table.loc["sinc-lattice", "1e-09 in / ms"] == pytest.approx(8e-3)
-    assert np.isnan(table.loc["exact-symbol", "1e-09 in / ms"])
-    bars = result.series.set_index(["error", "contender", "group"])
-    assert bars.loc[(1e-3, "KPSE", "papers"), "extrapolated"] > 1.0
-    assert np.isnan(bars.loc[(1e-9, "DVM", "ours"), "solve_time"])
-    save(draw_bars(result.series, result.table), tmp_path / "bars")
-    assert (tmp_path / "bars.png").stat().st_size > 0
+def test_the_first_three():
+    table = time_to_accuracy(inputs(b=frame()), errors=[1e-3, 1e-9]).table
+    assert table["first"].tolist() == ["rational functions", "evolve, 4 terms"]
+    assert table["second"].tolist() == ["evolve, 2 terms", "rational functions"]
+    assert table["third"].tolist() == ["KPSE, order 12, series"] * 2
+    assert table["its memory / kB"].tolist() == [20.0, 20.0]
 
 
 def situation(**changes):
-    given = {
-        "situation": "s", "take": "t", "benchmark": "work_precision", "beta": 0.5, "error": 1e-4,
-        "time": "solve_time", "contender": "GPSE", "variant": "convolution", **changes,
-    }  # fmt: skip
-    return given
+    return {"situation": "s", "take": "t", "code": "c", "contender": "evolve", **changes}
 
 
-@pytest.mark.parametrize(("changes", "ahead"), [
-    ({}, "the peer"),
-    ({"error": 1e-9}, "ours"),
-    ({"error": 1e-10}, "ours"),
+@pytest.mark.parametrize(("changes", "faster"), [
+    ({"error": 1e-4}, "the literature, 2 times"),
+    ({"error": 1e-9}, "ours, 1.57 times"),
+    ({"error": 1e-10}, "ours: no other gets there"),
     ({"error": 1e-12}, "neither gets there"),
-    ({"contender": "DVM", "variant": "M4'"}, "the peer"),
-    ({"contender": "DVM", "variant": "M4", "against": "particles"}, "no rival"),
-    ({"contender": "GPSS"}, "not measured"),
-    ({"against": "periodic, exact"}, "ours"),
-    ({"error": 1e-9, "time": "total_time"}, "the peer"),
-    ({"beta": 0.1}, "not measured"),
+    ({"error": 1e-10, "contender": "DVM"}, "neither gets there"),
+    ({"error": 1e-9, "contender": "DVM"}, "it does not get there"),
+    ({"error": 1e-9, "time": "block_time"}, "the literature, 4 times"),
 ])  # fmt: skip
-def test_who_is_ahead_follows_from_the_times(changes, ahead):
-    given = inputs(work_precision=frame())
-    table = which_method(given, situations=[situation(**changes)]).table
-    assert table["ahead"][0] == ahead
+def test_who_is_faster_follows_from_the_times(changes, faster):
+    table = which_method(inputs(work_precision=frame()), situations=[situation(**changes)]).table
+    assert table["faster"][0] == faster
 
 
 def test_two_times_within_a_fifth_are_a_tie():
     data = frame()
-    data.loc[data["contender"] == "sinc-lattice", "solve_time"] = 2.6e-6
-    table = which_method(inputs(work_precision=data), situations=[situation()]).table
-    assert table["ahead"][0] == "a tie"
+    data.loc[data["contender"] == "rational functions", "setup_time"] = 1e-4
+    table = which_method(inputs(work_precision=data), situations=[situation(error=1e-4)]).table
+    assert table["faster"][0] == "a tie"
+
+
+def test_a_contender_that_was_not_measured_is_named():
+    with pytest.raises(FracparticlesError, match="GPSS"):
+        which_method(inputs(work_precision=frame()), situations=[situation(contender="GPSS")])
 
 
 def reference() -> pd.DataFrame:
@@ -155,38 +151,28 @@ def reference() -> pd.DataFrame:
 
 
 def test_goals_are_met_or_not():
-    goals = {"error 1e-8": 5.0, "error 1e-9": 1e-3, "set-up": 30.0, "printed lattice": 0.3}
-    goals |= {"naive": 1e4, "front": 1.2}
-    errors = [1e-4, 1e-9]
-    given = inputs(work_precision=frame(), reference_times=reference())
-    table = run_time_goals(given, goals=goals, errors=errors).table
-    assert list(table["measured"]) == pytest.approx([4e-3, 4e-3, 2.0, 2.0, 2.0, 0.1, 2e4, 1.5])
-    assert list(table["met"]) == ["yes", "no", "yes", "no", "yes", "yes", "yes", "no"]
-
-
-def test_a_goal_that_nobody_reaches_is_not_met():
     goals = {
-        name: 1e9 for name in ("error 1e-8", "error 1e-9", "set-up", "printed lattice", "front")
+        "ahead": 1.2,
+        "transforms": 1.15,
+        "printed lattice": 0.3,
+        "naive": 1e4,
+        "first call": 0.7,
     }
-    peers_only = frame()[lambda data: data["group"] == "peers"]
-    peers_only.attrs = frame().attrs
-    given = inputs(work_precision=peers_only, reference_times=reference())
-    met = run_time_goals(given, goals=goals | {"naive": 0.0}, errors=[1e-4]).table["met"]
-    assert list(met) == ["no"] * 5 + ["yes", "yes", "no"]
+    races = {
+        name: frame() for name in ("work_precision", "work_precision_plane", "work_precision_space")
+    }
+    calls = pd.DataFrame({"call": ["an empty program", "fp.evolve"], "process_time": [0.01, 0.8]})
+    given = inputs(**races, reference_times=reference(), first_call=calls)
+    table = run_time_goals(given, goals=goals, errors=[1e-4, 1e-9]).table
+    assert list(table["measured"]) == pytest.approx([2.0, 2.0, 2.0, 1.0, 0.1, 2e4, 0.8])
+    assert list(table["met"]) == ["no", "no", "no", "yes", "yes", "yes", "no"]
 
 
-@pytest.mark.parametrize(("error", "ratio"), [(1e-9 * (1.0 + 1e-8), 1.0), (1e-9 * 1.1, 1.5)])
-def test_errors_that_agree_are_one(error, ratio):
-    """A peer and a trial of ours, of the same time: whether the error of ours is that of the peer, or larger."""
-    data = frame()
-    ours, peer = data.iloc[[0]], data[data["group"] == "peers"].iloc[[0]]
-    same = {"failure": "", "setup_time": 0.0, "solve_time": 2.0}
-    trials = pd.concat([
-        peer.assign(error=1e-9, **same),
-        ours.assign(error=error, **same),
-        ours.assign(error=1e-10, **same | {"solve_time": 3.0}),
-    ])  # fmt: skip
-    assert off_the_front(trials.assign(failed=False), [1e-3, 1e-9]) == pytest.approx(ratio)
+def test_who_does_not_get_there_is_infinitely_behind():
+    trials = trials_of(frame())
+    assert behind(trials, [1e-4]) == pytest.approx(2.0)
+    assert behind(trials[trials["group"] == "peers"], [1e-9]) == np.inf
+    assert np.isnan(behind(trials, [1e-12]))
 
 
 def test_tables_of_the_reference_problem_and_of_scattered_sums():
@@ -199,3 +185,18 @@ def test_tables_of_the_reference_problem_and_of_scattered_sums():
     table = scattered_sums(inputs(scattered_sums=sums)).table
     assert table["naive / FFT"][0] == pytest.approx(2.0)
     assert table["ns a particle"][1] == pytest.approx(1e4)
+
+
+def test_a_first_call_and_a_step_are_timed():
+    """The benchmarks themselves, as small as they can be."""
+    calls = first_call(repeats=1).to_dataframe().reset_index()
+    table = first_calls(inputs(first_call=calls)).table
+    assert (table["process, min / s"] > 0.0).all()
+    assert table["beyond an empty program / s"].iloc[0] == 0.0
+    data = step_times(line=201, plane=21, repeats=1).to_dataframe().reset_index()
+    found = steps(inputs(step_times=data)).table
+    assert set(found["dim"]) == {1, 2}
+    assert found[found["method"].str.startswith("exact")]["over the exact symbol"].tolist() == [
+        1.0,
+        1.0,
+    ]

@@ -117,7 +117,7 @@ def test_memory_is_proportional_to_the_particles(kind, squares, cubes):
 def test_the_threads_are_those_of_the_process_that_measures(memory, monkeypatch):
     """The one that collects has as many as it likes, here seven."""
     mine = {"threads_numba": 7, "threads_blas": 7, "other_load": 0.0}
-    monkeypatch.setattr("fracstudy.benchmarks.clock.conditions", lambda: mine)
+    monkeypatch.setattr("fracstudy.race.clock.conditions", lambda: mine)
     if not memory:  # then it is the one that measures
         mine |= {"threads_numba": 1, "threads_blas": 1}
     kinds, limits = {"square": ["KPSE-2-truncated"]}, {**LIMITS, "naive_particles": 0}

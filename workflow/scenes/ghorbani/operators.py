@@ -12,7 +12,19 @@ import numpy as np
 from fracparticles.sph import caputo_derivative, rl_derivative, rl_integral
 from fracparticles.sph.closed_forms import Function
 
-__all__ = ["LABELS", "OPERATORS", "SLOPES", "SUMS", "TITLES", "Operator", "Order", "order_at"]
+__all__ = [
+    "CURVATURES",
+    "LABELS",
+    "OPERATORS",
+    "SLOPES",
+    "SUMS",
+    "TITLES",
+    "Operator",
+    "Order",
+    "order_at",
+]
+
+_STEP = 1e-4  # of differences: they keep some eight digits
 
 Order = float | dict[str, float]  # a constant, or mean, amplitude and waves of alpha(x)
 
@@ -23,6 +35,12 @@ SLOPES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "cos": lambda x: -pi * np.sin(pi * x),
     "exp": np.exp,
     "cubic": lambda x: 3.0 * (x - 1.0) ** 2,
+}
+CURVATURES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "sin": lambda x: -(pi**2) * np.sin(pi * x),
+    "cos": lambda x: -(pi**2) * np.cos(pi * x),
+    "exp": np.exp,
+    "cubic": lambda x: 6.0 * (x - 1.0),
 }
 SUMS = {  # label, colour and marker of each way to do the sum for the integral
     "standard": ("standard (17)", "#D55E00", "o"),
@@ -68,3 +86,9 @@ def order_at(order: Order, x: np.ndarray) -> np.ndarray:
     if isinstance(order, dict):
         return order["mean"] + order["amplitude"] * np.sin(order["waves"] * pi * x)
     return np.full_like(x, order)
+
+
+def central_slope(of: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
+    """Return the derivative by central differences of fourth order."""
+    near, far = (of(x + k * _STEP) - of(x - k * _STEP) for k in (1, 2))
+    return (8.0 * near - far) / (12.0 * _STEP)

@@ -5,6 +5,7 @@ The text leaves open where the markers start. Each of `LOADINGS` is run, the ran
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,12 +13,14 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.polynomial import Polynomial
 from pydantic import BaseModel, ConfigDict
 from scipy.optimize import minimize_scalar
 
 from fracparticles.markers import (
     MarkerRun,
     MarkerVelocity,
+    Shape,
     Square,
     equal_weight,
     random,
@@ -29,7 +32,7 @@ from fracparticles.markers.clusters import emptiness
 from fracparticles.moving.lagrangian import FieldNotPositive
 
 __all__ = [
-    "CLOSE",
+    "INFINITE",
     "LOADINGS",
     "SHAPES",
     "SQUARE",
@@ -38,6 +41,7 @@ __all__ = [
     "Trace",
     "delay",
     "load",
+    "shape",
 ]
 
 SQUARE = Square()
@@ -47,10 +51,35 @@ LOADINGS = {
     "wide": "uniform in [-L, L]",
 }
 SHAPES = ("S4", "S7", "S8")  # of Figs. 8-16
-CLOSE = 0.05  # "good": an error of at most 5 % of the norm of f
 # In units of eps: gaps between markers that count, and where they are looked for.
 _GAP, _WITHIN = 0.2, 3.0
 _CLUSTERED = 0.1  # of |x| < within empty: independent markers give a hundredth, clusters nearly all
+
+
+class _Infinite(Shape):
+    """(1 + 2 x^2) exp(-x^2) / (2 sqrt(pi)), of infinite support, with (1 - k^2/4) exp(-k^2/4), negative for k > 2."""
+
+    @property
+    def moment_order(self) -> int:
+        """The second moment is 1."""
+        return 2
+
+    def transform(self, k: Any) -> np.ndarray:
+        """Return int S(x) exp(-i k x) dx."""
+        q = 0.25 * np.square(k)
+        return (1.0 - q) * np.exp(-q)
+
+
+_HALF = 0.5 / math.sqrt(math.pi)
+INFINITE = _Infinite(
+    "S9", "not in the paper", "", _HALF, _HALF, Polynomial([1.0, 0.0, 2.0]), gaussian=True, finite=False
+)  # fmt: skip
+"""A smooth shape function of infinite support, like S8, but with a transform that turns negative."""
+
+
+def shape(name: str) -> Shape:
+    """Return the shape function of that name: S1 to S8 of the paper, or S9, `INFINITE`."""
+    return INFINITE if name == INFINITE.name else shape_function(name)
 
 
 @dataclass(frozen=True)
@@ -115,14 +144,14 @@ class SquareRuns(BaseModel):
         return float(np.interp(0.0, self.z, f) / np.interp(0.0, self.z, self.exact))
 
     def trace(
-        self, shape: str, loading: str, seed: int = 0, *, follow: bool = True, printed: bool = False
+        self, name: str, loading: str, seed: int = 0, *, follow: bool = True, printed: bool = False
     ) -> Trace:
         """Run and measure E(t) on the fixed grid, at every time or (`follow` false) at the end.
 
         With `printed` the shape function has its printed constant.
         """
         x0, weights = load(loading, self.markers, seed, self.half_width)
-        s = shape_function(shape).as_printed() if printed else shape_function(shape)
+        s = shape(name).as_printed() if printed else shape(name)
         velocity = MarkerVelocity(s, self.support)
         field = MarkerVelocity(s, self.support, derivatives=0)
         steps = round(self.t_final / self.dt)
@@ -144,7 +173,7 @@ class SquareRuns(BaseModel):
         except FieldNotPositive as error:
             stopped = str(error)
         followed = (np.array(times), np.array(errors))
-        return Trace(shape, loading, seed, x0, weights, *followed, latest, end, stopped)
+        return Trace(name, loading, seed, x0, weights, *followed, latest, end, stopped)
 
 
 def load(

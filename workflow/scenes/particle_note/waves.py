@@ -1,14 +1,27 @@
-"""What the scenes of the note share: the function that sums are tried on, and how orders of accuracy are drawn."""
+"""What the scenes of the note share: functions and particles that sums are tried on, and how accuracies are drawn."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fracparticles.pse import Kernel, derivative, lattice
+from fracparticles.pse import GAUSSIAN_20, Kernel, cell_volumes, derivative, lattice
 
-__all__ = ["LINES", "second_derivative_error", "wave"]
+__all__ = [
+    "LINES",
+    "SEED",
+    "Skewed",
+    "arranged",
+    "heat",
+    "heat_second",
+    "second_derivative_error",
+    "wave",
+]
+
+SEED = 20  # of particles at random
 
 # A line for each accuracy r.
 LINES: dict[int, dict[str, Any]] = {
@@ -32,3 +45,54 @@ def second_derivative_error(kernel: Kernel, h: float, overlap: float) -> float:
     particles = lattice(-margin, 2.0 * np.pi + margin, h)
     found = derivative(x, wave(x), particles, wave(particles), h, epsilon, kernel, 2)
     return float(np.abs(found - wave(x, order=2)).max())
+
+
+@dataclass(frozen=True)
+class Skewed:
+    """(20) times 1 + c (z^3 - 3 z / 2): the same M_1 and M_2, but not symmetric; M_3 is not zero, so that r = 1."""
+
+    amount: float = 0.5
+    reach: float = GAUSSIAN_20.reach + 0.5
+    breaks: tuple[float, ...] = ()
+
+    def __call__(self, z: ArrayLike) -> np.ndarray:
+        """Return eta(z)."""
+        z = np.asarray(z, dtype=float)
+        return GAUSSIAN_20(z) * (1.0 + self.amount * z * (z * z - 1.5))
+
+
+def heat(x: np.ndarray, t: float) -> np.ndarray:
+    """The solution of (24) with D = 1 that starts from a unit mass at x = 0."""
+    return np.exp(-x * x / (4.0 * t)) / np.sqrt(4.0 * np.pi * t)
+
+
+def heat_second(x: np.ndarray, t: float) -> np.ndarray:
+    """Its second derivative."""
+    return heat(x, t) * (x * x / (2.0 * t) - 1.0) / (2.0 * t)
+
+
+def arranged(
+    kind: str, n: int, half_width: float, jitter: float = 0.0, seed: int = SEED
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and volumes of n particles in [-L, L].
+
+    `lattice`; `mapped`, the lattice under a smooth map; `jittered`, each moved by up to `jitter` h either way;
+    `random`, uniform. The volumes are the cells between the half-way points, for `mapped` the images of the cells.
+    """
+    h = 2.0 * half_width / n
+    edges = np.linspace(-half_width, half_width, n + 1)
+    middle = edges[:-1] + 0.5 * h
+    if kind == "lattice":
+        return middle, np.full(n, h)
+    if kind == "mapped":
+
+        def image(x: np.ndarray) -> np.ndarray:
+            return x + 0.5 * half_width / np.pi * np.sin(np.pi * x / half_width)
+
+        return image(middle), np.diff(image(edges))
+    random = np.random.default_rng(seed)
+    if kind == "jittered":
+        x = np.sort(middle + jitter * h * random.uniform(-1.0, 1.0, n))
+    else:
+        x = np.sort(random.uniform(-half_width, half_width, n))
+    return x, cell_volumes(x)

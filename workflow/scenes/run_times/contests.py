@@ -1,39 +1,32 @@
-"""What the trials of a benchmark say: who is fastest with an error, who is on the front; and how they are drawn."""
+"""What the trials of the races say: who is fastest with an error, who is on the front."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from fracstudy.peers import PEERS
+__all__ = ["TIMES", "best", "front", "trials_of"]
 
-__all__ = ["LOOKS", "best", "front", "trials_of"]
-
-# How contenders that are no scheme look: muted colours and hollow markers; the limit is black.
-LOOKS: dict[str, dict[str, Any]] = {
-    **{
-        peer.name: {"label": peer.label, "color": peer.colour, "marker": peer.marker}
-        for peer in PEERS.values()
-    },
-    "random walk": {"label": "random walk", "color": "#E69F00", "marker": "X"},
+TIMES = {
+    "total_time": "one solve, set-up and all / s",
+    "block_time": "a further solve, in a block of a thousand / s",
 }
 
 
 def trials_of(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the trials of a benchmark with their full names, total times and failures."""
+    """Return the trials of a race with their full names, total times and failures."""
+    variant = frame["variant"].where(frame["variant"] == "", ", " + frame["variant"])
     return frame.assign(
-        name=frame["contender"] + ", " + frame["variant"],
-        particles=frame["particles"].astype(float),
+        name=frame["contender"] + variant,
+        points=frame["points"].astype(float),
         total_time=frame["setup_time"] + frame["solve_time"],
         failed=~np.isfinite(frame["error"]) | (frame["failure"].astype(str) != ""),
     )
 
 
-def best(trials: pd.DataFrame, error: float, time: str) -> pd.Series:
+def best(trials: pd.DataFrame, error: float, time: str = "total_time") -> pd.Series:
     """Return the trial of least `time` whose error is at most `error`, "none" and nan if there is none."""
-    reached = trials[~trials["failed"] & (trials["error"] <= error)]
+    reached = trials[~trials["failed"] & (trials["error"] <= error) & trials[time].notna()]
     if len(reached):
         return reached.loc[reached[time].idxmin()]
     return pd.Series({**dict.fromkeys(trials.columns, np.nan), "name": "none"})
@@ -41,6 +34,7 @@ def best(trials: pd.DataFrame, error: float, time: str) -> pd.Series:
 
 def front(trials: pd.DataFrame, time: str) -> pd.Series:
     """Return which trials are on the Pareto front: none is as fast and has a smaller error."""
-    ordered = trials[~trials["failed"].astype(bool)].sort_values([time, "error"])
+    ordered = trials[~trials["failed"].astype(bool)].dropna(subset=[time])
+    ordered = ordered.sort_values([time, "error"])
     so_far = ordered["error"].cummin().shift(fill_value=np.inf)
     return (ordered["error"] < so_far).reindex(trials.index, fill_value=False)

@@ -97,8 +97,9 @@ def bytes_kept(scheme: str, order: int, dim: int, size: int, exterior: str) -> f
     symbols = weights * half ** (dim - 1) * columns
     spectra = 2 * (1 + weights) * size ** (dim - 1) * columns
     blocks = 4 * length ** (dim - 1) * _COLUMNS + _ROWS * (length + 2 * half)
-    vectors = weights + _VECTORS  # the sums themselves
-    vectors += weights * (dim + 2) if opened else 0
+    # Of the exterior four sums, on the part of the lattice where no coordinate is negative.
+    beyond = 4.0 / 2**dim if opened else 0.0
+    vectors = weights + _VECTORS + beyond  # the sums themselves
     diagonal = 0 if opened and flux else weights
     divergence = (3 if order == 2 else 5) if flux else 0
     return 8.0 * (symbols + spectra + blocks + (vectors + diagonal + divergence) * size**dim)

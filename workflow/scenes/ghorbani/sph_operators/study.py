@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import product
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -13,14 +13,13 @@ from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
 from fracparticles.sph.integrals import METHODS
 from fracparticles.sph.norms import r2_score, relative_l2
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement, value
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
 
 __all__ = ["study"]
 
 _MARGIN = 5  # particles within 4 h, 4.4 s, of an end: their sums of sums see it
-_EFFECTIVE = 0.1  # the modified form has at most this share of the standard form's error
 
 
 def study(
@@ -36,21 +35,15 @@ def study(
 
     `length`, `count` and `smoothing_ratio` are those of the particles. The first item of the scene is the figure of the
     standard form, the second, if any, that of the modified form.
-
-    That a function is the worst holds if its error (39) is the largest of the four and its score (40) the smallest; the
-    modified form is effective if it has at most a tenth of the standard form's error.
     """
-    kind = OPERATORS[operator]
     line = ParticleLine(0.0, length, count, smoothing_ratio)
-    alpha = order_at(order, line.x_all)
-    judged, inner = slice(kind.first, None), slice(_MARGIN, -_MARGIN)
     item = dict(zip(("standard", "modified"), inputs.items, strict=False))
+    inner = slice(_MARGIN, -_MARGIN)
     rows, curves = [], []
-    for (name, function), method in product(FUNCTIONS.items(), METHODS):
-        exact = kind.exact(function, line.x, alpha[line.inside])[judged]
-        ours = kind.approximate(line, function.value(line.x_all), alpha, method=method)[judged]
+    for name, method in product(FUNCTIONS, METHODS):
+        x, exact, ours = _values(line, operator, order, name, method)
         error, figure = np.abs(ours - exact), item.get(method)
-        columns = {"x": line.x[judged], "exact": exact, "sph": ours.real, "error": error}
+        columns = {"x": x, "exact": exact, "sph": ours.real, "error": error}
         curves.append(pd.DataFrame({"function": name, "method": method, **columns}))
         away = relative_l2(exact[inner], ours[inner])
         rows.append(
@@ -64,41 +57,83 @@ def study(
                 "L2 of the real part": relative_l2(exact, ours.real),
                 f"L2 more than {_MARGIN} particles from the ends": away,
                 "largest error": float(error.max()),
+                "range": float(np.ptp(exact)),
             }
         )
     table = pd.DataFrame(rows)
     findings = list(_findings(table.set_index(["function", "sums"]), inputs.printed, item))
-    shown = table.replace({"function": LABELS})
+    if "modified" in item and not isinstance(order, dict):
+        findings += _others(line, order, **item)
+    shown = table.drop(columns="range").replace({"function": LABELS})
     return Result(shown, findings, pd.concat(curves, ignore_index=True))
+
+
+def _values(
+    line: ParticleLine, operator: str, order: Order, name: str, method: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The particles that are judged, the closed form there, and the approximation."""
+    kind, function, alpha = OPERATORS[operator], FUNCTIONS[name], order_at(order, line.x_all)
+    ours = kind.approximate(line, function.value(line.x_all), alpha, method=method)
+    exact = kind.exact(function, line.x, alpha[line.inside])
+    return line.x[kind.first :], exact[kind.first :], ours[kind.first :]
 
 
 def _findings(
     table: pd.DataFrame, printed: Mapping[str, str], item: Mapping[str, str]
 ) -> Iterator[Finding]:
     """Our number for each printed one, <item>.<function>.L2 or R2; the worst function; the modified form."""
-    reason = "Another reading than ours stands behind the printed digits."
     for (method, figure), name, measure in product(item.items(), FUNCTIONS, ("L2", "R2")):
         claim = f"{figure}.{name}.{measure}"
         if claim in printed:
-            yield value(claim, table.loc[(name, method), measure], reason)
-    l2, r2 = (table[measure].unstack("sums").loc[list(FUNCTIONS)] for measure in ("L2", "R2"))
+            yield measured(claim, ours=table.loc[(name, method), measure])
+    table["short"] = 1.0 - table["R2"]
+    table["deviation"] = table["largest error"] / table["range"]
     if "standard" in item:
-        figure, worst = item["standard"], l2["standard"].idxmax()
+        figure, standard = item["standard"], table.xs("standard", level="sums")
         claimed = next(name for name in FUNCTIONS if f"{figure}.{name}.L2" in printed)
-        listed = ", ".join(f"{error:.6f} ({name})" for name, error in l2["standard"].items())
-        yield statement(
+        others = standard.drop(claimed)
+        yield measured(
             f"{figure}.worst",
-            worst == claimed == r2["standard"].idxmin(),
-            f"L2 of the standard form is {listed}; with half volumes at the two ends that of {claimed} is "
-            f"{l2.loc[claimed, 'halved']:.6f}.",
-            f"The largest L2 is that of {worst}.",
+            l2_over_next=standard.loc[claimed, "L2"] / others["L2"].max(),
+            short_over_next=standard.loc[claimed, "short"] / others["short"].max(),
+            l2=dict(standard["L2"].rename(LABELS)),
+            halved=table.loc[(claimed, "halved"), "L2"],
+        )
+        yield measured(
+            f"{figure}.agreement",
+            **_deviations(standard["deviation"], claimed),
+            others={"the error L2 (39) instead": _deviations(standard["L2"], claimed)},
         )
     if "modified" in item:
-        sine = l2.loc["sin"]
-        yield statement(
+        sine = table.loc["sin"]
+        yield measured(
             f"{item['modified']}.effective",
-            sine["modified"] <= _EFFECTIVE * sine["standard"],
-            f"L2 for sin falls from {sine['standard']:.6f} to {sine['modified']:.6f} with the auxiliary particles, and "
-            f"to {sine['halved']:.6f} with half volumes at the two ends and no auxiliary particle.",
-            "The modified form keeps more than a tenth of the error.",
+            l2_ratio=sine.loc["modified", "L2"] / sine.loc["standard", "L2"],
+            short_ratio=sine.loc["modified", "short"] / sine.loc["standard", "short"],
+            l2=dict(sine["L2"]),
         )
+
+
+def _deviations(by_function: pd.Series, claimed: str) -> dict[str, Any]:
+    """Of all functions, of the one that is claimed to be the worst, of the others."""
+    every, others = (dict(part.rename(LABELS)) for part in (by_function, by_function.drop(claimed)))
+    return {"deviation": every, "worst": by_function[claimed], "rest": others}
+
+
+def _others(line: ParticleLine, order: float, standard: str, modified: str) -> Iterator[Finding]:
+    """The integral's errors beside those of the two derivatives, and what the modified form does to all three."""
+    l2, real = {}, {}
+    for operator, name, method in product(OPERATORS, FUNCTIONS, ("standard", "modified")):
+        _, exact, ours = _values(line, operator, order, name, method)
+        case = OPERATORS[operator].name, LABELS[name], method
+        l2[case], real[case] = relative_l2(exact, ours), relative_l2(exact, ours.real)
+    l2, real = (pd.Series(errors).unstack(sort=False) for errors in (l2, real))
+    worst = l2["standard"].groupby(level=0, sort=False).max()
+    integral = worst.pop(OPERATORS["rl_integral"].name)
+    yield measured(f"{standard}.contrast", ratio=dict(integral / worst), l2=dict(worst))
+    ratio, ratio_real = (dict(errors["modified"] / errors["standard"]) for errors in (l2, real))
+    yield measured(
+        f"{modified}.all_operators",
+        ratio=ratio,
+        others={"the real part alone": {"ratio": ratio_real}},
+    )

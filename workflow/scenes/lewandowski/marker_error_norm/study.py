@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import LOADINGS, SHAPES, SquareRuns, Starts, Trace, delay
+from scenes.lewandowski.square_profile import (
+    INFINITE,
+    LOADINGS,
+    SHAPES,
+    SquareRuns,
+    Starts,
+    Trace,
+    delay,
+)
 
 __all__ = ["study"]
 
@@ -18,20 +28,22 @@ _LINEAR = 0.95  # correlation of E with t
 def study(inputs: Inputs, *, run: SquareRuns, long: SquareRuns, seed: int, seeds: int) -> Result:
     """Follow E(t).
 
-    E grows almost linearly if it falls first, then rises by a tenth at least, and from its least value on has a
-    correlation with t of 0.95 or more; the statement holds if that is so for most random starts. It falls
-    exponentially rather than like a power if a straight line in t fits log E from t = 1 on better than one in log t.
-    `long` is a longer run with S8 that tells these apart further.
+    E grows if it falls first, then rises by a tenth at least. How well a straight line fits E, or log E, is told by the
+    part of the variance that it leaves. `long` is a longer run with S8 that tells an exponential from a power of t.
+    Random starts are judged with half as many others beside them.
     """
     square = SquareRuns.model_validate(run)
-    starts = Starts(square, SHAPES, range(seed, seed + seeds), follow=True)
-    starts.measured = starts.measured.join(pd.DataFrame([_turn(trace) for trace in starts.runs]))
+    starts = _followed(square, range(seed, seed + seeds))
+    others = _numbers(_followed(square, range(seed + seeds, seed + seeds + (seeds + 1) // 2)))
+    infinite = Starts(square, [INFINITE.name], range(seed, seed + 3), follow=True)
+    of_infinite = [_turn(trace)["E grows"] for trace in infinite.runs if trace.loading == "random"]
+    numbers = _numbers(starts)
+    numbers["M-F14.traced"]["infinite"] = np.mean(of_infinite)
     findings = [
-        _growth("M-F14.grows", "S4", starts),
-        _growth("M-F15.grows", "S7", starts),
-        _traced(starts),
-        _exponential(starts, SquareRuns.model_validate(long)),
+        measured(claim, others={"other seeds": others[claim]}, **of_claim)
+        for claim, of_claim in numbers.items()
     ]
+    findings.append(_law(starts, SquareRuns.model_validate(long)))
     panels = Panels()
     for trace in starts.runs:
         where = {"loading": trace.loading, "seed": trace.seed}
@@ -45,6 +57,12 @@ def study(inputs: Inputs, *, run: SquareRuns, long: SquareRuns, seed: int, seeds
     row = {"S": "S7, printed constant", "loading": midpoints, "runs": 1, "E": printed.error[-1]}
     table = pd.concat([table, pd.DataFrame([row])], ignore_index=True)
     return Result(table, inputs.judged(findings), panels.frame)
+
+
+def _followed(square: SquareRuns, seeds: range) -> Starts:
+    starts = Starts(square, SHAPES, seeds, follow=True)
+    starts.measured = starts.measured.join(pd.DataFrame([_turn(trace) for trace in starts.runs]))
+    return starts
 
 
 def _turn(trace: Trace) -> dict[str, float]:
@@ -61,69 +79,72 @@ def _turn(trace: Trace) -> dict[str, float]:
     }
 
 
-def _growth(claim: str, shape: str, starts: Starts) -> Finding:
-    measured, at_random = starts.measured, starts.random(shape)
-    grows = at_random & measured["E grows"] & (measured["linearity"] >= _LINEAR)
-    median = measured[grows].median(numeric_only=True)
-    others = measured[(measured["S"] == shape) & (measured["loading"] != "random")]
-    ratios = "; ".join(
-        f"{LOADINGS[loading]}: E / least E = {ratio:.2f}"
-        for loading, ratio in zip(others["loading"], others["E / least E"], strict=True)
-    )
-    return statement(
-        claim,
-        grows[at_random].mean() > 0.5,
-        f"{grows.sum()} of {at_random.sum()} random starts turn, at t = {median['least E at t']:.2f} (median), and "
-        f"then grow with a correlation with t of {median['linearity']:.3f}. {ratios}.",
-        "By then E grows for few of the random starts.",
-    )
+def _numbers(starts: Starts) -> dict[str, dict[str, Any]]:
+    """What is measured of these starts for each claim."""
+    found, clustered = starts.measured, starts.clustered
+    near = found["loading"] != "wide"
+    grows = found["E grows"][near]
+    rank = found.loc[near, ["empty", "E / least E"]].rank()
+    s8 = [trace for trace in starts.runs if trace.shape == "S8" and trace.loading != "wide"]
+    left = [_left(trace.t, np.log(trace.error)) for trace in s8]
+    return {
+        "M-F14.grows": _growth("S4", starts),
+        "M-F14.traced": {
+            "with_clusters": _part(grows[clustered[near]]),
+            "without": _part(grows[~clustered[near]]),
+            "number": int(grows.size),
+            "correlation": np.nan_to_num(np.corrcoef(rank.T)[0, 1]),
+        },
+        "M-F15.grows": _growth("S7", starts),
+        "M-F16.exponential": {
+            "left": np.median(left),
+            "most": max(left),
+            "number": len(s8),
+        },
+    }
 
 
-def _traced(starts: Starts) -> Finding:
-    """E grows where clusters are and only there: in nine of ten runs with S4 and S7."""
-    measured, clustered, turned = starts.measured, starts.clustered, starts.measured["E grows"]
-    prone = measured["S"].isin(["S4", "S7"])
-    agree = (turned == clustered)[prone]
-    near = measured["loading"] != "wide"
-    grow, with_them = turned[near], clustered[near]
-    rank = measured.loc[near, ["empty", "E / least E"]].rank()
-    correlation = float(np.corrcoef(rank["empty"], rank["E / least E"])[0, 1])
-    return statement(
-        "M-F14.traced",
-        with_them.any() and agree.mean() >= 0.9,
-        f"E grows where clusters are, and only there, in {agree.sum()} of {agree.size} runs with S4 and S7. "
-        f"Started within [-1, 1], E grows in {(grow & with_them).sum()} of {with_them.sum()} runs with clusters and in "
-        f"{(grow & ~with_them).sum()} of {(~with_them).sum()} without (S4, S7, S8); the rank correlation of its growth "
-        f"with the empty part of the line is {correlation:.2f}.",
-        "Clusters explain most of the growth, not all: in some runs E grows without clusters, or does not with them.",
-    )
+def _growth(shape: str, starts: Starts) -> dict[str, float]:
+    """In which part of the random starts E grows, and how far that is from a straight line."""
+    found = starts.measured[starts.random(shape)]
+    grow = found[found["E grows"]]
+    left = 1.0 - grow["linearity"].median() ** 2
+    return {
+        "share": found["E grows"].mean(),
+        "left": 1.0 if np.isnan(left) else left,
+        "linear": (grow["linearity"] >= _LINEAR).sum() / len(found),
+        "turn": found["least E at t"].median(),
+    }
 
 
-def _exponential(starts: Starts, long: SquareRuns) -> Finding:
+def _part(true: pd.Series) -> float:
+    return float(true.mean()) if len(true) else 0.0
+
+
+def _left(t: np.ndarray, y: np.ndarray) -> float:
+    """The part of the variance of y that a straight line in t leaves."""
+    return float(1.0 - np.corrcoef(t, y)[0, 1] ** 2)
+
+
+def _law(starts: Starts, long: SquareRuns) -> Finding:
+    """An exponential against a power of t: how far from either log E is, from t = 1 on."""
     near = [trace for trace in starts.runs if trace.shape == "S8" and trace.loading != "wide"]
     exponential, power = np.array([_misfits(trace) for trace in near]).T
     # Wide enough and with enough markers that the tail beyond the fixed grid, and its gaps, do not count.
     end = long.t_final
     whole = long.trace("S8", "midpoints")
     half = long.having(t_final=0.5 * end).trace("S8", "midpoints", follow=False)
-    log_at = [
-        float(np.interp(end * part, whole.t, np.log(whole.error))) for part in (0.25, 0.5, 1.0)
-    ]
-    slopes = np.diff(log_at) / np.log(2.0)
+    log_at = np.interp(end * np.array([0.1, 0.25, 0.5, 1.0]), whole.t, np.log(whole.error))
     late = [delay(long.z, trace.end.field(long.z), trace.t[-1]) for trace in (half, whole)]
-    better = int((power < exponential).sum())
-    stopped = len(starts.stopped)
-    halted = f" {stopped} runs stop: F turns negative at a marker." if stopped else ""
-    return statement(
-        "M-F16.exponential",
-        better < 0.5 * len(near),
-        f"In {better} of {len(near)} runs a power of t fits E better from t = 1 on, with a misfit of log E of "
-        f"{np.median(power):.3f} against {np.median(exponential):.3f} (medians). In a run with "
-        f"{long.markers} markers the exponent is {slopes[0]:.2f} over t = {0.25 * end:g} to {0.5 * end:g} and "
-        f"{slopes[1]:.2f} to t = {end:g}; F is nearest to the exact solution {late[0][0]:.3f} and {late[1][0]:.3f} "
-        f"earlier, which leaves {late[0][1]:.0%} and {late[1][1]:.0%} of E.{halted}",
-        "It is closer to a power law: the markers lag behind the exact solution by a nearly fixed time τ, and "
-        "f(x, t - τ) - f(x, t) falls like τ t^(-5/4).",
+    return measured(
+        "M-F16.law",
+        ratio=np.median(exponential / power),
+        better=np.mean(power < exponential),
+        number=len(near),
+        exponents=np.diff(log_at)[1:] / np.log(2.0),
+        rates=-np.diff(log_at) / (end * np.array([0.15, 0.25, 0.5])),
+        late=[tau for tau, _ in late],
+        end=end,
     )
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from fracstudy.inputs import Inputs, Result, statement
+from typing import Any
+
+from fracstudy.findings import measured
+from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import SHAPES, SquareRuns, Starts
+from scenes.lewandowski.square_profile import INFINITE, SHAPES, SquareRuns, Starts
 
 __all__ = ["study"]
 
@@ -12,46 +15,16 @@ __all__ = ["study"]
 def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int) -> Result:
     """Count the maxima of F in |x| < 3 eps: it has wiggles if there is more than one.
 
-    A statement on a shape function holds if it does for most random starts.
+    What random starts do is judged by their mean, and by that of as many others.
     """
     square = SquareRuns.model_validate(run)
     starts = Starts(square, SHAPES, range(seed, seed + seeds))
-    measured, clustered = starts.measured, starts.clustered
-    wiggly, quartic = measured["maxima"] > 1, measured["S"] == "S4"
-    quiet = measured[(measured["loading"] == "midpoints") & quartic].iloc[0]
-    mean = {shape: starts.mean(shape) for shape in SHAPES}
-    share = {shape: starts.share(shape) for shape in SHAPES}
-    with_clusters = (clustered & quartic).sum()
-    go_together = with_clusters > 0 and (wiggly >= clustered)[quartic].all()
+    first = _numbers(square, starts, range(seed, seed + seeds))
+    again = range(seed + seeds, seed + 2 * seeds)
+    second = _numbers(square, Starts(square, SHAPES, again), again)
     findings = [
-        statement(
-            "M-F8.wiggles",
-            go_together and quiet["maxima"] == 1,
-            f"With S4, {(wiggly & clustered & quartic).sum()} of {with_clusters} runs with clusters have wiggles; "
-            f"started at midpoints there are no clusters at t = {square.t_final:g}, and F "
-            f"has {quiet['maxima']:d} maximum.",
-            "Wiggles and clusters do not go together.",
-        ),
-        statement(
-            "M-F9.improves",
-            mean["S7"] < mean["S4"],
-            f"Over the random starts the relative error is {mean['S7']:.3f} with S7 and {mean['S4']:.3f} with S4; "
-            f"S7 is better in {_better(starts, 'S7')}.",
-            "S7 is no better than S4.",
-        ),
-        statement(
-            "M-F9.same",
-            share["S7"] > 0.5,
-            f"S7 forms clusters in {share['S7']:.0%} of the random starts, S4 in {share['S4']:.0%}.",
-            "Started at the midpoints they have not formed by then; at random they form from the noise.",
-        ),
-        statement(
-            "M-F10.improves",
-            mean["S8"] < 0.5 * mean["S4"] and share["S8"] < 0.5,
-            f"Over the random starts the relative error with S8 is {mean['S8']:.3f}, {mean['S8'] / mean['S4']:.2f} "
-            f"times that with S4; S8 is better in {_better(starts, 'S8')} and forms clusters in {share['S8']:.0%}.",
-            "The error is not halved, or there are clusters.",
-        ),
+        measured(claim, others={"other seeds": second[claim]}, **numbers)
+        for claim, numbers in first.items()
     ]
     panels = Panels()
     panels.add("field", "exact", square.z, square.exact)
@@ -62,9 +35,40 @@ def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int) -> Result:
     return Result(table, inputs.judged(findings), panels.frame)
 
 
-def _better(starts: Starts, shape: str) -> str:
-    """How many seeds give a smaller error than with S4."""
+def _numbers(square: SquareRuns, starts: Starts, seeds: range) -> dict[str, dict[str, Any]]:
+    """What is measured of these starts for each claim."""
+    found, clustered = starts.measured, starts.clustered
+    mean = {shape: starts.mean(shape) for shape in SHAPES}
+    quiet = found[found["loading"] == "midpoints"].set_index("S")
+    level = quiet["relative error"]
+    infinite = Starts(square, [INFINITE.name], seeds)
+    with_clusters = {
+        "S4": found["maxima"][clustered & (found["S"] == "S4")],
+        INFINITE.name: infinite.measured["maxima"][infinite.clustered],
+    }
+    return {
+        "M-F8.deterministic": {"error": level["S8"], "empty": quiet["empty"].max()},
+        "M-F8.wiggles": {
+            "maxima": {name: maxima.min() if len(maxima) else 0 for name, maxima in with_clusters.items()},
+            "without": quiet["maxima"]["S4"],
+            "number": len(with_clusters["S4"]),
+        },
+        "M-F9.improves": {"ratio": mean["S7"] / mean["S4"], "better": _better(starts, "S7")},
+        "M-F9.same": {"share": starts.share("S7")},
+        "M-F10.improves": {
+            "ratio": {f"over {name}": mean["S8"] / mean[name] for name in ("S4", "S7")},
+            "better": _better(starts, "S8"),
+        },
+        "M-F10.crucial": {
+            "range": max(mean.values()) / min(mean.values()),
+            "midpoints": level.max() / level.min(),
+        },
+    }  # fmt: skip
+
+
+def _better(starts: Starts, shape: str) -> float:
+    """The part of the seeds that give a smaller error than with S4."""
     at_random = starts.measured[starts.measured["loading"] == "random"]
     errors = at_random.pivot(index="seed", columns="S", values="relative error")
     errors = errors[[shape, "S4"]].dropna()
-    return f"{(errors[shape] < errors['S4']).sum()} of {len(errors)}"
+    return float((errors[shape] < errors["S4"]).mean())

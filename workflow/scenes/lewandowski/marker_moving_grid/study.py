@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from fracparticles.markers import shape_function
+import numpy as np
+import pandas as pd
+
 from fracparticles.markers.clusters import cluster_centres, marker_spectrum
 from fracparticles.markers.stability import extremes
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.findings import measured
+from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import CLOSE, LOADINGS, SHAPES, SquareRuns, Starts, Trace
+from scenes.lewandowski.square_profile import (
+    INFINITE,
+    LOADINGS,
+    SHAPES,
+    SquareRuns,
+    Starts,
+    Trace,
+    shape,
+)
 
 __all__ = ["study"]
 
@@ -21,65 +32,27 @@ def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int, compared: l
     """Find the clusters of the markers, and how well f itself is represented on them.
 
     The exact solution "by the representation (6)" is sum_k f(x_k) D_k S_eps(x - x_k), with D_k half the distance
-    between the neighbours of marker k. Poor results come from poor representation if, on average over the random
-    starts, its error is at least half of that of F, and not from the integration in time if dt / 4 changes E by less
-    than a tenth. Finite support is the cause of clusters if every shape function with finite support forms them:
-    `compared` has two whose Fourier transform is positive.
+    between the neighbours of marker k. `compared` have finite support, as S4 and S7, and a positive Fourier transform;
+    `INFINITE` has infinite support and one that turns negative. Random starts are judged by their mean, and by that of
+    as many others.
     """
     square = SquareRuns.model_validate(run)
     starts = Starts(square, (*SHAPES, *compared), range(seed, seed + seeds))
-    measured = starts.measured
-    measured["representation"] = [
-        square.relative_error(_represented(trace, square, square.z)) for trace in starts.runs
-    ]
-    measured["part"] = measured["representation"] / measured["relative error"]
-    share = {s: starts.share(s) for s in (*SHAPES, *compared)}
+    starts.measured["representation"] = _representations(square, starts)
+    again = range(seed + seeds, seed + 2 * seeds)
+    second = Starts(square, (*SHAPES, *compared), again)
     power = {s: _mean_spectrum(starts, s, square.support) for s in (*SHAPES, *compared)}
-    apart = {s: float(2.0 * np.pi / _K[int(np.argmax(power[s]))]) for s in _CLUSTER}
-    onset = {s: extremes(shape_function(s)) for s in SHAPES}
-    change = max(_step_change(square, starts, s) for s in _CLUSTER)
-    part = {s: starts.mean(s, "part") for s in _CLUSTER}
-    error = starts.mean("S8")
-    formed = ", ".join(f"{share[s]:.0%} with {s}" for s in (*compared, "S7", "S4"))
+    onset = {s: extremes(shape(s)) for s in SHAPES}
+    ours = _numbers(square, starts, range(seed, seed + seeds), compared)
+    others = _numbers(square, second, again, compared)
     findings = [
-        statement(
-            "M-F11.distance",
-            0.5 <= apart["S4"] <= 2.0,
-            f"With S4 {share['S4']:.0%} of the random starts form clusters, {apart['S4']:.2f} ε apart (peak of the "
-            "mean spectrum of the markers). The Fourier transform says that they grow fastest "
-            f"{onset['S4'].wavelength:.2f} ε apart, by exp({onset['S4'].growth:.2f} t/ε²); then they spread.",
-            "The clusters are not about ε apart.",
-        ),
-        statement(
-            "M-F11.representation",
-            min(part.values()) >= 0.5 and change < 0.1,
-            f"f itself, represented on the markers of the end, has {part['S4']:.0%} of the error of F with S4 and "
-            f"{part['S7']:.0%} with S7, on average; a quarter of the time step changes E by {change:.1%} at most.",
-            "It explains about half of the error: the clusters also hold the wrong parts of the total.",
-        ),
-        statement(
-            "M-F12.clusters",
-            share["S7"] > 0.5,
-            f"S7 forms clusters in {share['S7']:.0%} of the random starts, {apart['S7']:.2f} ε apart (fastest at "
-            f"{onset['S7'].wavelength:.2f} ε, growth exp({onset['S7'].growth:.2f} t/ε²)).",
-            "Started at the midpoints they have not formed by then; at random they form from the noise.",
-        ),
-        statement(
-            "M-F12.cause",
-            all(share[s] > 0.5 for s in compared),
-            f"Of the random starts, clusters form in {formed}. All these have finite support.",
-            f"It is the sign of the Fourier transform: those of {' and '.join(compared)} are positive, and they form "
-            "no clusters although their support is finite; where it is negative, perturbations grow.",
-        ),
-        statement(
-            "M-F13.none",
-            share["S8"] < 0.5 and error <= CLOSE,
-            f"S8 forms clusters in {share['S8']:.0%} of the random starts; the relative error is {error:.3f}. Its "
-            "transform (1 + k²/4) exp(-k²/4) is positive.",
-            "There are clusters, or the error is above 5 %.",
-        ),
+        measured(claim, others={"other seeds": others[claim]}, **numbers)
+        for claim, numbers in ours.items()
     ]
+    change = {s: _step_change(square, starts, s) for s in _CLUSTER}
+    findings.append(measured("M-F11.integration", change=change))
     table = starts.table(["relative error", "representation", "empty"])
+    apart = ours["M-F11.distance"]["apart"]
     peaks = [apart.get(s, np.nan) for s in table["S"]]
     at_random = table["loading"] == LOADINGS["random"]
     table["distance of clusters / ε"] = np.where(at_random, peaks, np.nan)
@@ -91,30 +64,73 @@ def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int, compared: l
     return Result(table, inputs.judged(findings), panels.frame)
 
 
+def _numbers(
+    square: SquareRuns, starts: Starts, seeds: range, compared: list[str]
+) -> dict[str, dict[str, Any]]:
+    """What is measured of these starts for each claim."""
+    more = Starts(square, ("S3", "S6", INFINITE.name), seeds)
+    share = {s: starts.share(s) for s in (*SHAPES, *compared)}
+    share |= {s: more.share(s) for s in ("S3", "S6", INFINITE.name)}
+    error = {s: starts.mean(s) for s in (*SHAPES, *compared)}
+    error[INFINITE.name] = more.mean(INFINITE.name)
+    over_s4 = {s: e / error["S4"] for s, e in error.items()}
+    part = pd.Series(_representations(square, starts)) / starts.measured["relative error"]
+    spectra = {s: _mean_spectrum(starts, s, square.support) for s in _CLUSTER}
+    apart = {s: float(2.0 * np.pi / _K[int(np.argmax(mean))]) for s, mean in spectra.items()}
+    onset = {s: extremes(shape(s)) for s in _CLUSTER}
+    return {
+        "M-F11.distance": {
+            "factor": {s: max(d, 1.0 / d) for s, d in apart.items()},
+            "apart": apart,
+            "fastest": {s: found.wavelength for s, found in onset.items()},
+            "growth": {s: found.growth for s, found in onset.items()},
+        },
+        "M-F11.representation": {"part": {s: part[starts.random(s)].mean() for s in _CLUSTER}},
+        "M-F12.clusters": {"share": share["S7"]},
+        "M-F12.cause": {
+            "finite": {s: share[s] for s in compared},
+            "infinite": {INFINITE.name: share[INFINITE.name]},
+        },
+        "M-F12.finite": {"share": {f"S{n}": share[f"S{n}"] for n in range(2, 8) if f"S{n}" in share}},
+        "M-F13.none": {
+            "empty": starts.measured["empty"][starts.random("S8")].max(),
+            "error": error["S8"],
+            "share": share["S8"],
+        },
+        "M-F13.smooth": {"ratio": {s: over_s4[s] for s in ("S8", INFINITE.name)}},
+        "M-F13.because": {"ratio": {s: over_s4[s] for s in compared}},
+    }  # fmt: skip
+
+
+def _representations(square: SquareRuns, starts: Starts) -> list[float]:
+    """The relative error of f itself as the markers of the end represent it, of every run."""
+    return [square.relative_error(_represented(trace, square, square.z)) for trace in starts.runs]
+
+
 def _represented(trace: Trace, square: SquareRuns, z: np.ndarray) -> np.ndarray:
     """f at the markers of the end, each with its cell, as they represent it at z."""
     x = np.sort(trace.end.x)
     return trace.end.velocity.fields(x, square.f(x) * np.gradient(x), z)[0]
 
 
-def _mean_spectrum(starts: Starts, shape: str, epsilon: float) -> np.ndarray:
+def _mean_spectrum(starts: Starts, name: str, epsilon: float) -> np.ndarray:
     """The mean spectrum of the markers from the random starts."""
     return np.mean(
         [
             marker_spectrum(trace.end.x, _K / epsilon, 4.0 / 3.0 * starts.within)
             for trace in starts.runs
-            if (trace.shape, trace.loading) == (shape, "random")
+            if (trace.shape, trace.loading) == (name, "random")
         ],
         axis=0,
     )
 
 
-def _step_change(square: SquareRuns, starts: Starts, shape: str) -> float:
+def _step_change(square: SquareRuns, starts: Starts, name: str) -> float:
     """The relative change of E at the end by a quarter of dt, for the random start shown."""
     shown = {(trace.shape, trace.loading): trace for trace in starts.first}
-    ours = shown[shape, "random"]
+    ours = shown[name, "random"]
     finer = square.having(dt=0.25 * square.dt)
-    fine = finer.trace(shape, "random", ours.seed, follow=False)
+    fine = finer.trace(name, "random", ours.seed, follow=False)
     return float(abs(fine.error[-1] / ours.error[-1] - 1.0)) if fine.run else float("inf")
 
 

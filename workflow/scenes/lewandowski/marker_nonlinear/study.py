@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,18 +11,17 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.errors import NonFiniteSolution
-from fracparticles.markers import SHAPES, Gaussian, run, uniform
+from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, run, uniform
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
 from fracparticles.markers.stability import extremes
 from fracparticles.time.rkc import ChebyshevStep, stages_for
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
 __all__ = ["Evolution", "Markers", "study"]
 
-_EXCELLENT = 0.01  # of the peak: cannot be seen in a figure
 _MARGIN = 1.5  # of the stability interval, for what the linear limit leaves out
 # A scanned step is stable if F is that close to f_inf, the runs that are not are far off.
 _CLOSE = 0.02
@@ -180,15 +179,12 @@ def study(
     rows += [scan.row("scan of the step", scan.last) for scan in scans]
     x = stable.at(compared_at)
     exact = np.interp(x, reference.x, reference.solve(start, [compared_at])[0])
-    without = (
-        f"A solution of (20) without markers ({reference.x.size} cells) stays positive until t = {lost:.4g} (half as "
-        f"many cells: {lost_coarse:.4g}), when it vanishes at |x| = {place:.4g}. The markers agree with it to "
-        f"{np.abs(setting.field(x) - exact).max():.1e} at t = {compared_at:g}."
-    )
+    apart = np.abs(setting.field(x) - exact).max() / np.abs(exact).max()
     findings = [
-        *_set_up(setting, half_width),
+        *_set_up(setting, half_width, apart),
         *_time_stepping(setting, runs, scans, t_final),
-        _long_time(setting, stable, without, lost > t_final),
+        _long_time(setting, stable, [lost, lost_coarse, place]),
+        _porous(128, max(t_final, 10.0)),
     ]
     panels = _panels(setting, printed, stable)
     for scan in scans:
@@ -219,34 +215,35 @@ def _panels(setting: Markers, printed: Evolution, stable: Evolution) -> Panels:
     return panels
 
 
-def _set_up(setting: Markers, half_width: float) -> Iterator[Finding]:
+def _set_up(setting: Markers, half_width: float, off: float) -> Iterator[Finding]:
     p, z = setting.problem, np.linspace(-half_width, half_width, 2001)
     nodes, gauss = np.polynomial.legendre.leggauss(8)
     middle, width = 0.5 * (z[:-1] + z[1:]), 0.5 * (z[1] - z[0])
     integral = width * p.source(middle[:, None] + width * nodes) @ gauss
     closed = p.cumulative_source(z)
     gap = float(np.abs(np.cumsum(integral - np.diff(closed))).max()) / float(np.abs(closed).max())
-    misfit = float(np.abs(setting.field(setting.x) - Gaussian().value(setting.x)).max())
-    said = f"int Q dx (by quadrature) and -D(f_inf) f_inf' differ by {gap:.1e} of their maximum"
-    yield statement(
-        "M-F17.steady",
-        gap < 1e-9,
-        f"{said}: the flux D f_x + S^ vanishes where f = f_inf.",
-        "The source does not balance the diffusion of (24).",
-    )
-    yield statement(
-        "M-F17.integral",
-        gap > 1e-9,
-        f"{said}: (23) has a closed form, and takes no table.",
-        "(21) is the derivative of -D(f_inf) f_inf': the integral (23) is known wherever f_inf is.",
-    )
-    yield statement(
-        "M-F17.initial",
-        misfit < _EXCELLENT,
-        f"{setting.x.size} markers at equal distances with eps = h^(1/2) = {setting.epsilon:.4f}: F differs from "
-        f"exp(-x^2) by {misfit:.1e} at most at the markers.",
-        "The markers do not represent the initial profile.",
-    )
+    yield measured("M-F17.steady", gap=gap)
+    yield measured("M-F17.velocity", apart=off)
+    points = _quadrature(p, setting.x)
+    terms = {
+        "by quadrature from far left": points / setting.x.size,
+        "in closed form": 1.0 / setting.x.size,
+    }
+    yield measured("M-F17.integral", work=terms, gap=gap, points=points, markers=setting.x.size)
+    misfit = np.abs(setting.field(setting.x) - Gaussian().value(setting.x)).max()
+    yield measured("M-F17.initial", misfit=misfit, epsilon=setting.epsilon)
+
+
+def _quadrature(p: NonlinearDiffusion, x: np.ndarray, left: float = -4.0) -> int:
+    """How many Gauss points from far left give (23) at every marker to a thousandth of its maximum."""
+    exact = p.cumulative_source(x)
+    half = 0.5 * (x - left)[:, None]
+    for points in range(8, 200, 4):
+        nodes, gauss = np.polynomial.legendre.leggauss(points)
+        integral = half[:, 0] * (p.source(left + half * (1.0 + nodes)) @ gauss)
+        if np.abs(integral - exact).max() < 1e-3 * np.abs(exact).max():
+            break
+    return points
 
 
 def _time_stepping(
@@ -254,53 +251,62 @@ def _time_stepping(
 ) -> Iterator[Finding]:
     printed, small, stable = runs.values()
     peak = setting.peak
-    far = setting.deviation(printed.end) / peak
     good = [e.dt for e in scans if not e.stopped and setting.deviation(e.end) < _CLOSE * peak]
-    below = max(good, default=0.0)
-    above = min((e.dt for e in scans if e.dt not in good), default=math.inf)
-    ended = f"is off f_inf by {100 * far:.0f} % of the peak at t = {printed.times[-1]:g}"
-    if printed.stopped:
-        ended = f"stops after t = {printed.last:.2g}, when F is no longer positive at a marker"
-    worst = setting.deviation(stable.end, everywhere=True) / peak
-    core = setting.deviation(stable.end) / peak
     same = max(
         abs(setting.deviation(small.at(t)) - setting.deviation(stable.at(t)))
         for t in set(np.round(small.times, 9)) & set(np.round(stable.times, 9))
     )
-    yield statement(
+    yield measured(
         "M-F18.time_step",
-        not printed.stopped and far < _EXCELLENT,
-        f"The midpoint rule with dt = {printed.dt:g} {ended}, after {printed.overtaking} steps in which markers "
-        f"overtook one another. It works up to dt = {below:g}, not from {above:g} on.",
-        f"dt is above the explicit limit eta eps^2 / max D = eta eps^2 e / D_0 = {setting.limit:.3g}, the one of "
-        f"Sec. 2.3 at the largest D; the scan finds it between {below:g} and {above:g}.",
+        apart=setting.deviation(printed.end) / peak,
+        left=1.0 - printed.last / t_final,
+        last=printed.last,
+        overtaking=printed.overtaking,
+        limit=setting.limit,
+        good=max(good, default=0.0),
+        bad=min((e.dt for e in scans if e.dt not in good), default=0.0),
     )
-    yield statement(
-        "M-F18.agreement",
-        not stable.stopped and stable.last >= 0.999 * t_final and worst < _EXCELLENT,
-        f"With RKC2 of {stable.stages} stages at dt = {stable.dt:g}, F at the markers is within "
-        f"{100 * worst:.2g} % of the peak of f_inf at t = {stable.last:g}, in the core within {100 * core:.2g} %; "
-        f"the midpoint rule at dt = {small.dt:g} agrees with it to {same:.1e} up to t = {small.last:g}.",
-        f"F is off f_inf by {100 * worst:.2g} % of the peak.",
+    titles = (
+        "as printed, midpoint rule",
+        "midpoint rule at a smaller step",
+        "stabilised integrator",
+    )
+    off = {
+        title: setting.deviation(run.end, everywhere=True) / peak
+        for title, run in zip(titles, runs.values(), strict=True)
+    }
+    last = {title: run.last for title, run in zip(titles, runs.values(), strict=True)}
+    yield measured(
+        "M-F18.agreement", apart=off, last=last, stages=stable.stages, dt=small.dt, same=same
     )
 
 
-def _long_time(setting: Markers, stable: Evolution, evidence: str, positive: bool) -> Finding:
+def _long_time(setting: Markers, stable: Evolution, lost: Sequence[float]) -> Finding:
     times = np.array(stable.times[1:])
     late = times >= 0.05 * stable.last
-    if late.sum() > 1:
-        excess = np.array([setting.excess(x) for x in stable.positions[1:]])[late]
-        slope = np.polyfit(np.log(times[late]), np.log(excess), 1)[0]
-        evidence += (
-            f" Beyond, what they hold in the flanks falls like t^{slope:.2f}; it is "
-            f"{excess[-1] / setting.weights.sum():.1e} of the total at t = {stable.last:g}."
-        )
-    return statement(
+    excess = np.array([setting.excess(x) for x in stable.positions[1:]])[late]
+    slope = np.polyfit(np.log(times[late]), np.log(excess), 1)[0] if late.sum() > 1 else 0.0
+    return measured(
         "M-F18.long_time",
-        positive,
-        evidence,
-        "With the initial profile (25) the sink Q < 0 in the flanks drives the solution of (20) through zero, where "
-        "D < 0 and the equation is ill-posed: there is no long-time behaviour to determine. Markers keep their weights "
-        "and cannot follow; those left outside spread without end, as slowly as t^(1/4), so that f_inf is approached "
-        "by a power of t only.",
+        part=lost[0] / stable.last,
+        lost=lost,
+        slope=slope,
+        excess=excess[-1] / setting.weights.sum(),
+        end=stable.last,
     )
+
+
+def _porous(markers: int, until: float) -> Finding:
+    """f_t = (f f_x)_x from t = 1 by markers, V = -f_x, beside f = t^(-1/3) (1 - x^2 t^(-2/3) / 6) > 0."""
+
+    def exact(x: np.ndarray, t: float) -> np.ndarray:
+        return t ** (-1.0 / 3.0) * np.maximum(0.0, 1.0 - x * x * t ** (-2.0 / 3.0) / 6.0)
+
+    x, w = uniform(lambda x: exact(x, 1.0), (-math.sqrt(6.0), math.sqrt(6.0)), markers)
+    velocity = MarkerVelocity(SHAPES["S8"], 0.5, lambda x, fields: -fields[0] * fields[1])
+    steps = round((until - 1.0) / 0.05)
+    x = run(x, w, velocity, dt=(until - 1.0) / steps, steps=steps, start=1.0).x
+    z = np.linspace(-1.5, 1.5, 801) * math.sqrt(6.0) * until ** (1.0 / 3.0)
+    f = exact(z, until)
+    gap = np.abs(velocity.fields(x, w, z)[0] - f)
+    return measured("M-F18.shown", apart=gap.max() / f.max(), markers=markers, until=until)

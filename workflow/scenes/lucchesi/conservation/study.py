@@ -12,8 +12,8 @@ from fracparticles.moving.remeshing import REMESHINGS, remesh
 from fracparticles.schemes import SCHEMES, Setting, Sum, dpse, fpse
 from fracparticles.schemes.base import OnePass
 from fracparticles.special.stable import central_mass
-from fracstudy.claims import Finding
-from fracstudy.inputs import ORDERS, Inputs, Result, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import ORDERS, Inputs, Result
 
 __all__ = ["study", "weight_sum"]
 
@@ -24,8 +24,7 @@ NEEDS: dict[str, list[Any]] = {
 }
 
 _EPS = float(np.finfo(float).eps)
-_NOT_ROUND_OFF = 1000.0  # times the bound of round-off
-_CHANGED = "The change exceeds round-off."
+_CLAIMED = ("DPSE", "FPSE", "KPSE", "GPSE", "DD")
 _TWO_PASSES = {
     "DPSE": (dpse.potential_weights, dpse.laplacian_weights),
     "FPSE": (fpse.flux_weights, fpse.divergence_weights),
@@ -36,9 +35,8 @@ def study(inputs: Inputs, *, shown_beta: float) -> Result:
     """The change M(t_f) / M(t_0) - 1 of the total strength, beside round-off and the exact outflow.
 
     A rate du_i/dt is a sum whose terms add up to S |u|, S the sum of the absolute weights. By transforms of length L
-    it carries a round-off of about eps log2(L) S |u|, which adds up over the time T: the strength is called invariant
-    if |M / M0 - 1| < 4 eps log2(L) S T in every run of the scheme, and DD's is said to change if it exceeds a thousand
-    times that bound in every run. What leaves [-D, D] in the exact solution is m(D, t_0) - m(D, t_f), in closed form.
+    it carries a round-off of about eps log2(L) S |u|, which adds up over the time T: 4 eps log2(L) S T is taken as its
+    bound. What leaves [-D, D] in the exact solution is m(D, t_0) - m(D, t_f), in closed form.
 
     The strengths of DVM are constant, their sum is one of N terms; every remeshing sums anew what it splits.
 
@@ -117,80 +115,63 @@ def _round_off(run: Any) -> float:
 
 
 def _lattice(runs: pd.DataFrame) -> list[Finding]:
-    """The exchange schemes, truncated, must keep the strength; DD must not."""
+    """The exchange schemes and DD, truncated: the change over the bound of its round-off, and the exact outflow."""
+    opened = runs[runs["exterior"] == "open"]
     findings = []
-    truncated = dict(iter(runs[runs["exterior"] == "truncated"].groupby("scheme")))
-    for scheme in ("DPSE", "FPSE", "KPSE", "GPSE"):
-        here = truncated[scheme]
-        part = here["change"].abs() / here["bound"]
-        worst = here.loc[here["change"].abs().idxmax()]
-        findings.append(
-            statement(
+    for scheme, here in runs[runs["exterior"] == "truncated"].groupby("scheme"):
+        change = here["change"].abs()
+        share = (change / here["bound"]).groupby(here["beta"])
+        if scheme == "DD":
+            least = (change / here["outflow"]).groupby(here["beta"])
+            missed = (opened["change"] + opened["outflow"]).abs().max()
+            more = {"outflow": least.agg(np.min), "missed": missed, "share": share.min()}
+        else:
+            more = {"outflow": here["outflow"].max(), "share": share.max()}
+        if scheme in _CLAIMED:
+            found = measured(
                 f"L-C18.{scheme}",
-                (part < 1.0).all(),
-                f"Largest |M / M0 - 1| of {len(here)} runs: {abs(worst['change']):.2g} (beta = {worst['beta']:g}), "
-                f"at most {part.max():.2g} of the bound of round-off; the exact solution carries up to "
-                f"{here['outflow'].max():.2g} out of [-D, D] meanwhile.",
-                _CHANGED,
-                here["run"],
+                runs=here["run"],
+                change=change.groupby(here["beta"]).max(),
+                count=len(here),
+                **more,
             )
-        )
-    leak, opened = truncated["DD"], runs[runs["exterior"] == "open"]
-    surplus = 100.0 * (-leak["change"] / leak["outflow"] - 1.0)
-    missed = (opened["change"] + opened["outflow"]).abs().max()
-    findings.append(
-        statement(
-            "L-C18.DD",
-            (leak["change"].abs() > _NOT_ROUND_OFF * leak["bound"]).all(),
-            f"M / M0 - 1 of DD: {leak['change'].max():.2e} to {leak['change'].min():.2e}; that is what the exact "
-            f"solution carries out of [-D, D] and {surplus.min():.1f} to {surplus.max():.1f} % more. "
-            f"With the open exterior the change of DD, FPSE and KPSE is the exact outflow to {missed:.1g}.",
-            "The change does not exceed round-off.",
-            leak["run"],
-        )
-    )
+            findings.append(found)
     return findings
 
 
 def _moving(runs: pd.DataFrame) -> list[Finding]:
     """DVM without remeshing, and with it: what is missing must be what remeshing put beyond the ends, or left out."""
     free, remeshed = runs[runs["remeshing"] == "none"], runs[runs["remeshing"] != "none"]
-    part = free["change"].abs() / free["bound"]
     gone = remeshed["lost"] + remeshed["left out"]
-    rest = ((remeshed["change"] + gone).abs() / remeshed["bound"]).max()
-    full = remeshed[remeshed["usual"] & (remeshed["threshold"] == 0.0)]
-    lost, outflow, time = -full["change"], full["outflow"], full["t_final"].max()
-    weak = remeshed[remeshed["left out"] != 0.0]
-    threshold = (
-        f" A threshold of {weak['threshold'].max():g} leaves out particles of a total of "
-        f"{weak['left out'].abs().max():.1e}."
-        if len(weak)
-        else ""
-    )
+    full = remeshed[remeshed["usual"] & (remeshed["threshold"] == 0.0)].set_index("beta")
+    usual = free[free["usual"]]
+    stretch = (usual["largest_spacing"] / usual["particle_spacing"]).groupby(usual["beta"]).min()
     return [
-        statement(
+        measured(
             "L-C18.DVM",
-            (part < 1.0).all(),
-            f"Largest |M / M0 - 1| of {len(free)} runs without remeshing: {free['change'].abs().max():.2g}, at most "
-            f"{part.max():.2g} of the bound of round-off.",
-            _CHANGED,
-            free["run"],
+            runs=free["run"],
+            change=free["change"].abs().groupby(free["beta"]).max(),
+            share=(free["change"].abs() / free["bound"]).groupby(free["beta"]).max(),
+            count=len(free),
         ),
-        statement(
+        measured(
             "L-C18.DVM_remeshed",
-            (remeshed["change"].abs() > _NOT_ROUND_OFF * remeshed["bound"]).all() and rest < 1.0,
-            f"Remeshed onto the initial lattice, DVM loses {lost.min():.2e} to {lost.max():.2e} of its strength until "
-            f"t = {time:g}; the exact solution carries {outflow.min():.2e} to {outflow.max():.2e} out of "
-            f"[-D, D]. All of it is what remeshing put beyond +-D, to {rest:.2g} of the bound of round-off: the "
-            f"interpolation itself conserves.{threshold}",
-            "Remeshing keeps the strength, or loses it elsewhere.",
-            remeshed["run"],
+            runs=remeshed["run"],
+            share=(remeshed["change"].abs() / remeshed["bound"]).groupby(remeshed["beta"]).min(),
+            lost=(-full["change"]).groupby("beta").max(),
+            outflow=full["outflow"].groupby("beta").max(),
+            rest=((remeshed["change"] + gone).abs() / remeshed["bound"]).max(),
+            weak=remeshed["left out"].abs().max(),
+        ),
+        measured("L-C18.DVM_distortion", runs=usual["run"], stretch=stretch),
+        measured(
+            "L-C18.DVM_overlap", runs=usual["run"], overlap=usual["overlap"].iloc[0] / stretch
         ),
     ]
 
 
 def _moments() -> Finding:
-    """The sums of U x^m before and after remeshing particles anywhere onto the lattice."""
+    """How many sums of U x^m, m = 0, 1, .., remeshing keeps, from particles anywhere onto the lattice."""
     random = np.random.default_rng(1)
     x, strength = random.uniform(-1.0, 1.0, 200), random.uniform(0.5, 1.5, 200)
     kept = {}
@@ -200,11 +181,6 @@ def _moments() -> Finding:
         off = [(moved * z**m).sum() - (strength * x**m).sum() for m in range(6)]
         # Sums of some hundred terms of modulus one.
         kept[name] = int(np.argmax(np.abs(off) > 1e-12 * np.array(scale)))
-    found = ", ".join(f"{name}: {count}" for name, count in kept.items())
-    return statement(
-        "L-C18.DVM_moments",
-        max(kept.values()) >= 4,
-        f"First moments (from the total strength on) that remeshing keeps, 200 random particles: {found}. The usual "
-        "M4' keeps three; the four-moment function has a kink at every lattice point.",
-        "None keeps four.",
-    )
+    best = max(kept, key=kept.__getitem__)
+    others = {name: {"kept": count} for name, count in kept.items() if name != best}
+    return measured("L-C18.DVM_moments", kept=kept[best], others=others)

@@ -10,7 +10,7 @@ z = dt A_DD(k h), and that exceeds one where D dt / h^alpha exceeds DD's limit a
 from __future__ import annotations
 
 import warnings
-from collections import deque
+from collections.abc import Iterator, Mapping
 from functools import partial
 from itertools import product
 from typing import Any
@@ -20,15 +20,14 @@ import pandas as pd
 
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
 from fracparticles.moving import dvm
-from fracparticles.moving.lagrangian import FieldNotPositive, advance
+from fracparticles.moving.lagrangian import advance
 from fracparticles.run.case import Case
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import advect, compute, initial_strengths
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.stability import stability_limit
-from fracparticles.special.stable import mean_radius
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, listed, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 
 __all__ = ["displacement_growth", "gpse_factors", "study", "worst_wave"]
 
@@ -36,8 +35,10 @@ _STEPS = 3  # of which a measured growth is the mean
 _XI = 1e-5  # displacement of a wave, in spacings: its square is what linearity neglects
 _SEED = 1e-6  # relative perturbation of a run's strengths, far above round-off: the same on every machine
 _RUINED = 10.0  # an error that has grown so many times is no longer that of the discretisation
-_ROUND_OFF = 1e-12
-_WEAK = 1e-3  # of the peak: a particle of very small strength
+_WEAK, _EVERY = (
+    1e-3,
+    10,
+)  # of the peak: a very small strength; states between two that are looked at
 _WAVES = np.linspace(0.0, np.pi, 4001)
 _BETAS = (0.1, 0.5, 0.9)
 _RUNS: dict[str, dict[str, Any]] = {
@@ -88,19 +89,21 @@ def study(
     half: int,
     overlap: list[float],
     spacings: list[float],
-    stop: dict[str, Any],
+    ends: list[dict[str, Any]],
+    printed_spacing: dict[float, float],
+    printed_step: float,
 ) -> Result:
     """Growth in a step, and errors of runs, against the step in units of DD's limit a h^alpha / D.
 
-    GPSE is called stable if |1 + dt A| <= 1 up to round-off, for every wave, beta and `overlap`. DVM is called stable
-    if no run above the limit stops, or errs ten times as much as the one with the smallest step. The runs have steps of
-    `factors` times the limit; waves are measured at `growth` times it on 2 `half` + 1 particles; the velocity of the
-    last particle is taken at each of the `spacings`; `stop` holds the fields of a case that stops.
+    A run is ruined if it stops or errs ten times as much as the one with the smallest step. The runs have steps of
+    `factors` times the limit; GPSE's waves are taken for every beta and `overlap`, DVM's are measured at `growth` times
+    the limit on 2 `half` + 1 particles; the velocity of the last particle is taken at each of the `spacings`; `ends`
+    holds the fields of cases whose ends are looked at. The limit is set beside the paper's step by its h, by beta.
     """
     grid = {"beta": beta, "truncation": truncation}
     waves = _growth(1.0 + beta, growth, half)
     runs = pd.concat([_runs(name, {**grid, "spacing": spacing}, factors) for name in _RUNS])
-    ruined, error = runs["ratio"] > _RUINED, runs["error"]
+    ruined, error = _ruined(runs) & runs["stopped"].isna(), runs["error"]
     # Saturated chaos: its size is a result, its digits are nobody's.
     shown = error.where(~ruined, error.map(lambda e: float(f"{e:.0e}")))
     outcome = np.where(runs["stopped"].notna(), "stopped", np.where(ruined, "ruined", "fine"))
@@ -116,15 +119,20 @@ def study(
             "growth of the worst wave in a step": runs["growth"],
         }
     )
-    findings = []
+    findings: list[Finding] = []
     if inputs.items:
+        limits = {
+            beta: stability_limit("DD", beta) * h ** (1.0 + beta) / printed_step
+            for beta, h in printed_spacing.items()
+        }
         findings = [
-            _gpse_finding(runs, overlap),
-            _dvm_finding(runs, waves, beta, min(spacings)),
-            _bounded_finding(grid, spacings),
-            _divergence_finding(Case(scheme="DVM", **stop)),
+            *_gpse(runs, overlap),
+            *_dvm(runs, _unseeded({**grid, "spacing": spacing}, runs), waves, limits),
+            _bounded(grid, spacings),
+            *_weak([Case(scheme="DVM", **fields) for fields in ends]),
         ]
-    series = pd.concat([waves.assign(panel="growth"), runs.assign(panel="error")])
+    runs = runs.drop(columns="remeshed").assign(panel="error")
+    series = pd.concat([waves.assign(panel="growth"), runs])
     return Result(table, findings, series.reset_index(drop=True))
 
 
@@ -151,7 +159,9 @@ def _growth(alpha: float, factors: list[float], half: int) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _runs(name: str, grid: dict[str, float], factors: list[float]) -> pd.DataFrame:
+def _runs(
+    name: str, grid: dict[str, float], factors: list[float], seed: float = _SEED
+) -> pd.DataFrame:
     """Runs with steps on both sides of the limit; a run that stops has no error, but the time of it."""
     of_dd = Case(**grid, scheme="DD", dt=1.0)
     limit, start = of_dd.largest_stable_step, of_dd.t_initial
@@ -160,8 +170,9 @@ def _runs(name: str, grid: dict[str, float], factors: list[float]) -> pd.DataFra
         case = Case(**grid, **_RUNS[name], dt=factor * limit, t_initial=start)
         # With a trace of the worst wave, so that round-off need not provide it.
         k = worst_wave(case.alpha, 2) / case.particle_spacing
-        seeded = initial_strengths(case)[0] * (1.0 + _SEED * np.cos(k * case.x))
-        u, stopped = _final_field(case, seeded)
+        u, stopped, remeshings = _final_field(
+            case, initial_strengths(case)[0] * (1.0 + seed * np.cos(k * case.x))
+        )
         growth = _midpoint(-2.0 * case.time_step / limit) if case.scheme == "DVM" else np.nan
         rows.append(
             {
@@ -172,60 +183,77 @@ def _runs(name: str, grid: dict[str, float], factors: list[float]) -> pd.DataFra
                 "error": np.nan if u is None else relative_l1_error(case, u),
                 "stopped": stopped,
                 "growth": growth,
+                "remeshed": remeshings / case.steps,
             }
         )
     runs = pd.DataFrame(rows)
     return runs.assign(ratio=runs["error"] / runs["error"].iloc[runs["dt"].argmin()])
 
 
-def _final_field(case: Case, u0: np.ndarray) -> tuple[np.ndarray | None, float]:
-    """The field at the end and nan, or None and the time after which the run could not go on."""
+def _ruined(runs: pd.DataFrame) -> pd.Series:
+    return runs["stopped"].notna() | (runs["ratio"] > _RUINED)
+
+
+def _unseeded(grid: dict[str, float], runs: pd.DataFrame) -> pd.DataFrame:
+    """The runs of DVM above the limit once more without a trace of the worst wave, beside that of the smallest step."""
+    factors = runs.loc[runs["run"] == "DVM, M4'", "factor"]
+    chosen = [factors.min(), *factors[factors > 1.0]]
+    return pd.concat([_runs(name, grid, chosen, 0.0) for name in _RUNS if name.startswith("DVM")])
+
+
+def _final_field(case: Case, u0: np.ndarray) -> tuple[np.ndarray | None, float, int]:
+    """The field at the end, nan and the number of remeshings, or None and the time after which the run stopped."""
     if case.scheme != "DVM":
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StabilityWarning)
-            return compute(case, u0).u, np.nan
-    states: deque[Any] = deque(maxlen=1)
+            return compute(case, u0).u, np.nan, 0
+    times: list[float] = []
     try:
-        return advect(case, u0, lambda *state: states.append(state)).field(case.x), np.nan
+        run = advect(case, u0, lambda time, *_: times.append(time))
     except NonFiniteSolution:
-        return None, states[-1][0]
+        return None, times[-1], 0
+    return run.field(case.x), np.nan, run.history.remeshings
 
 
-def _gpse_finding(runs: pd.DataFrame, overlaps: list[float]) -> Finding:
+def _gpse(runs: pd.DataFrame, overlaps: list[float]) -> Iterator[Finding]:
+    """The factors of a step over all waves, and the errors of runs with steps on both sides of DD's limit."""
     factors = [gpse_factors(1.0 + beta, s) for beta, s in product(_BETAS, overlaps)]
-    low, high = min(f.min() for f in factors), max(f.max() for f in factors)
     here = runs[runs["run"].str.startswith("GPSE")]
-    return statement(
+    error = here["error"]
+    change = error.max() / error.min() - 1.0
+    yield measured(
         "L-C11.GPSE",
-        low >= -1.0 and high <= 1.0 + _ROUND_OFF and here["ratio"].max() < _RUINED,
-        f"A step multiplies waves by {round(low, 12) + 0.0:g} to {round(high, 12):g}, for beta = {listed(_BETAS)} "
-        f"and epsilon / h from {min(overlaps):g} to {max(overlaps):g}; runs with steps up to "
-        f"{here['factor'].max():.3g} times the limit of DD err by {here['error'].min():.1e} to "
-        f"{here['error'].max():.1e}.",
-        "A step amplifies a wave.",
+        lowest=min(f.min() for f in factors),
+        excess=max(f.max() for f in factors) - 1.0,
+        change=change,
+        factor=here["factor"].max(),
     )
+    apart = here["dt"].max() / here["dt"].min()
+    yield measured("L-C11.GPSE_exact", change=change, apart=apart, error=error.max())
 
 
-def _dvm_finding(runs: pd.DataFrame, growth: pd.DataFrame, beta: float, h: float) -> Finding:
-    longest = stability_limit("DD", beta) * h ** (1.0 + beta)
-    waves = growth[growth["run"] == "DVM"]
-    miss = (waves["measured"] - waves["predicted"]).abs().max()
-    here = runs[runs["run"].str.startswith("DVM")]
-    bad = here["stopped"].notna() | (here["ratio"] > _RUINED)
-    above, below = here["factor"] > 1.0, here["factor"] <= 1.0
-    first = here.loc[bad, "factor"].min()
-    limits = ", ".join(f"{stability_limit('DD', beta):.2f} (beta = {beta:g})" for beta in _BETAS)
-    return statement(
+def _dvm(
+    runs: pd.DataFrame, unseeded: pd.DataFrame, waves: pd.DataFrame, limits: Mapping[float, float]
+) -> Iterator[Finding]:
+    """Which runs of DVM are ruined above DD's limit, and how a displacement wave grows."""
+    waves, runs = waves[waves["run"] == "DVM"], runs[runs["run"].str.startswith("DVM")]
+
+    def share(runs: pd.DataFrame, above: bool = True) -> pd.Series:
+        here = (runs["factor"] > 1.0) == above
+        return _ruined(runs)[here].groupby(runs["run"][here]).mean()
+
+    yield measured(
         "L-C11.DVM",
-        not (bad & above).any(),
-        f"Of {above.sum()} runs with steps above the limit of DD {(bad & above).sum()} stop or err more than "
-        f"{_RUINED:g} times as much as with the smallest step, the first at {first:.3g} times that limit; of "
-        f"{below.sum()} runs below it {(bad & below).sum()}. A displacement wave grows as DD's symbol says, to "
-        f"{miss:.1g}.",
-        "The strengths are invariant, the positions are not: a displacement wave has the rate of DD's symbol, so that "
-        f"the midpoint rule has DD's limit, D dt / h^alpha <= {limits} at order II: dt <= {longest:.3g} for beta = "
-        f"{beta:g}, h = {h:.3g}.",
+        others={"no trace of the worst wave at the start": {"ruined": share(unseeded)}},
+        ruined=share(runs),
+        below=share(runs, above=False).max(),
+        first=runs.loc[_ruined(runs), "factor"].min() if _ruined(runs).any() else 0.0,
+        miss=(waves["measured"] - waves["predicted"]).abs().max(),
+        limit=pd.Series(limits).rename_axis("beta"),
+        trace=_SEED,
     )
+    least = runs.sort_values("dt").groupby("run")["remeshed"].first()
+    yield measured("L-C11.DVM_invariant", remeshed=least)
 
 
 def _velocity(case: Case) -> dvm.DiffusionVelocity:
@@ -233,45 +261,49 @@ def _velocity(case: Case) -> dvm.DiffusionVelocity:
     return dvm.DiffusionVelocity(case.alpha, case.order, epsilon)
 
 
-def _bounded_finding(grid: dict[str, float], spacings: list[float]) -> Finding:
+def _bounded(grid: dict[str, float], spacings: list[float]) -> Finding:
     """The last particle's velocity at the start, over the exact x / (alpha t), against h."""
     cases = [Case(scheme="DVM", **grid, spacing=h, dt=1.0) for h in spacings]
-    exact = cases[0].reach / (cases[0].alpha * cases[0].t_initial)
     h = np.array([case.particle_spacing for case in cases])
     strengths = [case.particle_spacing * initial_strengths(case)[0] for case in cases]
     pairs = zip(cases, strengths, strict=True)
     last = np.array([float(_velocity(case)(case.x, strength)[-1]) for case, strength in pairs])
     # With h halved from level to level, a power of h keeps its exponent in the differences.
     gain = np.diff(last)
-    power = float(np.log(gain[-1] / gain[-2]) / np.log(h[-1] / h[-2]))
-    return statement(
+    return measured(
         "L-C11.DVM_bounded",
-        power > -0.1,
-        f"Velocity of the last particle at the start, beta = {grid['beta']:g}: {last[0]:.3g} at h = {h[0]:.3g}, "
-        f"{last[-1]:.3g} at h = {h[-1]:.3g}, exactly {exact:.3g}; what a halved h adds grows like h^{power:.2f}.",
-        "At an end the field jumps to zero and the flux there grows like epsilon^-beta: no bound holds as h falls. For "
-        "the solution itself the velocity is x / (alpha t), which no bound holds either.",
+        power=np.log(gain[-1] / gain[-2]) / np.log(h[-1] / h[-2]),
+        velocity={f"h = {spacing:.3g}": v for spacing, v in zip(h, last, strict=True)},
+        exact=cases[0].reach / (cases[0].alpha * cases[0].t_initial),
     )
 
 
-def _divergence_finding(case: Case) -> Finding:
-    """A run that stops below the limit: where, and how weak the particle there is."""
-    states: deque[Any] = deque(maxlen=1)
-    stopped, weak, place = "does not stop", 0.0, case.reach
-    try:
-        advect(case, initial_strengths(case)[0], lambda *state: states.append(state))
-    except FieldNotPositive:
-        time, x, strength = states[-1]
-        u = _velocity(case).field_and_flux(x, strength)[0]
-        least = int(np.argmin(u))
-        stopped = f"stops after t = {time:g}"
-        weak, place = float(u[least] / u.max()), float(abs(x[least]))
-    return statement(
+def _weak(cases: list[Case]) -> Iterator[Finding]:
+    """How strong the weakest particles are, and where the velocity is more than the exact x / (alpha t)."""
+    least, ratios, stopped = {}, {}, 0
+    for case in cases:
+        name = f"beta = {case.beta:g}"
+        u0 = initial_strengths(case)[0]
+        least[name] = u0.min() / u0.max()
+        states: list[Any] = []
+        try:
+            advect(case, u0, lambda *state, kept=states: kept.append(state))
+        except NonFiniteSolution:
+            stopped += 1
+        ratios[name] = np.max([_speeds(case, *s) for s in [*states[::_EVERY], states[-1]]], axis=0)
+    yield measured(
         "L-C11.DVM_divergence",
-        weak < _WEAK and place > 5.0 * mean_radius(case.alpha),
-        f"At beta = {case.beta:g}, h = {case.particle_spacing:.3g}, dt = {case.time_step:g}, "
-        f"{case.time_step / case.largest_stable_step:.2g} of the limit of DD, the run {stopped}: the field changes "
-        f"sign; the weakest particle of the step before is at {place / case.reach:.2f} D with {weak:.1e} of the peak. "
-        "It is weak because it is an end of the lattice, which remeshing rings about.",
-        "A run stops where the field is not small.",
+        excess={name: strong - 1.0 for name, (strong, _) in ratios.items()},
+        weak={name: weak for name, (_, weak) in ratios.items()},
+        stopped=stopped,
     )
+    yield measured("L-C11.small_strengths", least=least)
+
+
+def _speeds(case: Case, time: float, x: np.ndarray, strength: np.ndarray) -> tuple[float, float]:
+    """The largest speed over the exact one, where u is more than a thousandth of its peak, and elsewhere."""
+    u, flux = _velocity(case).field_and_flux(x, strength)
+    here = np.abs(x) > 2.0 * case.particle_spacing
+    ratio = np.abs(flux / u)[here] / (np.abs(x) / (case.alpha * time))[here]
+    strong = (u > _WEAK * u.max())[here]
+    return ratio[strong].max(), ratio[~strong].max(initial=0.0)

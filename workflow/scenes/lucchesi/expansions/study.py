@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from math import log, pi
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from scipy.special import gammaln
 
 from fracparticles.special import green_asymptotic, green_series, reduced_green
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
 
@@ -75,39 +76,79 @@ def _holds_up_to(x: np.ndarray, good: np.ndarray) -> float:
 
 
 def _findings(item: str, alpha: float, table: pd.DataFrame) -> list[Finding]:
-    loose = f"{_TOLERANCES[0]:g}"
-    reach, start = table[f"series to x ({loose})"], table[f"expansion from x ({loose})"]
-    widest, earliest = reach.idxmax(), start.idxmin()
-    # The series gains until its largest terms, rounded, are as large as the tolerance of the sum; the expansion gains
-    # until the terms left out grow again.
-    gaining, receding = reach.iloc[: int(widest) + 1], start.iloc[: int(earliest) + 1]
-    far, near, terms = reach.max(), start.min(), table["terms"]
-    cancellation = _largest_term(far, alpha) / float(reduced_green(far, alpha))
-    gains = len(gaining) > 2 and (np.diff(gaining) > 0.0).all()
-    recedes = start.notna().all() and len(receding) > 2 and (np.diff(receding) < 0.0).all()
+    """How far the sums reach. A reach is followed as terms are added until it no longer grows.
+
+    The series gains until its largest terms, rounded, are as large as the tolerance of the sum; the expansion gains
+    until the terms left out grow again.
+    """
+    loose, strict = (_Reach.of(table, f"{tolerance:g}") for tolerance in _TOLERANCES)
+    x = np.array([0.25, 0.5])
+    exact = np.asarray(reduced_green(x, alpha))
+    right, left = (
+        np.array([_literal_series(value, alpha) for value in sign * x]) for sign in (1.0, -1.0)
+    )
     return [
-        statement(
+        measured(
             f"{item}.series",
-            gains,
-            f"The partial sums are right to {loose} up to x = {_chain(terms, gaining)} terms. There its "
-            f"largest term is {cancellation:.0e} times the sum: round-off in double precision ends it, not the series.",
-            "More terms do not make the partial sums hold further from the origin.",
+            gain=_gains(loose.series),
+            reach=_chain(table["terms"], loose.series),
+            cancellation=_largest_term(loose.far, alpha) / float(reduced_green(loose.far, alpha)),
         ),
-        statement(
+        measured(
+            f"{item}.even",
+            even=np.abs(left / right - 1.0).max(),
+            printed=np.abs(right / exact - 1.0).max(),
+        ),
+        measured(
             f"{item}.asymptotic",
-            recedes,
-            f"The sums are right to {loose} from x = {_chain(terms, receding)} terms; beyond that number the "
-            "start moves outwards again, as that of a divergent expansion must.",
-            "The sums of (A.2) do not approach the function for large x.",
+            gain=_gains(1.0 / loose.expansion),
+            start=_chain(table["terms"], loose.expansion),
         ),
-        statement(
+        measured(
             f"{item}.overlap",
-            far >= near,
-            f"Right to {loose} are {terms[widest]:g} terms of (A.1) up to x = {far:.3g} and {terms[earliest]:g} terms "
-            f"of (A.2) from x = {near:.3g}: M may lie between.",
-            "The series ends, in double precision, before the expansion begins.",
+            ratio=loose.far / loose.near,
+            far=loose.far,
+            near=loose.near,
+            others={
+                f"sums that are right to {_TOLERANCES[1]:g}": {"ratio": strict.far / strict.near}
+            },
         ),
     ]
+
+
+class _Reach(NamedTuple):
+    """By number of terms: up to which x the series holds, and from which the expansion, until more make them worse."""
+
+    series: pd.Series
+    expansion: pd.Series
+
+    @classmethod
+    def of(cls, table: pd.DataFrame, tolerance: str) -> _Reach:
+        reach, start = table[f"series to x ({tolerance})"], table[f"expansion from x ({tolerance})"]
+        return cls(
+            reach.iloc[: max(int(reach.idxmax()), 1) + 1],
+            start.iloc[: max(int(start.idxmin()), 1) + 1],
+        )
+
+    @property
+    def far(self) -> float:
+        return float(self.series.max())
+
+    @property
+    def near(self) -> float:
+        return float(self.expansion.min())
+
+
+def _gains(reach: pd.Series) -> float:
+    """The least ratio of a reach to the one with fewer terms."""
+    return float((reach.iloc[1:].to_numpy() / reach.iloc[:-1].to_numpy()).min())
+
+
+def _literal_series(x: float, alpha: float, terms: int = 200) -> float:
+    """(A.1) as printed: 1/(x pi) sum (-x)^m Gamma(1 + m/alpha) / m! sin(-m pi / 2)."""
+    m = np.arange(1.0, terms + 1.0)
+    size = np.exp(gammaln(1.0 + m / alpha) - gammaln(m + 1.0))
+    return float(((-x) ** m * size * np.sin(-0.5 * pi * m)).sum() / (x * pi))
 
 
 def _largest_term(x: float, alpha: float) -> float:
@@ -117,8 +158,7 @@ def _largest_term(x: float, alpha: float) -> float:
     return float(np.exp(logarithms.max()) / pi)
 
 
-def _chain(terms: pd.Series, places: pd.Series) -> str:
-    """The first, the middle and the last place, with the numbers of terms."""
-    pairs = list(zip(places, terms, strict=False))
-    shown = [pairs[0], pairs[len(pairs) // 2], pairs[-1]]
-    return ", ".join(f"{x:.3g} with {n:g}" for x, n in shown)
+def _chain(terms: pd.Series, places: pd.Series) -> dict[str, float]:
+    """The first, the middle and the last place, by the number of terms."""
+    shown = sorted({0, len(places) // 2, len(places) - 1})
+    return {f"{terms.iloc[k]:g} terms": places.iloc[k] for k in shown}

@@ -9,8 +9,8 @@ import pandas as pd
 
 from fracparticles.special.plane import square_tail_mass
 from fracparticles.special.stable import tail_mass
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement, value
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from scenes.plane import particles_per_side
 
 __all__ = ["study"]
@@ -48,7 +48,7 @@ def study(inputs: Inputs) -> Result:
             "the same, exact solution on the lattice, %": 100.0 * after,
         }
     )
-    findings = _findings(table.assign(h=runs["particle_spacing"], run=runs["run"]), inputs)
+    findings = _findings(table.assign(h=runs["particle_spacing"], run=runs["run"]))
     return Result(table.reset_index(drop=True), inputs.judged(findings))
 
 
@@ -58,32 +58,29 @@ def _outside(run: Any, t: float) -> float:
     return square_tail_mass(half, t, alpha) if run.dim == 2 else float(tail_mass(half, t, alpha, 1))
 
 
-def _findings(table: pd.DataFrame, inputs: Inputs) -> list[Finding]:
+def _findings(table: pd.DataFrame) -> list[Finding]:
     """Of DD on the paper's square, that of the least C; beside it the interval of the same h."""
     here = table[(table["scheme"] == "DD") & (table["exterior"] == "truncated")]
     here = here[here["C"] == here["C"].min()]
     plane, line = here[here["n"] == 2], here[here["n"] == 1].iloc[0]
-    lost = plane[_LOST]
     finest = plane.loc[plane["N"].idxmax()]
     matching = plane.loc[(plane["h"] - line["h"]).abs().idxmin()]
+    columns = {"left out at the start": _START, "lost by DD in the run": _LOST}
     files = list(table["run"])
     return [
-        value(
+        measured(
             "L-2D-MASS.dd_loss",
-            finest[_LOST],
-            f"{finest[_LOST]:.2f} % is what DD loses from t_0 to t_f at N = {finest['N']:.0f} ({lost.min():.2f} to "
-            f"{lost.max():.2f} % over the four N). What the initial condition leaves out beyond the square, "
-            f"with any scheme, is {finest[_START]:.2f} %, to be compared with the printed "
-            f"{inputs.printed.get('L-2D-MASS.dd_loss')} %. Together {finest[_MISSING]:.2f} % are missing at t_f.",
-            files,
+            runs=files,
+            ours=finest[_LOST],
+            by_count=plane.set_index("N")[_LOST],
+            start=finest[_START],
+            missing=finest[_MISSING],
         ),
-        statement(
+        measured(
             "L-2D-MASS.weaker",
-            matching[_LOST] < line[_LOST] and matching[_START] < line[_START],
-            f"At C = {matching['C']:g} and the same h, n = 1 and 2: left out at the start {line[_START]:.2f} and "
-            f"{matching[_START]:.2f} %, lost by DD in the run {line[_LOST]:.2f} and {matching[_LOST]:.2f} %.",
-            "By mass the truncation is stronger in two dimensions: the mass beyond D falls like D^-alpha for every n, "
-            "with a larger factor for n = 2. Weaker is its effect on the error (see L-F9.weaker).",
-            files,
+            runs=files,
+            ratio={name: matching[column] / line[column] for name, column in columns.items()},
+            plane={name: matching[column] for name, column in columns.items()},
+            line={name: line[column] for name, column in columns.items()},
         ),
     ]

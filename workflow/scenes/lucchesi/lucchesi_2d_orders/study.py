@@ -9,15 +9,14 @@ import pandas as pd
 
 from fracparticles.lattice.field import smoothed_field
 from fracparticles.run.orders import self_convergence_order
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement, value
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from scenes.plane import DISK, particles_per_side, stored_field
 
 __all__ = ["study"]
 
 NEEDS = {"scheme": ["DD", "FPSE"]}
 
-_SECOND = 0.1  # how far from 2 the order on the finest lattices may be
 _OURS = "ours, h as middle level"  # of the three of (49)
 # |x| up to which the sum runs; round-off must not leave out a particle.
 _REGIONS = {"r <= 5": DISK * (1.0 + 1e-12), "all particles": np.inf}
@@ -86,34 +85,41 @@ def _order(levels: _Levels, count: int, place: int, what: str, region: str) -> f
 
 def _findings(table: pd.DataFrame, particles: dict[str, int], files: list[str]) -> list[Finding]:
     findings = []
-    for (scheme, count), part in table.groupby(["scheme", "N"], sort=False):
-        h = next(h for h, n in particles.items() if n == count)
-        nearest = part.loc[part["deviation"].abs().fillna(np.inf).idxmin()]
-        findings.append(
-            value(
-                f"L-2D-ORD.{scheme}.h{h}",
-                part[_OURS].iloc[0],
-                "Ours: field (7) over r <= 5, h as middle level, exact kernels; the print does not name the reading. "
-                f"Of the readings with h as middle level the nearest is the {nearest['of the']}, {nearest['over']}, "
-                f"{abs(nearest['deviation']):.3f} off.",
-                files,
-            )
-        )
     for h, count in particles.items():
-        spacing = table.loc[table["N"] == count, "h"].head(1)
-        where = f"2 D / (N - 1) at N = {count}."
-        findings += [value(f"L-2D-ORD.spacing.h{h}", ours, where) for ours in spacing]
-    finest = table[table["N"] == table["N"].max()].set_index(["over", "of the", "scheme"])[_OURS]
-    orders, least = finest["r <= 5"], finest["all particles"].min()
-    found = "; ".join(f"{p:.3f} ({scheme}, {what})" for (what, scheme), p in orders.items())
+        here = table[table["N"] == count]
+        for scheme, part in here.groupby("scheme", sort=False):
+            readings = part.set_index(["of the", "over"])
+            nearest = readings["deviation"].abs().fillna(np.inf).idxmin()
+            findings.append(
+                measured(
+                    f"L-2D-ORD.{scheme}.h{h}",
+                    runs=files,
+                    ours=part[_OURS].iloc[0],
+                    nearest=", ".join(nearest),
+                    readings={" over ".join(key): order for key, order in readings[_OURS].items()},
+                )
+            )
+        findings += [
+            measured(f"L-2D-ORD.spacing.h{h}", ours=spacing, particles=count)
+            for spacing in here["h"].head(1)
+        ]
+    finest = table[table["N"] == table["N"].max()]
+    finest = finest.set_index(["of the", "over", "scheme"])[_OURS].sort_index()
+    difference = (finest - 2.0).abs()
     return [
         *findings,
-        statement(
+        measured(
             "L-2D-ORD.second_order",
-            ((orders - 2.0).abs() < _SECOND).all(),
-            f"On the finest three lattices, over r <= 5: {found}. Over all particles it is down to {least:.2f}: as in "
-            "one dimension, the layer of FPSE at the edge does not converge.",
-            "On the finest three lattices the order is not near 2.",
-            files,
+            runs=files,
+            difference=difference["field (7)", "r <= 5"],
+            order=finest["field (7)", "r <= 5"],
+            others={
+                "the strengths for the field (7)": {
+                    "difference": difference["strengths", "r <= 5"]
+                },
+                "all particles for the disk": {
+                    "difference": difference["field (7)", "all particles"]
+                },
+            },
         ),
     ]

@@ -1,6 +1,8 @@
-"""DVM in the reference case, Secs. 4.1 and 4.2: its domain, and what its lattice needs remeshing for."""
+"""DVM in the reference case, Secs. 3.3, 4.1, 4.2 and 6: its domain, and what its lattice needs remeshing for."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
@@ -8,93 +10,100 @@ import pandas as pd
 from fracparticles.errors import FracparticlesError
 from fracparticles.run.dataset import read_run
 from fracparticles.special.stable import mean_radius
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, listed, spelled, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs
 
 __all__ = ["lagrangian_domain", "truncation_effect"]
 
-_NEGLIGIBLE = 0.05  # of the error (48): what the truncation may change
-_ALIKE = 0.25  # the effects of the truncation on two schemes differ by no more, relative
-_SPOILED = 2.0  # the error without remeshing over that with it
+_FREE, _REMESHED = "without remeshing", "remeshed"
 
 
 def lagrangian_domain(
-    inputs: Inputs, main: Inputs, table: pd.DataFrame, window: list[float]
-) -> list[Finding]:
-    """Judge what the paper says on DVM's domain and remeshing.
+    inputs: Inputs, main: Inputs, table: pd.DataFrame, windows: list[list[float]]
+) -> Iterator[Finding]:
+    """Measure what the paper says on DVM's domain and remeshing.
 
     `main` are the runs of Fig. 2. The others have a coarser lattice and several half-widths: DVM with and without
-    remeshing, DD and KPSE, whose lattices stay where they are. The truncation at DVM's C matters if it changes u by
-    more than 5 % of the error (48); the adaptation of the lattice would be what makes that small if it changed DD
-    more.
+    remeshing, DD and KPSE, whose lattices stay where they are.
     """
-    return [*_lattice(main, table, window), *_truncation(inputs, main)]
-
-
-def _lattice(main: Inputs, table: pd.DataFrame, window: list[float]) -> list[Finding]:
     moving = main.select(scheme="DVM")
-    half = float(moving["half_width"].max())
+    names = [n for n in moving["remeshing"] if n != "none"]
     errors = table.set_index("scheme")["error (48)"]
-    errors = errors[errors.index.str.startswith("DVM")]
-    free = main.open(scheme="DVM", remeshing="none")
-    gap = np.diff(np.sort(free["particle_position"].values))
-    overlap = float(free["overlap"] * free["particle_spacing"] / np.median(gap))
-    return [
-        statement(
-            "L-F2.DVM_window",
-            half >= window[0],
-            f"The lattice of DVM, remeshed onto the initial one, ends at |x| = {half:.4g}; the right plot begins at "
-            f"x = {window[0]:g}.",
-            "With D = 10 t_f^(1/alpha) R_alpha (Sec. 4.1) DVM has no particles there; the caption counts four methods.",
-            moving["run"],
-        ),
-        statement(
-            "L-F2.DVM_remeshing",
-            errors["DVM, none"] > _SPOILED * errors.drop("DVM, none").max(),
-            f"Error (48): {spelled(errors)}. Without remeshing the overlap of half of the particles has fallen to "
-            f"{overlap:.2g} or less.",
-            "The error without remeshing is not larger.",
-            moving["run"],
-        ),
-    ]
+    ratio = {name: errors["DVM, none"] / errors[f"DVM, {name}"] for name in names}
+    kept, free = (_lattice(main, name) for name in (names[0], "none"))
+    runs = moving["run"]
+    yield measured(
+        "L-F2.DVM_window",
+        runs=runs,
+        reach={
+            f"x in [{low:g}, {high:g}]": kept["reach"] / low if low else kept["reach"] / high
+            for low, high in windows
+        },
+        end=kept["reach"],
+    )
+    yield measured("L-F2.DVM_distortion", runs=runs, gap=free["gap"])
+    yield measured("L-F2.DVM_overlap", runs=runs, overlap=free["overlap"])
+    yield measured(
+        "L-F2.DVM_remeshing",
+        runs=runs,
+        others={f"remeshing by {name}": {"ratio": ratio[name]} for name in names[1:]},
+        ratio=ratio[names[0]],
+        free=errors["DVM, none"],
+        remeshed=errors[f"DVM, {names[0]}"],
+    )
+    yield measured(
+        "L-C1.redistribution_resolution", runs=runs, overlap=kept["overlap"], free=free["overlap"]
+    )
+    yield measured("L-C1.redistribution_domain", runs=runs, ratio=free["reach"] / kept["reach"])
+    yield measured(
+        "L-C1.DVM_stretching",
+        runs=runs,
+        away={_FREE: abs(free["stretch"] - 1.0), _REMESHED: abs(kept["stretch"] - 1.0)},
+        stretch={_FREE: free["stretch"], _REMESHED: kept["stretch"]},
+    )
+    yield from _truncation(inputs, main, errors)
 
 
-def _truncation(inputs: Inputs, main: Inputs) -> list[Finding]:
+def _lattice(main: Inputs, remeshing: str) -> dict[str, float]:
+    """Where the particles of a run are at the end, whose half have a gap and an overlap no better than these."""
+    run = main.open(scheme="DVM", remeshing=remeshing)
+    x = np.sort(run["particle_position"].values)
+    gap = float(np.median(np.diff(x)) / run["particle_spacing"])
+    similarity = float(run["t_final"] / run["t_initial"]) ** (1.0 / (1.0 + float(run["beta"])))
+    return {
+        "reach": float(x[-1]),
+        "gap": gap,
+        "overlap": float(run["overlap"]) / gap,
+        "stretch": float(np.median(np.abs(x)) / (0.5 * run["half_width"])) / similarity,
+    }
+
+
+def _truncation(inputs: Inputs, main: Inputs, errors: pd.Series) -> Iterator[Finding]:
+    """The change of u from the widest domain to DVM's C, beside that of DD and beside the error (48) of Fig. 2."""
     others = inputs.scalars[~inputs.scalars["run"].isin(main.runs)]
-    effect, error = truncation_effect(others)
+    effect = truncation_effect(others)
     asked = float(main.select(scheme="DVM")["truncation"].iloc[0])
-    chosen = min(effect.columns, key=lambda c: abs(c - asked))
-    each = "; ".join(f"{name}: {listed(changes, '.1e')}" for name, *changes in effect.itertuples())
-    at = effect[chosen]
-    remeshed = [name for name in effect.index if name.startswith("DVM") and name != "DVM, none"]
-    still = at["DD"] / at[remeshed]
-    return [
-        statement(
-            "L-C1.DVM_domain",
-            (still > 1.0 + _ALIKE).all(),
-            f"Change of u over |x| <= 5 R, relative, from the widest domain to C = {listed(effect)}: {each}.",
-            "DD changes by as much, on a lattice that stays where it is, and so does remeshed DVM, which keeps to the "
-            "initial lattice: both find u and its flux from the particles inside, where a missing tail is hardly felt. "
-            "KPSE exchanges strength with it.",
-            others["run"],
-        ),
-        statement(
-            "L-C1.DVM_truncation",
-            (at[remeshed] < _NEGLIGIBLE * error[remeshed]).all(),
-            f"From the widest domain to C = {chosen:g}, u of DVM changes by {at[remeshed].max():.1e} with remeshing "
-            f"and {at['DVM, none']:.1e} without; its error (48) is {error[remeshed].min():.1e}, h = "
-            f"{others['particle_spacing'].iloc[0]:.3g}.",
-            "The truncation changes the error.",
-            others["run"],
-        ),
-    ]
+    at = effect[min(effect.columns, key=lambda c: abs(c - asked))]
+    remeshed = next(name for name in at.index if name.startswith("DVM") and name != "DVM, none")
+    names = {_REMESHED: remeshed, _FREE: "DVM, none"}
+    yield measured(
+        "L-C1.DVM_domain",
+        runs=others["run"],
+        ratio={case: at["DD"] / at[name] for case, name in names.items()},
+        change=at,
+    )
+    yield measured(
+        "L-C1.DVM_truncation",
+        runs=[*others["run"], *main.select(scheme="DVM")["run"]],
+        share={case: at[name] / errors[name] for case, name in names.items()},
+        change={case: at[name] for case, name in names.items()},
+    )
 
 
-def truncation_effect(runs: pd.DataFrame) -> tuple[pd.DataFrame, pd.Series]:
-    """Return the relative L1 distance of u from that on the widest domain, over |x| <= 5 R_alpha, and the error (48).
+def truncation_effect(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return the relative L1 distance of u from that on the widest domain, over |x| <= 5 R_alpha.
 
-    The former by scheme (rows) and truncation factor C (columns), the latter by scheme on the widest domain. The
-    runs hold u for |x| <= 5 R_alpha at least.
+    It is by scheme (rows) and truncation factor C (columns). The runs hold u for |x| <= 5 R_alpha at least.
 
     Raises
     ------
@@ -108,7 +117,7 @@ def truncation_effect(runs: pd.DataFrame) -> tuple[pd.DataFrame, pd.Series]:
             "choose half-widths that are multiples of one spacing"
         )
     half = 5.0 * mean_radius(1.0 + float(runs["beta"].iloc[0])) * (1.0 + 1e-12)
-    rows, errors = {}, {}
+    rows = {}
     # Schemes on the lattice have no remeshing.
     for (scheme, remeshing), part in runs.groupby(["scheme", "remeshing"], dropna=False):
         name = f"{scheme}, {remeshing}" if scheme == "DVM" else str(scheme)
@@ -116,8 +125,7 @@ def truncation_effect(runs: pd.DataFrame) -> tuple[pd.DataFrame, pd.Series]:
         widest, *fields = (_within(path, half) for path in part["run"])
         changes = [float(np.abs(u - widest).sum() / widest.sum()) for u in fields]
         rows[name] = dict(zip(part["truncation"].iloc[1:].round(6), changes, strict=True))
-        errors[name] = float(part["relative_l1_error"].iloc[0])
-    return pd.DataFrame(rows).T, pd.Series(errors)
+    return pd.DataFrame(rows).T
 
 
 def _within(path: str, half: float) -> np.ndarray:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
 from fracparticles.run.dataset import read_run
+from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import central_mass, green, mean_radius
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, spelled, statement, value
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from scenes.lucchesi.lucchesi_figure_2.dvm_domain import lagrangian_domain
 
 if TYPE_CHECKING:
@@ -25,7 +27,6 @@ NEEDS = {
     "remeshing": ["none"],
 }
 
-_SMALL = 0.01  # relative error that a plot does not show
 _POINTS = 400  # of each curve in a window, at most
 _PEAK, _DECAY = "relative error at x = 0", "largest relative error, |x| < 5"
 _INSIDE, _LAST = "largest relative error, |x| < D/2", "relative error at |x| = D"
@@ -41,7 +42,7 @@ def study(
     printed_particles: int,
     mass_beta: list[float],
 ) -> Result:
-    """Errors of each scheme at the peak, inside and at the boundary; the two `windows` of Fig. 2 as series.
+    """Measure the errors of each scheme at the peak, inside and at the boundary; give the two `windows` of Fig. 2.
 
     Every scheme is measured on its own lattice, |x| <= D: DVM's is the smaller one. For DVM, u is the field (7).
     Near the boundary is beyond that part of D at which the second window begins. Runs with another than
@@ -64,12 +65,13 @@ def study(
     x = first["x"].values
     series += _windows("exact", "", x, np.asarray(green(x, time, alpha)), windows)
     table = pd.DataFrame(rows)
-    start = np.asarray(green(half * np.array([0.5, 1.0]), float(first["t_initial"]), alpha))
     findings = [
-        *_shape(main, table, alpha, float(np.log2(start[1] / start[0]))),
-        *_setting(main, printed_particles),
+        *_errors_judged(main, table),
+        *_truncation(main, edge),
+        *_initial(x, float(first["t_initial"]), alpha, main.runs),
+        *_setting(main, table, printed_particles),
         *(_mass(beta, time) for beta in mass_beta),
-        *lagrangian_domain(inputs, main, table, windows[-1]),
+        *lagrangian_domain(inputs, main, table, windows),
     ]
     return Result(table, findings, pd.concat(series, ignore_index=True))
 
@@ -108,109 +110,152 @@ def _windows(scheme: str, exterior: str, x: np.ndarray, u: np.ndarray, windows: 
     return parts
 
 
-def _shape(inputs: Inputs, table: pd.DataFrame, alpha: float, exponent: float) -> list[Finding]:
+def _readings(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """The truncated errors by scheme, once for each remeshing that the text can be read to mean."""
+    shown = table[table["exterior"] == "truncated"]
+    moving = shown["scheme"].str.startswith("DVM")
+    names = [name for name in shown.loc[moving, "scheme"] if name != "DVM, none"]
+    return {
+        f"DVM remeshed by {name.removeprefix('DVM, ')}": pd.concat(
+            [shown[~moving], shown[shown["scheme"] == name].assign(scheme="DVM")]
+        ).set_index("scheme")
+        for name in names
+    }
+
+
+def _errors_judged(main: Inputs, table: pd.DataFrame) -> Iterator[Finding]:
     """What the paper says of the errors at the peak, inside and at the boundary."""
-    runs = inputs.scalars["run"]
-    shown = table[table["scheme"] != "DVM, none"]  # the paper remeshes
-    truncated = shown[shown["exterior"] == "truncated"].set_index("scheme")
-    opened = table[table["exterior"] == "open"].set_index("scheme")
     boundary = next(name for name in table if name.startswith("median"))
-    inside, last, edge = truncated[_INSIDE], truncated[_LAST], truncated[boundary]
-    inside_, last_, edge_ = (spelled(errors, ".2g") for errors in (inside, last, edge))
-    gpse = float(inputs.select(scheme="GPSE", exterior="truncated")["overlap"].iloc[0])
-    # The ends of DVM's lattice are elsewhere, where the solution is a thousand times as large.
-    here = truncated[~truncated.index.str.startswith("DVM")]
-    ratio = (here[_ABSOLUTE_EDGE] / here[_ABSOLUTE_EDGE]["FD"]).drop("FD")
-    gain = (edge[opened.index] / opened[boundary]).min()
-    small = [
-        ("L-F2.peak", _PEAK, "Relative error at x = 0"),
-        ("L-F2.decay", _DECAY, "Largest relative error for |x| < 5, the window of the figure"),
-        ("L-F2.absolute_error", _ABSOLUTE, "Largest point-wise error over the peak value"),
-    ]
-    findings = []
-    for claim, column, words in small:
-        error = truncated[column]
-        evidence = f"{words}: {spelled(error, '.2g')}."
-        holds = (error < _SMALL).all()
-        findings.append(statement(claim, holds, evidence, "Not on this lattice.", runs))
-    return [
-        *findings,
-        statement(
-            "L-F2.interior",
-            (inside < 0.1 * last).all(),
-            f"Largest relative error for |x| < D/2: {inside_}; at |x| = D: {last_}.",
-            "The error inside is not small against that near the boundary.",
-            runs,
-        ),
-        statement(
-            "L-F2.relative_error",
-            ((edge > inside) & (last > edge)).all(),
-            f"Largest relative error for |x| < D/2: {inside_}; median near the boundary: {edge_}; at "
-            f"|x| = D: {last_}.",
-            "The relative error does not grow towards the boundary.",
-            runs,
-        ),
-        statement(
-            "L-F2.initial_decay",
-            abs(exponent + alpha) < 0.05,
-            f"Between D/2 and D the initial condition falls like |x|^{exponent:.4f}; alpha = {alpha:g}.",
-            "The fundamental solution falls like |x|^(-1-alpha), the leading term of (A.2); |x|^-alpha is the decay of "
-            "its tail mass.",
-        ),
-        statement(
-            "L-F2.gpse_epsilon",
-            abs(gpse / 2.0 - 1.0) < 0.25,
-            f"epsilon / h = {gpse:.3f} by (40), against 2.",
-            "The printed step gives another overlap.",
-        ),
-        statement(
-            "L-C2.dd_fpse_boundary",
-            edge[["DD", "FPSE"]].min() > edge[["KPSE", "GPSE"]].max(),
-            f"Median relative error near the boundary: {spelled(here[boundary], '.2g')}.",
-            "Near the boundary the relative errors of the four methods are not separated like this.",
-            runs,
-        ),
-        statement(
-            "L-C2.fd_comparable",
-            ((ratio < 10.0) & (ratio > 0.1)).all(),
-            f"Largest absolute error near the boundary, over that of FD: {spelled(ratio, '.2g')}.",
-            "FPSE has a layer at the ends of the lattice, a few smoothing lengths thick, where its error is orders of "
-            "magnitude above that of the others.",
-            runs,
-        ),
-        statement(
-            "L-C2.not_instability",
-            gain > 10.0,
-            f"With the same step, the open exterior lowers the median error near the boundary {gain:.3g} times at "
-            "least; every step is inside the stability interval.",
-            "The open exterior leaves the boundary error.",
-            runs,
-        ),
-    ]
+    (_, judged), *others = _readings(table).items()
 
+    def by_scheme(claim: str, numbers: Callable[[pd.DataFrame], dict[str, Any]]) -> Finding:
+        rest = {name: numbers(errors) for name, errors in others}
+        return measured(claim, runs=main.runs, others=rest, **numbers(judged))
 
-def _setting(inputs: Inputs, printed: int) -> list[Finding]:
-    run = inputs.select(scheme="KPSE", exterior="truncated").iloc[0]
-    half, ours = (
-        float(run["half_width"]),
-        2 * round(run["half_width"] / run["particle_spacing"]) + 1,
+    yield by_scheme("L-F2.peak", lambda errors: {"error": errors[_PEAK]})
+    yield by_scheme("L-F2.decay", lambda errors: {"error": errors[_DECAY]})
+    yield by_scheme("L-F2.absolute_error", lambda errors: {"error": errors[_ABSOLUTE]})
+    yield by_scheme(
+        "L-F2.interior",
+        lambda errors: {"inside": errors[_INSIDE], "growth": errors[_LAST] / errors[_INSIDE]},
     )
-    rounded = "The print rounds R_alpha to three decimals (Table A.4) before it multiplies by 160."
-    truncates = "2 D / (N - 1) with the printed N; the print truncates."
+    yield by_scheme(
+        "L-F2.relative_error",
+        lambda errors: {
+            "outwards": errors[boundary] / errors[_INSIDE],
+            "onwards": errors[_LAST] / errors[boundary],
+        },
+    )
+
+    # The ends of DVM's lattice are elsewhere, where the solution is a thousand times as large.
+    here = judged.drop("DVM")
+
+    def over_exchange(error: pd.Series) -> pd.Series:
+        return error[["DD", "FPSE"]] / error[["KPSE", "GPSE"]].max()
+
+    def against_fd(error: pd.Series) -> pd.Series:
+        ratio = (error / error["FD"]).drop("FD")
+        return ratio.where(ratio > 1.0, 1.0 / ratio)
+
+    for claim, ratio in (
+        ("L-C2.dd_fpse_boundary", over_exchange),
+        ("L-C2.fd_comparable", against_fd),
+    ):
+        largest = {"ratio": ratio(here[_ABSOLUTE_EDGE])}
+        yield measured(
+            claim,
+            runs=main.runs,
+            others={"the largest absolute error instead of the median relative one": largest},
+            ratio=ratio(here[boundary]),
+            error=here[boundary],
+            largest=largest["ratio"],
+        )
+
+
+def _truncation(main: Inputs, edge: float) -> list[Finding]:
+    """What the truncation adds: the change of u from the open exterior, with everything else the same."""
+    opened = main.select(exterior="open")["scheme"]
+    rows, files = {}, []
+    for scheme in opened:
+        cut, free = (main.open(scheme=scheme, exterior=e) for e in ("truncated", "open"))
+        x, t, width = cut["x"].values, float(cut["t_final"]), float(cut["half_width"])
+        exact = np.asarray(green(x, t, 1.0 + float(cut["beta"])))
+        change = np.abs(cut["u"].values - free["u"].values)
+        near, inside = np.abs(x) >= edge * width, np.abs(x) < 0.5 * width
+        rows[scheme] = {
+            "edge": np.median((change / exact)[near]),
+            "inside": (change / exact)[inside].max(),
+            "largest": (change / exact).max(),
+            "absolute": change[near].max() / change[inside].max(),
+            "left": np.median(np.abs(free["u"].values / exact - 1.0)[near]),
+        }
+        files += list(main.select(scheme=scheme)["run"])
+    found = pd.DataFrame(rows).T
+    ratio = found["edge"] / found["inside"]
+    absolute = {"the absolute change": {"ratio": found["absolute"]}}
+    explicit = main.select(exterior="truncated").set_index("scheme").loc[["DD", "FPSE", "KPSE"]]
+    limit = [stability_limit(s, beta) for s, beta in explicit["beta"].items()]
+    step = explicit["dt"] / explicit["particle_spacing"] ** (1.0 + explicit["beta"]) / limit
     return [
-        value("L-C1.D", half, rounded, [run["run"]]),
-        value("L-C1.h", 2.0 * half / (printed - 1), truncates, [run["run"]]),
-        statement(
+        measured("L-C2.not_instability", runs=files, step=step, gain=found["edge"] / found["left"]),
+        measured("L-C2.truncation_at_edge", runs=files, others=absolute, ratio=ratio),
+        measured(
+            "L-F2.substantial", runs=files, largest=found["largest"].max(), each=found["largest"]
+        ),
+        measured("L-F2.mostly_boundaries", runs=files, others=absolute, ratio=ratio),
+    ]
+
+
+def _initial(x: np.ndarray, start: float, alpha: float, runs: Sequence[str]) -> list[Finding]:
+    """The initial condition, the fundamental solution at t = 0.5, on the lattice and between D/2 and D."""
+    u = np.asarray(green(x, start, alpha))
+    far = np.asarray(green(x[-1] * np.array([0.5, 1.0]), start, alpha))
+    return [
+        measured(
+            "L-F2.initial_shape",
+            runs=runs,
+            asymmetry=np.abs(u - u[::-1]).max() / u.max(),
+            step=np.diff(u[x >= 0.0]).max(),
+        ),
+        measured("L-F2.initial_decay", runs=runs, exponent=np.log2(far[1] / far[0])),
+    ]
+
+
+def _setting(main: Inputs, table: pd.DataFrame, printed: int) -> list[Finding]:
+    """The lattice and the step of GPSE: D, h, N and epsilon as Sec. 4.1 prints them."""
+    run = main.select(scheme="KPSE", exterior="truncated").iloc[0]
+    gpse = main.select(scheme="GPSE", exterior="truncated").iloc[0]
+    half, alpha = float(run["half_width"]), 1.0 + float(run["beta"])
+    odd = printed + 1 - printed % 2
+    spacing = 2.0 * half / (odd - 1)
+    peak, beside = np.asarray(green(np.array([0.0, 0.5 * spacing]), float(run["t_final"]), alpha))
+    error = table.set_index(["scheme", "exterior"])[_PEAK]
+    return [
+        measured("L-C1.D", runs=[run["run"]], ours=half),
+        measured("L-C1.h", runs=[run["run"]], ours=2.0 * half / (printed - 1)),
+        measured(
             "L-C1.odd_number",
-            printed % 2 == 1,
-            f"N = {printed} is printed; we use {ours}.",
-            "64000 is even: no particle lies at x = 0 then. With one more, h is printed the same.",
+            runs=[run["run"]],
+            printed=printed,
+            spacing=abs(spacing * (printed - 1) / (2.0 * half) - 1.0),
+            ours=2 * round(half / run["particle_spacing"]) + 1,
+            missed=1.0 - beside / peak,
+            share=(1.0 - beside / peak) / error["KPSE", "truncated"],
+        ),
+        measured(
+            "L-F2.gpse_epsilon",
+            runs=[gpse["run"]],
+            away=abs(gpse["overlap"] / 2.0 - 1.0),
+            overlap=gpse["overlap"],
+            step=(2.0 * gpse["particle_spacing"]) ** alpha,
         ),
     ]
 
 
 def _mass(beta: float, time: float) -> Finding:
+    """The share of the mass within 5 R_alpha, and how far it is from the printed 97 %."""
     alpha = 1.0 + beta
     mass = 100.0 * float(central_mass(5.0 * mean_radius(alpha), time, alpha))
-    reason = f"The print says roughly, for every beta; at beta = {beta:g} it is {mass:.2f} %."
-    return value(f"L-C1.mass.beta{beta:g}", mass, reason)
+    return measured(
+        f"L-C1.mass.beta{beta:g}", away=abs(mass / 97.0 - 1.0), mass=mass, outside=100.0 - mass
+    )

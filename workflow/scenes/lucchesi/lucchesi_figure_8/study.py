@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
 from fracparticles.special.stable import green
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from scenes.plane import DISK
 
 __all__ = ["study"]
@@ -17,7 +19,6 @@ NEEDS = {"scheme": ["DD", "FPSE"], "exterior": ["truncated", "open"]}
 _LINES = {"y = 0": ("u_axis", 1.0), "y = x": ("u_diagonal", np.sqrt(2.0))}
 _FOLLOWS = 0.1  # a relative error that a logarithmic plot of many decades hardly shows
 _OUTER = 0.8  # of a line: beyond it, its outer fifth
-_SLIGHT = 2.0  # a slight deviation is less than this factor
 _NEAR, _MEAN, _REACH = "largest, r <= 5", "mean, 5 < r <= D", "within 10 % up to r ="
 _MEDIAN, _BELOW = "median, outer fifth", "share below exact, outer fifth"
 
@@ -72,85 +73,71 @@ def _findings(series: pd.DataFrame, table: pd.DataFrame, files: list[str]) -> li
     here, opened = rows.loc["truncated"], rows.loc["open"]
     truncated = series[(series["exterior"] == "truncated") & series["scheme"].isin(paper)]
     curves: _Curves = dict(iter(truncated.groupby(["scheme", "line"])))
-
-    anisotropy = {scheme: _anisotropy(curves, scheme) for scheme in paper}
-    slope = {scheme: _slope(curves[scheme, "y = 0"], "u") for scheme in paper}
+    slope = pd.Series({scheme: _slope(curves[scheme, "y = 0"], "u") for scheme in paper})
     exact_slope = _slope(curves["DD", "y = 0"], "exact")
+    decades = pd.Series(
+        {
+            key: float(np.log10(part["exact"].max() / part["exact"].min()))
+            for key, part in curves.items()
+        }
+    )
     directions = {scheme: _directions(curves, scheme) for scheme in paper}
-    mean = {scheme: ratio for scheme, (ratio, _) in directions.items()}
-    always = {scheme: r for scheme, (_, r) in directions.items()}
     open_mean = opened[_MEAN].xs("y = 0", level="line") / opened[_MEAN].xs("y = x", level="line")
-    half = curves["DD", "y = 0"]["r"].max()
-    dd, fpse = here.loc["DD"], here.loc["FPSE"]
-    ratio = truncated.assign(ratio=1.0 + truncated["error"]).groupby("scheme")["ratio"]
-    (lowest, negative), highest = ratio.min()[paper], ratio.max()["FPSE"]
-    layer = max(_particles_from_the_edge(curves["FPSE", line]) for line in _LINES)
-    gain = (here[_MEDIAN] / opened[_MEDIAN]).abs()
-    statements = [
-        (
+    median = here[_MEDIAN]
+    ratio = pd.concat({key: 1.0 + part["error"] for key, part in curves.items()}).groupby(
+        level=[0, 1]
+    )
+
+    def found(claim: str, **numbers: Any) -> Finding:
+        return measured(claim, runs=files, **numbers)
+
+    return [
+        found(
             "L-F8.follow",
-            here[_NEAR].max() < _FOLLOWS,
-            f"Largest relative error for r <= 5: {_pairs(here[_NEAR])}. It stays below 10 % up to r = "
-            f"{_pairs(here[_REACH])}.",
-            "The relative error exceeds 10 % within r <= 5.",
+            near=here[_NEAR],
+            far=pd.Series({key: _plotted(part) for key, part in curves.items()}) / decades,
+            reach=here[_REACH],
         ),
-        (
+        found(
             "L-F8.radial",
-            max(anisotropy.values()) < 0.01
-            and max(abs(ours - exact_slope) for ours in slope.values()) < 0.05,
-            f"Along y = 0 and y = x, u differs at the same r <= 5 by at most "
-            f"{_each(anisotropy, '{:.1g} of itself')}; between r = 2.5 and 5 it falls like {_each(slope, 'r^{:.3f}')}, "
-            f"the exact solution like r^{exact_slope:.3f}.",
-            "The two lines differ by more than 1 %, or the slopes by more than 0.05.",
+            anisotropy={scheme: _anisotropy(curves, scheme) for scheme in paper},
+            decay=(slope / exact_slope - 1.0).abs(),
+            slope=slope,
+            exact=exact_slope,
         ),
-        (
+        found(
             "L-C19.diagonal",
-            min(mean.values()) > 1.0 and max(always.values()) < _OUTER * half,
-            f"For 5 < r <= D = {half:.3g} the mean relative error along y = 0 is {_each(mean, '{:.3g}')} times that "
-            f"along y = x at the same r, and at every r from {_each(always, '{:.3g}')} on it is the larger one. "
-            "Nearer, the errors of truncation and of smoothing may cancel.",
-            "The error along y = x is not the smaller one.",
+            ratio={scheme: ratio for scheme, (ratio, _) in directions.items()},
+            always={scheme: r for scheme, (_, r) in directions.items()},
+            half=curves["DD", "y = 0"]["r"].max(),
         ),
-        (
-            "L-C19.extent",
-            min(mean.values()) > 2.0 and (open_mean - 1.0).abs().max() < 0.1,
-            "With the open exterior, where the extent of the square matters no more, the ratio of the mean errors is "
-            f"{_each(open_mean, '{:.3f}')}.",
-            "The difference of the two directions does not go with the truncation.",
-        ),
-        (
-            "L-C19.dd_below",
-            dd[_MEDIAN].max() < 0.0 and dd[_BELOW].min() > 0.9,
-            f"Median relative deviation in the outer fifth of each line: {_pairs(here[_MEDIAN][['DD']])}; below the "
-            f"exact solution there: {_each(100.0 * dd[_BELOW], '{:.0f} %')} of the particles.",
-            "DD is not below the exact solution there.",
-        ),
-        (
+        found("L-C19.extent", difference=(open_mean - 1.0).abs()),
+        found("L-C19.dd_below", median=median[["DD"]], share=100.0 * here[_BELOW][["DD"]]),
+        found(
             "L-C19.fpse_above",
-            fpse[_MEDIAN].min() > 0.0 and fpse[_BELOW].max() < 0.25,
-            f"Median relative deviation in the outer fifth of each line: {_pairs(here[_MEDIAN][['FPSE']])}; below the "
-            f"exact solution there: {_each(100.0 * fpse[_BELOW], '{:.0f} %')} of the particles, none further than "
-            f"{layer} particles from the edge.",
-            "FPSE is not above the exact solution there.",
+            median=median[["FPSE"]],
+            share=100.0 * (1.0 - here[_BELOW][["FPSE"]]),
+            layer=max(_particles_from_the_edge(curves["FPSE", line]) for line in _LINES),
         ),
-        (
+        found(
             "L-C19.slightly",
-            min(lowest, negative) > 1.0 / _SLIGHT and highest < _SLIGHT,
-            f"At the edge u is down to {lowest:.2g} times the exact solution with DD; with FPSE it is between "
-            f"{negative:.2g} and {highest:.2g} times the exact solution.",
-            "Slight only within the square: at its edge DD loses most of u, and FPSE has a layer, a few smoothing "
-            "lengths thick, that oscillates and even becomes negative.",
+            deviation=median.abs(),
+            least=ratio.min(),
+            greatest=ratio.max(),
+            others={
+                "the decades that are plotted for the value": {
+                    "deviation": np.log10(1.0 + median).abs() / decades
+                }
+            },
         ),
-        (
-            "L-C19.truncation",
-            gain.min() > 10.0,
-            "With the open exterior the median deviation in the outer fifth is "
-            + ", ".join(f"{value:.3g} ({' '.join(key)})" for key, value in gain.items())
-            + " times smaller.",
-            "The deviations at the boundary stay with the open exterior.",
-        ),
+        found("L-C19.truncation", gain=(median / opened[_MEDIAN]).abs()),
     ]
-    return [statement(*words, runs=files) for words in statements]
+
+
+def _plotted(part: pd.DataFrame) -> float:
+    """The largest |log10(u / exact)| from the disk to the outer fifth of a line."""
+    between = (part["r"] > DISK) & (part["r"] <= _OUTER * part["r"].max())
+    return float(np.abs(np.log10(1.0 + part["error"][between])).max())
 
 
 def _anisotropy(curves: _Curves, scheme: str) -> float:
@@ -183,11 +170,3 @@ def _particles_from_the_edge(part: pd.DataFrame) -> int:
     r, below = part["r"].to_numpy(), part["error"].to_numpy() < 0.0
     found = np.flatnonzero(below & (r > _OUTER * r[-1]))
     return int(r.size - found[0]) if found.size else 0
-
-
-def _pairs(values: pd.Series) -> str:
-    return ", ".join(f"{value:.2g} ({scheme}, {line})" for (scheme, line), value in values.items())
-
-
-def _each(values: dict[str, float] | pd.Series, form: str) -> str:
-    return ", ".join(f"{form.format(value)} ({name})" for name, value in values.items())

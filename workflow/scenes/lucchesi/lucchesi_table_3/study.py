@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from fractions import Fraction
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -16,10 +15,11 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, power_iteration
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.time import STEP_POLYNOMIALS
-from fracstudy.claims import Finding, judge_value, unit_of_last_digit
-from fracstudy.inputs import ORDERS, Inputs, Result, listed, statement, value
+from fracstudy.criteria import judge_value
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import ORDERS, Inputs, Result
 
-__all__ = ["study", "truncated_print"]
+__all__ = ["study"]
 
 _SCHEMES = ("DD", "FPSE", "KPSE")
 _STEPS = ("euler", "rk2")
@@ -29,12 +29,6 @@ _BELOW, _ABOVE = 0.99, 1.01  # steps on either side of the limit (54)
 # Norms of powers: n = 2^0, 2^4, .. 2^36 below the limit, n = 2^10 above. The roundings of 36 squarings
 # add up to 2^36 1e-16, 1e-5 in all.
 _SQUARINGS, _EVERY, _FEW_SQUARINGS = 36, 4, 10
-_SATURATED = 0.01
-_GROWN = 1e6
-# What the words of Sec. 4.4 are taken to mean.
-_SEVERAL = 2.0
-_SIGNIFICANT = 0.25
-_COMPARABLE = 10.0
 # The values of beta of the curves.
 _BETAS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
@@ -47,7 +41,7 @@ def _matrix(scheme: str, alpha: float, order: int, particles: int) -> np.ndarray
 class _Growth(NamedTuple):
     below: float  # greatest norm of p(A dt)^n below the limit
     flow: float  # greatest norm of exp(n dt A), the same times
-    saturated: bool  # whether the norm stops growing
+    late: float  # change of the norm from n = 2^32 to 2^36, over the greatest
     above: float  # norm of p(A dt)^1024 above the limit
 
 
@@ -59,8 +53,8 @@ def _growths(a: np.ndarray, lowest: float) -> dict[str, _Growth]:
     for integrator in _STEPS:
         norms = norms_of_powers(_step(below, integrator), _SQUARINGS, _EVERY)
         last = norms_of_powers(_step(above, integrator), _FEW_SQUARINGS, _FEW_SQUARINGS)[-1]
-        saturated = norms[-1] <= (1.0 + _SATURATED) * norms[-2]
-        growths[integrator] = _Growth(max(norms), flow, saturated, last)
+        late = (norms[-1] - norms[-2]) / max(norms)
+        growths[integrator] = _Growth(max(norms), flow, late, last)
     return growths
 
 
@@ -68,13 +62,6 @@ def _step(z: np.ndarray, integrator: str) -> np.ndarray:
     """p(z), z = A dt, Eq. (52)."""
     one = np.eye(len(z))
     return one + z if integrator == "euler" else one + z + 0.5 * z @ z
-
-
-def truncated_print(printed: str, ours: float) -> bool:
-    """Return whether the print holds our digits cut off where rounding would have changed the last one."""
-    unit = unit_of_last_digit(printed)
-    cut = Fraction(ours) // unit * unit
-    return cut == Fraction(printed) and Fraction(ours) - cut > unit / 2
 
 
 def study(
@@ -116,13 +103,15 @@ def study(
         for b in beta
     }
     findings = [
-        *(_print(*key, limit, iterated[key], inputs.printed) for key, limit in limits.items()),
-        *_words(limits, beta),
-        _same_step(growths, size),
-        *_matrices(
-            {(s, b): of_key for (s, b, order), of_key in spectra.items() if order == 2}, beta
+        *(
+            measured(
+                f"L-T3.{s}.beta{b:g}", ours=a, power=iterated[s, b][0], iterations=iterated[s, b][1]
+            )
+            for (s, b), a in limits.items()
         ),
-        *(_criterion(scheme, growths, size) for scheme in _SCHEMES),
+        *_limits(limits, beta, spacing[0]),
+        *_matrices(spectra, beta),
+        *_criterion(growths, size),
         *_trends(beta),
     ]
     return Result(pd.DataFrame(rows), findings, _series(beta, inputs.printed))
@@ -137,11 +126,6 @@ def _iterate(
     operator = SCHEMES[scheme].operator(setting)
     eigenvalue, iterations = power_iteration(operator, tolerance=tolerance)
     return -2.0 * setting.rate / eigenvalue, iterations
-
-
-def _size(value: float) -> str:
-    """A ratio in words: the last digits of round-off are nobody's result."""
-    return f"{value:.1e}" if abs(value) > _ROUND_OFF else f"less than {_ROUND_OFF:g}"
 
 
 def _row(
@@ -175,167 +159,113 @@ def _row(
     }
 
 
-def _print(
-    scheme: str, beta: float, limit: float, iterated: tuple[float, int], printed: Mapping[str, str]
-) -> Finding:
-    name = f"L-T3.{scheme}.beta{beta:g}"
-    if name not in printed or not truncated_print(printed[name], limit):
-        return value(name, limit)
-    reason = (
-        f"Printed truncated, not rounded: the symbol gives {limit:.4f}, and power iteration comes down to it "
-        f"from above ({iterated[0]:.4f} after {iterated[1]} iterations)."
-    )
-    return value(name, limit, reason)
-
-
-def _words(limits: dict[tuple[str, float], float], betas: list[float]) -> list[Finding]:
-    dd, fpse, kpse = of_scheme = [np.array([limits[s, b] for b in betas]) for s in _SCHEMES]
-    over_dd, over_kpse = fpse / dd, fpse / kpse
-    spread = {s: max(a) / min(a) - 1.0 for s, a in zip(_SCHEMES, of_scheme, strict=True)}
-    widest = max(spread, key=spread.__getitem__)
-    each = ", ".join(f"{100 * v:.0f} % ({s})" for s, v in spread.items())
-    at = f"at beta = {listed(betas)}"
-    spans = f"from beta = {betas[0]:g} to {betas[-1]:g}"
-    dd_, fpse_, kpse_, over_dd_, over_kpse_ = (
-        listed(a, ".2f") for a in (dd, fpse, kpse, over_dd, over_kpse)
-    )
+def _limits(
+    limits: Mapping[tuple[str, float], float], betas: Sequence[float], h: float
+) -> list[Finding]:
+    """What Secs. 4.4 and 6 say of the limits, by scheme and by beta; of the steps themselves at one h."""
+    beta = pd.Index(betas, name="beta")
+    dd, fpse, kpse = (pd.Series([limits[s, b] for b in betas], beta) for s in _SCHEMES)
+    ratios = {"KPSE": (fpse / kpse).min(), "DD": (fpse / dd).min()}
+    of_scheme = dict(zip(_SCHEMES, (dd, fpse, kpse), strict=True))
+    spread = {s: np.ptp(a) / a.min() for s, a in of_scheme.items()}
+    steps = {s: a * h ** (1.0 + beta.to_numpy()) for s, a in of_scheme.items()}
+    of_steps = {s: np.ptp(dt) / dt.min() for s, dt in steps.items()}
     return [
-        statement(
-            "L-T3.ordering",
-            (kpse < dd).all() and (dd < fpse).all(),
-            f"KPSE {kpse_}, DD {dd_}, FPSE {fpse_} {at}.",
-            "The limits are in another order at some beta.",
-        ),
-        statement(
-            "L-T3.several_times",
-            over_dd.min() > _SEVERAL and over_kpse.min() > _SEVERAL,
-            f"FPSE's limit is {over_kpse_} times that of KPSE, but {over_dd_} times that of DD, {at}; "
-            f"several is taken as more than {_SEVERAL:g}.",
-            "Of KPSE it is true, of DD not: in closed form the ratio to DD is 2^(alpha/2), less than 2.",
-        ),
-        statement(
-            "L-T3.weak_in_beta",
-            max(spread.values()) < _SIGNIFICANT,
-            f"The limit varies by {each} {spans}; significant is taken as more than {100 * _SIGNIFICANT:.0f} %.",
-            f"True of the others, not of {widest}: its limit varies by {100 * spread[widest]:.0f} % {spans}.",
-        ),
-        statement(
-            "L-T3.comparable",
-            over_kpse.max() < _COMPARABLE,
-            f"The largest limit is {over_kpse_} times the smallest {at}; comparable is taken as within a factor of "
-            f"{_COMPARABLE:g}.",
-            "The limits differ by more than an order of magnitude.",
+        measured("L-T3.ordering", dd_over_kpse=dd / kpse, fpse_over_dd=fpse / dd),
+        measured("L-T3.several_times", ratio=ratios),
+        measured("L-T3.weak_in_beta", spread=spread),
+        measured("L-T3.comparable", ratio=fpse / kpse),
+        measured("L-T3.conclusion_comparable", ratio=fpse / kpse),
+        measured(
+            "L-T3.conclusion_weak",
+            others={f"the step itself at h = {h:.3g}": {"spread": of_steps}},
+            spread=spread,
+            steps=of_steps,
         ),
     ]
 
 
-def _same_step(growths: dict[tuple[str, float], dict[str, _Growth]], size: int) -> Finding:
-    every = list(growths.values())
-    below = {i: max(one[i].below for one in every) for i in _STEPS}
-    above = {i: min(one[i].above for one in every) for i in _STEPS}
-    stable = all(growth.saturated for one in every for growth in one.values())
-    return statement(
-        "L-T3.rk1_rk2",
-        stable and min(above.values()) > _GROWN,
-        f"With all three schemes on {size} particles, the powers of a step at {_BELOW:g} of 2/|lambda_min| stay "
-        f"bounded (RK1 {below['euler']:.3g}, RK2 {below['rk2']:.3g}), and 1024 steps at {_ABOVE:g} of it grow by at "
-        f"least {above['euler']:.1e} (RK1) and {above['rk2']:.1e} (RK2).",
-        "RK1 and RK2 lose stability at different steps.",
-    )
-
-
 def _matrices(
-    spectra: dict[tuple[str, float], list[Spectrum]], betas: list[float]
+    spectra: Mapping[tuple[str, float, int], Sequence[Spectrum]], betas: Sequence[float]
 ) -> list[Finding]:
     """What Sec. 4.4 says of A, order II, the worst over beta."""
 
     def worst(scheme: str, quantity: Callable[[Spectrum], float], k: int = -1) -> float:
-        return max(quantity(spectra[scheme, b][k]) for b in betas)
+        return max(quantity(spectra[scheme, b, 2][k]) for b in betas)
 
-    sizes = [s.particles for s in spectra["DD", betas[0]]]
-    at = f"at N = {sizes[-1]}"
-    findings = []
-    for scheme in _SCHEMES:
-        asymmetries = [worst(scheme, lambda s: s.asymmetry, k) for k in range(len(sizes))]
-        symmetric = asymmetries[-1] <= _ROUND_OFF
-        each = ", ".join(f"{a:.2f} (N = {n})" for a, n in zip(asymmetries, sizes, strict=True))
-        departure = _size(worst(scheme, lambda s: s.departure))
-        findings.append(
-            statement(
-                f"L-C12.symmetric.{scheme}",
-                symmetric,
-                f"|A - A^T| / |A| is {_size(asymmetries[-1]) if symmetric else each}, the largest over beta; "
-                f"|A A^T - A^T A| / |A|^2 is {departure} {at}.",
-                "A is the product of two sums that do not commute where the lattice ends: the asymmetry falls like "
-                "N^(-1/2), as that of a number of rows that does not grow with N.",
-            )
+    sizes = [s.particles for s in spectra["DD", betas[0], 2]]
+    found = [
+        measured(
+            f"L-C12.symmetric.{scheme}",
+            asymmetry=worst(scheme, lambda s: s.asymmetry),
+            by_size={
+                f"N = {n}": worst(scheme, lambda s: s.asymmetry, k) for k, n in enumerate(sizes)
+            },
+            departure=worst(scheme, lambda s: s.departure),
         )
-    for scheme in ("FPSE", "KPSE"):
-        highest = worst(scheme, lambda s: abs(s.highest / s.lowest))
-        findings.append(
-            statement(
-                f"L-C12.max_zero.{scheme}",
-                highest <= _ROUND_OFF,
-                f"The largest eigenvalue is {_size(highest)} times |lambda_min| in modulus {at}.",
-                "The largest eigenvalue is not 0.",
-            )
-        )
+        for scheme in _SCHEMES
+    ]
     imaginary = worst("FPSE", lambda s: s.imaginary / abs(s.lowest))
-    highest = worst("DD", lambda s: s.highest / abs(s.lowest))
+    highest = {s: worst(s, lambda s: s.highest / abs(s.lowest)) for s in _SCHEMES}
+    every = {
+        f"{s} {ORDERS[order]}": max(
+            of_key[-1].highest / abs(of_key[-1].lowest) for of_key in of_beta
+        )
+        for s in _SCHEMES
+        for order in ORDERS
+        if (of_beta := [spectra[s, b, order] for b in betas if (s, b, order) in spectra])
+    }
     return [
-        *findings,
-        statement(
-            "L-C12.real.FPSE",
-            imaginary <= _ROUND_OFF,
-            f"The imaginary parts are {_size(imaginary)} times |lambda_min| {at}, although A is not symmetric.",
-            "Some eigenvalues are complex.",
-        ),
-        statement(
-            "L-C12.max_negative.DD",
-            highest < -_ROUND_OFF,
-            f"The largest eigenvalue is {highest:.1e} |lambda_min| {at}.",
-            "The largest eigenvalue of DD is not negative.",
-        ),
+        *found,
+        measured("L-C12.nonpositive", highest=every, particles=sizes[-1]),
+        *(measured(f"L-C12.max_zero.{s}", highest=abs(highest[s])) for s in ("FPSE", "KPSE")),
+        measured("L-C12.real.FPSE", imaginary=imaginary, particles=sizes[-1]),
+        measured("L-C12.max_negative.DD", highest=highest["DD"], particles=sizes[-1]),
     ]
 
 
 def _criterion(
-    scheme: str, growths: dict[tuple[str, float], dict[str, _Growth]], size: int
-) -> Finding:
-    mine = [growth for (s, _), one in growths.items() if s == scheme for growth in one.values()]
-    below, flow = max(g.below for g in mine), max(g.flow for g in mine)
-    above = min(g.above for g in mine)
-    # Bounded, and by no more than the exact flow itself.
-    faithful = all(g.saturated and g.below <= (1.0 + _SATURATED) * g.flow for g in mine)
-    remark = (
-        f" The norm is that of the exact flow exp(t A) ({flow:.3g}): transient growth of a matrix that is not "
-        "normal, which no step would avoid."
-    )
-    return statement(
-        f"L-C12.criterion.{scheme}",
-        faithful and above > _GROWN,
-        f"RK1 and RK2 on {size} particles: at {_BELOW:g} of the limit the norm of n steps is at most {below:.3g} for n "
-        f"up to 2^{_SQUARINGS} and no longer grows; at {_ABOVE:g} of it 1024 steps reach {above:.1e}."
-        f"{remark if below > 1.0 + _SATURATED else ''}",
-        "The powers of a step do not change from bounded to growing where (54) says.",
+    growths: Mapping[tuple[str, float], Mapping[str, _Growth]], size: int
+) -> Iterator[Finding]:
+    """Steps of RK1 and RK2 just below and just above (54): bounded by the exact flow, and growing."""
+
+    def numbers(parts: Sequence[_Growth]) -> dict[str, Any]:
+        return {
+            "growth": max(g.late for g in parts),
+            "excess": max(g.below / g.flow - 1.0 for g in parts),
+            "below": max(g.below for g in parts),
+            "above": min(g.above for g in parts),
+        }
+
+    for scheme in _SCHEMES:
+        parts = [g for (s, _), one in growths.items() if s == scheme for g in one.values()]
+        yield measured(f"L-C12.criterion.{scheme}", particles=size, **numbers(parts))
+    above = {
+        s: min(g.above for b in growths if b[0] == s for g in growths[b].values()) for s in _SCHEMES
+    }
+    yield measured("L-C12.constraint", above=above, particles=size)
+    by_integrator = {i: numbers([one[i] for one in growths.values()]) for i in _STEPS}
+    names = dict(zip(_STEPS, ("RK1", "RK2"), strict=True))
+    yield measured(
+        "L-T3.rk1_rk2",
+        particles=size,
+        growth={names[i]: by_integrator[i]["growth"] for i in _STEPS},
+        above={names[i]: by_integrator[i]["above"] for i in _STEPS},
     )
 
 
-def _trends(betas: list[float]) -> list[Finding]:
+def _trends(betas: Sequence[float]) -> Iterator[Finding]:
+    """The smallest step of a from one beta to the next, in the direction that Sec. 4.4 says."""
     fine = [beta for beta in _BETAS if betas[0] <= beta <= betas[-1]]
-    findings = []
     for scheme, claim, sign in (("DD", "rises", 1), ("FPSE", "rises", 1), ("KPSE", "falls", -1)):
         a = np.array([stability_limit(scheme, beta) for beta in fine])
-        findings.append(
-            statement(
-                f"L-C13.{scheme}_{claim}",
-                (sign * np.diff(a) > 0.0).all(),
-                f"From {a[0]:.4f} at beta = {fine[0]:g} to {a[-1]:.4f} at {fine[-1]:g}, steadily over "
-                f"{len(fine)} values of beta.",
-                "The limit does not change in one direction.",
-            )
+        yield measured(
+            f"L-C13.{scheme}_{claim}",
+            step=(sign * np.diff(a)).min(),
+            first=a[0],
+            last=a[-1],
+            count=len(fine),
         )
-    return findings
 
 
 def _series(betas: list[float], printed: Mapping[str, str]) -> pd.DataFrame:

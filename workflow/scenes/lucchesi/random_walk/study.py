@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import Any
@@ -21,16 +21,14 @@ from fracparticles.moving.random_walk import (
 )
 from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
 from fracparticles.special.stable import green, mean_radius, tail_mass
-from fracstudy.claims import Finding
-from fracstudy.inputs import ORDERS, Inputs, Result, listed, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import ORDERS, Inputs, Result
 
 __all__ = ["study"]
 
 NEEDS = {"scheme": ["KPSE"], "order": [4], "exterior": ["truncated", "open"]}
 
-_CLOSE = 0.01  # a relative error up to this is a close match, one above it can be seen in a plot
 _RIVAL, _OPEN = "KPSE IV, truncated", "KPSE IV, open"  # the paper's setting, and ours
-_UNLIKELY = 0.01  # p-value below which the walkers would not have the law of the solution
 _TESTED = 10**6  # walkers of a Kolmogorov-Smirnov test at most, for it sorts them
 
 
@@ -98,14 +96,23 @@ def study(
         for (t, x), n in product(positions.items(), walkers)
         if n <= x.size
     ]
-    measured, rivals = pd.DataFrame(rows), _rivals(inputs, at[final])
-    table = pd.concat([measured, rivals.drop(columns="run")], ignore_index=True)
+    found, rivals = pd.DataFrame(rows), _rivals(inputs, at[final])
+    table = pd.concat([found, rivals.drop(columns="run")], ignore_index=True)
     table = table.astype({column: "Int64" for column in ("walkers", "ensembles")})
-    x, last = walks[0][final], measured[measured["t"] == final]
-    wide = _Cells(round(cells * zones[-1] / 5.0), zones[-1] * unit, final, alpha)
+    x, last = walks[0][final], found[found["t"] == final]
     findings: list[Finding] = []
     if inputs.items:
-        findings = [_matches(measured), _visible(last, rivals), _tails(wide, x, max(shown), zones)]
+        wide = _Cells(round(cells * zones[-1] / 5.0), zones[-1] * unit, final, alpha)
+        first = [start, *times]
+        steps = [max(1, round(leg / walk_steps[0])) for leg in np.diff(first)]
+        other = _walk(alpha, max(shown), first, steps, np.random.default_rng([seed + 1, 0]))
+        again = pd.DataFrame(_row(at[t], tail, walk_steps[0], y, y.size) for t, y in other.items())
+        another = f"another seed, {max(shown):.0e} walkers"
+        findings = [
+            _matches(found, {another: again}),
+            _visible(wide, x, walkers, zones, rivals, {another: other[final]}),
+            _tails(wide, x, max(shown), zones, {another: other[final]}),
+        ]
     far = _Cells(2 * round(cells * reach / 10.0), reach * unit, final, alpha)
     series = [*_densities(inputs, far, x, shown), *_errors(last, rivals)]
     return Result(table, findings, pd.concat(series, ignore_index=True))
@@ -164,64 +171,85 @@ def _rivals(inputs: Inputs, cells: _Cells) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _matches(measured: pd.DataFrame) -> Finding:
-    most = measured["walkers"].max()
-    best = measured[measured["walkers"] == most].set_index("t")["relative error"]
-    p = measured["Kolmogorov-Smirnov p"].dropna()
-    # The least of several p-values is below this with a probability of at most 1 %, dependent or not.
-    unlikely = _UNLIKELY / len(p)
-    steps = listed(sorted(measured["dt"].unique(), reverse=True))
-    longest = measured[measured["dt"] == measured["dt"].max()]
+def _matches(found: pd.DataFrame, again: Mapping[str, pd.DataFrame]) -> Finding:
+    """The error with the most walkers, by time, and whether their law is that of the solution."""
+
+    def numbers(rows: pd.DataFrame) -> dict[str, Any]:
+        best = rows[rows["walkers"] == rows["walkers"].max()].drop_duplicates("t")
+        p = rows["Kolmogorov-Smirnov p"].dropna()
+        # The least of several p-values is below p with a probability of at most their number times p.
+        return {"error": best.set_index("t")["relative error"], "p": min(1.0, p.min() * len(p))}
+
+    longest = found[found["dt"] == found["dt"].max()]
     logs = np.log(longest[["walkers", "relative error"]]).groupby(longest["t"])
-    rate = np.mean(
-        [np.polyfit(n, error, 1)[0] for n, error in (part.T.to_numpy() for _, part in logs)]
-    )
-    few = "There are too few walkers to come within 1 % of the solution."
-    return statement(
+    rates = [np.polyfit(n, e, 1)[0] for n, e in (part.T.to_numpy() for _, part in logs)]
+    return measured(
         "L-C3.matches",
-        (best < _CLOSE).all() and p.min() > unlikely,
-        f"With {most:.0e} walkers the error is "
-        + " and ".join(f"{e:.2%} at t = {t:g}" for t, e in best.items())
-        + f"; it falls like n^{rate:.3f}. At every dt ({steps}) and number of walkers their law is that of the exact "
-        f"solution: the least of {len(p)} Kolmogorov-Smirnov p-values is {p.min():.3f}.",
-        "The law of the walkers is another one." if p.min() <= unlikely else few,
+        others={name: numbers(rows) for name, rows in again.items()},
+        **numbers(found),
+        walkers=found["walkers"].max(),
+        rate=np.mean(rates),
     )
 
 
-def _visible(last: pd.DataFrame, rivals: pd.DataFrame) -> Finding:
-    longest = last[last["dt"] == last["dt"].max()].set_index("walkers")
-    errors = longest["relative error"]
-    ratio = errors / longest["expected"]
-    found = ", ".join(f"{e:.2%} with {n:.0e}" for n, e in errors.items())
+def _visible(
+    cells: _Cells,
+    x: np.ndarray,
+    walkers: list[int],
+    zones: list[float],
+    rivals: pd.DataFrame,
+    again: Mapping[str, np.ndarray],
+) -> Finding:
+    """The deviation of the density where it is largest, and the walkers that would equal the particle scheme."""
+
+    def numbers(x: np.ndarray) -> dict[str, Any]:
+        counts = [n for n in walkers if n <= x.size]
+        return {"deviation": {f"{n:.0e}": max(_deviations(cells, x, n, zones)[0]) for n in counts}}
+
     paper, ours = (rivals.set_index("method").loc[name] for name in (_RIVAL, _OPEN))
-    return statement(
+    return measured(
         "L-C3.visible",
-        (errors > _CLOSE).any() and errors.min() > 10.0 * paper["relative error"],
-        f"The error at t = {paper['t']:g} is {found} walkers, {ratio.min():.3f} to {ratio.max():.3f} of what counting "
-        f"independent walkers must give. To equal {_RIVAL}, {paper['relative error']:.2g}, would take "
-        f"{paper['walkers to equal it']:.1e} walkers; with the open exterior, {ours['relative error']:.2g}, "
-        f"{ours['walkers to equal it']:.1e}.",
-        "The statistical error is below 1 %, or near that of the particle scheme.",
-        [paper["run"], ours["run"]],
+        runs=[paper["run"], ours["run"]],
+        others={name: numbers(other) for name, other in again.items()},
+        **numbers(x),
+        truncated=paper["relative error"],
+        equal=paper["walkers to equal it"],
+        opened=ours["relative error"],
+        equal_opened=ours["walkers to equal it"],
     )
 
 
-def _tails(cells: _Cells, x: np.ndarray, n: int, zones: list[float]) -> Finding:
-    """Deviation of the density in a cell from the exact one, root mean square over the cells of each zone."""
+def _tails(
+    cells: _Cells, x: np.ndarray, n: int, zones: list[float], again: Mapping[str, np.ndarray]
+) -> Finding:
+    """How the deviation of the density grows from zone to zone, relative and absolute."""
+
+    def numbers(deviations: list[float]) -> dict[str, Any]:
+        growth = np.divide(deviations[1:], deviations[:-1]).min()
+        return {"growth": growth, "ratio": deviations[-1] / deviations[0]}
+
+    relative, absolute = _deviations(cells, x, n, zones)
+    others = {name: numbers(_deviations(cells, y, n, zones)[0]) for name, y in again.items()}
+    return measured(
+        "L-C3.tails",
+        others={**others, "the absolute deviation": numbers(absolute)},
+        **numbers(relative),
+        relative={f"{low:g}": m for low, m in zip(zones[:-1], relative, strict=True)},
+        absolute=absolute,
+        walkers=n,
+    )
+
+
+def _deviations(
+    cells: _Cells, x: np.ndarray, n: int, zones: list[float]
+) -> tuple[list[float], list[float]]:
+    """Root mean square deviation of the density in the cells of each zone: of itself, and of the peak."""
     masses = cells.masses
-    deviation = cells.shares(x, n) - masses
+    deviation = cells.shares(x[:n], n)[0] - masses
     centre = 0.5 * np.abs(cells.edges[1:] + cells.edges[:-1]) / mean_radius(cells.alpha)
     here = [(centre >= low) & (centre < high) for low, high in pairwise(zones)]
-    relative = [math.sqrt(((deviation / masses)[:, zone] ** 2).mean()) for zone in here]
-    absolute = [math.sqrt((deviation[:, zone] ** 2).mean()) / masses.max() for zone in here]
-    return statement(
-        "L-C3.tails",
-        bool((np.diff(relative) > 0.0).all()) and relative[-1] > 10.0 * relative[0],
-        f"With {n:.0e} walkers the density in a cell is off by, root mean square, {listed(relative, '.2g')} of itself "
-        f"between |x| / R_alpha = {listed(zones[:-1])} and {zones[-1]:g}. Absolutely the deviation falls, from "
-        f"{absolute[0]:.1e} to {absolute[-1]:.1e} of the peak: the tails are worst on a relative scale only.",
-        "The relative deviation does not grow outwards like this.",
-    )
+    relative = [math.sqrt(((deviation / masses)[zone] ** 2).mean()) for zone in here]
+    return relative, [math.sqrt((deviation[zone] ** 2).mean()) / masses.max() for zone in here]
 
 
 def _densities(

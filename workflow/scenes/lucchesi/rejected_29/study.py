@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,15 +17,14 @@ from fracparticles.run.solver import compute, initial_strengths
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special.stable import green
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
 __all__ = ["study"]
 
 NEEDS = {"scheme": ["PSE29", "DD"]}
 
-_LARGE = 10.0  # an error this many times the exact value is large
 _NODES = np.linspace(0.0, 20.0, 4001)  # r; G is smooth on the scale 1
 _OVERLAP = 2.0
 _SHOWN = 5  # of the steps, one
@@ -38,10 +37,6 @@ def study(inputs: Inputs, *, shown_beta: float, dense: int, history: dict[str, A
     On a bounded lattice -sum_j G_(i-j) > 0 stays on the diagonal near the ends, where half of the negative middle of G
     is left alone with the positive tail. The greatest eigenvalue is a number of the kernel alone, lambda h^alpha / D,
     and its mode a layer a few epsilon thick: in time T the solution grows by exp(lambda T), without bound as h -> 0.
-
-    The kernel statement holds if G(0) < 0, G changes sign and is not monotonic, at every beta. The errors are called
-    large if |u| is more than ten times the exact solution at |x| = D at the smallest h of every beta. The instability
-    is shown if the greatest eigenvalue is positive at every beta and the growth of the runs has its rate to 1 %.
 
     `dense` is the number of particles of the spectrum; `history` are the half-width and the spacings of the runs whose
     growth is followed, and by how many powers of e.
@@ -58,10 +53,17 @@ def study(inputs: Inputs, *, shown_beta: float, dense: int, history: dict[str, A
         rank = np.arange(1, dense + 1) / dense
         panels.add("spectrum", name, rank, _spectrum(name, shown_beta, dense))
     table = _table(runs, greatest)
+    predicted, message = _blow_up(shown_beta)
     findings = [
         _kernel(kernels),
         _errors(table, list(runs["run"])),
-        _instability(greatest, _follow(panels, shown_beta, growth, history), _blow_up(shown_beta)),
+        measured(
+            "L-C15.instability",
+            eigenvalue=pd.Series(greatest).rename_axis("beta"),
+            deviation=_follow(panels, shown_beta, growth, history),
+            predicted=predicted,
+            message=message,
+        ),
     ]
     return Result(table, inputs.judged(findings), panels.frame)
 
@@ -99,7 +101,7 @@ def _follow(panels: Panels, beta: float, growth: float, history: Mapping[str, An
     return float(np.abs(deviations).max())
 
 
-def _blow_up(beta: float) -> str:
+def _blow_up(beta: float) -> tuple[float, str]:
     """Run (29) on a small lattice until it overflows: the step predicted from the growing modes, and the message."""
     case = Case(
         scheme="PSE29", beta=beta, half_width=10.0, spacing=0.2, overlap=_OVERLAP, dt=0.02, t_final=1000.0,
@@ -116,7 +118,7 @@ def _blow_up(beta: float) -> str:
         message = "no overflow"
     except NonFiniteSolution as error:
         message = str(error).split(":")[1].strip()
-    return f"A run predicted to overflow at step {steps.min():.0f} ends with: {message}."
+    return float(steps.min()), message
 
 
 def _table(runs: pd.DataFrame, greatest: Mapping[float, float]) -> pd.DataFrame:
@@ -145,42 +147,27 @@ def _table(runs: pd.DataFrame, greatest: Mapping[float, float]) -> pd.DataFrame:
 
 
 def _kernel(kernels: Mapping[float, np.ndarray]) -> Finding:
-    origin = {beta: G[0] for beta, G in kernels.items()}
-    signs = {beta: _NODES[np.flatnonzero(np.diff(np.sign(G)))] for beta, G in kernels.items()}
-    turns = [(np.diff(np.sign(np.diff(G))) != 0).any() for G in kernels.values()]
-    top = {beta: _NODES[G.argmax()] for beta, G in kernels.items()}
-    crossing = {beta: r[0] for beta, r in signs.items() if r.size}
-    return statement(
+    """G(0), the greatest value, where it lies, and how often G turns."""
+
+    def by_beta(quantity: Callable[[np.ndarray], Any]) -> pd.Series:
+        return pd.Series({b: quantity(G) for b, G in kernels.items()}).rename_axis("beta")
+
+    return measured(
         "L-C15.kernel",
-        max(origin.values()) < 0.0 and len(crossing) == len(kernels) and all(turns),
-        f"The kernel of (29) is G of (11): G(0) = {_by_beta(origin)}; it changes sign at r = {_by_beta(crossing)} and "
-        f"has its maximum at r = {_by_beta(top)}.",
-        "G does not have all three properties.",
+        origin=by_beta(lambda G: G[0]),
+        greatest=by_beta(np.max),
+        turns=by_beta(lambda G: np.count_nonzero(np.diff(np.sign(np.diff(G))))),
+        place=by_beta(lambda G: _NODES[G.argmax()]),
     )
 
 
 def _errors(table: pd.DataFrame, files: list[str]) -> Finding:
-    finest, coarsest = (table.groupby("beta").agg(which) for which in ("last", "first"))
-    return statement(
+    coarsest, finest = (table.groupby("beta").agg(which) for which in ("first", "last"))
+    return measured(
         "L-C15.errors",
-        (finest[_EDGE] > _LARGE).all(),
-        f"At |x| = D and the smallest h, |u| over the exact solution is {_by_beta(finest[_EDGE])}; the error (48), "
-        f"over that of DD, {_by_beta(finest['ratio'])}. At the largest h the two are {_by_beta(coarsest[_EDGE])} "
-        f"and {_by_beta(coarsest['ratio'])}: the scheme diverges as h falls.",
-        "Within the run the layer at the ends does not outgrow the solution at every beta.",
-        files,
+        runs=files,
+        ratio=finest["ratio"],
+        edge=finest[_EDGE],
+        coarse=coarsest["ratio"],
+        h=finest["h"],
     )
-
-
-def _instability(greatest: Mapping[float, float], deviation: float, blow_up: str) -> Finding:
-    return statement(
-        "L-C15.instability",
-        min(greatest.values()) > 0.0 and deviation < 0.01,
-        f"The greatest eigenvalue is {_by_beta(greatest, 4)} in units of D / h^alpha; runs grow at this rate to "
-        f"{100.0 * deviation:.2g} %. {blow_up}",
-        "The runs do not grow at the rate of a positive eigenvalue.",
-    )
-
-
-def _by_beta(values: Mapping[float, float] | pd.Series, digits: int = 3) -> str:
-    return ", ".join(f"{value:.{digits}g} (beta = {beta:g})" for beta, value in values.items())

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pandas as pd
 
 from fracparticles.run.orders import observed_order
-from fracstudy.claims import Finding
-from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result, spelled, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result
 
-__all__ = ["fpse_over_others", "last_order_of_kpse_four", "settled", "study"]
+__all__ = ["settled", "study"]
 
 NEEDS: dict[str, list] = {
     "exterior": ["truncated", "open"],
@@ -17,8 +19,9 @@ NEEDS: dict[str, list] = {
     "order": [2, 4],
 }
 
-# A level shows the order of a scheme if truncation is less than this part of its error.
-_CLEAN = 0.05
+# A level shows the order of a scheme if its error is well above what time step, exterior and round-off leave, and if
+# truncation is less than this part of it.
+_FLOOR, _CLEAN = 1e-7, 0.05
 
 
 def study(inputs: Inputs) -> Result:
@@ -51,72 +54,43 @@ def study(inputs: Inputs) -> Result:
     )
     series = runs.rename(columns={"h": "x", "relative_l1_error": "y"})
     series = series[["scheme", "order", "exterior", "integrator", "x", "y"]]
-    findings = _findings(inputs.items[0], table, runs["run"]) if inputs.items else []
-    return Result(table, findings, series)
+    findings = _findings(inputs.items[0], table, runs["run"]) if inputs.items else ()
+    return Result(table, [*findings], series)
 
 
-def _findings(item: str, table: pd.DataFrame, files: pd.Series) -> list[Finding]:
-    findings = []
+def _findings(item: str, table: pd.DataFrame, runs: pd.Series) -> Iterator[Finding]:
     for order, name in ORDERS.items():
-        observed = _coarse_orders(table, name)
-        findings.append(
-            statement(
-                f"{item}.O_h{order}",
-                bool(((observed - order).abs() < 0.3).all()) if len(observed) else None,
-                f"Observed order at the largest h where it has settled: {spelled(observed, '.3f') or 'none'}.",
-                "KPSE reaches its truncation error before its order settles; with the open exterior it settles (L-C7).",
-                files,
-            )
+        parts = table[table["order"] == name].groupby("scheme")
+        observed = pd.Series({scheme: settled(part, "truncated") for scheme, part in parts})
+        yield measured(
+            f"{item}.O_h{order}", runs=runs, away=(observed - order).abs(), observed=observed
         )
-    largest = fpse_over_others(table, "error, truncated")
-    last = last_order_of_kpse_four(table)
-    return [
-        *findings,
-        statement(
-            f"{item}.fpse_largest",
-            (largest > 1.0).all(),
-            f"Error of FPSE over the largest of DD and KPSE, over all h and orders: {largest.min():.3g} to "
-            f"{largest.max():.3g}.",
-            "True of the spatial error, see L-C7; at small h the truncation error of KPSE is larger than the error of "
-            "FPSE.",
-            files,
-        ),
-        statement(
-            f"{item}.kpse_levels_off",
-            (last.abs() < 0.5).all(),
-            f"Observed order of KPSE IV between the two smallest h: {last.iloc[-1]:.3g}.",
-            "It still falls at the smallest h.",
-            files,
-        ),
-    ]
+    plotted = {"the error as plotted, truncated": {"ratio": _fpse_over_others(table, "truncated")}}
+    largest = _fpse_over_others(table, "open exterior")
+    yield measured(f"{item}.fpse_largest", runs=runs, others=plotted, ratio=largest)
+    kpse = table[table["scheme"] == "KPSE"].sort_values("h", ascending=False)
+    change = kpse.groupby("order")["error, truncated"].agg(
+        lambda e: abs(e.iloc[-2] / e.iloc[-1] - 1.0)
+    )
+    yield measured(f"{item}.kpse_levels_off", runs=runs, change=change)
 
 
-def settled(observed: pd.Series, order: str) -> float:
-    """Return the observed order nearest to the theory's: pre-asymptotic at large h, at the floor at small h."""
-    expected = next(p for p, name in NUMERALS.items() if name == order)
-    observed = observed.dropna().to_numpy()
-    return float(observed[np.argmin(np.abs(observed - expected))])
+def settled(part: pd.DataFrame, exterior: str) -> float:
+    """Return the observed order of a scheme between the two finest levels on which its error is that of the spacing.
+
+    That is an error above 1e-7, of which the truncation is less than 5 %, on both levels; where no two have it, the
+    coarsest two are taken. `exterior` is "truncated" or "open".
+    """
+    part = part.sort_values("h", ascending=False)
+    opened = part["error, open exterior"]
+    error = part["error, truncated"] if exterior == "truncated" else opened
+    spatial = (error > _FLOOR) & ((error / opened - 1.0).abs() < _CLEAN)
+    observed = part[f"observed order, {exterior}"]
+    found = observed[spatial & spatial.shift(1, fill_value=False)]
+    return float(found.iloc[-1] if len(found) else observed.dropna().iloc[0])
 
 
-def _coarse_orders(table: pd.DataFrame, order: str) -> pd.Series:
-    """The settled order of each scheme over the levels that truncation does not spoil."""
-    found = {}
-    for scheme, part in table[table["order"] == order].groupby("scheme"):
-        excess = part["error, truncated"] / part["error, open exterior"] - 1.0
-        clean = part[excess.abs() < _CLEAN]
-        if len(clean) > 1:
-            found[scheme] = settled(clean["observed order, truncated"], order)
-    return pd.Series(found, dtype=float)
-
-
-def fpse_over_others(table: pd.DataFrame, column: str) -> pd.Series:
-    """Return the error of FPSE over the larger one of DD and KPSE, by beta, order and h."""
-    wide = table.pivot(index=["beta", "order", "h"], columns="scheme", values=column)
-    return (wide["FPSE"] / wide[["DD", "KPSE"]].max(axis=1)).dropna()
-
-
-def last_order_of_kpse_four(table: pd.DataFrame) -> pd.Series:
-    """Return the observed order of truncated KPSE IV between the two smallest h, by beta."""
-    kpse = table[(table["scheme"] == "KPSE") & (table["order"] == "IV")]
-    kpse = kpse.sort_values("h", ascending=False)
-    return kpse.groupby("beta")["observed order, truncated"].last()
+def _fpse_over_others(table: pd.DataFrame, exterior: str) -> pd.Series:
+    """The error of FPSE over the larger one of DD and KPSE, the least over h, by order."""
+    wide = table.pivot(index=["order", "h"], columns="scheme", values=f"error, {exterior}")
+    return (wide["FPSE"] / wide[["DD", "KPSE"]].max(axis=1)).groupby("order").min()

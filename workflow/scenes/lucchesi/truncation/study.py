@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pandas as pd
 
 from fracparticles.special.tails import exchange_truncation_error
-from fracstudy.claims import Finding
-from fracstudy.inputs import NUMERALS, Inputs, Result, statement, value
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import NUMERALS, Inputs, Result
 
 __all__ = ["study"]
 
 NEEDS = {"exterior": ["truncated", "open"]}
 
-_NEGLIGIBLE = 0.1  # of the error: what the truncation may add and still be called negligible
-
 
 def study(inputs: Inputs) -> Result:
-    """Tabulate the errors, truncated and open, and judge whether truncation is negligible at the largest C."""
+    """Tabulate the errors, truncated and open, and measure what truncation does to them at the largest C."""
     runs = inputs.scalars.assign(C=inputs.scalars["truncation"].round(6))
     table = pd.concat([_table(part) for _, part in runs.groupby("beta")], ignore_index=True)
     columns = {"C": "x", "relative_l1_error": "y"}
     series = runs[["beta", "scheme", "order", "exterior", *columns]].rename(columns=columns)
-    return Result(table, _findings(inputs, runs, table) if inputs.items else [], series)
+    return Result(table, [*_findings(inputs.items[0], runs, table)] if inputs.items else [], series)
 
 
 def _table(runs: pd.DataFrame) -> pd.DataFrame:
@@ -50,28 +50,17 @@ def _table(runs: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def _findings(inputs: Inputs, runs: pd.DataFrame, table: pd.DataFrame) -> list[Finding]:
-    item, largest = inputs.items[0], table["C"].max()
-    widest = table[table["C"] == largest]
-    ratio = widest["error, truncated"] / widest["error, open exterior"]
-    names = widest["scheme"] + " " + widest["order"]
-    worst = ratio.idxmax()
-    each = ", ".join(f"{r:.3g} for {name}" for r, name in zip(ratio, names, strict=True))
-    findings = [
-        statement(
-            f"{item}.negligible",
-            (ratio < 1.0 + _NEGLIGIBLE).all(),
-            f"Truncated over open error at C = {largest:g}: {each}.",
-            f"The truncation is nearly the whole error of {names[worst]} there: the open exterior, which changes "
-            f"nothing else, lowers it {ratio[worst]:.0e} times.",
-            runs.loc[runs["C"] == largest, "run"],
-        )
-    ]
+def _findings(item: str, runs: pd.DataFrame, table: pd.DataFrame) -> Iterator[Finding]:
+    largest = table["C"].max()
+    widest = table[table["C"] == largest].set_index(["scheme", "order"])
+    change = (widest["error, truncated"] - widest["error, open exterior"]).abs()
+    yield measured(
+        f"{item}.negligible",
+        runs=runs.loc[runs["C"] == largest, "run"],
+        share=change / widest["error, truncated"],
+        change=change,
+        C=largest,
+    )
     for _, gpse in runs[runs["scheme"] == "GPSE"].head(1).iterrows():
         step = (2.0 * gpse["spacing"]) ** (1.0 + gpse["beta"])
-        reason = (
-            f"(40) with epsilon = 2 h gives {step:.3g}; the printed step, which we use, means epsilon/h = "
-            f"{gpse['overlap']:.3g}."
-        )
-        findings.append(value(f"{item}.gpse_dt", step, reason, [gpse["run"]]))
-    return findings
+        yield measured(f"{item}.gpse_dt", runs=[gpse["run"]], ours=step, overlap=gpse["overlap"])

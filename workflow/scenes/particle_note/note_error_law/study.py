@@ -24,14 +24,11 @@ from fracparticles.pse import (
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.pse.construction import taylor_constant
 from fracparticles.run.orders import observed_order
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 from scenes.particle_note.waves import wave
 
 __all__ = ["study"]
-
-_ROUND_POWER = 0.1  # how far a measured power may be from the one it is held against
-_ROUND_CONSTANT = 0.05
 
 
 def study(
@@ -53,8 +50,8 @@ def study(
     The integral (18), by a Gauss rule, against the derivative is the error of regularisation; the sum (21) at
     particles of a lattice against the integral is the error of quadrature. Powers of eps, h / eps and kappa are
     those between neighbouring levels; for h / eps the power is fitted through the maxima, for the error swings.
-    A power counts as met within 0.1, a constant within 5 %. Predicted are C_1 = |M_(beta+r)| / (beta+r)! with
-    kappa^(beta+r), and for beta = 2 the relative error of the discrete moment, |M^_2 - 2| / 2 with kappa^2.
+    Predicted are C_1 = |M_(beta+r)| / (beta+r)! with kappa^(beta+r), and for beta = 2 the relative error of the
+    discrete moment, |M^_2 - 2| / 2 with kappa^2.
 
     The regularisation is measured for the orders `derivative`, the accuracies and the radii `epsilon`; the quadrature
     for splines of the degrees at one `radius`, with `overlap` the largest eps / h and the number of them; both
@@ -67,15 +64,13 @@ def study(
     total = _total(np.geomspace(radii[0], radii[1], int(radii[2])), spacing, coarse)
     table = pd.concat([first, second, third], ignore_index=True)
     series = pd.concat([*lines, *waves, *total], ignore_index=True)
-    if not inputs.items:
-        return Result(table, (), series)
     findings = [
-        *_findings_of_regularisation(first),
-        *_findings_of_quadrature(second, radius),
-        _finding_of_law(third, coarse),
-        _finding_of_overlap(0.125 * np.array(epsilon), ratio, coarse),
+        *_of_regularisation(first),
+        *_of_quadrature(second, radius),
+        _of_law(third, coarse),
+        _of_overlap(0.125 * np.array(epsilon), ratio, coarse),
     ]
-    return Result(table, findings, series)
+    return Result(table, inputs.judged(findings), series)
 
 
 def _line(panel: str, x: Any, y: Any, **more: Any) -> pd.DataFrame:
@@ -125,34 +120,26 @@ def _integral_error(kernel: Kernel, epsilon: float, beta: int, kappa: float = 1.
     return float(np.abs(found - wave(x, kappa, beta)).max())
 
 
-def _misses(rows: pd.DataFrame) -> tuple[float, float, bool]:
-    """How far powers and constants are from the predicted ones, and whether that is near enough."""
-    off = (rows["power"] - rows["predicted power"]).abs().max()
-    ratio = (rows["constant"] / rows["predicted constant"] - 1.0).abs().max()
-    return off, 100.0 * ratio, bool(off < _ROUND_POWER and ratio < _ROUND_CONSTANT)
+def _off(rows: pd.DataFrame) -> tuple[pd.Series, pd.Series]:
+    """How far powers are from the predicted ones, and constants, relatively."""
+    power = (rows["power"] - rows["predicted power"]).abs()
+    return power, (rows["constant"] / rows["predicted constant"] - 1.0).abs()
 
 
-def _findings_of_regularisation(rows: pd.DataFrame) -> Iterator[Finding]:
-    off, percent, met = _misses(rows)
-    yield statement(
-        "P-C1.regularisation",
-        met,
-        f"{len(rows)} kernels, beta = {rows['derivative'].min()} to {rows['derivative'].max()}: the power of eps "
-        f"is r within {off:.2g}, and the constant is |M_(beta+r)| / (beta+r)! within {percent:.2g} %.",
-        "A power or a constant is another.",
-    )
-    printed = rows["power of κ"] - rows["power of κ, printed"]
-    ours = (printed - rows["derivative"]).abs().max()
-    derivatives = rows["derivative"] > 0
-    example = rows[derivatives].iloc[-1]
-    yield statement(
+def _of_regularisation(rows: pd.DataFrame) -> Iterator[Finding]:
+    rows = rows.set_index(rows["predicted power"].astype(int).rename("r"))
+    rows = rows.set_index(rows["derivative"].rename("beta"), append=True).swaplevel()
+    power, constant = _off(rows)
+    yield measured("P-C1.regularisation", power=power, constant=constant)
+    derivatives = rows[rows["derivative"] > 0]
+    printed = (derivatives["power of κ"] - derivatives["power of κ, printed"]).abs()
+    meant = (printed - derivatives["derivative"]).abs()
+    function = rows[rows["derivative"] == 0]
+    yield measured(
         "P-C1.regularisation_norm",
-        printed[derivatives].abs().max() < _ROUND_POWER,
-        f"For cos(kappa x) the error grows as kappa^(beta+r), within {ours:.2g} in the exponent for all "
-        f"{len(rows)} kernels: kappa^{example['power of κ']:.2f} for beta = {example['derivative']}, "
-        f"r = {example['predicted power']:g}.",
-        "The first term left over in (17) has f^(beta+r), so that the norm is that of f^(beta+r); f^(r) is right "
-        "for the function itself, beta = 0, only.",
+        printed=printed,
+        meant=meant,
+        function=(function["power of κ"] - function["power of κ, printed"]).abs().max(),
     )
 
 
@@ -231,31 +218,38 @@ def _power_of_maxima(x: np.ndarray, y: np.ndarray) -> float:
     return float(np.polyfit(np.log(x[chosen]), np.log(y[chosen]), 1)[0])
 
 
-def _findings_of_quadrature(rows: pd.DataFrame, epsilon: float) -> Iterator[Finding]:
+def _of_quadrature(rows: pd.DataFrame, epsilon: float) -> Iterator[Finding]:
     splines = rows.dropna(subset="predicted power")
-    gauss = rows[rows["predicted power"].isna()].iloc[0]
-    _, percent, met = _misses(splines)
-    smooth = splines["predicted power"]
-    pairs = zip(splines["power"], smooth, strict=True)
-    powers = ", ".join(f"{p:.2f} (degree {m - 1:g})" for p, m in pairs)
-    yield statement(
-        "P-C1.quadrature",
-        met,
-        f"Powers of h/eps for B-splines: {powers}: m = degree + 1, as smooth as the kernel is; the constant is "
-        f"that of the discrete moment M^_2 within {percent:.2g} %. The Gaussian (20) falls faster than any "
-        f"power: by 2^{gauss['power']:.0f} from eps = h to 2 h.",
-        "A power or a constant is another.",
+    splines = splines.set_index(splines["predicted power"].rename("m"))
+    power, constant = _off(splines)
+    gauss = rows.loc[rows["predicted power"].isna(), "power"].iloc[0]
+    found = splines["power"]
+    yield measured(
+        "P-C1.quadrature", off=power, power=found, constant=constant, gauss=round(float(gauss))
     )
-    kappa = splines["power of κ"]
-    yield statement(
+    # The largest error for a power of x below the m-th, whose m-th derivative is zero.
+    residual = {
+        f"m = {m:g}": max(
+            _error_of_power(SplineKernel(int(m) - 1), epsilon, k) for k in range(1, int(m))
+        )
+        for m in splines.index
+    }
+    yield measured(
         "P-C1.quadrature_norm",
-        (kappa - splines["power of κ, printed"]).abs().max() < _ROUND_POWER,
-        f"At fixed eps and h the error for cos(kappa x) grows as kappa^{kappa.min():.2f} to "
-        f"kappa^{kappa.max():.2f} whatever m is ({', '.join(f'{m:g}' for m in smooth)}); for f = 1, where "
-        f"f^(m) = 0, the sum (9) with the spline of degree 1 is off by {_error_of_one(epsilon):.2g} at eps = 1.5 h.",
-        "The lattice sees a wrong moment of the kernel, so that the error is proportional to the function or to "
-        "its derivative of order beta; the norm must hold all derivatives up to m, not the m-th alone.",
+        residual=residual,
+        kappa=splines["power of κ"],
+        one=_error_of_one(epsilon),
     )
+
+
+def _error_of_power(kernel: Kernel, epsilon: float, k: int) -> float:
+    """The sum (21) against the integral (18) for x^k at x = eps, eps = 1.5 h, over eps^(k-2)."""
+    h = epsilon / 1.5
+    reach = kernel.reach * epsilon + h
+    x, particles = np.array([epsilon]), epsilon + lattice(-reach, reach, h)
+    found = derivative_by_sum(x, x**k, particles, particles**k, h, epsilon, kernel, 2)
+    integral = regularised(lambda y: y**k, x, epsilon, kernel, 2)
+    return float(np.abs(found - integral)[0]) / epsilon ** (k - 2)
 
 
 def _error_of_one(epsilon: float) -> float:
@@ -293,17 +287,9 @@ def _prefactor(derivative: list[int], radii: list[float], overlap: float) -> pd.
     return pd.DataFrame(rows)
 
 
-def _finding_of_law(rows: pd.DataFrame, coarse: float) -> Finding:
-    pairs = zip(rows["power"], rows["derivative"], strict=True)
-    powers = ", ".join(f"{p:.2f} (beta = {beta})" for p, beta in pairs)
-    return statement(
-        "P-C1.law",
-        rows["power"].abs().max() < _ROUND_POWER,
-        f"The error of quadrature at fixed h/eps = {1.0 / coarse:.3g} goes with eps to the power {powers}: the law "
-        "holds for beta <= 2.",
-        "The factor eps^-beta in (18) multiplies the quadrature error too: from beta = 3 on, a wrong discrete moment "
-        "of order 1 or 2 leaves a term with eps^(1-beta) or eps^(2-beta), and the sum diverges at fixed h/eps.",
-    )
+def _of_law(rows: pd.DataFrame, coarse: float) -> Finding:
+    power = rows.set_index(rows["derivative"].rename("beta"))["power"]
+    return measured("P-C1.law", off=power.abs(), power=power, ratio=1.0 / coarse)
 
 
 def _total(radii: np.ndarray, spacing: list[float], coarse: float) -> list[pd.DataFrame]:
@@ -322,24 +308,23 @@ def _sum_against_derivative(kernel: Kernel, epsilon: float, h: float) -> float:
     return float(np.abs(found - wave(x, order=2)).max())
 
 
-def _finding_of_overlap(radii: np.ndarray, ratios: list[float], coarse: float) -> Finding:
+def _of_overlap(radii: np.ndarray, ratios: list[float], coarse: float) -> Finding:
     """Errors of (21) with (20) at a fixed h / eps on ever finer lattices, until the error of quadrature is left."""
-    power, last = {}, {}
-    for ratio in ratios:
-        error = [_sum_against_derivative(GAUSSIAN_20, e, ratio * e) for e in radii]
-        power[ratio], last[ratio] = _power(radii, error), error[-1]
-    apart = all(p < 0.5 for ratio, p in power.items() if ratio >= 1.0)
-    close = all(abs(p - 2.0) < _ROUND_POWER for ratio, p in power.items() if ratio <= 0.5)
-    kernel = construct(2, 2, coarse)
-    order = _power(radii, [_sum_against_derivative(kernel, e, e / coarse) for e in radii])
+    errors = {
+        ratio: [_sum_against_derivative(GAUSSIAN_20, e, ratio * e) for e in radii]
+        for ratio in ratios
+    }
+    power = pd.Series({ratio: _power(radii, error) for ratio, error in errors.items()})
+    power.index.name = "h/eps"
+    corrected = construct(2, 2, coarse)
     wanted = required_moments(2, 2)[2]
-    floor = abs(float(lattice_moment(GAUSSIAN_20, 2)) - wanted) / wanted
-    found = ", ".join(f"h/eps = {q:g}: {power[q]:.2f} ({last[q]:.2g})" for q in power)
-    return statement(
+    return measured(
         "P-C1.overlap",
-        apart and close,
-        f"Gaussian (20), h and eps refined together, power of eps (and error at the finest): {found}. At h = eps the "
-        f"error ends at {floor:.1e} of f''. A kernel whose moments are met on the lattice converges with "
-        f"h/eps = {1.0 / coarse:.3g} too, order {order:.2f}: as (27) does, the exception of Sec. 3.1.",
-        "The sum converges without overlap, or does not with it.",
+        apart=power[power.index >= 1.0],
+        close=(power[power.index <= 0.5] - 2.0).abs(),
+        power=power,
+        last={f"h/eps = {ratio:g}": error[-1] for ratio, error in errors.items()},
+        floor=abs(float(lattice_moment(GAUSSIAN_20, 2)) - wanted) / wanted,
+        ratio=1.0 / coarse,
+        corrected=_power(radii, [_sum_against_derivative(corrected, e, e / coarse) for e in radii]),
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
 
 import numpy as np
 import pandas as pd
@@ -12,18 +13,26 @@ from fracparticles.pse import (
     TENT_27,
     Kernel,
     SplineKernel,
+    Stencil,
     StrengthExchange,
     construct_stencil,
+    derivative,
     lattice_moment,
     moment,
     required_moments,
 )
 from fracparticles.run.orders import observed_order
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
-from scenes.particle_note.waves import second_derivative_error
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
+from scenes.particle_note.waves import (
+    SEED,
+    arranged,
+    heat,
+    heat_second,
+    second_derivative_error,
+)
 
-__all__ = ["study"]
+__all__ = ["SCHEMES", "study"]
 
 _EPS = float(np.finfo(float).eps)
 _WANTED = required_moments(2, 2)[2]
@@ -32,6 +41,35 @@ _KERNELS: dict[str, Kernel] = {
     "tent, M₂ = 2": SplineKernel(1),
     "Gaussian (20)": GAUSSIAN_20,
 }
+
+_WIDE = 3.0  # eps / h
+# Particles off the lattice: numbers, domain, by how much of h; the time of the heat kernel, and where it is judged.
+_NUMBERS, _HALF_WIDTH, _JITTER, _START, _CENTRE = (160, 320), 8.0, 0.1, 0.5, 4.0
+_PERIOD = 64  # the weights of the compact scheme fall like 0.101^|j|
+
+
+def _both(*right: Fraction | int) -> dict[int, Fraction | int | float]:
+    """The weights of a symmetric scheme for f'', from those of f_(i+1), f_(i+2), ..."""
+    weights = {j: Fraction(w) for k, w in enumerate(right, start=1) for j in (-k, k)}
+    return {**weights, 0: -sum(weights.values(), Fraction(0))}
+
+
+# The derivative, and the weights of f_(i+j) by j: from textbooks.
+SCHEMES: Mapping[str, tuple[int, Mapping[int, Fraction | int | float]]] = {
+    "f'', centred, 2nd order": (2, _both(1)),
+    "f'', centred, 4th order": (2, _both(Fraction(4, 3), Fraction(-1, 12))),
+    "f'', centred, 6th order": (2, _both(Fraction(3, 2), Fraction(-3, 20), Fraction(1, 90))),
+    "f'', centred, 8th order": (
+        2,
+        _both(Fraction(8, 5), Fraction(-1, 5), Fraction(8, 315), Fraction(-1, 560)),
+    ),
+    "f'', one-sided, 2nd order": (2, {0: 2, 1: -5, 2: 4, 3: -1}),
+    "f', upwind": (1, {-1: -1, 0: 1}),
+    "f', centred, 2nd order": (1, {-1: Fraction(-1, 2), 1: Fraction(1, 2)}),
+    "f', one-sided, 2nd order": (1, {0: Fraction(-3, 2), 1: 2, 2: Fraction(-1, 2)}),
+    "fourth derivative, centred": (4, {-2: 1, -1: -4, 0: 6, 1: -4, 2: 1}),
+}
+_CENTRED = dict(zip((2, 4, 6, 8), SCHEMES, strict=False))
 
 
 def study(
@@ -45,8 +83,7 @@ def study(
     """The kernel (27): its moments over the line and on the lattice, and the exchange (26) that it gives.
 
     On a lattice the sum with a kernel of second moment M^_2 (28) approximates (M^_2 / 2) f'': the table has
-    M^_2 / 2 against eps / h. Centred differences: the matrix of (26) inside the lattice against (1, -2, 1) / h^2,
-    exact but for round-off. Stencils: the kernels on eps = h for f'' with accuracy r, of order r within 0.1.
+    M^_2 / 2 against eps / h. `claimed_moment` is the printed M_2, `accuracy` that of the stencils for f'' on eps = h.
     """
     widest = max(overlap)
     fine = np.linspace(0.5, widest, 20 * int(widest) + 1)
@@ -63,80 +100,127 @@ def study(
         error = [second_derivative_error(construct_stencil(2, r), h, 1.0) for h in spacing]
         orders[r] = float(observed_order(spacing, error)[-1])
         parts.append(pd.DataFrame({"panel": "error", "series": str(r), "x": spacing, "y": error}))
-    numerator, denominator = claimed_moment
     findings = [
-        finding
-        for finding in _findings(numerator / denominator, spacing, orders)
-        if finding.claim.split(".")[0] in inputs.items
+        *_moments(claimed_moment[0] / claimed_moment[1]),
+        *_elsewhere(spacing[-2:]),
+        _centred(spacing[-2:]),
+        *_schemes(orders),
+        *_economy(accuracy),
     ]
-    return Result(pd.DataFrame(columns), findings, pd.concat(parts, ignore_index=True))
+    return Result(
+        pd.DataFrame(columns), inputs.judged(findings), pd.concat(parts, ignore_index=True)
+    )
 
 
-def _findings(claimed: float, spacing: list[float], orders: dict[int, float]) -> Iterator[Finding]:
+def _moments(claimed: float) -> Iterator[Finding]:
+    """The shape of (27), its moment over the line and those on the lattice."""
     z = np.linspace(-3.0, 3.0, 601)
-    top, edge, beyond = TENT_27(0.0), TENT_27(1.0), TENT_27(np.array([-2.0, 2.0, 2.5]))
-    yield statement(
+    yield measured(
         "P-F2.shape",
-        bool((np.abs(beyond) < _EPS).all()) and top == TENT_27(z).max(),
-        f"eta(0) = {top:g}, eta(1) = {edge:g}, eta(2) = {TENT_27(2.0):g}, zero beyond; unlike a delta its mass is "
-        f"M_0 = {moment(TENT_27, 0):g}, which (18) does not need.",
-        "The kernel has another shape.",
+        top=TENT_27(0.0),
+        excess=TENT_27(z).max() - TENT_27(0.0),
+        beyond=np.abs(TENT_27(np.array([-2.0, 2.0, 2.5]))).max(),
+        edge=TENT_27(1.0),
+        mass=moment(TENT_27, 0),
     )
-    second, discrete = moment(TENT_27, 2), float(lattice_moment(TENT_27, 2))
-    yield statement(
+    second, required = moment(TENT_27, 2), required_moments(2, 2)
+    yield measured(
         "P-C4.second_moment",
-        abs(second - claimed) < 1e-14 and abs(second - _WANTED) > 0.1,
-        f"By quadrature M_2 = {second:.15g}; the condition is M_2 = {_WANTED}.",
-        "The second moment is another.",
+        off=abs(second / claimed - 1.0),
+        missed=abs(second / _WANTED - 1.0),
+        second=second,
     )
-    yield statement(
+    yield measured(
         "P-C4.discrete_moment",
-        abs(discrete - _WANTED) < 1e-14,
-        f"Sum over the lattice with eps = h: M^_2 = {discrete:.15g}; the condition is {_WANTED}.",
-        "The discrete moment is another.",
+        off={f"M̂_{k}": abs(float(lattice_moment(TENT_27, k)) - m) for k, m in required.items()},
     )
-    wrong = [second_derivative_error(TENT_27, 0.125 * h, 3.0) for h in spacing[-2:]]
-    multiplied = float(lattice_moment(TENT_27, 2, 3.0)) / _WANTED
-    yield statement(
+
+
+def _elsewhere(spacing: list[float]) -> Iterator[Finding]:
+    """(27) with another radius, and on particles that lie a little off the lattice, on two spacings."""
+    wide = [second_derivative_error(TENT_27, 0.125 * h, _WIDE) for h in spacing]
+    yield measured(
         "P-C4.lattice_only",
-        wrong[-1] > 0.9 * wrong[0] and wrong[-1] > 0.1,
-        f"On the same lattice with eps = 3 h the error for cos x stays at {wrong[-1]:.3f} under refinement: the "
-        f"diffusivity is off by M^_2 / 2 = {multiplied:.4f}, which tends to M_2 / 2 = {second / _WANTED:.4f}.",
-        "The kernel converges with eps = 3 h as well.",
+        error=wide[-1],
+        power=observed_order(spacing, wide)[-1],
+        factor=float(lattice_moment(TENT_27, 2, _WIDE)) / _WANTED,
+        limit=moment(TENT_27, 2) / _WANTED,
     )
+    errors = []
+    for n in _NUMBERS:
+        x, v = arranged("jittered", n, _HALF_WIDTH, _JITTER)
+        inside = np.abs(x) < _CENTRE
+        exchange = StrengthExchange(x, v, 2.0 * _HALF_WIDTH / n, TENT_27)
+        exact = heat_second(x, _START)[inside]
+        off = (exchange.apply(v * heat(x, _START)) / v)[inside] - exact
+        errors.append(np.sqrt((off**2).mean() / (exact**2).mean()))
+    power = observed_order(1.0 / np.array(_NUMBERS), errors)[-1]
+    yield measured("P-C4.regular_only", error=errors[-1], power=power, jitter=_JITTER)
+
+
+def _centred(spacing: list[float]) -> Finding:
+    """The rows of (26) with (27) inside the lattice, times h^2, against (1, -2, 1)."""
     h, n = 0.125, 41  # distances without round-off
     matrix = StrengthExchange(h * np.arange(n), h, h, TENT_27).matrix.toarray()[1:-1] * h * h
     centred = sum(c * np.eye(n - 2, n, j) for j, c in enumerate((1.0, -2.0, 1.0)))
-    off = float(np.abs(matrix - centred).max())
-    error = [second_derivative_error(TENT_27, h, 1.0) for h in spacing[-2:]]
-    order = float(observed_order(spacing[-2:], error)[0])
-    yield statement(
+    error = [second_derivative_error(TENT_27, h, 1.0) for h in spacing]
+    power = float(observed_order(spacing, error)[0])
+    return measured(
         "P-C4.centred_differences",
-        off < 8.0 * _EPS and abs(order - 2.0) < 0.05,
-        f"The rows of (26) with (27) and eps = h differ from (1, -2, 1) D / h^2 by {off:.1g} of D / h^2; order of "
-        f"the error for cos x: {order:.3f}.",
-        "The matrix is not that of the centred difference.",
+        difference=np.abs(matrix - centred).max(),
+        off=abs(power - 2.0),
+        power=power,
     )
-    found = ", ".join(f"r = {r}: {p:.2f}" for r, p in orders.items())
-    stencil = construct_stencil(2, 4).values
-    right = enumerate(stencil[len(stencil) // 2 + 1 :], start=1)
-    values = ", ".join(f"eta({i}) = {eta}" for i, eta in right)
-    yield statement(
-        "P-C4.any_stencil",
-        all(abs(p - r) < 0.1 for r, p in orders.items()),
-        f"Kernels for the second derivative from the discrete moments, order of the error for cos x: {found}; for "
-        f"r = 4 the values are {values}, those of the textbooks.",
-        "A stencil has not the order asked for.",
+
+
+def _compact() -> dict[int, float]:
+    """The weights of f''_(i-1) + 10 f''_i + f''_(i+1) = 12 (f_(i-1) - 2 f_i + f_(i+1)) / h^2, solved for f''."""
+    theta = 2.0 * np.pi * np.fft.fftfreq(_PERIOD)
+    symbol = -24.0 * (1.0 - np.cos(theta)) / (10.0 + 2.0 * np.cos(theta))
+    weights = np.fft.ifft(symbol).real
+    return {j: weights[j] for j in range(-_PERIOD // 2 + 1, _PERIOD // 2)}
+
+
+def _schemes(orders: dict[int, float]) -> Iterator[Finding]:
+    """Difference schemes as sums (18) with a kernel of their weights, and the stencils of the discrete moments."""
+    h, n = 0.125, 4 * _PERIOD
+    particles, f = h * np.arange(n), np.random.default_rng(SEED).normal(size=n)
+    inside = slice(_PERIOD, -_PERIOD)
+    difference = {}
+    for name, (beta, weights) in {**SCHEMES, "f'', compact, 4th order": (2, _compact())}.items():
+        reach = max(map(abs, weights))
+        # (18) has eta at x_i - x_p: the weight of f(x_i + j h) is eta(-j).
+        kernel = Stencil(tuple(Fraction(weights.get(-j, 0)) for j in range(-reach, reach + 1)))
+        ours = derivative(particles[inside], f[inside], particles, f, h, h, kernel, beta)
+        scheme = np.zeros(n)
+        for j, weight in weights.items():
+            scheme += float(weight) * np.roll(f, -j) / h**beta
+        difference[name] = np.abs(ours - scheme[inside]).max() / np.abs(scheme).max()
+    yield measured("P-C4.any_stencil", difference=difference)
+    coefficient = {}
+    for r in orders:
+        found = enumerate(construct_stencil(2, r).values, start=-r // 2)
+        weights = SCHEMES[_CENTRED[r]][1]
+        coefficient[f"r = {r}"] = max(abs(float(eta - weights[j])) for j, eta in found if j)
+    yield measured(
+        "P-C4.from_moments",
+        coefficient=coefficient,
+        off={f"r = {r}": abs(power - r) for r, power in orders.items()},
     )
-    narrower = {r: _misfit_of_narrower_stencil(r) for r in orders}
-    residuals = ", ".join(f"r = {r}: {misfit:.2g}" for r, misfit in narrower.items())
-    yield statement(
-        "P-C4.smallest",
-        all(misfit > 1e-6 for misfit in narrower.values()),
-        "With one point less on either side the discrete moment conditions have no solution; least residual of "
-        f"{residuals}.",
-        "A narrower stencil meets the conditions.",
-    )
+
+
+def _economy(accuracy: list[int]) -> Iterator[Finding]:
+    """The residual of a stencil with one point less a side, and the neighbours of a particle with (20) and (27)."""
+    misfit = {f"r = {r}": _misfit_of_narrower_stencil(r) for r in accuracy}
+    yield measured("P-C4.smallest", misfit=misfit)
+
+    def neighbours(kernel: Kernel, overlap: float) -> int:
+        i = np.arange(-100.0, 101.0)
+        return int(np.count_nonzero(kernel(i / overlap) > _EPS * kernel(0.0))) - 1
+
+    few, many = neighbours(TENT_27, 1.0), neighbours(GAUSSIAN_20, 2.0)
+    close = {"the Gaussian at eps = h": {"ratio": neighbours(GAUSSIAN_20, 1.0) / few}}
+    yield measured("P-C4.cheaper", ratio=many / few, few=few, many=many, others=close)
 
 
 def _misfit_of_narrower_stencil(accuracy: int) -> float:

@@ -8,13 +8,14 @@ from fractions import Fraction
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import GaussianKernel, lattice, reconstruct
-from fracstudy.claims import Finding
-from fracstudy.inputs import Inputs, Result, statement
+from fracparticles.pse import GaussianKernel, cell_volumes, lattice, reconstruct
+from fracparticles.run.orders import observed_order
+from fracstudy.findings import Finding, measured
+from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
 
-_EPS = float(np.finfo(float).eps)
+_SMALL = 1e-4  # a radius that stands for zero
 _UNIT = GaussianKernel((Fraction(1),))  # exp(-z^2), of unit mass
 
 
@@ -50,53 +51,77 @@ def study(inputs: Inputs, *, spacing: float, half_width: float, overlap: list[fl
         )
         series.append(pd.DataFrame({"panel": "smooth", "overlap": ratio, "x": x, "y": smooth}))
     table = pd.DataFrame(rows)
-    findings = list(_findings(spacing, particles, table)) if inputs.items else []
-    return Result(table, findings, pd.concat(series, ignore_index=True))
+    findings = [
+        *_delta(),
+        _points(spacing, particles),
+        _superposed(spacing, half_width),
+        _kernel(table),
+        measured("P-F1.volumes", deviation=np.abs(cell_volumes(particles) / spacing - 1.0).max()),
+    ]
+    return Result(table, inputs.judged(findings), pd.concat(series, ignore_index=True))
 
 
-def _findings(h: float, particles: np.ndarray, table: pd.DataFrame) -> Iterator[Finding]:
+def _delta() -> Iterator[Finding]:
+    """(4), (5), (6) with a Gaussian of small radius for the delta function."""
+    z, w = np.polynomial.hermite.hermgauss(40)
+    w, x, y = w / np.sqrt(np.pi), _SMALL * z, np.array([[-1.2], [-0.3], [1.0]])
+    printed, meant = (two_bumps(sign * (x - y)) @ w - two_bumps(y[:, 0]) for sign in (1.0, -1.0))
+    yield measured(
+        "P-F1.sifting",
+        printed=np.abs(printed).max(),
+        meant=np.abs(meant).max(),
+        mirrored=np.abs(printed + two_bumps(y[:, 0]) - two_bumps(-y[:, 0])).max(),
+    )
+    yield measured(
+        "P-F1.delta",
+        mass=abs(w.sum() - 1.0),
+        moments={f"m = {m}": abs(float(x**m @ w)) for m in range(1, 7)},
+    )
+
+
+def _points(h: float, particles: np.ndarray) -> Finding:
+    """The sum (9) for ever smaller kernels: between the particles, at them, and its integral."""
     values = two_bumps(particles)
     between = 0.5 * (particles[1:] + particles[:-1])
-    gap, peak = (
-        np.abs(reconstruct(x, particles, values, h, h / 20.0, _UNIT)).max()
-        for x in (between, particles)
-    )
+
+    def largest(x: np.ndarray, epsilon: float) -> float:
+        return float(np.abs(reconstruct(x, particles, values, h, epsilon, _UNIT)).max())
+
+    peak = largest(particles, h / 20.0)
     mass = (1.0 + 0.6 / np.sqrt(2.0)) * np.sqrt(np.pi)
-    missed = abs(h * values.sum() / mass - 1.0)
-    yield statement(
+    return measured(
         "P-F1.points",
-        gap < 1e-12 * peak and missed < 1e-6,
-        f"With eps = h/20 the sum (9) is {gap:.1g} half-way between the particles and {peak:.3g} at the greatest; the "
-        f"particles still carry the integral of f, to {max(missed, _EPS):.1g}.",
-        "The sum does not vanish between the particles, or misses the integral.",
+        between=largest(between, h / 20.0) / peak,
+        missed=abs(h * values.sum() / mass - 1.0),
+        growth=largest(particles, h / 40.0) / peak,
     )
-    best, top = table.loc[table["largest error, unit mass"].idxmin()], two_bumps(between).max()
-    yield statement(
-        "P-F1.smooth",
-        best["largest error, unit mass"] < 0.1 * top,
-        f"Sum (9) with the Gaussian of unit mass: largest error {best['largest error, unit mass']:.2g} at "
-        f"eps = {best['ε/h']:g} h, of a maximum of {top:.3g}.",
-        "The error exceeds a tenth of the maximum of f.",
-    )
-    printed = table.iloc[-1]
-    norm = printed["mass of (10) as printed"]
-    yield statement(
+
+
+def _superposed(spacing: float, half_width: float) -> Finding:
+    """The largest error of the sum (9) with the Gaussian of Fig. 1 and eps = h, on three lattices."""
+    errors = []
+    spacings = spacing / 2.0 ** np.arange(3.0)
+    x = np.linspace(-0.6 * half_width, 0.6 * half_width, 601)
+    for h in spacings:
+        particles = lattice(-half_width, half_width, h)
+        found = reconstruct(x, particles, two_bumps(particles), h, np.sqrt(2.0) * h, _UNIT)
+        errors.append(np.abs(found - two_bumps(x)).max() / two_bumps(x).max())
+    order = observed_order(spacings, errors)[-1]
+    return measured("P-F1.smooth", order=order, error=errors[-1], finest=spacings[-1])
+
+
+def _kernel(table: pd.DataFrame) -> Finding:
+    """The mass of (10) as printed, and with the radius outside the root; the radii are those of the table."""
+    radii = table["ε"]
+    last = table.iloc[-1]
+    return measured(
         "P-F1.kernel",
-        abs(norm - 1.0) < 1e-12,
-        f"The kernel as printed has mass {norm:.6f} = sqrt(eps) at eps = {printed['ε']:g}, and the sum is off by "
-        f"{printed['largest error, as printed']:.3g}; with 1/(sqrt(2 pi) eps) by "
-        f"{printed['largest error, unit mass']:.2g}.",
-        "eps belongs outside the root: 1/(sqrt(2 pi) eps); else (5) holds for eps = 1 only.",
-    )
-    y = np.array(1.0)
-    z, w = np.polynomial.hermite.hermgauss(40)
-    limit = float(two_bumps(1e-4 * z - y) @ w) / np.sqrt(np.pi)
-    yield statement(
-        "P-F1.sifting",
-        abs(limit - two_bumps(y)) < 1e-6,
-        f"At y = {y:g}, with a Gaussian of radius 1e-4 for delta: int f(x - y) delta(x) dx = {limit:.6f}; "
-        f"f(y) = {two_bumps(y):.6f}, f(-y) = {two_bumps(-y):.6f}.",
-        "At x = 0 the integrand is f(-y); f(y) takes f(y - x) in the integral.",
+        printed=np.abs(table["mass of (10) as printed"] - 1.0).max(),
+        meant=max(abs(_mass_as_printed(e) / np.sqrt(e) - 1.0) for e in radii),
+        epsilon=last["ε"],
+        mass=last["mass of (10) as printed"],
+        off=last["largest error, as printed"],
+        off_meant=last["largest error, unit mass"],
     )
 
 

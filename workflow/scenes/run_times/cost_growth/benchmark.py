@@ -16,7 +16,7 @@ import numpy as np
 from fracparticles.run.case import Case
 from fracparticles.run.solver import Prepared, prepare
 from fracparticles.schemes import SCHEMES
-from fracstudy.benchmarks.clock import (
+from fracstudy.race.clock import (
     Timing,
     conditions,
     forget_tables,
@@ -151,6 +151,7 @@ def _run_times(case: Case, most_solved: float, repeats: int, seconds: float) -> 
     """Times of set-up, application and solve; afterwards all arrays of a run have been there at once."""
     u = _strengths(case)
     setup, ready = _set_up(case, repeats, seconds)
+    assert ready.operator is not None
     apply = partial(ready.operator.combine, u.reshape(-1), np.zeros(u.size), 1.0)
     row = {
         "setup_time": setup.minimum,

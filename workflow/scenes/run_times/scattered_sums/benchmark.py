@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
-from fracstudy.benchmarks.clock import measure, one_core, timings_dataset
+from fracstudy.race.clock import measure, one_core, timings_dataset
 
 if TYPE_CHECKING:
     import xarray as xr

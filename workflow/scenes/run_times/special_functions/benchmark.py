@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import levy_stable
 
 from fracparticles.special import reduced_green
-from fracstudy.benchmarks.clock import forget_tables, measure, one_core, timings_dataset
+from fracstudy.race.clock import forget_tables, measure, one_core, timings_dataset
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -1,7 +1,6 @@
 """One operator, every time integrator: the error in time alone against run time.
 
-The operators are one of ours and the peers that have no lattice sum for exp(A t); each is made once, and what is timed
-is the way from u(0) to u(T) = exp(A T) u(0) with it:
+The operators are made once, and what is timed is the way from u(0) to u(T) = exp(A T) u(0) with them:
 
     Runge-Kutta steps (Euler, midpoint, RK4)       n steps of s operator applications, n from the stability limit up
     RKC2                                           n steps of as many stages as are stable
@@ -11,7 +10,7 @@ is the way from u(0) to u(T) = exp(A T) u(0) with it:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -20,13 +19,13 @@ from scipy.linalg import expm
 from scipy.sparse.linalg import LinearOperator, expm_multiply
 
 from fracparticles.lattice.operators import Operator
-from fracparticles.run.solver import prepare
+from fracparticles.run.case import Case
+from fracparticles.run.solver import initial_strengths
+from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
 from fracparticles.time import STEP_POLYNOMIALS, exponential, step
 from fracparticles.time.rkc import ChebyshevStep, stages_for
-from fracstudy.benchmarks.clock import measure, one_core, timings_dataset
-from fracstudy.benchmarks.problem import Problem
-from fracstudy.peers import peer
+from fracstudy.race.clock import measure, one_core, timings_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +35,7 @@ __all__ = ["benchmark"]
 # Integrator, steps, operator applications, run.
 Way = tuple[str, int, int, Callable[[], np.ndarray]]
 
-_LABELS = {"operator": "scheme, or method of the literature", "integrator": "time integrator"}
+_LABELS = {"operator": "scheme and order", "integrator": "time integrator"}
 _VARIABLES = {
     "particles": ("number of points", "1"),
     "steps": ("time steps", "1"),
@@ -52,43 +51,45 @@ def benchmark(
     beta: float,
     truncation: float,
     spacing: float,
-    order: int,
-    peers: Sequence[str],
+    schemes: Mapping[str, int],
     factors: Sequence[int],
     repeats: int,
     seconds: float,
 ) -> xr.Dataset:
-    """Measure the integrators on KPSE and on some peers, all with the open exterior.
+    """Measure the integrators on some schemes with the open exterior.
 
     Parameters
     ----------
     beta : float
         Fractional order.
-    truncation, spacing, order : float, float, int
-        The lattice, and the order of KPSE.
-    peers : sequence of str
-        Names of peers on a lattice.
+    truncation, spacing : float
+        The lattice.
+    schemes : mapping
+        Their orders by name.
     factors : sequence of int
         Numbers of steps over the least stable one; of RKC2, the numbers of steps themselves.
     repeats, seconds : int, float
         Solves, fewer if they take longer than that.
     """
     one_core()
-    problem = Problem(beta)
     rows: list[dict[str, Any]] = []
-    for name, x, operator, interval in _operators(problem, truncation, spacing, order, peers):
-        u0 = problem.initial(np.abs(x))
+    for scheme, order in schemes.items():
+        lattice = {"beta": beta, "truncation": truncation, "spacing": spacing, "exterior": "open"}
+        case = Case(scheme=scheme, order=order, integrator="exponential", **lattice)
+        operator = SCHEMES[scheme].operator(case.setting)
+        interval = spectral_interval(scheme, case.setting, operator, case.steps)
+        u0, _ = initial_strengths(case)
         matrix = dense_matrix(operator)
-        exact = expm(problem.time * matrix) @ u0
+        exact = expm(case.span * matrix) @ u0
         trace = float(np.trace(matrix))
-        for way in _ways(operator, interval, problem.time, u0, factors, trace):
+        for way in _ways(operator, interval, case.span, u0, factors, trace):
             integrator, steps, applications, run = way
             run()
             timing, u = measure(run, repeats, seconds)
             row = {
-                "operator": name,
+                "operator": f"{scheme} {order}",
                 "integrator": integrator,
-                "particles": x.size,
+                "particles": case.particles,
                 "steps": steps,
                 "applications": applications,
                 "error": float(np.abs(u - exact).sum() / np.abs(exact).sum()),
@@ -98,23 +99,6 @@ def benchmark(
     title = "Error of the time integration against run time"
     facts = {"beta": beta, "truncation": truncation, "spacing": spacing, "repeats": repeats}
     return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
-
-
-def _operators(
-    problem: Problem, truncation: float, spacing: float, order: int, peers: Sequence[str]
-) -> Iterator[tuple[str, np.ndarray, Operator, tuple[float, float]]]:
-    """The operators with their points and an interval that holds their spectrum."""
-    lattice = {"truncation": truncation, "spacing": spacing, "exterior": "open"}
-    case = problem.case(scheme="KPSE", order=order, integrator="exponential", **lattice)
-    operator = prepare(case).operator
-    interval = spectral_interval(case.scheme, case.setting, operator, case.steps)
-    yield f"KPSE {order}", case.x, operator, interval
-    task: dict[str, Any] = {"alpha": problem.alpha, "half_width": case.reach, "time": problem.time}
-    for name in peers:
-        solver: Any = peer(name).prepare(
-            **task, spacing=spacing, exterior="open", propagation="series"
-        )
-        yield name, solver.x, solver.operator, solver.interval
 
 
 def _ways(

@@ -6,14 +6,11 @@ import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
-from fracstudy.peers import PEERS
 
 __all__ = ["study"]
 
 _SERIES = "Chebyshev series"  # what the others are compared with
 
-# Names as people write them; the others stay as they are.
-_OPERATORS = {one.name: one.label for one in PEERS.values()}
 _INTEGRATORS = {"euler": "RK1", "rk2": "RK2", "rk4": "RK4"}
 
 
@@ -23,10 +20,7 @@ def study(inputs: Inputs) -> Result:
     Times are minima; that of the series of the same operator is the unit of the last column.
     """
     data = inputs.benchmarks["time_integration"]
-    runs = data.assign(
-        operator=data["operator"].replace(_OPERATORS),
-        integrator=data["integrator"].replace(_INTEGRATORS),
-    )
+    runs = data.assign(integrator=data["integrator"].replace(_INTEGRATORS))
     of_series = runs[runs["integrator"] == _SERIES].set_index("operator")["solve_time"]
     table = pd.DataFrame(
         {

@@ -20,7 +20,6 @@ _COLOURS = {
     "far field": "#009E73",
     "range of the symbol": "#E69F00",
     "time series": "#CC79A7",
-    "weights from the symbol": "#56B4E9",
     "plans and the rest": "#BBBBBB",
     "lattice sums": "#D55E00",
     "rest of the solve": "#DDDDDD",

@@ -16,7 +16,6 @@ PARTS = {
         "far field",
         "range of the symbol",
         "time series",
-        "weights from the symbol",
         "plans and the rest",
     ),
     "solve_time": ("lattice sums", "rest of the solve"),

@@ -1,49 +1,52 @@
-"""The least time to an error: every contender and variant."""
+"""The least time to an error: who comes in first, second and third."""
 
 from __future__ import annotations
 
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
-from fracstudy.machine import machine_note
 from scenes.run_times.contests import best, trials_of
 
 __all__ = ["study"]
 
+_PLACES = ("first", "second", "third")
 
-def study(inputs: Inputs, *, errors: list[float], beta: float) -> Result:
-    """List every variant of a benchmark: the error it reaches, and the least time to reach some errors.
 
-    Parameters
-    ----------
-    inputs : Inputs
-        With one benchmark.
-    errors : list of float
-    beta : float
-        The one that is drawn.
+def study(inputs: Inputs, *, errors: list[float]) -> Result:
+    """List the three fastest contenders for each race, problem, beta and error: one solve with its set-up.
+
+    With the error in the tail, the unknowns and the memory of the first.
     """
-    (frame,) = inputs.benchmarks.values()
-    trials = trials_of(frame)
-    rows, key = [], ["beta", "group", "contender", "variant"]
-    for (one, group, contender, variant), part in trials.groupby(key):
-        row = {
-            "beta": one,
-            "contender": contender,
-            "variant": variant,
-            "group": group,
-            "trials": len(part),
-            "failed": int(part["failed"].sum()),
-            "least error": part["error"].min(),
+    rows = []
+    for frame in inputs.benchmarks.values():
+        trials = trials_of(frame)
+        for (problem, beta), part in trials.groupby(["problem", "beta"], sort=False):
+            for error in errors:
+                rows.append(
+                    {
+                        "dim": frame.attrs["dim"],
+                        "data": problem,
+                        "beta": beta,
+                        "error": error,
+                        **_podium(part, error),
+                    }
+                )
+    return Result(pd.DataFrame(rows))
+
+
+def _podium(trials: pd.DataFrame, error: float) -> dict[str, object]:
+    fastest = pd.DataFrame([best(own, error) for _, own in trials.groupby("contender")])
+    fastest = fastest.dropna(subset=["total_time"]).sort_values("total_time").reset_index()
+    row: dict[str, object] = {}
+    for k, place in enumerate(_PLACES):
+        there = k < len(fastest)
+        row[place] = fastest["name"][k] if there else "none"
+        row[f"{place} / ms"] = 1e3 * fastest["total_time"][k] if there else float("nan")
+    if len(fastest):
+        first = fastest.iloc[0]
+        row |= {
+            "N of the first": first["points"],
+            "its memory / kB": 1e-3 * first["peak_memory"],
+            "its error in the tail": first["tail_error"],
         }
-        for error in errors:
-            for time, words in (("solve_time", "in"), ("total_time", "with set-up")):
-                row[f"{error:.0e} {words} / ms"] = 1e3 * best(part, error, time)[time]
-        rows.append(row)
-    shown = trials[trials["beta"] == beta]
-    bars = []
-    for error in errors:
-        for (contender, group), part in shown.groupby(["contender", "group"]):
-            fastest = best(part, error, "solve_time")[["name", "solve_time", "extrapolated"]]
-            bars.append({"error": error, "contender": contender, "group": group, **fastest})
-    series = pd.DataFrame(bars).assign(note=machine_note(frame))
-    return Result(pd.DataFrame(rows), (), series)
+    return row

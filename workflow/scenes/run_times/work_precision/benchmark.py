@@ -1,14 +1,14 @@
-"""Error against run time: the problem of the papers on the line or in the plane, every scheme, every peer."""
+"""Error against run time: every problem, every contender that can solve it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from fracstudy.benchmarks.clock import one_core, timings_dataset
-from fracstudy.benchmarks.problem import Problem
-from fracstudy.benchmarks.sweeps import sweep
-from fracstudy.benchmarks.trial import LABELS, VARIABLES, run_trials
+from fracstudy.race.clock import one_core, timings_dataset
+from fracstudy.race.contenders import CONTENDERS
+from fracstudy.race.problems import PROBLEMS
+from fracstudy.race.trial import BLOCK, LABELS, VARIABLES, run_trials
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,35 +18,35 @@ __all__ = ["benchmark"]
 
 def benchmark(
     dim: int,
+    problems: Sequence[str],
     beta: Sequence[float],
     rounds: int,
     repeats: int,
     seconds: float,
-    sweeps: Mapping[str, Mapping[str, Any]],
+    contenders: Sequence[str] = tuple(CONTENDERS),
 ) -> xr.Dataset:
-    """Measure error, set-up and solve of all contenders.
+    """Measure error, set-up, solve, blocks of solves and memory.
 
     Parameters
     ----------
     dim : int
-        1 for the line, 2 for the plane.
+        Number of dimensions.
+    problems : sequence of str
+        Their names; those that do not exist in so many dimensions are left out.
     beta : sequence of float
         Fractional orders.
     rounds, repeats, seconds : int, int, float
         See `trial.run_trials`.
-    sweeps : mapping
-        What is tried, by a name for it: the arguments of `sweeps.sweep`.
+    contenders : sequence of str
+        All if left out.
     """
     one_core()
-    problems = [Problem(one, dim) for one in beta]
-    # All of them first: what is wrong with them shows before any time is spent.
-    trials = [
-        [trial for given in sweeps.values() for trial in sweep(problem, **given)]
-        for problem in problems
-    ]
+    rivals = [CONTENDERS[name]() for name in contenders]
     rows: list[dict[str, Any]] = []
-    for problem, tried in zip(problems, trials, strict=True):
-        rows += run_trials(problem, tried, rounds, repeats, seconds)
-    title = f"Error against run time {'on the line' if dim == 1 else 'in the plane'}"
-    facts = {"rounds": rounds, "repeats": repeats, "t_initial": 0.5, "t_final": 1.5}
+    for name in problems:
+        if dim in PROBLEMS[name].dims:
+            for one in beta:
+                rows += run_trials(PROBLEMS[name](one, dim), rivals, rounds, repeats, seconds)
+    title = f"Error against run time in {dim} dimension{'s' if dim > 1 else ''}"
+    facts = {"rounds": rounds, "repeats": repeats, "block": BLOCK, "dim": dim}
     return timings_dataset("trial", rows, LABELS, VARIABLES, title, facts)

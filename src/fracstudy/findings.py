@@ -1,0 +1,189 @@
+"""Findings: the numbers that a study measures for the claims of its scene (`results/findings/<scene>.json`).
+
+A study measures; the criterion that the claim carries judges. Words that need the numbers look them up:
+``{ratio:.2f}`` gives "3.13 (KPSE), 1.47 (DD)" where `ratio` depends on the scheme, ``{ratio[KPSE]:.2f}`` one of them,
+``{ratio.least:.2f}`` and ``{ratio.greatest:.2f}`` the ends.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from fracparticles.files import write_text
+from fracstudy.claims import LedgerError, refuse_repeats
+
+__all__ = ["Finding", "filled", "measured", "read_findings", "write_findings"]
+
+
+class Finding(BaseModel):
+    """What a study measured for one claim.
+
+    Attributes
+    ----------
+    claim : str
+        Id of the claim.
+    numbers : dict
+        By name: a number, several, numbers by case, or a word. That of a value is called `ours`; it is left out where
+        it could not be had.
+    others : dict
+        The same numbers in another reading that the print leaves open (another seed, another loading), by its name.
+    runs : list of str
+        Relative paths of the runs behind it.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    claim: str = Field(min_length=1)
+    numbers: dict[str, Any] = {}
+    others: dict[str, dict[str, Any]] = {}
+    runs: list[str] = []
+
+
+def measured(
+    claim: str,
+    *,
+    runs: Iterable[str] = (),
+    others: Mapping[str, Mapping[str, Any]] | None = None,
+    **numbers: Any,
+) -> Finding:
+    """Return what a study measured for a claim, as numbers of Python.
+
+    Parameters
+    ----------
+    claim : str
+        Id of the claim.
+    runs : iterable of str, optional
+        The runs behind it.
+    others : mapping, optional
+        The numbers in other readings, by the name of the reading.
+    **numbers
+        Each a number, a truth value, a word, an array or list of numbers, or a mapping or Series of numbers by case.
+        The name of a case is its key, the parts of a tuple joined; where a Series names its index, a number is called
+        by it: "KPSE, beta = 0.1".
+
+    Raises
+    ------
+    LedgerError
+        For what is no finite number, for none at all where there should be several, for two cases of one name, and for
+        another reading of a number that is not among the numbers.
+    """
+    for reading, of_reading in (others or {}).items():
+        if unknown := sorted(of_reading.keys() - numbers.keys()):
+            raise LedgerError(f"{claim}: {reading} gives {', '.join(unknown)}, no number of it")
+    return Finding(
+        claim=claim,
+        numbers={name: _plain(claim, name, number) for name, number in numbers.items()},
+        others={
+            reading: {name: _plain(claim, name, number) for name, number in of_reading.items()}
+            for reading, of_reading in (others or {}).items()
+        },
+        runs=list(runs),
+    )
+
+
+def _plain(claim: str, name: str, number: Any) -> Any:
+    if isinstance(number, str):
+        return number
+    if isinstance(number, pd.Series | Mapping):
+        names = number.index.names if isinstance(number, pd.Series) else ()
+        cases = [(_case(key, names), m) for key, m in number.items()]
+        refuse_repeats([case for case, _ in cases], f"{claim}: cases of {name} with one name")
+        found: Any = {case: _plain(claim, name, m) for case, m in cases}
+    elif np.ndim(number):
+        found = [_plain(claim, name, m) for m in number]
+    else:
+        return _scalar(claim, name, number)
+    if not found:
+        raise LedgerError(f"{claim}: {name} has no numbers")
+    return found
+
+
+def _scalar(claim: str, name: str, number: Any) -> int | float:
+    if isinstance(number, bool | np.bool_ | int | np.integer):
+        return int(number)
+    try:
+        plain = float(number)
+    except TypeError:
+        plain = math.nan
+    if not math.isfinite(plain):
+        raise LedgerError(f"{claim}: {name} is {number}; a finding is made of finite numbers")
+    return plain
+
+
+def _case(key: Any, names: Iterable[Any]) -> str:
+    parts = key if isinstance(key, tuple) else (key,)
+    labels = [*names] or [None] * len(parts)
+    return ", ".join(
+        str(part) if label is None or isinstance(part, str) else f"{label} = {part:g}"
+        for part, label in zip(parts, labels, strict=True)
+    )
+
+
+class _Several:
+    """Numbers that a text may show: all of them, one of them, the least, the greatest."""
+
+    def __init__(self, numbers: Mapping[str, Any] | Sequence[Any]) -> None:
+        self._numbers = numbers
+        values = numbers.values() if isinstance(numbers, Mapping) else numbers
+        self.least, self.greatest, self.count = min(values), max(values), len(numbers)
+
+    def __getitem__(self, key: int | str) -> Any:
+        if isinstance(self._numbers, Mapping):
+            return self._numbers[str(key)]
+        return self._numbers[int(key)]
+
+    def __format__(self, form: str) -> str:
+        if isinstance(self._numbers, Mapping):
+            return ", ".join(f"{m:{form}} ({case})" for case, m in self._numbers.items())
+        return ", ".join(f"{m:{form}}" for m in self._numbers)
+
+
+def filled(text: str, finding: Finding) -> str:
+    """Return the text with the numbers of a finding in it.
+
+    Raises
+    ------
+    LedgerError
+        If it asks for a number that is not there, or cannot be shown as it asks.
+    """
+    try:
+        shown = {
+            name: _Several(number) if isinstance(number, dict | list) else number
+            for name, number in finding.numbers.items()
+        }
+        return text.format(**shown).strip()
+    except (KeyError, IndexError, AttributeError, ValueError, TypeError) as error:
+        known = ", ".join(finding.numbers) or "none"
+        raise LedgerError(f"{finding.claim}: {error!r} in {text!r}; measured: {known}") from None
+
+
+def read_findings(paths: Iterable[str | os.PathLike[str]]) -> list[Finding]:
+    """Read the findings of several scenes, each a JSON list.
+
+    Raises
+    ------
+    LedgerError
+        If a file is not a list of valid findings.
+    """
+    findings: list[Finding] = []
+    for path in map(Path, paths):
+        try:
+            findings += TypeAdapter(list[Finding]).validate_json(path.read_text("utf-8"))
+        except ValidationError as error:
+            raise LedgerError(f"{path}: {error}") from error
+    return findings
+
+
+def write_findings(findings: Iterable[Finding], path: str | os.PathLike[str]) -> None:
+    """Write the findings of a scene as a JSON list."""
+    records = [finding.model_dump(mode="json", exclude_defaults=True) for finding in findings]
+    write_text(path, json.dumps(records, indent=1, ensure_ascii=False) + "\n")

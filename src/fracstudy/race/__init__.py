@@ -1,0 +1,1 @@
+"""Error against run time: problems, contenders, and a clock. A new one of either is a new file, listed nowhere."""

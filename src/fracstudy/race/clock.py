@@ -1,0 +1,247 @@
+"""How times and memory are measured, and what is said of the machine."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import _lru_cache_wrapper
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numba as nb
+import numpy as np
+import pyfftw
+import scipy.linalg  # noqa: F401  it brings a BLAS of its own, which must be there to be told
+from threadpoolctl import threadpool_info, threadpool_limits
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "Timing",
+    "conditions",
+    "forget_tables",
+    "in_fresh_process",
+    "machine",
+    "measure",
+    "one_core",
+    "other_load",
+    "peak_so_far",
+    "timings_dataset",
+]
+
+_SHORT = 0.1  # seconds of clock, of which nothing is said
+_TICKS = os.sysconf("SC_CLK_TCK")  # a second, of /proc/stat
+_LIBRARIES = ("mkl_fft", "numba", "numpy", "pyfftw", "scipy")
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The times of an action, in seconds."""
+
+    times: tuple[float, ...]
+
+    @property
+    def minimum(self) -> float:
+        """The least."""
+        return min(self.times)
+
+    @property
+    def median(self) -> float:
+        """The one in the middle."""
+        return statistics.median(self.times)
+
+    def columns(self, name: str, factor: float = 1.0) -> dict[str, float]:
+        """Return what a data set holds of them: <name>_time, <name>_time_median, times a factor, and <name>s."""
+        least, middle = factor * self.minimum, factor * self.median
+        return {f"{name}_time": least, f"{name}_time_median": middle, f"{name}s": len(self.times)}
+
+    def __add__(self, other: Timing) -> Timing:
+        return Timing(self.times + other.times)
+
+
+def measure(
+    action: Callable[[], Any], repeats: int = 1, seconds: float = float("inf")
+) -> tuple[Timing, Any]:
+    """Time an action so many times, fewer if that takes longer than `seconds`; return the last result, too."""
+    times: list[float] = []
+    result = None
+    began, others = time.perf_counter(), _seconds_of_others()
+    for _ in range(repeats):
+        result = None  # before the next one takes its memory
+        start = time.perf_counter()
+        result = action()
+        times.append(time.perf_counter() - start)
+        if sum(times) > seconds:
+            break
+    _WATCHED["others"] += _seconds_of_others() - others
+    _WATCHED["clock"] += time.perf_counter() - began
+    return Timing(tuple(times)), result
+
+
+# Seconds that the clock ran since `one_core`, and what all other processes took meanwhile, in seconds of a core.
+_WATCHED = {"clock": 0.0, "others": 0.0}
+
+
+def _seconds_of_others() -> float:
+    """What all processes but this one have taken of the cores since the start of the system; nan outside Linux."""
+    counters = Path("/proc/stat")
+    if not counters.exists():
+        return float("nan")
+    with counters.open() as lines:
+        user, nice, system, _idle, _waiting, *interrupts = map(int, lines.readline().split()[1:9])
+    return (user + nice + system + sum(interrupts)) / _TICKS - time.process_time()
+
+
+def other_load() -> float:
+    """Return the share of a core that other processes took while the clock ran, since `one_core`; nan if unknown.
+
+    The system counts in ticks of some milliseconds: of many short measurements the sum is right, not each.
+    """
+    if _WATCHED["clock"] < _SHORT:
+        return float("nan")
+    return max(0.0, _WATCHED["others"] / _WATCHED["clock"])
+
+
+def forget_tables() -> None:
+    """Empty the tables that the package keeps from call to call, and the plans that FFTW does.
+
+    A set-up is then measured as the first one of a process.
+    """
+    pyfftw.forget_wisdom()
+    for name, module in list(sys.modules.items()):
+        if name.startswith("fracparticles."):
+            for kept in vars(module).values():
+                # What has no largest size is no table: the list of schemes.
+                if isinstance(kept, _lru_cache_wrapper) and kept.cache_parameters()["maxsize"]:
+                    kept.cache_clear()
+
+
+def one_core() -> None:
+    """Begin a benchmark: keep this process to one thread, numba's parallel loops and BLAS; watch the others anew."""
+    _WATCHED.update(clock=0.0, others=0.0)
+    threadpool_limits(1)
+    nb.set_num_threads(1)
+
+
+def peak_so_far() -> float:
+    """Return the peak resident memory of this process, in bytes; nan outside Linux.
+
+    VmHWM and not ru_maxrss, which a process inherits from the one that starts it.
+    """
+    status = Path("/proc/self/status")
+    if not status.exists():
+        return float("nan")
+    lines = status.read_text().splitlines()
+    return 1024.0 * float(next(line.split()[1] for line in lines if line.startswith("VmHWM")))
+
+
+def in_fresh_process(function: Callable[..., Any], *arguments: Any) -> Any:
+    """Return function(*arguments) from a process of its own, whose peak memory is its own; all of it plain data."""
+    program = (
+        "import json, sys\n"
+        "sys.path[:], arguments = json.loads(sys.argv[1])\n"
+        f"from {function.__module__} import {function.__name__} as function\n"
+        "print(json.dumps(function(*arguments)))\n"
+    )
+    given = json.dumps([sys.path, arguments])  # the path: the packages of scenes are found there
+    command = [sys.executable, "-c", program, given]
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+    return json.loads(done.stdout)
+
+
+def conditions() -> dict[str, float]:
+    """Return what holds for this process and not for another: its threads, and the load beside it."""
+    blas = [pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"]
+    threads = {"threads_numba": nb.get_num_threads(), "threads_blas": max(blas, default=0)}
+    return {**threads, "other_load": other_load()}
+
+
+def machine() -> dict[str, Any]:
+    """Return what the times were measured on, as attributes of a data set."""
+    facts: dict[str, Any] = {
+        "cpu": _cpu_model(),
+        "cores": len(os.sched_getaffinity(0)),
+        **conditions(),
+        "load_average": os.getloadavg()[0],
+        "system": f"{platform.system()} {platform.machine()}",
+        "python": platform.python_version(),
+    }
+    for library in _LIBRARIES:
+        try:
+            facts[library] = version(library)
+        except PackageNotFoundError:
+            facts[library] = "not installed"
+    return facts
+
+
+def _cpu_model() -> str:
+    description = Path("/proc/cpuinfo")
+    if description.exists():
+        for line in description.read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    return platform.processor() or platform.machine()
+
+
+def timings_dataset(
+    dimension: str,
+    rows: Sequence[Mapping[str, Any]],
+    labels: Mapping[str, str],
+    variables: Mapping[str, tuple[str, str]],
+    title: str,
+    facts: Mapping[str, Any],
+) -> xr.Dataset:
+    """Return measurements as a data set, one element of `dimension` a row.
+
+    Parameters
+    ----------
+    dimension : str
+        Name of the dimension.
+    rows : sequence of mapping
+        The measurements; a number that is not there becomes nan, a text the empty one.
+    labels : mapping
+        The coordinates: name and long name.
+    variables : mapping
+        The variables: name, and long name and unit.
+    title : str
+    facts : mapping
+        More attributes, such as the repeats; the package, its version and commit, and those of the machine are
+        added. What was measured in another process says its `conditions` here.
+    """
+    import xarray as xr
+
+    from fracparticles.run.dataset import source
+
+    def values(name: str) -> np.ndarray:
+        given = [row.get(name) for row in rows]
+        if any(isinstance(value, str) for value in given):
+            return np.array(["" if value is None else str(value) for value in given], dtype=object)
+        return np.array([np.nan if value is None else value for value in given])
+
+    return xr.Dataset(
+        {
+            name: ((dimension,), values(name), {"long_name": long_name, "units": units})
+            for name, (long_name, units) in variables.items()
+        },
+        {
+            name: ((dimension,), values(name), {"long_name": long_name})
+            for name, long_name in labels.items()
+        },
+        attrs={
+            "Conventions": "CF-1.11, ACDD-1.3",
+            "title": title,
+            "summary": "Wall times on one machine, one core; see the long names.",
+            "source": source(),
+            **machine(),
+            **facts,
+        },
+    )

@@ -1,0 +1,97 @@
+"""What a contender of the race is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+from scipy.fft import next_fast_len
+
+from fracstudy.race.problem import Points, Problem
+
+__all__ = ["Contender", "Ready", "lattices"]
+
+SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
+TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)
+_MOST = {1: 2**16, 2: 2**20, 3: 2**21}  # points
+
+
+@dataclass(frozen=True)
+class Ready:
+    """A contender made ready for one grid: all that does not depend on the data is done.
+
+    Attributes
+    ----------
+    x : tuple of array
+        Its points, one array a coordinate.
+    volumes : array or float
+        What each of them stands for.
+    solve : callable
+        From the data at the points to the solution there.
+    batched : bool
+        Whether `solve` takes several data at once, along a first axis.
+    linear : bool
+        Whether a solve is linear in the data.
+    scale : float
+        The time of a run over that of `solve`: more than 1 where only some of the time steps are taken.
+    result : callable, optional
+        The solution, where `solve` takes only some of the steps.
+    """
+
+    x: Points
+    volumes: np.ndarray | float
+    solve: Callable[[np.ndarray], np.ndarray]
+    batched: bool = False
+    linear: bool = True
+    scale: float = 1.0
+    result: Callable[[np.ndarray], np.ndarray] | None = None
+
+    @property
+    def points(self) -> int:
+        """How many unknowns there are."""
+        return int(np.prod(np.broadcast_shapes(*(line.shape for line in self.x))))
+
+
+class Contender:
+    """A method with a `name`, in a module of the folder; `trials` says what is tried, `prepare` makes one ready."""
+
+    name: str
+    label: str  # in figures
+    reference: str  # where it was published
+    group = "peers"  # or "ours", "schemes" (of the papers, as this library runs them), "papers" (as the papers do)
+    place = 100
+    colour, marker = "#000000", "o"
+    dims: tuple[int, ...] = (1,)
+
+    def takes(self, problem: Problem) -> bool:
+        """Whether it can solve the problem at all."""
+        return problem.dim in self.dims
+
+    def trials(self, problem: Problem) -> Iterable[dict[str, Any]]:
+        """Return the keywords of `prepare` to try; `variant` is always among them."""
+        raise NotImplementedError
+
+    def prepare(self, problem: Problem, *args: Any, **parameters: Any) -> Ready:
+        """Return the method made ready."""
+        raise NotImplementedError
+
+
+def lattices(
+    problem: Problem,
+    spacings: Iterable[float] = SPACINGS,
+    truncations: Iterable[float] = TRUNCATIONS,
+) -> Iterator[dict[str, Any]]:
+    """Yield `points` an axis and `half_width` D = C R_alpha t_f^(1/alpha): each spacing with each truncation factor C.
+
+    The number of points is the next even one that transforms fast; the spacing falls with it.
+    """
+    seen = set()
+    for spacing, truncation in product(spacings, truncations):
+        half_width = truncation * problem.width
+        points = 2 * next_fast_len(int(np.ceil(half_width / spacing)), real=True)
+        if points**problem.dim <= _MOST[problem.dim] and (points, half_width) not in seen:
+            seen.add((points, half_width))
+            yield {"points": points, "half_width": half_width}

@@ -1,0 +1,170 @@
+"""Ours: the papers' schemes on a lattice with an open exterior, and the papers' way of running them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fracparticles.run.case import Case
+from fracparticles.run.solver import advect, compute, prepare
+from fracparticles.schemes import SCHEMES
+from fracstudy.race.contender import Contender, Ready
+from fracstudy.race.problem import Problem
+
+_SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
+_TRUNCATIONS = {1: (4.1, 5.0, 7.0, 10.0, 20.0), 2: (2.3, 4.0, 8.0), 3: (2.3, 4.0)}
+_MOST = {1: 20000, 2: 60000, 3: 100000}
+_NAIVE_STEPS = 2
+
+
+def _cases(
+    problem: Problem, fields: dict[str, Any], spacings: tuple[float, ...] = _SPACINGS
+) -> Iterator[dict[str, Any]]:
+    for spacing in spacings:
+        for truncation in _TRUNCATIONS[problem.dim]:
+            if (2.0 * truncation * problem.width / spacing) ** problem.dim <= _MOST[problem.dim]:
+                yield {**fields, "spacing": spacing, "truncation": truncation}
+
+
+class _Scheme(Contender):
+    """A scheme, its whole run from the symbol, or by a Chebyshev series of its operator."""
+
+    group = "schemes"
+    dims: tuple[int, ...] = (1, 2)
+    ways: tuple[tuple[str, dict[str, Any]], ...] = ()
+
+    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
+        """Return the orders and evaluations on lattices."""
+        far = {"far_terms": 3} if problem.dim == 1 else {}
+        for variant, fields in self.ways:
+            for given in _cases(problem, {"exterior": "open", **far, **fields}):
+                yield {"variant": variant, **given}
+
+    def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
+        """Return the case made ready; its times differ by 1 as those of the problem."""
+        case = Case(scheme=self.name, beta=problem.beta, dim=problem.dim, **fields)
+        return Ready(_points(case), case.volumes, prepare(case).solve)
+
+
+def _points(case: Case) -> tuple[np.ndarray, ...]:
+    return tuple(np.meshgrid(*(case.x,) * case.dim, indexing="ij", sparse=True))
+
+
+def _exponential(*orders: int) -> tuple[tuple[str, dict[str, Any]], ...]:
+    return tuple(
+        (f"order {order}, {evaluation}", {"order": order, "integrator": "exponential", "evaluation": evaluation})
+        for order in orders
+        for evaluation in ("convolution", "series")
+    )  # fmt: skip
+
+
+class DD(_Scheme):
+    """DD."""
+
+    name = label = "DD"
+    reference = "Lucchesi et al. (2020), Eq. (10)"
+    place, colour, marker = 20, SCHEMES["DD"].colour, SCHEMES["DD"].marker
+    ways = _exponential(4, 12)
+
+
+class FPSE(_Scheme):
+    """FPSE."""
+
+    name = label = "FPSE"
+    reference = "Lucchesi et al. (2020), Eq. (25)"
+    place, colour, marker = 21, SCHEMES["FPSE"].colour, SCHEMES["FPSE"].marker
+    dims = (1,)
+    ways = _exponential(4, 12)
+
+
+class KPSE(_Scheme):
+    """KPSE."""
+
+    name = label = "KPSE"
+    reference = "Lucchesi et al. (2020), Eq. (34)"
+    place, colour, marker = 22, SCHEMES["KPSE"].colour, SCHEMES["KPSE"].marker
+    ways = _exponential(4, 12)
+
+
+class GPSE(_Scheme):
+    """GPSE in one step."""
+
+    name = label = "GPSE"
+    reference = "Lucchesi et al. (2020), Eq. (41)"
+    place, colour, marker = 23, SCHEMES["GPSE"].colour, SCHEMES["GPSE"].marker
+    dims = (1, 2, 3)
+    ways = (
+        ("one step", {"dt": 1.0}),
+        ("one step, convolution", {"dt": 1.0, "evaluation": "convolution"}),
+    )
+
+
+class MovingParticles(Contender):
+    """DVM, remeshed: its particles move with the diffusion velocity."""
+
+    name = label = "DVM"
+    reference = "Lucchesi et al. (2020), Sec. 3.3"
+    group, place = "schemes", 24
+    colour, marker = "#0072B2", "X"
+
+    def takes(self, problem: Problem) -> bool:
+        """Whether the data are positive everywhere, and resolved by a lattice."""
+        return problem.dim == 1 and problem.name in ("fundamental", "mixture")
+
+    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
+        """Return a few lattices and steps."""
+        for order in (2, 4):
+            for spacing, steps in ((0.1788, 250), (0.0894, 1000)):
+                fields = {"order": order, "spacing": spacing, "dt": 1.0 / steps, "truncation": 10.0}
+                yield {"variant": f"order {order}", **fields}
+
+    def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
+        """Return the run made ready; its solution is the field (7) where the particles began."""
+        case = Case(scheme="DVM", beta=problem.beta, **fields)
+        return Ready(
+            (case.x,), case.volumes, lambda u0: advect(case, u0).field(case.x), linear=False
+        )
+
+
+class PapersWay(Contender):
+    """Sums over all pairs and midpoint steps of 5e-5: a few steps timed, the rest extrapolated."""
+
+    name = label = "papers' way"
+    reference = "Lucchesi et al. (2020), Sec. 4.1"
+    group, place = "papers", 30
+    colour, marker = "#999999", "s"
+
+    def takes(self, problem: Problem) -> bool:
+        """Whether it is the papers' problem."""
+        return problem.dim == 1 and problem.name == "fundamental"
+
+    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
+        """Return the schemes and orders on truncated lattices."""
+        for scheme in ("DD", "FPSE", "KPSE"):
+            for order in (2, 4):
+                for truncation in (20.0, 160.0):
+                    for spacing in (0.2, 0.1):
+                        fields = {"scheme": scheme, "order": order, "spacing": spacing}
+                        yield {"variant": f"{scheme} {order}", "truncation": truncation, **fields}
+
+    def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
+        """Return a few steps made ready, and the whole run by FFT for the error."""
+        case = Case(beta=problem.beta, dt=5.0e-5, **fields)
+        few = naive_steps(case, _NAIVE_STEPS)
+        ready = Ready((case.x,), case.volumes, prepare(few).solve, scale=case.steps / _NAIVE_STEPS)
+        return replace(ready, result=lambda u0: compute(case, u0).u)
+
+
+def naive_steps(case: Case, steps: int) -> Case:
+    """Return the same lattice with so many of the time steps, sums over all pairs."""
+    fields = case.model_dump(exclude_none=True, exclude={"truncation"})
+    few = {
+        "half_width": case.reach,  # C would follow from the final time
+        "t_final": case.t_initial + steps * case.time_step,
+        "summation": "naive",
+        "evaluation": "stepping",
+    }
+    return Case(**{**fields, **few})

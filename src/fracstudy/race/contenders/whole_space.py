@@ -1,0 +1,43 @@
+"""Ours where one symbol does it: `fp.evolve`, the exact symbol with tails in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from fracparticles.time.whole_space import WholeSpace
+from fracstudy.race.contender import SPACINGS, Contender, Ready, lattices
+from fracstudy.race.problem import Problem, lattice
+
+_TRUNCATIONS = (1.5, 2.2, 3.0, 4.1, 5.0, 8.0, 12.0, 20.0)
+
+
+class Evolve(Contender):
+    """`fracparticles.evolve`."""
+
+    name, label = "evolve", "fp.evolve (exact symbol, tails continued)"
+    reference = "this library"
+    group, place, dims = "ours", 0, (1, 2, 3)
+    colour, marker = "#D55E00", "o"
+
+    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
+        """Return the lattices of the exact symbol without terms, and smaller ones with terms."""
+        yield from ({"variant": "0 terms", "terms": 0, **given} for given in lattices(problem))
+        for terms in (1, 2, 4) if problem.dim == 1 else (1, 2):
+            for given in lattices(problem, SPACINGS, _TRUNCATIONS):
+                yield {"variant": f"{terms} terms", "terms": terms, **given}
+
+    def prepare(
+        self, problem: Problem, variant: str, points: int, half_width: float, terms: int
+    ) -> Ready:
+        """Return the run made ready."""
+        dim, h = problem.dim, 2.0 * half_width / points
+        tau = problem.time * h**-problem.alpha
+        run = WholeSpace(points, dim, problem.alpha, tau, terms=terms, tail=problem.tail)
+
+        def solve(u0: np.ndarray) -> np.ndarray:
+            return run.solve_and_compare(u0)[0]  # as `evolve` does
+
+        return Ready(lattice(points, half_width, dim), h**dim, solve, batched=True)

@@ -1,0 +1,112 @@
+"""What a problem of the race is: data, exact solution, and how a result is judged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+
+from fracparticles.special.stable import green, mean_radius
+
+__all__ = ["Points", "Problem", "distance", "lattice"]
+
+Points = tuple[np.ndarray, ...]
+"""One array a coordinate, of shapes that broadcast."""
+
+
+def distance(x: Points, centre: Sequence[float] = ()) -> np.ndarray:
+    """Return |x - centre|; the centre is the origin where it says nothing."""
+    offsets = [*centre, *(0.0,) * (len(x) - len(centre))]
+    return np.sqrt(sum((line - c) ** 2 for line, c in zip(x, offsets, strict=True)))
+
+
+def lattice(points: int, half_width: float, dim: int) -> Points:
+    """Return x_i = (i - N // 2) h, h = 2 D / N, along each axis."""
+    x = (np.arange(points) - points // 2) * (2.0 * half_width / points)
+    return tuple(np.meshgrid(*(x,) * dim, indexing="ij", sparse=True))
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Data at time 0, D = 1, and the solution at time 1, in `dim` dimensions.
+
+    Attributes
+    ----------
+    beta : float
+        Fractional order, alpha = 1 + beta.
+    dim : {1, 2, 3}
+    """
+
+    beta: float
+    dim: int = 1
+
+    name = ""
+    title = ""  # in a few words
+    place = 100  # among the others
+    dims: ClassVar[tuple[int, ...]] = (1, 2, 3)  # where it exists
+    time = 1.0
+
+    @property
+    def alpha(self) -> float:
+        """Fractional order alpha = 1 + beta."""
+        return 1.0 + self.beta
+
+    @property
+    def tail(self) -> tuple[float, ...] | None:
+        """The powers by which the data fall, see `whole_space.evolve`."""
+        return None
+
+    @property
+    def width(self) -> float:
+        """R_alpha t_f^(1/alpha) of the papers' problem, the unit of half-widths: D = C times it, Eq. (46)."""
+        return float(1.5 ** (1.0 / self.alpha) * mean_radius(self.alpha))
+
+    @property
+    def error_radius(self) -> float:
+        """The error is taken over |x| <= 5 R_alpha (48) on the line, over |x| <= 5 (59) beyond."""
+        return 5.0 * mean_radius(self.alpha) if self.dim == 1 else 5.0
+
+    def initial(self, x: Points) -> np.ndarray:
+        """Return the data."""
+        raise NotImplementedError
+
+    def exact(self, x: Points) -> np.ndarray:
+        """Return the solution; where it is not known, beyond twice the error radius, nan."""
+        raise NotImplementedError
+
+    def green(self, x: Points, time: float, centre: Sequence[float] = ()) -> np.ndarray:
+        """Return the fundamental solution about a centre."""
+        return np.asarray(green(distance(x, centre), time, self.alpha, self.dim))
+
+    def error(self, x: Points, volumes: np.ndarray | float, u: np.ndarray) -> float:
+        """Return sum V |u - exact| / sum V |exact| over the points within the error radius; nan without two of them."""
+        inside = distance(x) <= self.error_radius
+        if np.count_nonzero(inside) < 2:
+            return float("nan")
+        volume = np.broadcast_to(volumes, inside.shape)[inside]
+        exact = _exact(self, x)[inside]
+        return float((volume * np.abs(u[inside] - exact)).sum() / (volume * np.abs(exact)).sum())
+
+    def tail_error(self, x: Points, u: np.ndarray) -> float:
+        """Return the greatest relative error between one and two error radii; nan if no points reach there."""
+        r = distance(x)
+        far = (r >= self.error_radius) & (r <= 2.0 * self.error_radius)
+        if r.max() < 1.9 * self.error_radius or not far.any():
+            return float("nan")
+        return float(np.abs(u[far] / _exact(self, x)[far] - 1.0).max())
+
+
+def _exact(problem: Problem, x: Points) -> np.ndarray:
+    """The exact solution, kept for the few sets of points that were asked for last."""
+    return _kept(problem, tuple(line.tobytes() for line in x), tuple(line.shape for line in x))
+
+
+@lru_cache(maxsize=8)
+def _kept(
+    problem: Problem, data: tuple[bytes, ...], shapes: tuple[tuple[int, ...], ...]
+) -> np.ndarray:
+    lines = zip(data, shapes, strict=True)
+    return problem.exact(tuple(np.frombuffer(line).reshape(shape) for line, shape in lines))

@@ -1,0 +1,203 @@
+"""Contenders tried on a problem: each trial judged once, those that matter timed again and again."""
+
+from __future__ import annotations
+
+import tracemalloc
+import warnings
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from fracparticles.errors import FracparticlesError, FracparticlesWarning
+from fracstudy.race.clock import Timing, forget_tables, measure
+from fracstudy.race.contender import Contender, Ready
+from fracstudy.race.problem import Problem
+
+__all__ = ["BLOCK", "LABELS", "VARIABLES", "run_trials"]
+
+BLOCK = 1000
+"""Data at once, where what is asked for is many solves."""
+_NOT_YET = Timing(())
+_SLACK = (
+    1.5  # a trial is timed again if no other one of its contender is so much faster and as good
+)
+_LONG = 0.25  # seconds; what takes longer is timed once
+_MATRIX = 600  # points up to which the whole run may be one matrix
+_MOST = 2**20  # numbers in a block
+
+LABELS = {
+    "problem": "initial data",
+    "contender": "scheme, or method of the literature",
+    "variant": "order, exterior, evaluation",
+    "group": "ours, schemes of the papers, the papers' way of running them, or peers of the literature",
+    "beta": "fractional order beta = alpha - 1",
+}
+VARIABLES = {
+    "parameters": ("what else was chosen", "1"),
+    "points": ("number of unknowns", "1"),
+    "error": ("relative error, Eq. (48) or (59)", "1"),
+    "tail_error": ("greatest relative error between one and two error radii", "1"),
+    "setup_time": ("set-up, nothing kept from before, minimum", "s"),
+    "setup_time_median": ("set-up, median", "s"),
+    "solve_time": ("solve, minimum", "s"),
+    "solve_time_median": ("solve, median", "s"),
+    "setups": ("set-ups that were timed", "1"),
+    "solves": ("solves that were timed", "1"),
+    "block_time": ("a further solve in a block of many, minimum", "s"),
+    "peak_memory": ("greatest memory of set-up and solve", "B"),
+    "extrapolated": ("run time over the time that was measured: 1 for a whole run", "1"),
+    "failure": ("what went wrong; empty if nothing did", "1"),
+}
+
+
+@dataclass
+class _Record:
+    contender: Contender
+    given: dict[str, Any]
+    row: dict[str, Any]
+    setups: Timing = _NOT_YET
+    solves: Timing = _NOT_YET
+    ready: Ready | None = None
+    u0: Any = None
+
+    @property
+    def times(self) -> tuple[float, float]:
+        """The least times of a solve, and of set-up and solve."""
+        solve = self.solves.minimum * self.row["extrapolated"]
+        return solve, solve + self.setups.minimum
+
+    def finished(self) -> dict[str, Any]:
+        row = dict(self.row)
+        for name, timing, factor in (
+            ("setup", self.setups, 1.0),
+            ("solve", self.solves, row.get("extrapolated", 1.0)),
+        ):
+            if timing.times:
+                row |= timing.columns(name, factor)
+        return row
+
+
+def run_trials(
+    problem: Problem, contenders: Iterable[Contender], rounds: int, repeats: int, seconds: float
+) -> list[dict[str, Any]]:
+    """Run every trial once, then time those that matter in `rounds` rounds, each with its set-up; one row a trial.
+
+    A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, and does
+    not take a quarter of a second. The rounds go through all of them, so that each is measured at several moments.
+
+    Parameters
+    ----------
+    problem : Problem
+    contenders : iterable of Contender
+    rounds : int
+        Set-ups a trial.
+    repeats, seconds : int, float
+        Solves a set-up, fewer if they take longer than that.
+    """
+    records = []
+    for contender in contenders:
+        trials = list(contender.trials(problem)) if contender.takes(problem) else []
+        for given in trials[:1]:  # each does once what a process does once
+            _first(problem, contender, given)
+        records += [_first(problem, contender, given) for given in trials]
+    worth = [record for record in _near_front(records) if record.times[1] < _LONG]
+    for _ in range(rounds):
+        for record in worth:
+            forget_tables()
+            setup, ready = measure(partial(record.contender.prepare, problem, **record.given))
+            solve, _ = measure(partial(ready.solve, record.u0), repeats, seconds)
+            record.setups += setup
+            record.solves += solve
+    for record in worth:
+        record.row["block_time"] = _block_time(record)
+        record.row["peak_memory"] = _peak_memory(problem, record)
+    return [record.finished() for record in records]
+
+
+def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Record:
+    """The errors, and the times of a first set-up and of a second solve."""
+    parameters = {name: value for name, value in given.items() if name != "variant"}
+    row = {
+        "problem": problem.name,
+        "beta": problem.beta,
+        "contender": contender.name,
+        "variant": given["variant"],
+        "group": contender.group,
+        "parameters": ", ".join(f"{k} {v:.6g}" if isinstance(v, float) else f"{k} {v}" for k, v in parameters.items()),
+        "failure": "",
+    }  # fmt: skip
+    record = _Record(contender, given, row)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", FracparticlesWarning)
+            forget_tables()
+            setup, ready = measure(partial(contender.prepare, problem, **given))
+            u0 = problem.initial(ready.x)
+            solve, u = measure(partial(ready.solve, u0))
+            if solve.minimum < _LONG:  # the first was the warm-up
+                solve, u = measure(partial(ready.solve, u0))
+            u = u if ready.result is None else ready.result(u0)
+    except FracparticlesError as failure:
+        row["failure"] = str(failure).splitlines()[0]
+        return record
+    row |= {
+        "points": ready.points,
+        "extrapolated": ready.scale,
+        "error": problem.error(ready.x, ready.volumes, u),
+        "tail_error": problem.tail_error(ready.x, u),
+    }
+    record.setups, record.solves = setup, solve
+    record.ready, record.u0 = ready, u0
+    return record
+
+
+def _block_time(record: _Record) -> float:
+    """The time of one of many solves: of a block by the contender, or of a product with its whole matrix."""
+    ready, u0 = record.ready, record.u0
+    assert ready is not None
+    if not ready.linear or ready.scale != 1.0:
+        return float("nan")
+    count = min(BLOCK, max(1, _MOST // ready.points))
+    block = np.broadcast_to(u0, (count, *u0.shape)).copy()
+    times = []
+    if ready.batched:
+        times.append(measure(partial(ready.solve, block), 3, _LONG)[0].minimum)
+    if ready.points <= _MATRIX:
+        matrix = np.zeros((ready.points, ready.points))
+        times.append(measure(partial(np.dot, block.reshape(count, -1), matrix), 3)[0].minimum)
+    return min(times, default=record.solves.minimum * count) / count
+
+
+def _peak_memory(problem: Problem, record: _Record) -> float:
+    """In bytes, of what numpy allocates."""
+    forget_tables()
+    tracemalloc.start()
+    try:
+        record.contender.prepare(problem, **record.given).solve(record.u0)
+        return float(tracemalloc.get_traced_memory()[1])
+    finally:
+        tracemalloc.stop()
+
+
+def _near_front(records: Iterable[_Record]) -> list[_Record]:
+    by_contender: dict[str, list[_Record]] = {}
+    for record in records:
+        if np.isfinite(record.row.get("error", np.nan)):
+            by_contender.setdefault(record.contender.name, []).append(record)
+    return [
+        record
+        for own in by_contender.values()
+        for record in own
+        if not all(_beaten(record, own, which) for which in (0, 1))
+    ]
+
+
+def _beaten(record: _Record, others: Iterable[_Record], which: int) -> bool:
+    return any(
+        other.row["error"] <= record.row["error"]
+        and _SLACK * other.times[which] < record.times[which]
+        for other in others
+    )

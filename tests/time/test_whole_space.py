@@ -1,0 +1,190 @@
+"""Runs on the whole space by one pair of transforms: exact solutions, invariants, and the order of the tails."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+import fracparticles as fp
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.time.whole_space import WholeSpace, evolve, tail_exponents
+
+
+def line(points: int, half_width: float) -> tuple[np.ndarray, float]:
+    h = 2.0 * half_width / points
+    return (np.arange(points) - points // 2) * h, h
+
+
+def mixture(x: np.ndarray, t: float, alpha: float) -> np.ndarray:
+    return 0.6 * fp.green(np.abs(x - 1.5), t, alpha) + 0.4 * fp.green(
+        np.abs(x + 1.0), t + 0.2, alpha
+    )
+
+
+@pytest.mark.parametrize("alpha", [1.2, 1.5, 1.9])
+def test_off_centre_data_become_the_exact_solution(alpha):
+    x, h = line(1024, 64.0)
+    u = evolve(mixture(x, 0.5, alpha), h, alpha, 1.0, terms=5)
+    assert_allclose(u, mixture(x, 1.5, alpha), rtol=1e-5, atol=1e-9)
+    near = np.abs(x) < 10.0
+    assert_allclose(u[near], mixture(x, 1.5, alpha)[near], rtol=1e-9)
+
+
+@pytest.mark.parametrize("alpha", [1.5, 1.8])
+@pytest.mark.parametrize("terms", [1, 2, 4])
+def test_the_error_falls_with_the_power_of_the_first_term_left_out(alpha, terms):
+    """Twice the width: u ~ D^-gamma relative to its own tail D^-1, near the ends; the exponents say which gamma."""
+    gamma = tail_exponents(alpha, terms + 1)[-1]
+    errors = []
+    for half_width in (32.0, 64.0):
+        x, h = line(int(16 * half_width), half_width)
+        u = evolve(mixture(x, 0.5, alpha), h, alpha, 1.0, terms=terms)
+        errors.append(np.abs(u - mixture(x, 1.5, alpha)).max())
+    assert errors[1] <= errors[0] * 2.0 ** (-gamma) + 1e-15
+
+
+def test_the_first_exponents():
+    assert tail_exponents(1.5, 5) == pytest.approx([1.5, 3.0, 3.5, 4.5, 5.0])
+    assert tail_exponents(1.1, 4) == pytest.approx([1.1, 2.2, 3.1, 3.3])
+
+
+def test_without_terms_it_is_the_periodic_exact_symbol():
+    _, h = line(96, 10.0)
+    u0 = np.random.default_rng(1).standard_normal(96)
+    k = np.fft.fftfreq(96, h) * 2.0 * np.pi
+    exact = np.fft.ifft(np.fft.fft(u0) * np.exp(-0.3 * np.abs(k) ** 1.4)).real
+    assert_allclose(evolve(u0, h, 1.4, 0.3, terms=0), exact, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("dim", "points", "half_width", "tolerance"), [(2, 96, 16.0, 2e-6), (3, 40, 10.0, 1e-4)]
+)
+def test_in_the_plane_and_in_space(dim, points, half_width, tolerance):
+    alpha = 1.5
+    x, h = line(points, half_width)
+    at = np.meshgrid(*(x,) * dim, indexing="ij", sparse=True)
+
+    def exact(t: float) -> np.ndarray:
+        shifted = np.sqrt(
+            sum((line - c) ** 2 for line, c in zip(at, (1.0, -0.5, 0.2), strict=False))
+        )
+        return fp.green(shifted, t, alpha, dim=dim)
+
+    u = evolve(exact(0.5), h, alpha, 1.0, terms=2)
+    assert np.abs(u - exact(1.5)).max() <= tolerance * exact(1.5).max()
+
+
+def test_data_that_fall_by_powers_of_their_own():
+    """u^ = pi exp(-|k|) at first; at x = 0 the solution is int_0^inf exp(-k - t k^alpha) dk."""
+    x, h = line(1024, 64.0)
+    k, weight = np.polynomial.laguerre.laggauss(120)
+    alpha, time = 1.5, 1.0
+    u = evolve(1.0 / (1.0 + x * x), h, alpha, time, terms=4, tail=(2.0, 4.0))
+    assert u[512] == pytest.approx(weight @ np.exp(-time * k**alpha), rel=1e-5)
+    own = evolve(1.0 / (1.0 + x * x), h, alpha, time, terms=4)
+    assert own[512] == pytest.approx(u[512], rel=1e-4)
+
+
+def test_data_that_end_conserve_their_mass():
+    """Beyond D lies 2 c D^-alpha / alpha, 4e-4, but for terms smaller by D^-alpha and h / D, 1e-3 each."""
+    x, h = line(2048, 100.0)
+    u0 = np.maximum(1.0 - x * x, 0.0) ** 3
+    u = evolve(u0, h, 1.5, 1.0, terms=4, tail=())
+    beyond = 2.0 * u[-1] * 100.0 / 1.5
+    assert h * u.sum() + beyond == pytest.approx(h * u0.sum(), rel=3e-6)
+
+
+def test_two_halves_of_the_time_are_the_whole():
+    x, h = line(512, 40.0)
+    u0 = mixture(x, 0.5, 1.6)
+    once = evolve(u0, h, 1.6, 1.0, terms=4)
+    twice = evolve(evolve(u0, h, 1.6, 0.4, terms=4), h, 1.6, 0.6, terms=4)
+    assert np.abs(once - twice).max() <= 1e-7 * once.max()
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    alpha=st.floats(1.05, 1.95),
+    time=st.floats(1e-3, 2.0),
+    scale=st.floats(1e-3, 1e3),
+    points=st.integers(16, 80),
+    terms=st.integers(0, 4),
+)
+def test_linear_symmetric_and_the_same_in_other_units(alpha, time, scale, points, terms):
+    rng = np.random.default_rng(points)
+    u, v = rng.standard_normal((2, points))
+    warnings.simplefilter("ignore", AccuracyWarning)
+
+    def run(w: np.ndarray, h: float = 0.3, t: float = time) -> np.ndarray:
+        return evolve(w, h, alpha, t, terms=terms)
+
+    size = np.abs(run(u)).max() + np.abs(run(v)).max() + np.abs(u).max()
+    assert np.abs(run(2.0 * u - v) - 2.0 * run(u) + run(v)).max() <= 1e-8 * size
+    assert np.abs(run(u, 0.3 * scale, time * scale**alpha) - run(u)).max() <= 1e-6 * size
+    if points % 2:
+        assert np.abs(run(u[::-1])[::-1] - run(u)).max() <= 1e-8 * size
+
+
+@pytest.mark.parametrize("dim", [1, 2])
+def test_many_data_at_once_are_each_alone(dim):
+    run = WholeSpace(24, dim, 1.5, 2.0, terms=2)
+    many = np.random.default_rng(0).standard_normal((3, 2, *(24,) * dim))
+    at_once = run.solve(many)
+    for index in np.ndindex(3, 2):
+        assert_allclose(at_once[index], run.solve(many[index]), atol=1e-13)
+
+
+def test_the_data_stay_as_they_are():
+    u0 = np.ones(32)
+    evolve(u0, 0.1, 1.5, 1.0)
+    assert (u0 == 1.0).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"alpha": 2.0}, "alpha"),
+        ({"spacing": 0.0}, "spacing"),
+        ({"time": -1.0}, "time"),
+        ({"time": 1000.0}, "time"),
+        ({"diffusivity": float("nan")}, "diffusivity"),
+        ({"dim": 4}, "dim"),
+        ({"terms": 7}, "terms"),
+        ({"terms": 1.5}, "terms"),
+        ({"stretch": 0.5}, "stretch"),
+        ({"tail": (1.0,)}, "tail"),
+        ({"tail": (3.0,)}, "tail"),
+        ({"u": np.ones((4, 5)), "dim": 2}, "u"),
+        ({"u": [1.0, float("nan")]}, "u"),
+    ],
+)
+def test_bad_arguments_are_named(change, field):
+    given = {"u": np.ones(16), "spacing": 1.0, "alpha": 1.5, "time": 1.0} | change
+    with pytest.raises(InvalidInput) as error:
+        evolve(**given)
+    assert error.value.field == field
+
+
+def test_a_lattice_too_narrow_is_warned_of():
+    """The tail misses the solution at the ends."""
+    x, h = line(64, 2.0)
+    with pytest.warns(AccuracyWarning, match="wider lattice"):
+        narrow = evolve(mixture(x, 0.5, 1.5), h, 1.5, 1.0)
+    assert np.abs(narrow - mixture(x, 1.5, 1.5)).max() > 1e-3 * narrow.max()
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
+@pytest.mark.parametrize("half_width", [3.0, 6.0, 12.0, 24.0])
+def test_no_silent_error(alpha, half_width):
+    """Where nothing is said, the error is less than what the tail may miss unnoticed."""
+    x, h = line(512, half_width)
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        u = evolve(mixture(x, 0.5, alpha), h, alpha, 1.0)
+    error = np.abs(u - mixture(x, 1.5, alpha)).max() / u.max()
+    assert said or error <= 1e-3

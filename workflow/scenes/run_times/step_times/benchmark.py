@@ -1,0 +1,100 @@
+"""The time of a step where nothing can be kept from the one before: a new step or coefficient, moved particles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fracparticles.run.case import Case
+from fracparticles.run.solver import advect, prepare
+from fracparticles.schemes import SCHEMES
+from fracparticles.time.whole_space import WholeSpace
+from fracstudy.race.clock import forget_tables, measure, one_core, timings_dataset
+from fracstudy.race.contenders.exact_symbol import ExactSymbol
+from fracstudy.race.problems.fundamental import Fundamental
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["benchmark"]
+
+_STEP = 0.001
+_LABELS = {"method": "method", "dim": "number of dimensions"}
+_VARIABLES = {
+    "points": ("number of points", "1"),
+    "step_time": ("a step with everything that it changes, minimum", "s"),
+    "step_time_median": ("the same, median", "s"),
+    "steps": ("steps that were timed", "1"),
+}
+
+
+def benchmark(line: int, plane: int, repeats: int) -> xr.Dataset:
+    """Time steps of 0.001 on the papers' problem, each made anew.
+
+    Parameters
+    ----------
+    line, plane : int
+        About the number of points, on the line and along an axis in the plane.
+    repeats : int
+        Steps; their minimum and median are kept.
+    """
+    one_core()
+    rows: list[dict[str, Any]] = []
+    for dim, points in ((1, line), (2, plane)):
+        for method, count, step in _steps(dim, points):
+            step()
+            forget_tables()
+            timing, _ = measure(step, repeats)
+            rows.append({"method": method, "dim": dim, "points": count, **timing.columns("step")})
+    title = "A step where the operator changes, or the particles move"
+    return timings_dataset("step", rows, _LABELS, _VARIABLES, title, {"repeats": repeats})
+
+
+def _steps(dim: int, points: int) -> Iterator[tuple[str, int, Callable[[], Any]]]:
+    problem = Fundamental(0.5, dim)
+    half_width = 20.0 * problem.width if dim == 1 else 4.0 * problem.width
+    even = points + points % 2
+    symbol = ExactSymbol()
+    ready = symbol.prepare(problem, "", even, half_width)
+    u0 = problem.initial(ready.x)
+    tau = _STEP * (2.0 * half_width / even) ** -problem.alpha
+
+    def exact() -> Any:
+        return symbol.prepare(problem, "", even, half_width).solve(u0)
+
+    def evolve() -> Any:
+        return WholeSpace(even, dim, problem.alpha, tau).solve(u0)
+
+    yield "exact symbol, periodic", u0.size, exact
+    yield "fp.evolve, 2 terms", u0.size, evolve
+    lattice: dict[str, Any] = {
+        "beta": problem.beta,
+        "dim": dim,
+        "half_width": half_width,
+        "spacing": 2.0 * half_width / (points - 1),
+        "t_final": 0.5 + _STEP,
+    }
+    for scheme in ("DD", "FPSE", "KPSE"):
+        case = Case(scheme=scheme, dt=_STEP, **lattice)
+        data = problem.initial(tuple(np.meshgrid(*(case.x,) * dim, indexing="ij", sparse=True)))
+        flat = data.reshape(-1)
+        yield f"{scheme}, operator made anew", data.size, partial(_applied, case, flat)
+    step = (2.0 * lattice["spacing"]) ** problem.alpha  # epsilon = 2 h
+    green = Case(scheme="GPSE", dt=step, **{**lattice, "t_final": 0.5 + step})
+    yield "GPSE, step made anew", data.size, partial(_one_step, green, data)
+    if dim == 1:
+        moving = Case(scheme="DVM", dt=_STEP, **lattice)
+        yield "DVM, two velocities", data.size, partial(advect, moving, data)
+        naive = moving.model_copy(update={"summation": "naive"})
+        yield "DVM, two velocities, naive sums", data.size, partial(advect, naive, data)
+
+
+def _applied(case: Case, u: np.ndarray) -> np.ndarray:
+    return SCHEMES[case.scheme].operator(case.setting).apply(u)
+
+
+def _one_step(case: Case, u: np.ndarray) -> np.ndarray:
+    return prepare(case).solve(u)
