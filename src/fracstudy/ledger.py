@@ -208,6 +208,7 @@ def _judged_statement(
             "status": str(Status.NOT_TESTABLE),
             "ours": text(claim.evidence),
             "reason": text(claim.untestable),
+            "changed": text(claim.changed),
         }
     own = _judged(claim, finding.numbers, conventions)
     close = list(own.close)

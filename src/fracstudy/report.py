@@ -21,7 +21,13 @@ from fracparticles.files import write_text
 from fracstudy.claims import read_conventions
 from fracstudy.config import Document
 from fracstudy.criteria import CLOSE, Convention, Status
-from fracstudy.ledger import ledger_markdown, ours_text, read_ledger, summary_line
+from fracstudy.ledger import (
+    ledger_markdown,
+    ours_text,
+    read_ledger,
+    sentence_status,
+    summary_line,
+)
 from fracstudy.scene import Scene
 
 if TYPE_CHECKING:
@@ -125,6 +131,7 @@ def build(
         statuses=list(Status),
         close=CLOSE,
         conventions=[(word.replace("_", " "), of, *of.threshold) for word, of in words.items()],
+        refuted=_refuted(df, sections),
         documents=parts,
         sections=[section for part in parts for section in part.sections],
         ledger=ledger_markdown(df),
@@ -141,6 +148,17 @@ def build(
     for path, content in zip(paths, (text, page), strict=True):
         write_text(path, content.rstrip("\n") + "\n")
     return paths
+
+
+def _refuted(df: pd.DataFrame, sections: Sequence[_Section]) -> list[dict[str, str]]:
+    """The refuted statements of sentences of which nothing holds, each with the section that shows it."""
+    home = {item: section for section in sections for item in section.items}
+    whole = df.groupby("sentence")["status"].transform(lambda words: str(sentence_status(words)))
+    rows = df[(df["sentence"] != "") & (whole == str(Status.REFUTED))]
+    return [
+        {**row, "anchor": home[row["item"]].name, "title": home[row["item"]].title}
+        for row in rows[rows["status"] == str(Status.REFUTED)].to_dict("records")
+    ]
 
 
 def _parts(

@@ -81,16 +81,18 @@ class Contender:
 
 def lattices(
     problem: Problem,
-    spacings: Iterable[float] = SPACINGS,
+    spacings: Iterable[float] | None = None,
     truncations: Iterable[float] = TRUNCATIONS,
 ) -> Iterator[dict[str, Any]]:
     """Yield `points` an axis and `half_width` D = C R_alpha t_f^(1/alpha): each spacing with each truncation factor C.
 
-    The number of points is the next even one that transforms fast; the spacing falls with it.
+    Spacings are those of a problem with details of the size 1, and smaller for finer ones. The number of points is the
+    next even one that transforms fast; the spacing falls with it.
     """
     seen = set()
-    for spacing, truncation in product(spacings, truncations):
+    for spacing, truncation in product(spacings or SPACINGS, truncations):
         half_width = truncation * problem.width
+        spacing *= problem.finest
         points = 2 * next_fast_len(int(np.ceil(half_width / spacing)), real=True)
         if points**problem.dim <= _MOST[problem.dim] and (points, half_width) not in seen:
             seen.add((points, half_width))

@@ -48,6 +48,7 @@ class Problem:
     place = 100  # among the others
     dims: ClassVar[tuple[int, ...]] = (1, 2, 3)  # where it exists
     time = 1.0
+    finest = 1.0  # spacings are in units of it
 
     @property
     def alpha(self) -> float:

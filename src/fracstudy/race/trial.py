@@ -26,7 +26,7 @@ _SLACK = (
 )
 _LONG = 0.25  # seconds; what takes longer is timed once
 _MATRIX = 600  # points up to which the whole run may be one matrix
-_MOST = 2**20  # numbers in a block
+_MOST = 2**19  # numbers in a block
 
 LABELS = {
     "problem": "initial data",
@@ -111,7 +111,7 @@ def run_trials(
             solve, _ = measure(partial(ready.solve, record.u0), repeats, seconds)
             record.setups += setup
             record.solves += solve
-    for record in worth:
+    for record in _near_front(worth, slack=1.0):
         record.row["block_time"] = _block_time(record)
         record.row["peak_memory"] = _peak_memory(problem, record)
     return [record.finished() for record in records]
@@ -164,7 +164,7 @@ def _block_time(record: _Record) -> float:
     block = np.broadcast_to(u0, (count, *u0.shape)).copy()
     times = []
     if ready.batched:
-        times.append(measure(partial(ready.solve, block), 3, _LONG)[0].minimum)
+        times.append(measure(partial(ready.solve, block), 2, _LONG)[0].minimum)
     if ready.points <= _MATRIX:
         matrix = np.zeros((ready.points, ready.points))
         times.append(measure(partial(np.dot, block.reshape(count, -1), matrix), 3)[0].minimum)
@@ -182,7 +182,8 @@ def _peak_memory(problem: Problem, record: _Record) -> float:
         tracemalloc.stop()
 
 
-def _near_front(records: Iterable[_Record]) -> list[_Record]:
+def _near_front(records: Iterable[_Record], slack: float = _SLACK) -> list[_Record]:
+    """Those that no other one of their contender beats by more than `slack` in both times, with an error as small."""
     by_contender: dict[str, list[_Record]] = {}
     for record in records:
         if np.isfinite(record.row.get("error", np.nan)):
@@ -191,13 +192,13 @@ def _near_front(records: Iterable[_Record]) -> list[_Record]:
         record
         for own in by_contender.values()
         for record in own
-        if not all(_beaten(record, own, which) for which in (0, 1))
+        if not all(_beaten(record, own, which, slack) for which in (0, 1))
     ]
 
 
-def _beaten(record: _Record, others: Iterable[_Record], which: int) -> bool:
+def _beaten(record: _Record, others: Iterable[_Record], which: int, slack: float) -> bool:
     return any(
         other.row["error"] <= record.row["error"]
-        and _SLACK * other.times[which] < record.times[which]
+        and slack * other.times[which] < record.times[which]
         for other in others
     )

@@ -12,7 +12,7 @@ from fracstudy.race.contender import Contender, Ready
 from fracstudy.race.problem import Problem
 
 _COUNTS = (25, 35, 49, 69, 97, 137, 193, 273)
-_REACHES = (40.0, 200.0, 1000.0, 5000.0)
+_REACHES = (200.0, 5000.0)
 _SCALES = (0.01, 0.1, 1.0, 3.0)
 
 

@@ -53,12 +53,13 @@ def _points(case: Case) -> tuple[np.ndarray, ...]:
     return tuple(np.meshgrid(*(case.x,) * case.dim, indexing="ij", sparse=True))
 
 
-def _exponential(*orders: int) -> tuple[tuple[str, dict[str, Any]], ...]:
-    return tuple(
-        (f"order {order}, {evaluation}", {"order": order, "integrator": "exponential", "evaluation": evaluation})
-        for order in orders
-        for evaluation in ("convolution", "series")
-    )  # fmt: skip
+_WAYS = tuple(
+    (
+        f"order {order}, {evaluation}",
+        {"order": order, "integrator": "exponential", "evaluation": evaluation},
+    )
+    for order, evaluation in ((4, "convolution"), (12, "convolution"), (12, "series"))
+)
 
 
 class DD(_Scheme):
@@ -67,7 +68,7 @@ class DD(_Scheme):
     name = label = "DD"
     reference = "Lucchesi et al. (2020), Eq. (10)"
     place, colour, marker = 20, SCHEMES["DD"].colour, SCHEMES["DD"].marker
-    ways = _exponential(4, 12)
+    ways = _WAYS
 
 
 class FPSE(_Scheme):
@@ -77,7 +78,7 @@ class FPSE(_Scheme):
     reference = "Lucchesi et al. (2020), Eq. (25)"
     place, colour, marker = 21, SCHEMES["FPSE"].colour, SCHEMES["FPSE"].marker
     dims = (1,)
-    ways = _exponential(4, 12)
+    ways = _WAYS
 
 
 class KPSE(_Scheme):
@@ -86,7 +87,7 @@ class KPSE(_Scheme):
     name = label = "KPSE"
     reference = "Lucchesi et al. (2020), Eq. (34)"
     place, colour, marker = 22, SCHEMES["KPSE"].colour, SCHEMES["KPSE"].marker
-    ways = _exponential(4, 12)
+    ways = _WAYS
 
 
 class GPSE(_Scheme):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fracparticles.time.whole_space import WholeSpace
-from fracstudy.race.contender import SPACINGS, Contender, Ready, lattices
+from fracstudy.race.contender import Contender, Ready, lattices
 from fracstudy.race.problem import Problem, lattice
 
 _TRUNCATIONS = (1.5, 2.2, 3.0, 4.1, 5.0, 8.0, 12.0, 20.0)
@@ -20,13 +20,13 @@ class Evolve(Contender):
     name, label = "evolve", "fp.evolve (exact symbol, tails continued)"
     reference = "this library"
     group, place, dims = "ours", 0, (1, 2, 3)
-    colour, marker = "#D55E00", "o"
+    colour, marker = "#7B3294", "o"
 
     def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
         """Return the lattices of the exact symbol without terms, and smaller ones with terms."""
         yield from ({"variant": "0 terms", "terms": 0, **given} for given in lattices(problem))
         for terms in (1, 2, 4) if problem.dim == 1 else (1, 2):
-            for given in lattices(problem, SPACINGS, _TRUNCATIONS):
+            for given in lattices(problem, truncations=_TRUNCATIONS):
                 yield {"variant": f"{terms} terms", "terms": terms, **given}
 
     def prepare(

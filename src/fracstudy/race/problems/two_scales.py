@@ -14,6 +14,7 @@ class TwoScales(Problem):
 
     name, title, place = "two scales", "two scales", 5
     dims = (1, 2)
+    finest = 0.02
 
     def initial(self, x: Points) -> np.ndarray:
         """Return the data."""

@@ -47,7 +47,7 @@ def benchmark(line: int, plane: int, repeats: int) -> xr.Dataset:
         for method, count, step in _steps(dim, points):
             step()
             forget_tables()
-            timing, _ = measure(step, repeats)
+            timing, _ = measure(step, repeats, seconds=1.0)
             rows.append({"method": method, "dim": dim, "points": count, **timing.columns("step")})
     title = "A step where the operator changes, or the particles move"
     return timings_dataset("step", rows, _LABELS, _VARIABLES, title, {"repeats": repeats})
