@@ -315,14 +315,15 @@ def _split(
     df: pd.DataFrame, shown: pd.Series | None
 ) -> tuple[list[_Row], list[tuple[Status, list[_Row]]]]:
     """The rows of printed numbers, and those of each sentence with the verdict on the whole of it."""
-    kept = df.index if shown is None else df.index[shown]
-    is_value = df["sentence"] == ""
-    values = df[is_value & df.index.isin(kept)].to_dict("records")
-    sentences = []
-    for _, group in df[~is_value].groupby("sentence", sort=False):
-        if rows := group[group.index.isin(kept)].to_dict("records"):
-            sentences.append((sentence_status(group["status"]), rows))
-    return values, sentences
+    statuses: dict[str, list[str]] = {}
+    for sentence, status in zip(df["sentence"], df["status"], strict=True):
+        statuses.setdefault(sentence, []).append(status)
+    values: list[_Row] = []
+    sentences: dict[str, list[_Row]] = {name: [] for name in statuses if name}
+    for row in (df if shown is None else df[shown]).to_dict("records"):
+        (sentences[row["sentence"]] if row["sentence"] else values).append(row)
+    judged_whole = ((sentence_status(statuses[name]), rows) for name, rows in sentences.items())
+    return values, [(whole, rows) for whole, rows in judged_whole if rows]
 
 
 def ledger_markdown(df: pd.DataFrame, shown: pd.Series | None = None) -> str:

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -81,7 +82,12 @@ class _Record:
 
 
 def run_trials(
-    problem: Problem, contenders: Iterable[Contender], rounds: int, repeats: int, seconds: float
+    problem: Problem,
+    contenders: Iterable[Contender],
+    rounds: int,
+    repeats: int,
+    seconds: float,
+    most: int | None = None,
 ) -> list[dict[str, Any]]:
     """Run every trial once, then time those that matter in `rounds` rounds, each with its set-up; one row a trial.
 
@@ -96,10 +102,12 @@ def run_trials(
         Set-ups a trial.
     repeats, seconds : int, float
         Solves a set-up, fewer if they take longer than that.
+    most : int, optional
+        Only the first trials of each contender.
     """
     records = []
     for contender in contenders:
-        trials = list(contender.trials(problem)) if contender.takes(problem) else []
+        trials = list(islice(contender.trials(problem), most)) if contender.takes(problem) else []
         for given in trials[:1]:  # each does once what a process does once
             _first(problem, contender, given)
         records += [_first(problem, contender, given) for given in trials]

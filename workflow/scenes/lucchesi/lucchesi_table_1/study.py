@@ -131,13 +131,12 @@ def study(inputs: Inputs, *, beta: list[float], particles: int, spacing: float) 
     }
     findings = [
         *(
-            measured(f"L-T1.{name}", difference=worst[name], particles=particles)
+            measured(f"L-T1.{name}", difference=worst[name])
             for name in ("DD", "FPSE", "KPSE", "GPSE")
         ),
         measured(
             "L-T1.DVM",
             difference=worst["DVM"],
-            particles=particles,
             order=pd.Series([abs(velocity_order(1.0 + b) - 2.0) for b in beta], index),
         ),
         measured(

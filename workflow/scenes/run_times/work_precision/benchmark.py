@@ -24,6 +24,7 @@ def benchmark(
     repeats: int,
     seconds: float,
     contenders: Sequence[str] = tuple(CONTENDERS),
+    most: int | None = None,
 ) -> xr.Dataset:
     """Measure error, set-up, solve, blocks of solves and memory.
 
@@ -39,6 +40,8 @@ def benchmark(
         See `trial.run_trials`.
     contenders : sequence of str
         All if left out.
+    most : int, optional
+        Only the first trials of each.
     """
     one_core()
     rivals = [CONTENDERS[name]() for name in contenders]
@@ -46,7 +49,7 @@ def benchmark(
     for name in problems:
         if dim in PROBLEMS[name].dims:
             for one in beta:
-                rows += run_trials(PROBLEMS[name](one, dim), rivals, rounds, repeats, seconds)
+                rows += run_trials(PROBLEMS[name](one, dim), rivals, rounds, repeats, seconds, most)
     title = f"Error against run time in {dim} dimension{'s' if dim > 1 else ''}"
     facts = {"rounds": rounds, "repeats": repeats, "block": BLOCK, "dim": dim}
     return timings_dataset("trial", rows, LABELS, VARIABLES, title, facts)
