@@ -121,6 +121,7 @@ def test_every_scene_has_its_table_and_figure():
 def test_the_readme_and_the_report_quote_the_ledger(ledger):
     line = summary_line(ledger)
     assert line in (ROOT / "README.md").read_text()
+    assert line in (ROOT / "CITATION.cff").read_text()
     assert line in (ROOT / "report/report.md").read_text()
     assert line in (ROOT / "results/claims.md").read_text()
 
