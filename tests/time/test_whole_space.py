@@ -151,7 +151,9 @@ def test_the_data_stay_as_they_are():
         ({"alpha": 2.0}, "alpha"),
         ({"spacing": 0.0}, "spacing"),
         ({"time": -1.0}, "time"),
-        ({"time": 1000.0}, "time"),
+        ({"time": 1000.0}, "lattice"),
+        ({"u": np.ones(7)}, "points"),
+        ({"u": np.float64(1.0), "dim": 1}, "points"),
         ({"diffusivity": float("nan")}, "diffusivity"),
         ({"dim": 4}, "dim"),
         ({"terms": 7}, "terms"),
@@ -159,8 +161,8 @@ def test_the_data_stay_as_they_are():
         ({"stretch": 0.5}, "stretch"),
         ({"tail": (1.0,)}, "tail"),
         ({"tail": (3.0,)}, "tail"),
-        ({"u": np.ones((4, 5)), "dim": 2}, "u"),
-        ({"u": [1.0, float("nan")]}, "u"),
+        ({"u": np.ones((9, 10)), "dim": 2}, "u"),
+        ({"u": [1.0] * 9 + [float("nan")]}, "u"),
     ],
 )
 def test_bad_arguments_are_named(change, field):
@@ -188,3 +190,22 @@ def test_no_silent_error(alpha, half_width):
         u = evolve(mixture(x, 0.5, alpha), h, alpha, 1.0)
     error = np.abs(u - mixture(x, 1.5, alpha)).max() / u.max()
     assert said or error <= 1e-3
+
+
+def test_a_prepared_run_is_refused_alike():
+    with pytest.raises(InvalidInput, match="lattice"):
+        WholeSpace(16, 1, 1.5, 1e4)
+
+
+@pytest.mark.parametrize("points", range(8, 17))
+@pytest.mark.parametrize("terms", range(7))
+def test_few_points_will_do(points, terms):
+    assert np.isfinite(WholeSpace(points, 1, 1.5, 0.5, terms=terms).solve(np.ones(points))).all()
+
+
+def test_small_data_beside_large_ones_are_warned_of():
+    x, h = line(128, 3.0)
+    narrow, wide = mixture(x, 0.5, 1.5), 1e6 * np.exp(-((x / 0.1) ** 2))
+    run = WholeSpace(128, 1, 1.5, h**-1.5)
+    alone, both = (run.solve_and_compare(data)[1] for data in (narrow, np.array([narrow, wide])))
+    assert both >= alone * (1.0 - 1e-9)

@@ -45,6 +45,8 @@ Amplification = Callable[[np.ndarray], np.ndarray]
 
 _MOST_TERMS = 6
 _NOTICED = 1e-3  # of the maximum: a tail that misses the solution by more
+_FEWEST = 8  # points an axis: the tail meets the data at six depths
+_OUTGROWN = 0.9
 _SAME = 1e-9  # exponents nearer than this are one
 _STRETCH = {1: 3.0, 2: 2.0, 3: 1.5}  # the longer lattice over the given one
 _DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)  # where the tail meets the data, in half-widths
@@ -95,7 +97,7 @@ def evolve(
     Raises
     ------
     InvalidInput
-        If an argument is outside its range, or the solution spreads beyond the lattice: (D t)^(1/alpha) > N h / 2.
+        If an argument is outside its range, or the solution outgrows the lattice, see `WholeSpace`.
 
     Warns
     -----
@@ -112,10 +114,6 @@ def evolve(
     scaled_time = positive_real("time", time) * positive_real("diffusivity", diffusivity)
     scaled_time *= positive_real("spacing", spacing) ** -fractional_order(alpha)
     points = u.shape[-1] if u.ndim else 0
-    if scaled_time > (0.5 * points) ** alpha:
-        spread, half_width = scaled_time ** (1.0 / alpha) * spacing, 0.5 * points * spacing
-        allowed = f"one for which (D t)^(1/alpha) = {spread:.4g} is less than the half-width N h / 2 = {half_width:.4g}"
-        raise InvalidInput("time", time, allowed, "Take a wider lattice, or a shorter time.")
     run = WholeSpace(points, dim, alpha, scaled_time, terms=terms, tail=tail, stretch=stretch)
     result, miss = run.solve_and_compare(u)
     if miss > _NOTICED:
@@ -163,7 +161,8 @@ class WholeSpace:
     Raises
     ------
     InvalidInput
-        If one is outside its range.
+        If one is outside its range, there are fewer than 8 points, or the solution outgrows the lattice: its half-width
+        must be 0.9 tau^(1/alpha) at least, in spacings; of a point mass half would then lie beyond.
     """
 
     def __init__(
@@ -178,6 +177,16 @@ class WholeSpace:
         tail: Sequence[float] | None = None,
         stretch: float | None = None,
     ) -> None:
+        fractional_order(alpha)
+        positive_real("scaled_time", scaled_time)
+        if points < _FEWEST:
+            raise InvalidInput("points", points, f"at least {_FEWEST}", "Give more points an axis.")
+        spread = scaled_time ** (1.0 / alpha)
+        if 0.5 * points < _OUTGROWN * spread:
+            least = f"one of half-width {_OUTGROWN:g} (D t)^(1/alpha) = {_OUTGROWN * spread:.4g} spacings at least"
+            raise InvalidInput(
+                "lattice", 0.5 * points, least, "Take a wider one, or a shorter time."
+            )
         if dim not in (1, 2, 3):
             raise InvalidInput("dim", dim, "1, 2 or 3", "Say how many axes are space.")
         if terms not in range(_MOST_TERMS + 1):
@@ -209,14 +218,18 @@ class WholeSpace:
         return self._run(u)[0]
 
     def solve_and_compare(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """Return the solution, and how far its tail is from it at the faces of the lattice, over its maximum."""
+        """Return the solution, and how far its tail is from it at the faces of the lattice, over its maximum.
+
+        Of several data, the worst.
+        """
         result, numbers = self._run(u)
-        size = np.abs(result).max()
-        found = result.reshape(-1, *self._shape)[(slice(None), *self._faces(0).T)]
+        each = result.reshape(-1, *self._shape)
+        size = np.abs(each.reshape(len(each), -1)).max(axis=1, keepdims=True)
+        found = each[(slice(None), *self._faces(0).T)]
         tail: np.ndarray | float = 0.0
         if self._tails is not None:
             tail = self._tails.result_at(self._faces(self._start), numbers)
-        return result, float(np.abs(found - tail).max() / size) if size > 0.0 else 0.0
+        return result, float(np.max(np.abs(found - tail) / np.where(size > 0.0, size, 1.0)))
 
     def _faces(self, start: int) -> np.ndarray:
         """The indices of the middles of the faces, shape (2 n, n); of the lattice, or in a circle where it starts."""

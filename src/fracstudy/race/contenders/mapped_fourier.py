@@ -15,7 +15,7 @@ from scipy.fft import irfft, rfft
 from scipy.linalg import eigh, toeplitz
 from scipy.special import poch
 
-from fracstudy.race.contender import Contender, Ready
+from fracstudy.race.contender import Contender, Ready, maps
 from fracstudy.race.problem import Problem
 
 _COUNTS = (17, 25, 33, 49, 65, 97, 129, 193)
@@ -30,10 +30,8 @@ class MappedFourier(Contender):
     place, colour, marker = 4, "#4B5D8C", "D"
 
     def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return numbers of points and scales, in units of R_alpha t_f^(1/alpha)."""
-        for points in _COUNTS:
-            for scale in _SCALES:
-                yield {"variant": "", "points": points, "scale": scale * problem.width}
+        """Return numbers of points and scales."""
+        return maps(problem, _COUNTS, _SCALES)
 
     def prepare(self, problem: Problem, variant: str, points: int, scale: float) -> Ready:
         """Return the exponential made ready."""

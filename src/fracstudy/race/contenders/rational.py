@@ -18,7 +18,7 @@ import numpy as np
 from scipy.fft import fft, ifft
 from scipy.special import roots_laguerre
 
-from fracstudy.race.contender import Contender, Ready
+from fracstudy.race.contender import Contender, Ready, maps
 from fracstudy.race.problem import Problem
 
 _COUNTS = (16, 24, 32, 48, 64, 96, 128, 192)
@@ -33,10 +33,8 @@ class Rational(Contender):
     place, colour, marker = 3, "#2E6E6E", "P"
 
     def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return numbers of points and scales, in units of R_alpha t_f^(1/alpha)."""
-        for points in _COUNTS:
-            for scale in _SCALES:
-                yield {"variant": "", "points": points, "scale": scale * problem.width}
+        """Return numbers of points and scales."""
+        return maps(problem, _COUNTS, _SCALES)
 
     def prepare(self, problem: Problem, variant: str, points: int, scale: float) -> Ready:
         """Return the matrix of the run made ready."""
