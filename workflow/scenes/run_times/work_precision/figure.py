@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
@@ -9,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
+from fracstudy.race.contender import Contender
 from fracstudy.race.contenders import CONTENDERS
 from fracstudy.race.problems import PROBLEMS
 from fracstudy.style import legend_below, log_log, note_below
@@ -22,6 +24,7 @@ _FLOOR = 1e-13
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, time: str, ylabel: str) -> Figure:
     """Draw the least time to each error: filled markers ours and the papers' schemes, hollow ones peers."""
+    there = {name: one for name, one in CONTENDERS.items() if (series["contender"] == name).any()}
     problems, betas = series["problem"].unique(), sorted(series["beta"].unique())
     wide = len(betas) > 1
     rows, columns = (len(problems), len(betas)) if wide else (1, len(problems))
@@ -31,7 +34,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, time: str, ylabel: str)
         for m, beta in enumerate(betas):
             ax = grid[k, m] if wide else grid[0, k]
             part = series[(series["problem"] == problem) & (series["beta"] == beta)]
-            _panel(ax, part[~part["failed"].astype(bool)])
+            _panel(ax, part[~part["failed"].astype(bool)], there)
             ax.set_title(PROBLEMS[problem].title, loc="left", fontsize=9)
             ax.set_title(rf"$\beta = {beta:g}$", loc="right", fontsize=9)
     for ax in grid[:, 0]:
@@ -43,10 +46,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, time: str, ylabel: str)
     return figure
 
 
-def _panel(ax: Axes, part: pd.DataFrame) -> None:
+def _panel(ax: Axes, part: pd.DataFrame, contenders: Mapping[str, type[Contender]]) -> None:
     whole = part[part["front"].astype(bool)].sort_values("time")
     ax.step(whole["time"], whole["error"], where="post", label="all: Pareto front", **_FRONT)
-    for name, contender in CONTENDERS.items():
+    for name, contender in contenders.items():
         own = part[part["contender"] == name]
         shown = own[front(own, "time") & (own["error"] > _FLOOR)].sort_values("time")
         hollow = contender.group in ("peers", "papers")
