@@ -1,0 +1,138 @@
+"""A probe: something that may go wrong is done, and what comes of it is judged.
+
+A result is right if it is within a bound of a value known from elsewhere. If it is not, somebody must have been told.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.errors import FracparticlesError, FracparticlesWarning, reason_of
+
+__all__ = ["BAD", "Probe", "Verdict", "frame", "probe"]
+
+
+class Verdict(StrEnum):
+    """What came of a probe."""
+
+    HELD = "held"
+    """Right, within the bound."""
+    WARNED = "warned"
+    """Beyond the bound, with a warning of ours."""
+    REFUSED = "refused"
+    """Ended by an error of ours, in one line."""
+    SILENT = "silent"
+    """Beyond the bound without a word."""
+    FAILED = "failed"
+    """Ended by any other error, or otherwise than it must."""
+
+
+BAD = (Verdict.SILENT, Verdict.FAILED)
+
+
+@dataclass(frozen=True)
+class Probe:
+    """A probe that has been made: one row of a table.
+
+    Attributes
+    ----------
+    kind : str
+        What of the family it belongs to, in a word or two.
+    case : str
+        What was done.
+    expected : str
+        What must come out.
+    source : str
+        Where that is known from: "closed form", "mpmath", "dense matrix", "scipy" and the like; empty where the code is
+        only held against itself.
+    found : str
+        What came out, or what the error or the first warning says.
+    deviation, bound : float
+        How far it is from what must come out, and how far it may be; nan where there is no number.
+    verdict : Verdict
+    """
+
+    kind: str
+    case: str
+    expected: str
+    source: str
+    found: str
+    deviation: float
+    bound: float
+    verdict: Verdict
+
+
+def probe(
+    kind: str,
+    case: str,
+    expected: str,
+    run: Callable[[], float | tuple[float, str]],
+    bound: float,
+    *,
+    source: str = "",
+    must: Verdict | None = None,
+) -> Probe:
+    """Do something that may go wrong, and judge it.
+
+    Parameters
+    ----------
+    kind, case, expected, source : str
+        See `Probe`.
+    run : callable
+        Does it, and returns the deviation from what must come out, a number of at least zero; with it, if a number
+        says too little, what came out in words.
+    bound : float
+        The greatest deviation that is right.
+    must : Verdict, optional
+        The only verdict that will do: `HELD` where nothing excuses a wrong number, `WARNED` where growth is expected,
+        found and must be spoken of, `REFUSED` for input that means nothing. With `WARNED` the deviation is that from
+        the predicted growth, and has to be within the bound.
+
+    Returns
+    -------
+    Probe
+    """
+    deviation, words = np.nan, ""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            result = run()
+        except FracparticlesError as error:
+            verdict = Verdict.REFUSED if "\n" not in str(error) else Verdict.FAILED
+            words = str(error)
+        except Exception as error:
+            verdict, words = Verdict.FAILED, f"{type(error).__name__}: {reason_of(error)}"
+        else:
+            deviation, words = result if isinstance(result, tuple) else (result, "")
+            verdict = Verdict.HELD if deviation <= bound else Verdict.SILENT  # nan is not right
+    spoken = [str(w.message) for w in caught if issubclass(w.category, FracparticlesWarning)]
+    stray = [f"{w.category.__name__}: {w.message}" for w in caught if _stray(w.category)]
+    if verdict is Verdict.SILENT and spoken:
+        verdict, words = Verdict.WARNED, words or spoken[0]
+    if must is Verdict.WARNED and verdict is Verdict.HELD and spoken:
+        verdict = Verdict.WARNED
+    elif must is Verdict.WARNED and verdict is Verdict.WARNED:
+        verdict = Verdict.FAILED  # the growth is not the predicted one
+    if must is not None and verdict is not must and verdict is not Verdict.SILENT:
+        verdict = Verdict.FAILED
+    if stray and verdict is not Verdict.FAILED:
+        verdict, words = Verdict.FAILED, stray[0]
+    return Probe(
+        kind, case, expected, source, words or f"{deviation:.1e}", deviation, bound, verdict
+    )
+
+
+def _stray(category: type[Warning]) -> bool:
+    """Whether a warning is one of numpy's, that something overflowed or was divided by zero unseen."""
+    return issubclass(category, RuntimeWarning)
+
+
+def frame(probes: Iterable[Probe]) -> pd.DataFrame:
+    """Return the table of probes, one row each."""
+    return pd.DataFrame([asdict(one) for one in probes])

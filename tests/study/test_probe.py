@@ -1,0 +1,75 @@
+"""Probes: what is right, spoken of, refused, silent and failed."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracstudy.probe import Verdict, frame, probe
+
+
+def refuses():
+    raise InvalidInput("x", -1, "at least 0", "Take more.")
+
+
+def refuses_at_length():
+    raise InvalidInput("x", -1, "at least 0", "Take\nmore.")
+
+
+def divides():
+    return 1 / 0
+
+
+def grows(deviation):
+    def run():
+        warnings.warn("it grows", AccuracyWarning, stacklevel=1)
+        return deviation
+
+    return run
+
+
+def overflows():
+    return float(np.exp(np.float64(1e4)) * 0.0 + 0.0)
+
+
+@pytest.mark.parametrize(
+    ("run", "must", "verdict"),
+    [
+        (lambda: 0.5, None, "held"),
+        (lambda: 1.0, None, "held"),
+        (lambda: 1.5, None, "silent"),
+        (lambda: np.nan, None, "silent"),
+        (lambda: 1.5, Verdict.HELD, "silent"),
+        (grows(1.5), None, "warned"),
+        (grows(0.5), None, "held"),
+        (grows(0.5), Verdict.WARNED, "warned"),
+        (grows(1.5), Verdict.WARNED, "failed"),
+        (lambda: 0.5, Verdict.WARNED, "failed"),
+        (grows(1.5), Verdict.HELD, "failed"),
+        (refuses, None, "refused"),
+        (refuses, Verdict.REFUSED, "refused"),
+        (refuses, Verdict.HELD, "failed"),
+        (lambda: 0.5, Verdict.REFUSED, "failed"),
+        (refuses_at_length, None, "failed"),
+        (divides, None, "failed"),
+        (overflows, None, "failed"),
+    ],
+)
+def test_a_probe_is_judged(run, must, verdict):
+    assert probe("kind", "case", "zero", run, 1.0, must=must).verdict == verdict
+
+
+def test_a_probe_says_what_was_found():
+    assert probe("k", "c", "e", lambda: 0.25, 1.0).found == "2.5e-01"
+    assert probe("k", "c", "e", lambda: (0.25, "a quarter"), 1.0).found == "a quarter"
+    assert probe("k", "c", "e", refuses, 1.0).found.startswith("x = -1 is not allowed")
+    assert probe("k", "c", "e", grows(2.0), 1.0).found == "it grows"
+    assert probe("k", "c", "e", divides, 1.0).found.startswith("ZeroDivisionError")
+
+
+def test_probes_make_a_table():
+    table = frame([probe("k", "c", "e", lambda: 0.25, 1.0, source="closed form")])
+    assert list(table.iloc[0]) == ["k", "c", "e", "closed form", "2.5e-01", 0.25, 1.0, "held"]
