@@ -40,13 +40,13 @@ test: $(INSTALLED) ## run the tests
 	$(PYTEST) $(ARGS)
 
 smoke: $(INSTALLED) ## run the same study on tiny grids, into results-smoke
-	$(SNAKEMAKE) --configfile config/smoke.yaml --config results_dir=$(SMOKE_RESULTS) report_dir=$(SMOKE_RESULTS)/report $(ARGS)
+	$(SNAKEMAKE) --configfile config/smoke.yaml --config results_dir=$(SMOKE_RESULTS) report_dir=$(SMOKE_RESULTS)/report site_dir=$(SMOKE_RESULTS)/site $(ARGS)
 
 bench: $(INSTALLED) ## time the schemes; wants the machine to itself
 	$(SNAKEMAKE) bench $(ARGS)
 
-report: $(INSTALLED) ## build the report
-	$(SNAKEMAKE) report
+report: $(INSTALLED) ## build the report, and the site of it
+	$(SNAKEMAKE) site
 
 lint: $(INSTALLED) ## check style, types and layers
 	$(BIN)/ruff check .

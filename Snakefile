@@ -18,4 +18,4 @@ rule all:
     input:
         rules.tables.input,
         rules.figures.input,
-        rules.report.output,
+        rules.site.output,

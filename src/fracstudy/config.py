@@ -55,6 +55,8 @@ class StudyConfig(_Strict):
         Where runs, tables and figures go.
     report_dir : str
         Where the report goes.
+    site_dir : str
+        Where the site goes.
     scenes_dir : str
         Where the scenes are, `<document>/<scene>/scene.yaml`.
     documents : dict
@@ -69,6 +71,7 @@ class StudyConfig(_Strict):
 
     results_dir: str = Field(min_length=1)
     report_dir: str = Field(min_length=1)
+    site_dir: str = "site"
     scenes_dir: str = "workflow/scenes"
     documents: dict[str, Document] = Field(min_length=1)
     grids: str | None = None

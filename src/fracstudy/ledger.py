@@ -31,6 +31,7 @@ __all__ = [
     "ours_text",
     "read_ledger",
     "sentence_status",
+    "short_markdown",
     "summary_line",
     "write_ledger",
 ]
@@ -341,7 +342,7 @@ def ledger_markdown(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
     values, sentences = _split(df, shown)
     of_values = [
         (
-            f"`{row['id']}`<br>{_cell(row['what'])}",
+            _named(row),
             row["printed"],
             ours_text(row["printed"], row["ours"]),
             _percent(row["relative_deviation"]),
@@ -353,7 +354,7 @@ def ledger_markdown(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
     of_sentences = [
         (
             _quoted(row, whole) if row is rows[0] else "″",
-            f"`{row['id']}`<br>{_cell(row['what'])}",
+            _named(row),
             _cell(row["ours"]),
             _joined(row["criterion"], _margin(row["margin"])),
             _status(row["status"]),
@@ -369,6 +370,54 @@ def ledger_markdown(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
         ),
     )
     return "\n".join(table for table in tables if table)
+
+
+def short_markdown(df: pd.DataFrame, shown: pd.Series, ledger: str) -> str:
+    """Render rows of the ledger for a page: printed, ours, verdict, and a link to the whole row.
+
+    Parameters
+    ----------
+    df : DataFrame
+        The ledger.
+    shown : Series of bool
+        The rows to show.
+    ledger : str
+        Where the whole ledger is, relative to the page.
+    """
+    values, sentences = _split(df, shown)
+
+    def verdict(row: _Row) -> str:
+        return f"[{_status(row['status'])}]({ledger}#{row['id']})"
+
+    of_values = [
+        (
+            _cell(row["what"]),
+            row["printed"],
+            ours_text(row["printed"], row["ours"]),
+            _percent(row["relative_deviation"]),
+            verdict(row),
+        )
+        for row in values
+    ]
+    of_sentences = [
+        (
+            _quoted(row, whole) if row is rows[0] else "″",
+            _joined(*dict.fromkeys((row["what"], row["ours"]))),
+            verdict(row),
+        )
+        for whole, rows in sentences
+        for row in rows
+    ]
+    tables = (
+        _table(("claim", "printed", "ours", "deviation", "verdict"), of_values),
+        _table(("as printed", "measured", "verdict"), of_sentences),
+    )
+    return "\n".join(table for table in tables if table)
+
+
+def _named(row: _Row) -> str:
+    """The claim in words, below its id, to which pages link."""
+    return f'<a id="{row["id"]}"></a>`{row["id"]}`<br>{_cell(row["what"])}'
 
 
 def _quoted(row: _Row, whole: Status) -> str:

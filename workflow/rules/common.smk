@@ -14,6 +14,7 @@ from fracparticles.errors import InvalidInput
 from fracstudy.config import batches, jobs, read_config, targets
 from fracstudy.criteria import CONVENTIONS
 from fracstudy.make import made
+from fracstudy.report import pages
 from fracstudy.sources import sources_of
 
 try:
@@ -25,6 +26,8 @@ except InvalidInput as error:
 JOBS = jobs(SCENES, STUDY.smoke)
 RESULTS = Path(STUDY.results_dir)
 REPORT = Path(STUDY.report_dir)
+SITE = Path(STUDY.site_dir)
+SITE_SUFFIXES = (".md", ".yml", ".py", ".css", ".js")
 LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
 TIMED = [name for name, scene in SCENES.items() if scene.benchmark is not None]
 FROM_TIMES = [name for name, scene in SCENES.items() if scene.all_benchmarks]

@@ -86,14 +86,9 @@ rule report:
         ledger=LEDGER[0],
         conventions=CONVENTIONS,
         captions=[scene.file("caption.md") or [] for scene in SCENES.values()],
-        template=[
-            "report/template/report.md.j2",
-            "report/template/report.html.j2",
-            "report/template/style.css",
-        ],
+        template=["report/template/summary.md.j2", "report/template/document.md.j2"],
     output:
-        REPORT / "report.md",
-        REPORT / "report.html",
+        pages(STUDY.documents, REPORT),
     log:
         RESULTS / "logs/report.log",
     params:
@@ -102,3 +97,23 @@ rule report:
         documents=STUDY.model_dump(mode="json")["documents"],
     script:
         "../scripts/report.py"
+
+
+rule site:
+    input:
+        rules.report.output,
+        ["README.md", "INDEX.md", "CONTRIBUTING.md", "CHANGELOG.md", "config/README.md"],
+        "src/fracparticles/README.md",
+        [path for path in Path("docs").rglob("*") if path.suffix in SITE_SUFFIXES],
+        ledger=LEDGER[0],
+    output:
+        SITE / "index.html",
+    log:
+        RESULTS / "logs/site.log",
+    params:
+        scenes=[scene.packed() for scene in SCENES.values()],
+        code=code("src/fracstudy/site.py", SOLVER),
+        documents=STUDY.model_dump(mode="json")["documents"],
+        report=str(REPORT),
+    script:
+        "../scripts/site.py"
