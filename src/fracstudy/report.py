@@ -1,7 +1,8 @@
 """The report: pages in Markdown, one for the summary and one for each document.
 
 They are put together from captions, figures, tables and the ledger. Every number comes from a data file: the tables and
-`claims.csv` in the results; what a caption may ask for is in `lookup`. The pages are readable as they are, and `site` makes a site of them.
+`claims.csv` in the results; what a caption may ask for is in `lookup`. The pages can be read as they are, and `site`
+makes a site of them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""The site: the README, the report, the pages of `docs` and the API, as static pages that ask nothing of the outside.
+"""The site: the README, the report, the pages of `docs` and the API, as pages that ask nothing of the outside.
 
-The sources are laid out in one folder, much as they are in the repository. What a page links to is copied there, and the
-link follows; a link to a folder, which a site cannot show, becomes plain text.
+The sources are laid out in one folder, much as they are in the repository. What a page links to is copied there, and
+the link follows; a link to a folder, which a site cannot show, becomes plain text.
 """
 
 from __future__ import annotations
