@@ -25,7 +25,7 @@ PYTEST    = OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
 SHELL         := bash
 .SHELLFLAGS   := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup study test smoke bench lint report lock clean
+.PHONY: help setup study test smoke bench verify lint report lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -47,6 +47,9 @@ bench: $(INSTALLED) ## time the schemes; wants the machine to itself
 
 report: $(INSTALLED) ## build the report, and the site of it
 	$(SNAKEMAKE) site
+
+verify: $(INSTALLED) ## recompute a sample of the tracked results and compare; ARGS="--seed 1 --scenes 20"
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python -m fracstudy.verify $(ARGS)
 
 lint: $(INSTALLED) ## check style, types and layers
 	$(BIN)/ruff check .

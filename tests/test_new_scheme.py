@@ -14,34 +14,9 @@ import pytest
 
 import fracparticles
 from fracparticles.schemes import ALL_SCHEMES
+from test_contributing import FILES
 
-# K(r) = exp(-r^2 / 4) / sqrt(4 pi), K^(k) = exp(-k^2): an exchange, but of no fractional operator.
-MODULE = '''"""Smeared jumps (SMEAR): du_i/dt = (D / epsilon^alpha) sum_j V_j (u_j - u_i) K_epsilon(x_j - x_i)."""
-
-from __future__ import annotations
-
-import numpy as np
-
-from fracparticles.schemes.base import Exchange
-from fracparticles.schemes.setting import Setting
-
-
-class Smeared(Exchange):
-    """SMEAR."""
-
-    name = "SMEAR"
-    title = "Smeared jumps"
-    equation = "none"
-
-    def values(self, r: np.ndarray, setting: Setting) -> np.ndarray:
-        """Return K(r)."""
-        return np.exp(-0.25 * r * r) / np.sqrt(4.0 * np.pi)
-
-    def transform(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
-        """Return the sum of K^ over the aliases."""
-        s, theta = setting.overlap, np.asarray(theta, dtype=float)
-        return sum(np.exp(-np.square(s * (theta + 2.0 * np.pi * k))) for k in range(-3, 4))
-'''
+MODULE = FILES["src/fracparticles/schemes/smear.py"]
 
 PROGRAM = """
 import json, warnings
