@@ -9,6 +9,9 @@ rule benchmark:
     log:
         RESULTS / "logs/benchmark_{scene}.log",
     threads: workflow.cores  # all: nothing else runs while the clock does
+    resources:
+        runtime=60,
+        mem_mb=4000,
     params:
         code=lambda wildcards: code(SCENES[wildcards.scene].file("benchmark.py")),
         scene=lambda wildcards: SCENES[wildcards.scene].packed(),

@@ -8,6 +8,9 @@ rule compile:
     log:
         RESULTS / "logs/compile.log",
     priority: 2
+    resources:
+        runtime=10,
+        mem_mb=1500,
     params:
         code=code(SOLVER),
     script:
@@ -27,6 +30,9 @@ for batch, cases in BATCHES.items():
             RESULTS / f"logs/solve_{batch}.log",
         # Particles that move take the longest: first.
         priority: 1 if any(case.kind.moving for case in cases) else 0
+        resources:
+            runtime=60,
+            mem_mb=2000,
         params:
             cases=[case.to_json() for case in cases],
         script:

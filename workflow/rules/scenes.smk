@@ -25,6 +25,9 @@ for job, names in JOBS.items():
             ],
         log:
             RESULTS / f"logs/make_{job}.log",
+        resources:
+            runtime=30,
+            mem_mb=3000,
         params:
             results=str(RESULTS),
             scenes=[SCENES[name].packed() for name in names],
@@ -57,6 +60,9 @@ rule ledger:
         md=LEDGER[1],
     log:
         RESULTS / "logs/ledger.log",
+    resources:
+        runtime=5,
+        mem_mb=1500,
     params:
         smoke=STUDY.smoke,
         code=code("src/fracstudy/ledger.py"),
@@ -91,6 +97,9 @@ rule report:
         pages(STUDY.documents, REPORT),
     log:
         RESULTS / "logs/report.log",
+    resources:
+        runtime=10,
+        mem_mb=2000,
     params:
         scenes=[scene.packed(runs=True) for scene in SCENES.values()],
         code=code("src/fracstudy/report.py"),
@@ -110,6 +119,9 @@ rule site:
         SITE / "index.html",
     log:
         RESULTS / "logs/site.log",
+    resources:
+        runtime=10,
+        mem_mb=2000,
     params:
         scenes=[scene.packed() for scene in SCENES.values()],
         code=code("src/fracstudy/site.py", SOLVER),
