@@ -19,3 +19,4 @@ rule all:
         rules.tables.input,
         rules.figures.input,
         rules.site.output,
+        rules.collect.output,

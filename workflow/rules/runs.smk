@@ -37,3 +37,20 @@ for batch, cases in BATCHES.items():
             cases=[case.to_json() for case in cases],
         script:
             "../scripts/solve.py"
+
+
+rule collect:
+    # All of them in one data set, to be sliced by scheme, order, beta, C, h.
+    input:
+        runs=[RESULTS / "runs" / case.path for cases in BATCHES.values() for case in cases],
+    output:
+        RESULTS / "runs.nc",
+    log:
+        RESULTS / "logs/collect.log",
+    resources:
+        runtime=10,
+        mem_mb=1500,
+    params:
+        code=code("src/fracstudy/collect.py"),
+    script:
+        "../scripts/collect.py"
