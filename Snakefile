@@ -11,6 +11,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/runs.smk"
 include: "workflow/rules/scenes.smk"
 include: "workflow/rules/benchmarks.smk"
+include: "workflow/rules/site.smk"
 
 
 rule all:

@@ -72,6 +72,11 @@ def study(tmp_path_factory):
         (docs / name).write_text((ROOT / "docs" / name).read_text())
     (docs / "theme").symlink_to(ROOT / "docs/theme")
     (docs / "how.md").write_text("# How\n\nBack [home](../README.md).\n")
+    (root / "examples").mkdir()
+    (root / "examples/one.py").write_text('"""# One\n\nIt prints."""\n\nprint("eleven")\n')
+    (root / "results/examples").mkdir(parents=True)
+    (root / "results/examples/one.txt").write_text("eleven\n")
+    (root / "results/examples/one.svg").write_text("<svg/>")
     scene = root / "workflow/scenes/paper/limits"
     results = root / "results"
     for folder in (scene, results / "tables", results / "figures"):
@@ -134,6 +139,12 @@ def test_a_formula_is_shown_without_a_script_and_a_folder_is_no_link(site):
     assert "$$" not in text
     assert "folder" in text
     assert ">folder</a>" not in text
+
+
+def test_an_example_is_shown_with_what_it_printed(site):
+    text = (site / "examples/one.html").read_text("utf-8")
+    assert text.count("eleven") == 2
+    assert "one.svg" in text
 
 
 def test_the_api_is_made_of_the_docstrings(site):

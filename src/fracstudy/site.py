@@ -6,6 +6,7 @@ the link follows; a link to a folder, which a site cannot show, becomes plain te
 
 from __future__ import annotations
 
+import ast
 import html
 import os
 import re
@@ -86,8 +87,9 @@ def build(
         sources / "results/claims.md", ledger_page(read_ledger(results / "claims.csv"), homes)
     )
     shutil.copytree(root / "docs/theme", sources / "theme")
+    examples = _examples(root / "examples", results / "examples", sources / "examples")
     rooms = _api(root / "src/fracparticles", sources / "api")
-    _generate(root, sources, site, _navigation(documents, root, rooms))
+    _generate(root, sources, site, _navigation(documents, root, examples, rooms))
     runs = results / "runs"
     if runs.is_dir():
         (site / "results/runs").symlink_to(runs.resolve(), target_is_directory=True)
@@ -121,6 +123,25 @@ def _lay_out(page: Path, pages: Mapping[Path, Path], places: Mapping[Path, Path]
     write_text(place, _LINK.sub(placed, _FOLDER_LINK.sub(without_folder, text)))
 
 
+def _examples(scripts: Path, outputs: Path, out: Path) -> list[Path]:
+    """Write a page for each worked example: what its docstring says, the code, what it printed, what it drew."""
+    pages = []
+    for script in sorted(scripts.glob("*.py")):
+        text = script.read_text("utf-8")
+        words = ast.get_docstring(ast.parse(text)) or ""
+        code = text.split('"""', 2)[2].strip()
+        printed = (outputs / f"{script.stem}.txt").read_text("utf-8").rstrip()
+        page = out / f"{script.stem}.md"
+        write_text(
+            page,
+            f"{words}\n\n![{script.stem}]({script.stem}.svg)\n\n```python\n{code}\n```\n\n"
+            f"It prints:\n\n```\n{printed}\n```\n\nThe script: `examples/{script.name}`.\n",
+        )
+        shutil.copyfile(outputs / f"{script.stem}.svg", out / f"{script.stem}.svg")
+        pages.append(page)
+    return pages
+
+
 def _api(package: Path, out: Path) -> list[str]:
     """Write a page for each room of the library, from its docstrings; return the rooms."""
     rooms = sorted(path.parent.name for path in package.glob("*/__init__.py"))
@@ -134,7 +155,7 @@ def _api(package: Path, out: Path) -> list[str]:
 
 
 def _navigation(
-    documents: Mapping[str, Document], root: Path, rooms: Iterable[str]
+    documents: Mapping[str, Document], root: Path, examples: Iterable[Path], rooms: Iterable[str]
 ) -> list[dict[str, Any]]:
     own = sorted((root / "docs").glob("*.md"))
     return [
@@ -152,6 +173,7 @@ def _navigation(
                 *({document.title: f"report/{name}.md"} for name, document in documents.items()),
             ]
         },
+        {"Examples": [{_title(page): f"examples/{page.name}"} for page in examples]},
         {"Ledger": "results/claims.md"},
         {"API": [{room: f"api/{room}.md"} for room in rooms]},
         {

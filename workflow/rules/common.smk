@@ -1,6 +1,7 @@
 # The configuration, validated; where things are; what a change of the code makes stale.
 import fcntl
 import os
+import sys
 from hashlib import sha256
 from pathlib import Path
 
@@ -27,6 +28,7 @@ JOBS = jobs(SCENES, STUDY.smoke)
 RESULTS = Path(STUDY.results_dir)
 REPORT = Path(STUDY.report_dir)
 SITE = Path(STUDY.site_dir)
+EXAMPLES = sorted(path.stem for path in Path("examples").glob("*.py"))
 SITE_SUFFIXES = (".md", ".yml", ".py", ".css", ".js")
 LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
 TIMED = [name for name, scene in SCENES.items() if scene.benchmark is not None]

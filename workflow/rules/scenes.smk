@@ -106,26 +106,3 @@ rule report:
         documents=STUDY.model_dump(mode="json")["documents"],
     script:
         "../scripts/report.py"
-
-
-rule site:
-    input:
-        rules.report.output,
-        ["README.md", "INDEX.md", "CONTRIBUTING.md", "CHANGELOG.md", "config/README.md"],
-        "src/fracparticles/README.md",
-        [path for path in Path("docs").rglob("*") if path.suffix in SITE_SUFFIXES],
-        ledger=LEDGER[0],
-    output:
-        SITE / "index.html",
-    log:
-        RESULTS / "logs/site.log",
-    resources:
-        runtime=10,
-        mem_mb=2000,
-    params:
-        scenes=[scene.packed() for scene in SCENES.values()],
-        code=code("src/fracstudy/site.py", SOLVER),
-        documents=STUDY.model_dump(mode="json")["documents"],
-        report=str(REPORT),
-    script:
-        "../scripts/site.py"
