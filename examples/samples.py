@@ -36,6 +36,6 @@ axes.hist(
     check, bins=np.linspace(-20, 20, 81), density=True, color="0.8", label="samples at t = 10"
 )
 axes.plot(x, predicted, label="predicted from those at t = 2")
-axes.set(xlabel="x", ylabel="density", yscale="log", ylim=(1e-4, None))
-axes.legend(frameon=False)
+axes.set(xlabel="x", ylabel="density", yscale="log", ylim=(1e-4, 1.0))
+axes.legend(frameon=False, loc="upper right", fontsize="small")
 figure.savefig("samples.svg", bbox_inches="tight")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ from fracstudy.scene import Scene
 
 ROOT = Path(__file__).parents[1]
 TEMPLATES = ROOT / "report/template"
+FINDINGS = 'A limit is {{ ours("L-T3.DD") }}.'
 SCENES = ROOT / "workflow/scenes"
 
 LIMITS = "limits_beta0.5"  # a dot is no suffix
@@ -66,6 +68,9 @@ def study(tmp_path):
     for folder in (paper / "limits", own / "extreme"):
         (folder / "scene.yaml").touch()
     (own / "extreme/caption.md").write_text("Where it is stiff.")
+    templates = tmp_path / "template"
+    shutil.copytree(TEMPLATES, templates)
+    (templates / "findings.md.j2").write_text(FINDINGS)
     title = "Table 3: the stability limit"
     return {
         "scenes": [
@@ -78,7 +83,7 @@ def study(tmp_path):
             "own": Document(title="Studies of our own"),
         },
         "results_dir": results,
-        "template_dir": TEMPLATES,
+        "template_dir": templates,
         "out_dir": tmp_path / "report",
     }
 
@@ -88,8 +93,8 @@ LINK = re.compile(r"\]\(([^)#]*)(#[^)]*)?\)")
 
 def test_the_report_shows_every_part(study):
     paths = build(**study)
-    assert [path.name for path in paths] == ["README.md", "paper.md", "own.md"]
-    summary, paper, own = (path.read_text("utf-8") for path in paths)
+    assert [path.name for path in paths] == ["README.md", "paper.md", "own.md", "findings.md"]
+    summary, paper, own, findings = (path.read_text("utf-8") for path in paths)
     counts = "1 printed number: 1 within the print's rounding; 1 sentence: 1 true in part."
     assert counts[:-1] in summary
     assert paper.count(counts) == 2  # of the document, of the scene
@@ -103,6 +108,7 @@ def test_the_report_shows_every_part(study):
     assert "“A on |x| &lt; D is symmetric with real eigenvalues.” (Sec. 4.4)<br>" in paper.replace(
         r"\|", "|"
     )
+    assert findings == "A limit is 4.8161.\n"
     assert "{{" not in summary + paper + own
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -95,7 +96,9 @@ def study(tmp_path_factory):
     scenes = [Scene(name="limits", folder=scene, title="The limit", items=["L-T3", "L-C12"])]
     documents = {"paper": Document(title="The paper", printed=str(root))}
     word = {"much": Convention(at_most=0.1, means="At most a tenth.")}
-    build_report(scenes, documents, results, ROOT / "report/template", root / "report", word)
+    shutil.copytree(ROOT / "report/template", root / "template")
+    (root / "template/findings.md.j2").write_text("# Findings\n")
+    build_report(scenes, documents, results, root / "template", root / "report", word)
     return {"scenes": scenes, "documents": documents, "root": root, "rows": rows}
 
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ReportError", "build", "pages"]
 
+FINDINGS = "findings"
 FIGURE_FORMATS = (".svg", ".png")
 _INLINE = (
     20,
@@ -69,8 +70,8 @@ class _Page:
 
 
 def pages(documents: Mapping[str, Document], out_dir: Path) -> list[Path]:
-    """Return the pages of the report, the summary first."""
-    return [out_dir / "README.md", *(out_dir / f"{name}.md" for name in documents)]
+    """Return the pages of the report, the summary first, the findings last."""
+    return [out_dir / f"{name}.md" for name in ("README", *documents, FINDINGS)]
 
 
 def build(
@@ -92,7 +93,7 @@ def build(
     results_dir : path
         Holds ``claims.csv``, ``tables/`` and ``figures/``.
     template_dir : path
-        Holds ``summary.md.j2`` and ``document.md.j2``.
+        Holds ``summary.md.j2``, ``document.md.j2`` and ``findings.md.j2``.
     out_dir : path
         Where the pages go; their links to the results are relative to it.
     conventions : mapping, optional
@@ -101,7 +102,7 @@ def build(
     Returns
     -------
     list of Path
-        The pages, the summary first.
+        The pages, as `pages` has them.
 
     Raises
     ------
@@ -141,6 +142,7 @@ def build(
             claims_csv=_link(claims_csv, out),
         ),
         *(_render(templates["document.md.j2"], page=part) for part in parts),
+        look_ups.filled(Path(template_dir) / f"{FINDINGS}.md.j2"),
     ]
     paths = pages(documents, out)
     for path, text in zip(paths, texts, strict=True):

@@ -170,6 +170,7 @@ def _navigation(
         {
             "Report": [
                 {"Summary": "report/README.md"},
+                {"Findings": "report/findings.md"},
                 *({document.title: f"report/{name}.md"} for name, document in documents.items()),
             ]
         },

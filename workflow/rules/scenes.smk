@@ -92,7 +92,7 @@ rule report:
         ledger=LEDGER[0],
         conventions=CONVENTIONS,
         captions=[scene.file("caption.md") or [] for scene in SCENES.values()],
-        template=["report/template/summary.md.j2", "report/template/document.md.j2"],
+        template=sorted(Path("report/template").glob("*.md.j2")),
     output:
         pages(STUDY.documents, REPORT),
     log:
