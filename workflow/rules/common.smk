@@ -2,6 +2,7 @@
 import fcntl
 import os
 import sys
+import time
 from hashlib import sha256
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from fracstudy.criteria import CONVENTIONS
 from fracstudy.make import made
 from fracstudy.report import pages
 from fracstudy.sources import sources_of
+from fracstudy.summary import slowest, summary
 
 try:
     STUDY, SCENES = read_config(config)
@@ -52,7 +54,8 @@ if problem := next((c for c in " '\"" if c in str(Path.cwd())), None):
 
 def claim_folder():
     """Refuse a second workflow in this folder. The system lets go of the lock when the process ends, whatever ends it."""
-    global RUNNING
+    global RUNNING, STARTED
+    STARTED = time.time()
     RUNNING = open(".snakemake/running", "w")
     try:
         fcntl.flock(RUNNING, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -62,6 +65,11 @@ def claim_folder():
 
 onstart:
     claim_folder()
+
+
+onsuccess:
+    jobs = slowest(Path(".snakemake/metadata"), STARTED)
+    print(summary(LEDGER[0], [SITE / "index.html", REPORT / "README.md", RESULTS], jobs))
 
 
 def code(*files):

@@ -1,0 +1,46 @@
+"""What a call of the workflow ends with in the terminal: what came of the claims, what took longest, where to look."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+
+from fracstudy.ledger import read_ledger, summary_line
+
+__all__ = ["slowest", "summary"]
+
+
+def slowest(metadata: Path, since: float, count: int = 5) -> list[tuple[float, str]]:
+    """Return the jobs that took longest since a time, in seconds, from what Snakemake notes of every file.
+
+    Parameters
+    ----------
+    metadata : Path
+        Its folder, one file in JSON for each output.
+    since : float
+        In seconds since the epoch; what ended before is not of this call.
+    count : int
+        How many.
+    """
+    jobs: dict[tuple[float, str], float] = {}
+    for path in metadata.rglob("*"):
+        if path.is_file():
+            try:
+                record = json.loads(path.read_text("utf-8"))
+                started, ended, rule = record["starttime"], record["endtime"], record["rule"]
+            except (ValueError, KeyError, OSError):
+                continue  # a note that is being written, or of another version
+            if ended and ended >= since:
+                jobs[started, rule] = ended - started
+    return sorted(((took, rule) for (_, rule), took in jobs.items()), reverse=True)[:count]
+
+
+def summary(claims: Path, pages: Iterable[Path], jobs: Iterable[tuple[float, str]]) -> str:
+    """Return the summary of a call: a line for each part, those left out that are not there."""
+    lines = [summary_line(read_ledger(claims)) + "."] if claims.is_file() else []
+    slow = ", ".join(f"{rule.removeprefix('make_')} {took:.0f} s" for took, rule in jobs)
+    lines += [f"What took longest: {slow}."] if slow else []
+    there = ", ".join(str(page) for page in pages if page.exists())
+    lines += [f"Where to look: {there}."] if there else []
+    return "\n".join(lines)

@@ -1,0 +1,30 @@
+"""What a call of the workflow ends with."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from fracstudy.ledger import read_ledger, summary_line
+from fracstudy.summary import slowest, summary
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_slowest_jobs_of_this_call_come_first(tmp_path):
+    records = [("a", 100.0, 103.0), ("a", 100.0, 103.0), ("b", 100.0, 109.0), ("old", 10.0, 90.0)]
+    for k, (rule, started, ended) in enumerate(records):
+        record = {"rule": rule, "starttime": started, "endtime": ended}
+        (tmp_path / str(k)).write_text(json.dumps(record))
+    (tmp_path / "half").write_text('{"rule": "c"')
+    assert slowest(tmp_path, since=99.0) == [(9.0, "b"), (3.0, "a")]
+    assert slowest(tmp_path, since=99.0, count=1) == [(9.0, "b")]
+
+
+def test_the_summary_says_what_came_of_it_and_where_to_look(tmp_path):
+    claims = ROOT / "results/claims.csv"
+    text = summary(claims, [claims, tmp_path / "gone"], [(9.0, "make_overlap")])
+    assert summary_line(read_ledger(claims)) in text
+    assert "overlap 9 s" in text
+    assert "gone" not in text
+    assert summary(tmp_path / "gone", [], []) == ""
