@@ -225,3 +225,48 @@ def test_captions_are_plain_prose(caption):
     text = caption.read_text("utf-8")
     assert not re.search(r"^#", text, flags=re.MULTILINE)
     assert "<" not in SUPERSCRIPT.sub("", text).replace(" < ", "")
+
+
+def allowed_numbers(scene) -> set[str]:
+    """The numbers that stand in a scene's grid and in what is printed that it measures: not results of ours."""
+    texts = [(scene.folder / "scene.yaml").read_text("utf-8")]
+    texts += [
+        p.read_text("utf-8") for p in (ROOT / "report/printed").glob(f"*/{scene.folder.name}.yaml")
+    ]
+    return {plain(number) for text in texts for number in NUMBER.findall(text)}
+
+
+NUMBER = re.compile(r"(?<![\w.^])\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w]*\.\d)")
+LOOKED_UP = re.compile(r"\{\{.*?\}\}|\{%.*?%\}", re.DOTALL)
+PLACE = re.compile(r"(?:Sec|Secs|Section|Sections|Eq|Eqs|Fig|Figs|Figure|Figures|Table)\.?\s*$")
+# A number with a decimal point or a per cent sign, or a factor: what a result looks like.
+TYPED = re.compile(
+    r"(?<![\w.^(])\d+\.\d+(?:e[-+]?\d+)?|\d+(?:\.\d+)?(?=\s*(?:%|per cent))|\d+(?:\.\d+)?(?= times)"
+)
+
+
+def plain(number: str) -> str:
+    return f"{float(number):g}"
+
+
+@pytest.mark.parametrize(
+    "caption", sorted(SCENES.glob("*/*/caption.md")), ids=lambda p: p.parent.name
+)
+def test_no_result_is_typed_in_a_caption(caption):
+    """A number in a caption is looked up, or stands in the grid of the scene or in the document."""
+    from scene_functions import scenes
+
+    scene = next(s for s in scenes().values() if s.folder.resolve() == caption.parent)
+    allowed = allowed_numbers(scene)
+    text = LOOKED_UP.sub("", caption.read_text("utf-8"))
+    typed = [
+        match[0]
+        for match in TYPED.finditer(text)
+        if plain(match[0]) not in allowed and not PLACE.search(text[: match.start()])
+    ]
+    assert typed == [], f"look these up, or say it without: {typed}"
+
+
+@pytest.mark.parametrize("text", ["an error of 2.5 %", "3 times as large", "about 0.6 is better"])
+def test_a_typed_result_would_be_found(text):
+    assert TYPED.search(text)
