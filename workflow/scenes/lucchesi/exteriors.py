@@ -20,7 +20,10 @@ def exterior_panels(series: pd.DataFrame, **options: Any) -> tuple[Figure, list[
     """Draw y against x, a line a scheme and order, one panel an exterior."""
     figure, axes = axes_row(2, sharey=True, **options)
     for letter, ax, (exterior, title) in zip("ab", axes, _TITLES.items(), strict=True):
-        scheme_lines(ax, series[series["exterior"] == exterior])
+        here, green = series["exterior"] == exterior, series["scheme"] == "GPSE"
+        scheme_lines(ax, series[here & ~green])
+        # On a truncated lattice it lies on KPSE of order IV.
+        scheme_lines(ax, series[here & green], markersize=8.0, markerfacecolor="none", zorder=3)
         log_log(ax)
         panel_title(ax, letter, title)
     axes[0].set_ylabel(ERROR)

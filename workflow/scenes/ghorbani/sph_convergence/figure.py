@@ -18,7 +18,7 @@ _FAINT: dict[str, Any] = {"color": SUMS["modified"][1], "alpha": 0.35}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
-    """Draw the error (39) of each operator's worst function against s; faint: its real part."""
+    """Draw the error (39) of each operator's worst function against s; faint: the real part of the modified sum."""
     drawn, axes = axes_row(3, height=3.5, width=3.1, sharey=True)
     left = series[series["side"] == "left"].set_index(["operator", "function"]).sort_index()
     for ax, (operator, name) in zip(axes, _PANELS, strict=True):
@@ -41,6 +41,6 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     axes[0].set_ylabel("relative error $L_2$ (39)")
     entries = [entry(label, color=colour, marker=marker) for label, colour, marker in SUMS.values()]
     entries.append(entry(r"variable $\alpha(x)$", color="0.3", linestyle="--"))
-    entries.append(entry("its real part", **_FAINT))
+    entries.append(entry("modified (20), real part of the sum", **_FAINT))
     legend_below(drawn, entries)
     return drawn

@@ -85,12 +85,13 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
     for name, part in series.groupby("series", sort=False):
         if name.startswith("a source"):
             colour = _RED if "velocity" in name else _BLUE
-            marker, line = "^" if "without" in name else "v", "-"
+            marker, line = ("^", "--") if "without" in name else ("s", "-")
             total, way = name.removeprefix("a source ").split(", ")
             label = f"source, {total.replace(' a', '').replace('without', 'no')}, {way}"
         else:
-            colour, label = next(colours), name
-            marker, line = ("D", "") if name.startswith("KdV") else ("o", "-")
+            soliton = name.startswith("KdV")
+            colour, label = next(colours), rf"{name}, three $\epsilon$" if soliton else name
+            marker, line = ("D", "") if soliton else ("o", "-")
         draw(ax, part, color=colour, marker=marker, linestyle=line, label=label)
     counts = sorted(series.loc[~series["series"].str.startswith("KdV"), "x"].unique())
     ax.set(xscale="log", yscale="log", xlabel="number of markers $N$")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
@@ -36,9 +37,25 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     end.set(xlim=(15.0, -0.5), xlabel=_DISTANCE)
     end.set_ylabel(rf"solution $10^{{{np.log10(_SCALE):.0f}}} \, u(x, t_f)$")
     panel_title(end, "a", "at the end of the lattice")
+    _enlarged(end, series)
     log_log(relative, xlabel=_DISTANCE)
     relative.invert_xaxis()
     relative.set_ylabel(r"$|u - u_{\mathrm{exact}}| \, / \, u_{\mathrm{exact}}$")
     panel_title(relative, "b", "relative error, from the centre to the end")
     legend_below(figure, end)
     return figure
+
+
+def _enlarged(ax: Axes, series: pd.DataFrame) -> None:
+    """What lies at zero there: KPSE, DD and the solution, on a scale of their own."""
+    inset = ax.inset_axes((0.14, 0.62, 0.5, 0.34))
+    for scheme in ("KPSE", "DD"):
+        points = pick(series, series=scheme, panel="profile")
+        points = points[points["x"] < 15.0]
+        style = scheme_style(scheme, linewidth=1.0, markersize=2.5, **_OWN.get(scheme, {}))
+        inset.plot(points["x"], points["y"], **style)
+        inset.plot(points["x"], points["exact"], color="black", linestyle=":")
+    inset.set(xlim=(15.0, -0.5))
+    inset.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=True)
+    inset.tick_params(labelsize=6)
+    inset.yaxis.get_offset_text().set_fontsize(6)

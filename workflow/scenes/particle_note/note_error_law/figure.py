@@ -33,14 +33,15 @@ def _regularisation(ax: Axes, part: pd.DataFrame) -> None:
     hollow: dict[str, Any] = {"markerfacecolor": "none", "linestyle": ""}
     for (r, beta), curve in part.sort_values("x").groupby(["r", "beta"]):
         look = {**hollow, "color": LINES[r]["color"], "marker": _DERIVATIVES[beta]}
-        ax.plot(curve["x"], curve["y"], markeredgewidth=0.8, markersize=4.0 + 1.3 * beta, **look)
+        aside = 1.06 ** (beta - 2)  # they would lie on one another
+        ax.plot(curve["x"] * aside, curve["y"], markeredgewidth=0.8, markersize=4.5, **look)
     radii = np.array(sorted(part["x"].unique()))
     for r in sorted(part["r"].unique()):
         ax.plot(radii, radii**r, linewidth=1.0, **LINES[r])
         at, beside = (radii[0], radii[0] ** r), {"ha": "right", "va": "center", "fontsize": 9}
-        note(ax, rf"$\epsilon^{int(r)}$", at, (-9, 0), color=LINES[r]["color"], **beside)
+        note(ax, rf"$\epsilon^{int(r)}$", at, (-22, 0), color=LINES[r]["color"], **beside)
     log_log(ax, xlabel=r"kernel radius $\epsilon$")
-    ax.set_xlim(0.6 * radii[0], 1.15 * radii[-1])
+    ax.set_xlim(0.55 * radii[0], 1.25 * radii[-1])
     name_ticks(ax, radii)
     ax.minorticks_off()
     ax.set_ylabel(r"regularisation error $/\ (C_1\, \|f^{(\beta+r)}\|)$")
