@@ -388,3 +388,33 @@ def test_auto_is_the_fastest_evaluation_that_is_allowed(fields, stands_for):
     case = Case(**given, evaluation="auto")
     assert case.evaluation == stands_for
     assert case == Case(**given, evaluation=stands_for)
+
+
+@pytest.mark.parametrize("name", ["scheme", "evaluation", "exterior", "summation", "integrator"])
+@pytest.mark.parametrize("junk", [["KPSE"], {"open"}, np.array(["fft", "auto"])], ids=repr)
+def test_a_list_where_a_name_belongs_is_refused(name, junk):
+    with pytest.raises(InvalidInput, match=f"^{name} = "):
+        case(**{"evaluation": "auto", "integrator": "exponential", "dt": None, name: junk})
+
+
+def test_a_lattice_whose_particles_cannot_be_counted_is_refused():
+    with pytest.raises(InvalidInput, match=r"^spacing = 1e-100 .* half of the memory"):
+        case(dim=3, truncation=None, half_width=1e100, spacing=1e-100)
+
+
+def test_a_complaint_about_a_name_with_a_line_feed_is_one_line():
+    assert str(InvalidInput("a\nb", "c\nd", "one", "Mend it.")).count("\n") == 0
+
+
+def test_a_name_that_is_not_utf_8_is_refused():
+    with pytest.raises(InvalidInput, match="one of scheme, order"):
+        case(**{"\ud800": 1})
+    with pytest.raises(InvalidInput, match="one of scheme, order"):
+        Case.from_json(r'{"scheme": "DD", "\ud800": 1}')
+
+
+def test_naive_sums_of_dvm_that_would_take_minutes_are_refused():
+    wide = {"scheme": "DVM", "exterior": "open", "overlap": 60.0}
+    with pytest.raises(InvalidInput, match=r"^overlap = 60.0 .* at most 20 for naive sums"):
+        case(**wide, summation="naive")
+    case(**wide)

@@ -512,6 +512,7 @@ def test_another_flux_is_warned_of_by_where_it_leads(dt):
 
 
 @pytest.mark.parametrize("dt", [0.3, 0.5, 1.0])
+@pytest.mark.filterwarnings("ignore::fracparticles.errors.StabilityWarning")
 def test_weights_keep_their_sign_or_the_run_stops(dt):
     """A sink that takes a marker's weight in a step: exp(-int Q/F) is positive, 1 - dt Q/F is not."""
     x, w = uniform(Gaussian().value, (-2.0, 2.0), 60)

@@ -528,3 +528,9 @@ def test_strengths_of_another_kind(tmp_path, kind):
     with pytest.raises(InvalidInput) as refused:
         initial_strengths(c, path)[0]
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("junk", [None, 1.5, b"run.nc", ["run.nc"]], ids=repr)
+def test_what_is_no_path_is_refused(junk):
+    with pytest.raises(fp.InvalidInput, match=r"^file = .* the path of a file"):
+        fp.read_run(junk)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import fracparticles as fp
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
 from fracparticles.graded.particles import graded_particles, green_step
 from fracparticles.run.solver import prepare
 from fracstudy.race.problems.fundamental import Fundamental
@@ -142,3 +144,45 @@ def test_where_the_volumes_are_wide_the_exchange_is_right_to_leading_order():
 def test_bad_input_is_refused(call, field):
     with pytest.raises(InvalidInput, match=f"^{field} = "):
         call()
+
+
+# --- particles whose volumes do not belong to them ------------------------------------------------
+
+
+def crowd(kind, n):
+    random = np.random.default_rng(5)
+    if kind == "one place":
+        return np.zeros(n), np.full(n, 0.1)
+    return np.sort(0.02 * n / 10.0 * random.normal(size=n)), np.full(n, 0.05)
+
+
+@pytest.mark.parametrize(("kind", "n"), [("one place", 40), ("cluster", 60), ("cluster", 200)])
+def test_an_exchange_that_amplifies_is_warned_of(kind, n):
+    x, volumes = crowd(kind, n)
+    with pytest.warns(StabilityWarning, match="amplifies, by the factor") as caught:
+        matrix = green_step(x, volumes, 1.5, 0.02)
+    greatest = np.abs(np.linalg.eigvals(matrix)).max()
+    said = float(str(caught[0].message).split("factor ")[1].split()[0])
+    assert 1.0 < said <= greatest * 1.001
+    assert np.abs(volumes @ matrix - volumes).max() < 1e-12 * np.abs(matrix).max()
+
+
+def test_just_unstable_particles_are_told_from_stable_ones():
+    """Two particles of weight w each: the eigenvalues are 1 and 1 - 2 w."""
+    peak = float(fp.green(0.0, 1.0, 1.5))
+    for w, grows in ((0.999, False), (1.001, True)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            matrix = green_step(np.zeros(2), np.full(2, w / peak), 1.5, 1.0)
+        assert np.linalg.eigvals(matrix).min() == pytest.approx(1.0 - 2.0 * w)
+        assert bool(caught) is grows
+
+
+def test_graded_particles_do_not_amplify(recwarn):
+    green_step(*graded_particles(101, 100.0, 0.5), 1.2, 0.5)
+    assert not recwarn.list
+
+
+def test_a_quadrature_that_makes_more_of_a_constant_is_warned_of():
+    with pytest.warns(AccuracyWarning, match=r"makes 2\.83e\+03 of a constant"):
+        green_step(*graded_particles(41, 1e4, 0.5), 1.2, 0.5, "quadrature")

@@ -131,6 +131,7 @@ def reference(count, reach, scale, alpha, time, i, j):
     (1e4, 1.0, 1.5, 1e-6),
     (30.0, 1.0, 1.1, 1e-30),
     (5.0, 2.0, 1.9, 1e-40),
+    (3e4, 1e3, 1.9, 30.0),  # wider than one, and narrower than its panels are long if not told
 ])  # fmt: skip
 def test_a_kernel_narrower_than_an_ulp_of_its_place_is_resolved(reach, scale, alpha, time):
     count = 21

@@ -479,3 +479,11 @@ def test_bare_data_import_no_library_of_labels():
         "sys.exit(sum(name in sys.modules for name in ('xarray', 'pandas', 'netCDF4')))"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_data_whose_mass_overflows_are_refused():
+    c = case(half_width=1e20, spacing=5e18, t_initial=0.5e30, t_final=1.5e30)
+    with pytest.raises(
+        InvalidInput, match=r"^initial = 'strengths up to 1e\+300 of the volume 5e\+18"
+    ):
+        initial_strengths(c, np.full(c.shape, 1e300))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import FrozenInstanceError
 
 import mpmath as mp
 import numpy as np
@@ -294,3 +295,10 @@ def test_refuses_distances_and_wavenumbers():
     for k in (np.nan, "1", -1.0, np.inf):
         with pytest.raises(InvalidInput, match=r"^k = "):
             kernel_transform("K", k, 1.5)
+
+
+def test_the_kernels_of_the_paper_stay_what_they_are():
+    before = kernel("G", 0.5, 1.5)
+    with pytest.raises(FrozenInstanceError):
+        KERNELS["G"].orders = ()  # type: ignore[misc]
+    assert kernel("G", 0.5, 1.5) == before

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from inspect import signature
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.errors import InvalidInput, NonFiniteSolution, StabilityWarning
 from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, run, uniform
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
@@ -209,4 +210,39 @@ def test_the_limit_of_the_step(markers):
         return np.abs(velocity.fields(end.x, weights)[0] - PROBLEM.steady(end.x))[core].max()
 
     assert deviation(0.9 * limit) < 0.02
-    assert deviation(1.2 * limit) > 0.1
+    with pytest.warns(StabilityWarning, match="times the limit of stability, 0.00632"):
+        assert deviation(1.2 * limit) > 0.1
+
+
+def test_the_coefficient_of_a_large_f_is_zero():
+    assert NonlinearDiffusion(1e100, 1.0, 1.0).diffusivity([1e300]).tolist() == [0.0]
+
+
+@pytest.mark.parametrize("derivative", [0, 1, 2])
+@pytest.mark.parametrize("alpha", [1e-3, 0.25, 4.0, 1e3])
+def test_the_steady_state_is_that_of_two_gaussians_of_any_width(alpha, derivative):
+    """(24) and its derivatives, a standard deviation, five and ten from the middle of either one."""
+    problem = NonlinearDiffusion(alpha=alpha)
+    x = np.outer([-10.0, -5.0, -1.0, 0.0, 1.0, 5.0, 10.0], [1.0, 1.0]) / math.sqrt(2.0 * alpha)
+    x += [-0.5, 0.5]
+    expected = sum(
+        np.exp(-alpha * y * y)
+        * (1.0, -2.0 * alpha * y, (2.0 * alpha * y) ** 2 - 2.0 * alpha)[derivative]
+        for y in (x - 0.5, x + 0.5)
+    )
+    assert problem.steady(x, derivative) == pytest.approx(expected, rel=1e-12, abs=0.0)
+
+
+def test_the_fourier_sums_take_what_the_sums_over_neighbours_take():
+    fourier, neighbours = (signature(one) for one in (FourierMarkerVelocity, MarkerVelocity))
+    for name, parameter in fourier.parameters.items():
+        assert parameter.default == neighbours.parameters[name].default
+
+
+@pytest.mark.parametrize(("place", "value"), [(0, -0.5), (-1, -1e-9), (50, 0.0)])
+def test_a_field_below_zero_is_refused_where_it_is_not_watched_and_zero_where_it_is(place, value):
+    lines = Lines(PROBLEM, 4.0, 100, 1.0)
+    f = np.ones(100)
+    f[place] = value
+    with pytest.raises(InvalidInput, match="f = "):
+        lines.solve(f, [0.0, 1e-3])

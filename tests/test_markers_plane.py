@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
@@ -87,3 +88,21 @@ def test_counts_are_checked(counts):
     density = TwoBlobs(1.0)
     with pytest.raises(InvalidInput):
         decoupled(density.quantile, density.total, counts)
+
+
+@given(a=st.floats(0.0, 2.0), k=st.integers(34, 52), right=st.floats(0.0, 1.0))
+def test_the_quantile_keeps_its_digits_at_both_ends(a, k, right):
+    """1 - 2^-k is a number of its own: what lies to the right of it mirrors what lies to the left of 2^-k."""
+    density, part = TwoBlobs(a), 2.0**-k
+    left, above = density.quantile(part, right), density.quantile(1.0 - part, 1.0 - right)
+    # 1 - right is rounded; the part that it stands for moves x by as much, relative.
+    assert float(above) == pytest.approx(-float(left), rel=1e-13, abs=1e-13)
+    below = 0.5 * (right * math.erfc(a - left) + (1.0 - right) * math.erfc(-a - left))
+    # Of erfc(-x) the relative error is 2 x^2 times that of x, which bisection knows to an ulp of its bracket.
+    assert below == pytest.approx(part, rel=1e-11)
+
+
+def test_the_blobs_stay_where_they_are():
+    density = TwoBlobs(1.0)
+    with pytest.raises(FrozenInstanceError):
+        density.a = 2.0  # type: ignore[misc]

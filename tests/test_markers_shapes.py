@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import FrozenInstanceError
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -20,6 +22,7 @@ from fracparticles.markers import (
     shape_function,
     uniform,
 )
+from fracparticles.markers.stability import extremes, rate
 
 ROUND_OFF = 1e-13  # of sums of terms of size one
 
@@ -127,7 +130,7 @@ def test_a_transform_at_infinity_is_refused():
         SHAPES["S4"].transform(np.inf)
 
 
-@pytest.mark.parametrize("t", [0.1, 5.0])
+@pytest.mark.parametrize("t", [0.1, 5.0, 1e3])
 def test_the_square_profile_diffuses(t):
     square = Square()
     for x in (-2.0, 0.3, 1.7):
@@ -206,3 +209,20 @@ def test_random_loading_repeats_and_follows_f():
 def test_what_cannot_be_is_refused(call):
     with pytest.raises(InvalidInput):
         call()
+
+
+def test_shape_functions_and_profiles_stay_what_they_are():
+    for one, field in ((SHAPES["S8"], "reach"), (Square(), "total"), (Gaussian(), "total")):
+        before = (one if one is SHAPES["S8"] else one.value)(0.5)
+        with pytest.raises(FrozenInstanceError):
+            setattr(one, field, 2.0)
+        assert (one if one is SHAPES["S8"] else one.value)(0.5) == before
+
+
+def test_the_least_range_of_wavenumbers_is_one():
+    """Up to k = 1 the rate of S8 falls all the way, so that the fastest decay is that of the end."""
+    found = extremes(SHAPES["S8"], 1.0)
+    assert found.k_decay == 1.0
+    assert found.decay == pytest.approx(-float(rate(SHAPES["S8"], np.array([1.0]))[0]))
+    with pytest.raises(InvalidInput, match="largest"):
+        extremes(SHAPES["S8"], 0.999)

@@ -188,6 +188,13 @@ def test_extremes_in_closed_form():
     assert extremes(SHAPES["S4"]).first_zero == pytest.approx(5.763459196894550, abs=1e-5)
 
 
+@pytest.mark.parametrize("name", SHAPES)
+def test_an_extreme_at_the_end_of_the_range_is_there(name):
+    found = extremes(SHAPES[name], 1.0)
+    assert found.k_decay == 1.0
+    assert found.decay == pytest.approx(-rate(SHAPES[name], 1.0), rel=1e-14)
+
+
 def test_which_shape_functions_cluster():
     growing = {name for name, shape in SHAPES.items() if extremes(shape).growth > 0.0}
     assert growing == {"S1", "S3", "S4", "S6", "S7"}

@@ -154,3 +154,26 @@ def test_weights_gain_the_total_and_a_velocity_cannot():
     z = np.linspace(-5.0, 5.0, 401)
     missing = np.abs(end.field(z) - source.solution(z, 0.5)).sum() * 0.025
     assert missing >= 0.99 * 0.5 * source.total
+
+
+# --- the ends of the numbers ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("total", [1e-100, 1e-10, 0.1, 100.0])
+@pytest.mark.parametrize("x", [-10.0, -1.0, 0.0, 3.0])
+def test_the_cumulative_of_a_weak_source_keeps_its_digits(total, x):
+    """-2 mu log phi with mpmath, phi = 1 - tiny."""
+    with mpmath.workdps(250):
+        part = (1 - mpmath.exp(-mpmath.mpf(total) / 2)) * mpmath.erfc(-mpmath.mpf(x) / 2) / 2
+        exact = float(-2 * mpmath.log(1 - part))
+    assert PointSource(1.0, total).cumulative(x, 1.0) == pytest.approx(exact, rel=1e-13)
+
+
+def test_a_strong_source_overflows_or_is_right():
+    for derivative in (0, 2):
+        strong = GaussianSource(1e300, derivative)
+        assert strong.rate([1e100]).tolist() == [0.0]
+        assert strong.cumulative([-1e100]).tolist() == [0.0]
+        assert strong.solution([0.0], 0.0).tolist() == [1.0]
+    with pytest.raises(InvalidInput, match="do not overflow"):
+        GaussianSource(1e300).solution([0.0], 1e100)

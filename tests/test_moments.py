@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial, sqrt
 
@@ -12,11 +14,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
 from fracparticles.pse import (
     GAUSSIAN_20,
     TENT_27,
+    GaussianKernel,
     SplineKernel,
+    Stencil,
     StrengthExchange,
     cell_volumes,
     construct,
@@ -299,6 +303,7 @@ def any_particles(seed: int, n: int = 30, dim: int = 1):
     return x, random.exponential(0.1, n) + 1e-3, random.normal(size=n)
 
 
+@pytest.mark.filterwarnings("ignore::fracparticles.errors.StabilityWarning")  # of order 4
 @given(st.integers(0, 2**32), st.integers(1, 3), st.sampled_from([2, 4]))
 def test_symmetric_kernels_conserve_on_any_particles(seed, dim, r):
     x, v, q = any_particles(seed, dim=dim)
@@ -392,3 +397,96 @@ def test_the_bump_of_eq_10_has_unit_mass_with_the_radius_outside_the_root():
     mass = bump.sum() * (x[1] - x[0])
     assert mass / (sqrt(2.0 * np.pi) * epsilon) == pytest.approx(1.0, rel=1e-13)
     assert mass / sqrt(2.0 * np.pi * epsilon) == pytest.approx(sqrt(epsilon), rel=1e-13)
+
+
+# --- what particles cannot do ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("n", [40, 200])
+@pytest.mark.parametrize(("overlap", "grows"), [(1.0, True), (4.0, False)])
+def test_growth_of_kernels_that_are_negative_somewhere_is_warned_of(n, overlap, grows):
+    h = 16.0 / n
+    x = np.sort(h * (np.arange(n) + 0.5 * np.random.default_rng(1).uniform(-1.0, 1.0, n)))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        exchange = StrengthExchange(x, cell_volumes(x), overlap * h, construct(2, 6))
+    greatest = np.linalg.eigvals(exchange.matrix.toarray()).real.max()
+    assert bool(greatest > 1e-5 * exchange.rate) is grows
+    told = [str(w.message) for w in caught if issubclass(w.category, StabilityWarning)]
+    assert bool(told) is grows
+    if grows:
+        assert float(told[0].split("exp(")[1].split()[0]) == pytest.approx(greatest, rel=0.01)
+
+
+@dataclass(frozen=True)
+class Lopsided:
+    reach: float = 7.0
+    breaks: tuple[float, ...] = ()
+
+    def __call__(self, z):
+        return GAUSSIAN_20(z) * (1.0 + 0.1 * z)
+
+
+def test_a_kernel_that_is_not_symmetric_is_warned_of():
+    with pytest.warns(AccuracyWarning, match="does not conserve"):
+        StrengthExchange(np.arange(9.0), 1.0, 2.0, Lopsided())
+
+
+def test_particles_out_of_reach_of_one_another_are_warned_of():
+    with pytest.warns(AccuracyWarning, match="at 9 of 9 particles .* from 0 to 0 of the moment"):
+        exchange = StrengthExchange(np.arange(9.0), 1.0, 0.01, GAUSSIAN_20)
+    assert exchange.apply(np.arange(9.0)).tolist() == [0.0] * 9
+    with pytest.warns(AccuracyWarning, match="of the moment"):
+        StrengthExchange(np.arange(9.0), 5.0, 2.0, GAUSSIAN_20)
+    x = np.arange(9.0)
+    with pytest.warns(AccuracyWarning, match="at 1 of 2 points"):
+        found = derivative([4.0, 50.0], [16.0, 2500.0], x, x * x, 1.0, 1.0, GAUSSIAN_20, 2)
+    assert found[0] == pytest.approx(2.0, rel=0.01)
+    assert found[1] == 0.0
+
+
+@pytest.mark.filterwarnings("error")
+def test_enough_particles_are_not():
+    x = np.arange(-20.0, 21.0)
+    StrengthExchange(x, 1.0, 2.0, construct(2, 4))
+    derivative(x, x * x, x, x * x, 1.0, 2.0, GAUSSIAN_20, 2)
+
+
+@pytest.mark.parametrize("volume", [5e-324, 1e307])
+def test_volumes_whose_products_lose_digits_are_refused(volume):
+    with pytest.raises(InvalidInput, match="volumes"):
+        StrengthExchange(np.arange(9.0), volume, 2.0, GAUSSIAN_20)
+
+
+def test_the_rate_is_twice_the_greatest_loss():
+    """Gershgorin by columns: what a particle gives is what the others take, whatever the volumes."""
+    x, v, _ = any_particles(5)
+    exchange = StrengthExchange(x, v, 0.4, GAUSSIAN_20)
+    assert exchange.rate == pytest.approx(-2.0 * exchange.matrix.diagonal().min(), rel=1e-13)
+
+
+@pytest.mark.parametrize("terms", [1, 2, 6, 12])
+@pytest.mark.parametrize("largest", [0.5, 1.0, 1e6])
+def test_the_reach_solves_its_equation(terms, largest):
+    """z^2 - q log z = 40 + log of the greatest coefficient, that of z^q, or 40 alone for a smaller one."""
+    kernel = GaussianKernel((0,) * (terms - 1) + (largest,))
+    z, q = kernel.reach, 2 * (terms - 1)
+    assert z * z - q * np.log(z) == pytest.approx(40.0 + max(np.log(largest), 0.0), rel=1e-12)
+
+
+def test_at_no_points_there_is_nothing():
+    assert regularised(np.cos, [], 0.1, GAUSSIAN_20, 2).shape == (0,)
+
+
+def test_splines_up_to_degree_three_hundred():
+    # The variance of a B-spline of degree q is (q + 1) / 12, so that the Gaussian of the central limit is
+    # eta(0) = 24 / (q + 1) sqrt(6 / (pi (q + 1))), with an error of 3 / (20 (q + 1)).
+    limit = 24.0 / 301.0 * sqrt(6.0 / (np.pi * 301.0))
+    assert float(SplineKernel(300)(0.0)) == pytest.approx(limit, rel=1.1 * 3.0 / (20.0 * 301.0))
+    with pytest.raises(InvalidInput, match="300"):
+        SplineKernel(301)
+
+
+def test_kernels_given_by_their_coefficients_are_well_conditioned():
+    assert GaussianKernel((1.0,)).condition == 1.0
+    assert Stencil((Fraction(1), Fraction(0), Fraction(1))).condition == 1.0

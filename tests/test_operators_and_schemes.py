@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 from combinations import combinations_without
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import FAMILIES, kernel
-from fracparticles.schemes import SCHEMES, Setting, dpse, fpse, riesz, scheme
+from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Setting, dpse, fpse, riesz, scheme
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special import green
 
@@ -332,3 +332,23 @@ def test_every_scheme_describes_itself():
         assert (FAMILIES if high else ()) == module.families
         assert bool(module.box_orders) == (2 in module.dims)
         assert set(module.exteriors) <= {"truncated", "open"}
+
+
+def test_an_operator_says_whether_its_matrix_is_symmetric(combination):
+    """Where it says so, the series takes the interval for proved, and the eigenvalues come from Lanczos' method."""
+    operator = SCHEMES[combination[0]].operator(setting(combination))
+    a = dense_matrix(operator)
+    assert operator.symmetric == (np.abs(a - a.T).max() <= 1e-12 * np.abs(a).max())
+
+
+def test_the_schemes_stand_in_the_order_of_the_paper():
+    names = ["DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM", "FD", "PSE29", "RIESZ"]
+    assert list(ALL_SCHEMES) == names
+    assert [one.name for one in ALL_SCHEMES.values() if one.rejected] == ["PSE29", "RIESZ"]
+    assert [one.name for one in ALL_SCHEMES.values() if one.moving] == ["DVM"]
+
+
+def test_a_setting_is_in_units_of_the_spacing_and_of_the_diffusivity_unless_it_says_otherwise():
+    plain = Setting(alpha=1.5)
+    assert plain.rate == 1.0
+    assert plain == Setting(alpha=1.5, spacing=1.0, diffusivity=1.0)

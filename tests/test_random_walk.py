@@ -124,6 +124,8 @@ def test_extreme_draws_give_finite_variates(alpha):
 def test_counts_of_cells_and_ensembles():
     x = [-1.0, -0.6, 0.0, 0.99, 1.0, 7.0, -1.01, 0.5, 0.2]
     assert_array_equal(cell_counts(x, 1.0, 4), [[2, 0, 2, 2]])
+    # x + 1 and its multiple by 3/2 are rounded up to the end here.
+    assert_array_equal(cell_counts([np.nextafter(1.0, 0.0)], 1.0, 3), [[0, 0, 1]])
     # Nine walkers make two ensembles of four.
     assert_array_equal(cell_counts(x, 1.0, 4, 2), [[2, 0, 1, 1], [0, 0, 0, 1]])
 
@@ -135,6 +137,18 @@ def test_cell_masses_add_up():
     assert masses[0] == pytest.approx(0.5 * tail_mass(30.0, 1.5, 1.5), rel=1e-14)
     assert cell_masses([-2.0, 2.0], 1.5, 1.5)[0] == pytest.approx(central_mass(2.0, 1.5, 1.5))
     assert_allclose(cell_masses([-9.0, -8.0], 1.5, 1.5), cell_masses([8.0, 9.0], 1.5, 1.5))
+
+
+@pytest.mark.parametrize("low", [-1e-3, 0.0, 0.7, 50.0])
+@pytest.mark.parametrize("width", [1e-300, 1e-12, 1e-6, 0.99e-3])
+def test_the_mass_of_a_narrow_cell_keeps_its_digits(low, width):
+    """Next to alpha = 1 Cauchy's law: the tangent of a difference of angles."""
+    high = low + width
+    if high == low:
+        return
+    exact = math.atan((high - low) / (1.0 + low * high)) / math.pi
+    mass = cell_masses([low, high], 1.0, 1.0 + 1e-13)[0]
+    assert mass == pytest.approx(exact, rel=1e-11)
 
 
 @pytest.mark.parametrize("x", [0.0, 3.0, 1e3])

@@ -10,7 +10,7 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.run.reliability import estimates, wavenumber
+from fracparticles.run.reliability import estimates, wave_error, wavenumber
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.special.stable import green
@@ -258,3 +258,26 @@ def test_a_table_too_coarse_is_named(step):
     assert error <= 2.0 * estimate
     assert any("interpolated in a table" in str(one.message) for one in caught) == (estimate > 0.05)
     assert error < 0.05 or caught
+
+
+def test_a_field_of_zeros_has_no_wave():
+    assert wavenumber(np.zeros(9)) == 0.0
+
+
+def test_a_warning_points_at_the_call():
+    case = case_of(half_width=8.0, spacing=1.0, t_final=1.0)
+    with pytest.warns(AccuracyWarning, match="spacing") as said:
+        fp.solve(case, initial=lambda x: np.exp(-25.0 * x * x))
+    assert {warning.filename for warning in said} == {__file__}
+
+
+@pytest.mark.parametrize("order", [2, 4, 8])
+def test_the_error_of_a_wave_is_that_of_the_run(order):
+    """In the middle of a long train of waves, whose envelope changes the amplitude by (k width)^-2 = 4e-5 or so."""
+    k = 0.5
+    case = case_of(half_width=1500.0, spacing=1.0, t_final=2.0, order=order, kernel_family="gamma")
+    run = compute(case, lambda x: np.cos(k * x) * np.exp(-np.square(x / 300.0)))
+    middle = run.u[case.particles // 2]
+    error = abs(middle - np.exp(-2.0 * k**1.5))
+    # The waves looked at are this one and longer ones, which come out better.
+    assert wave_error(case, np.cos(k * case.x)) == pytest.approx(error, rel=0.02, abs=1e-4)

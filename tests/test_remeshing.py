@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
+from fracparticles.moving import remeshing
 from fracparticles.moving.remeshing import REMESHINGS, eliminate, interpolation_function, remesh
 
 MOMENTS = {"M4'": 3, "Lambda3": 4}  # how many, from m = 0
@@ -78,6 +79,19 @@ def test_particles_on_the_lattice_stay_as_they_are(name):
 
 
 @pytest.mark.parametrize("name", REMESHINGS)
+@pytest.mark.parametrize("h", [0.1, 0.011173958378129449, 1e-50])
+def test_remeshing_again_changes_no_bit(name, h):
+    strength = np.random.default_rng(2).normal(size=401)
+    x, again = h * np.arange(-200, 201), strength
+    for _ in range(20):
+        places, all_of_them = remesh(x, again, h, name)
+        kept = all_of_them != 0.0  # those added at the ends are
+        again = all_of_them[kept]
+        assert np.array_equal(places[kept], x)
+    assert np.array_equal(again, strength)
+
+
+@pytest.mark.parametrize("name", REMESHINGS)
 def test_order_does_not_matter_and_coincident_particles_add_up(name):
     x, strength = np.array([0.3, -1.2, 0.3]), np.array([1.0, 2.0, 3.0])
     one = remesh(x, strength, 1.0, name)
@@ -112,9 +126,19 @@ def test_without_a_threshold_only_nothing_is_left_out():
         (lambda: eliminate(np.zeros(0), np.zeros(0), 0.0), "strength"),
         (lambda: eliminate(np.zeros(1), np.ones(1), 1.0), "threshold"),
         (lambda: eliminate(np.zeros(1), np.ones(1), -0.1), "threshold"),
+        (lambda: eliminate(np.zeros(3), np.array([1e308, 9e307, 9e307]), 0.99), "strength"),
     ],
 )
 def test_bad_input_is_refused(call, field):
     with pytest.raises(InvalidInput) as error:
         call()
     assert error.value.field == field
+
+
+@pytest.mark.parametrize("x", [[0.0, 200.0], [-200.0, 0.0], [-100.0, 100.0], [300.0, 500.0]])
+def test_particles_too_far_apart_are_refused_wherever_they_lie(monkeypatch, x):
+    monkeypatch.setattr(remeshing, "_MOST_POINTS", 150)
+    with pytest.raises(InvalidInput, match="150 apart"):
+        remesh(np.array(x), np.ones(2), 1.0, "M4'")
+    x, strength = remesh(np.array([300.0, 449.0]), np.ones(2), 1.0, "M4'")
+    assert strength.sum() == 2.0

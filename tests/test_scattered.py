@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
@@ -192,3 +193,37 @@ def test_choices_are_checked():
         scattered_sum("fft", [ScatteredKernel(np.sign)], EPSILON)
     with pytest.raises(InvalidInput, match="reach"):
         NeighbourSum(pair(), EPSILON)
+
+
+# --- the ends of the numbers ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("summation", ["fft", "naive"])
+def test_sums_that_overflow_are_refused(summation):
+    x, q = scattered(50)
+    with pytest.raises(InvalidInput, match="do not overflow"):
+        scattered_sum(summation, pair(), EPSILON)(x, np.full(50, 1e308))
+    large = scattered_sum(summation, pair(), EPSILON)(x, 1e290 * q)
+    assert large == pytest.approx(1e290 * scattered_sum(summation, pair(), EPSILON)(x, q), rel=1e-9)
+
+
+def test_the_accuracy_is_that_of_the_positions_in_a_wide_box():
+    x, q = scattered(60)
+    x, q = np.concatenate([x, x + 3e4]), np.concatenate([q, q])
+    fast, exact = NonuniformFourierSum(pair(), EPSILON), NaiveScatteredSum(pair(), EPSILON)
+    off = closeness(fast(x, q), exact(x, q))
+    assert NonuniformFourierSum.accuracy < off < fast.accuracy
+
+
+def test_a_lattice_far_from_the_origin_is_summed_where_it_is():
+    """Its places are rounded to 1e-10 there: not to be taken for equally spaced."""
+    x = 1e6 + 0.1 * np.arange(100)
+    _, q = scattered(100)
+    off = closeness(NonuniformFourierSum(pair(), 0.1)(x, q), NaiveScatteredSum(pair(), 0.1)(x, q))
+    assert off < CLOSE
+
+
+def test_a_kernel_stays_what_it_is():
+    gaussian = ScatteredKernel(lambda r: np.exp(-r * r), reach=6.5)
+    with pytest.raises(FrozenInstanceError):
+        gaussian.reach = 1.0  # type: ignore[misc]

@@ -75,6 +75,10 @@ def refusal(config: dict) -> str:
         ({"titel": "x"}, ("titel", "Did you mean 'title'?")),
         ({"title": None}, ("title", "string")),
         ({"parameters": {"width": 1.0}}, ("parameters.width", "none")),
+        ({"variants": ["two"]}, ("scene.yaml: variants", "mappings by name")),
+        ({"variants": {"two": 1.5}}, ("scene.yaml: variants", "mappings by name")),
+        ({"variants": {"two": {"name": "x"}}}, ("scene.yaml: name", "paths say it")),
+        ({"variants": {"two": {3: "x"}}}, ("scene.yaml: 3", "Keys should be strings")),
     ],
 )
 def test_a_mistake_is_named_in_one_line(tmp_path, scene, words):
@@ -267,3 +271,14 @@ def test_every_scene_has_a_caption_and_its_items_are_its_own(ours):
     assert [name for name, scene in ours.items() if not scene.file("caption.md")] == []
     items = [item for scene in ours.values() for item in scene.items]
     assert len(items) == len(set(items))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [b"title: \xff", b"title: 2020-13-45", b"[" * 5000],
+    ids=["not UTF-8", "no date", "too deep"],
+)
+def test_what_is_no_yaml_is_refused_in_one_line(tmp_path, text):
+    config = write(tmp_path)
+    (Path(config["scenes_dir"]) / "mine/one/scene.yaml").write_bytes(text)
+    assert "scene.yaml" in refusal(config)

@@ -243,3 +243,100 @@ def test_a_point_mass_is_no_start_but_data_of_ones_own_are():
     with pytest.raises(InvalidInput, match="a point mass at t = 0"):
         compute(c)
     assert compute(c, lambda x: np.exp(-(x**2))).u.max() < 1.0
+
+
+# --- far from units near one ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("length", "rate"), [(1e95, 1e50), (1e-95, 1e-50), (1e60, 1e-6)])
+def test_a_run_does_not_depend_on_its_units(length, rate):
+    """In three dimensions A u, which has the unit of 1 / (length^3 time), is no number there."""
+    cube = {
+        "dim": 3,
+        "exterior": "open",
+        "half_width": 10.0,
+        "spacing": 1.0,
+        "t_initial": 1.0,
+        "t_final": 2.0,
+    }
+    time = length**1.5 / rate
+    lengths = {name: length * cube[name] for name in ("half_width", "spacing")}
+    times = {name: time * cube[name] for name in ("t_initial", "t_final")}
+    near, far = case(**cube), case(**{**cube, **lengths, **times, "diffusivity": rate})
+    u, v = compute(near), compute(far)
+    assert np.abs(v.u * length**3 - u.u).max() < 1e-11 * u.u.max()
+    bare = fp.prepare(far).solve(v.u0)
+    assert np.array_equal(bare, v.u)
+
+
+def test_strengths_next_to_the_end_of_float64_are_run():
+    c = case(diffusivity=1e6, t_initial=0.5e-6, t_final=1.5e-6, half_width=1.0, spacing=0.02)
+    u = run(c, bump)
+    assert np.array_equal(run(c, lambda x: 2.0**1000 * bump(x)), 2.0**1000 * u)
+    assert np.array_equal(run(c, lambda x: 2.0**-900 * bump(x)), 2.0**-900 * u)
+
+
+def test_strengths_that_overflow_when_they_grow_are_refused():
+    unstable = case(integrator="euler", dt=0.5, t_final=10.5)
+    with (
+        pytest.warns(StabilityWarning),
+        pytest.raises(NonFiniteSolution, match="strengths overflow: change the unit of u"),
+    ):
+        run(unstable, lambda x: 1e305 * np.cos(np.pi * x / 0.5))
+
+
+# --- what is no case, and no operator of it ----------------------------------------------------------
+
+
+@pytest.mark.parametrize("junk", [None, "KPSE", 1.0, {"scheme": "KPSE"}])
+def test_what_is_no_case_is_refused(junk):
+    for takes in (fp.solve, fp.prepare):
+        with pytest.raises(InvalidInput, match="case = "):
+            takes(junk)
+
+
+def test_an_operator_of_another_lattice_is_refused():
+    other = fp.prepare(case(half_width=5.0)).operator
+    with pytest.raises(InvalidInput, match=r"^operator = 'one of 41' .* the 81 particles"):
+        fp.prepare(case(), other)
+    with pytest.raises(InvalidInput, match=r"^operator = 1\.0 "):
+        fp.prepare(case(), 1.0)
+
+
+# --- what grows is spoken of ----------------------------------------------------------------------------
+
+
+def test_growth_from_the_ends_of_the_lattice_is_spoken_of():
+    ends = {
+        "scheme": "FPSE",
+        "order": 10,
+        "overlap": 3.0,
+        "beta": 0.98,
+        "half_width": 60.0,
+        "spacing": 1.0,
+    }
+    with pytest.warns(StabilityWarning, match=r"at the ends of the lattice, .* by exp\(10\.59\)"):
+        fp.prepare(case(**ends, t_initial=0.0, t_final=1e6))
+
+
+def test_growth_from_a_kernel_table_is_spoken_of():
+    table = {"scheme": "FPSE", "order": 4, "half_width": 60.0, "spacing": 1.0, "kernel_table": 1.0}
+    with pytest.warns(StabilityWarning, match="with kernel_table = 1, whatever the time step"):
+        fp.prepare(case(**table, t_initial=0.0, t_final=1e3))
+
+
+def test_a_step_between_the_limit_of_the_matrix_and_that_of_the_symbol_is_spoken_of():
+    a = fp.stability_limit("KPSE", 0.98, 12, 8.0)
+    steps = {"order": 12, "overlap": 8.0, "beta": 0.98, "half_width": 150.0, "spacing": 1.0}
+    with pytest.warns(StabilityWarning, match="lies outside the stability interval"):
+        fp.prepare(case(**steps, integrator="rk2", dt=a, t_initial=0.0, t_final=200 * a))
+
+
+def test_a_step_at_the_limit_itself_is_not_spoken_of():
+    lattice = {"half_width": 8.0, "spacing": 1.0, "t_initial": 0.0, "integrator": "rk2"}
+    a = case(**lattice, dt=1.0).largest_stable_step
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", StabilityWarning)
+        fp.prepare(case(**lattice, dt=a, t_final=17 * a))
+    with pytest.warns(StabilityWarning):
+        fp.prepare(case(**lattice, dt=1.001 * a, t_final=17 * 1.001 * a))

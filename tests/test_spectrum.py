@@ -9,8 +9,14 @@ from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix, power_iteration, spectral_interval
+from fracparticles.schemes.spectrum import (
+    dense_matrix,
+    eigenvalue_bounds,
+    power_iteration,
+    spectral_interval,
+)
 from fracparticles.schemes.stability import symbol_range
+from fracparticles.time import STEP_POLYNOMIALS
 
 OVERLAPS = {"GPSE": (1.65, 2.0, 2.9), "FD": (2.0,)}
 # FPSE of order IV with overlap 2.9 has a defective eigenvalue near zero: round-off eps splits it by sqrt(eps).
@@ -107,3 +113,60 @@ def test_power_iteration_says_when_it_fails():
     operator = SCHEMES["KPSE"].operator(Setting(n=40, spacing=0.1, alpha=1.5))
     with pytest.raises(FracparticlesError, match="no convergence within 10 iterations"):
         power_iteration(operator, most=10)
+
+
+# --- what the ends and a table add -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("exterior", ["truncated", "open"])
+@pytest.mark.parametrize("scheme", ["DD", "KPSE", "FPSE"])
+def test_the_bounds_hold_with_interpolated_kernels(scheme, exterior):
+    for table, order, overlap in ((0.1, 2, 3.3), (0.3, 4, 3.3), (1.0, 4, 2.0)):
+        setting = Setting(
+            n=60, alpha=1.9, order=order, overlap=overlap, exterior=exterior, kernel_table=table
+        )
+        operator = SCHEMES[scheme].operator(setting)
+        low, high = eigenvalue_bounds(scheme, setting, operator)
+        values = np.linalg.eigvals(dense_matrix(operator)).real
+        room = ROUND_OFF * 10.0 * (high - low)
+        assert low - room <= values.min()
+        assert values.max() <= high + room
+
+
+def test_a_coarse_table_makes_fpse_grow():
+    setting = Setting(n=60, alpha=1.5, order=4, kernel_table=1.0)
+    operator = SCHEMES["FPSE"].operator(setting)
+    high = eigenvalue_bounds("FPSE", setting, operator)[1]
+    greatest = np.linalg.eigvals(dense_matrix(operator)).real.max()
+    assert greatest > 0.01
+    assert greatest == pytest.approx(high, rel=0.1)
+
+
+@pytest.mark.parametrize(("dim", "n"), [(1, 60), (2, 10)])
+def test_an_open_exchange_from_a_table_keeps_a_constant(dim, n):
+    """The exterior is that of the exact kernels, and the diagonal what both add up to."""
+    for table in (None, 0.3):
+        setting = Setting(n=n, alpha=1.5, exterior="open", kernel_table=table, dim=dim)
+        operator = SCHEMES["KPSE"].operator(setting)
+        assert np.linalg.eigvals(dense_matrix(operator)).real.max() <= 1e-8
+
+
+def test_an_open_exterior_of_fpse_from_a_table_is_that_of_the_exact_kernels():
+    exact, table = (
+        SCHEMES["FPSE"].operator(Setting(n=60, alpha=1.5, exterior="open", kernel_table=step))
+        for step in (None, 1e-3)
+    )
+    u = 1.0 / (1.0 + np.arange(-60, 61.0) ** 2)
+    assert table.apply(u) == pytest.approx(exact.apply(u), abs=1e-12)
+
+
+def test_a_step_at_the_limit_has_hardly_any_room_below():
+    """What is below is amplified by each step; a run of n, by two at most."""
+    setting = Setting(n=20, alpha=1.5)
+    operator = SCHEMES["KPSE"].operator(setting)
+    low = eigenvalue_bounds("KPSE", setting, operator)[0]
+    for steps in (10, 10**9):
+        z = 2.785293563405282 * spectral_interval("KPSE", setting, operator, steps)[0] / low
+        sign, exponent = STEP_POLYNOMIALS["rk4"].log_power(np.array([-z]), steps)
+        assert sign[0] > 0.0
+        assert exponent[0] <= np.log(2.0)

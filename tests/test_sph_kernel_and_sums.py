@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.cubic_spline import spline, spline_gradient, spline_integral
 from fracparticles.sph.derivatives import correction, gradient, second_derivative
@@ -145,3 +145,35 @@ def test_the_norms():
     ours = exact + np.array([0.3j, 0.0, 0.4])
     assert relative_l2(exact, ours) == pytest.approx(0.5 / np.sqrt(14.0))
     assert r2_score(exact, ours) == pytest.approx(1.0 - 0.25 / 2.0)
+
+
+@pytest.mark.filterwarnings("error")
+def test_values_whose_squares_overflow_have_no_score():
+    with pytest.raises(InvalidInput, match="a size to compare with"):
+        r2_score([1e200, 3e200], [1.0, 2.0])
+
+
+def test_a_point_with_next_to_no_neighbours_is_warned_of():
+    """One particle on the edge of the support makes f / (x - x_j) of a constant f, whose gradient is zero."""
+    with pytest.warns(AccuracyWarning, match="at 1 of 1 points"):
+        assert gradient([0.0], [1.999], 1.0, [1.0], 1.0) == pytest.approx(1.0 / 1.999)
+    with pytest.warns(AccuracyWarning, match="L of"):
+        second_derivative([0.0], [1.0], [1.999], 1.0, [1.0], 1.0)
+    with pytest.warns(AccuracyWarning, match="L of"):
+        gradient([0.0], np.arange(-3.0, 4.0), 10.0, np.ones(7), 1.1, corrected=False)
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_end_of_a_line_is_not():
+    x = np.arange(-3.0, 4.0)
+    assert gradient(x, x, 1.0, x - 3.0, 1.1)[-1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("measure", "exact"),
+    [(relative_l2, [0.0, 0.0]), (r2_score, [2.0, 2.0]), (relative_l2, [1e200, 1e200])],
+)
+def test_what_has_no_size_is_not_compared_with(measure, exact):
+    """The square of the last is too large for a number."""
+    with pytest.raises(InvalidInput, match="a size to compare with"):
+        measure(exact, [1.0, 2.0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import FrozenInstanceError
 from math import pi
 
 import mpmath as mp
@@ -10,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.sph import ParticleLine, caputo_derivative, rl_derivative, rl_integral
 from fracparticles.sph.closed_forms import FUNCTIONS, Cosine, Exponential, ShiftedPower, Sine
 from fracparticles.sph.norms import relative_l2
@@ -24,6 +26,7 @@ MORE = {
     "cos x/2": Cosine(0.5),
     "exp -x": Exponential(-1.0),
     "(x+2)^4": ShiftedPower(2.0, 4),
+    "(x-1)^7": ShiftedPower(-1.0, 7),  # by the recurrence
 }
 ALL = {**FUNCTIONS, **MORE}
 PRECISE = {
@@ -35,6 +38,7 @@ PRECISE = {
     "cos x/2": lambda x: mp.cos(x / 2),
     "exp -x": lambda x: mp.exp(-x),
     "(x+2)^4": lambda x: (x + 2) ** 4,
+    "(x-1)^7": lambda x: (x - 1) ** 7,
 }
 
 
@@ -101,6 +105,15 @@ def test_mirror_images(name, x):
 def test_impossible_functions_are_refused(impossible):
     with pytest.raises(InvalidInput):
         impossible()
+
+
+def test_powers_up_to_a_thousand_and_they_stay_what_they_are():
+    power = ShiftedPower(1.0, 1000)
+    assert power.value(np.array(0.0)) == 1.0
+    with pytest.raises(InvalidInput, match="1000"):
+        ShiftedPower(1.0, 1001)
+    with pytest.raises(FrozenInstanceError):
+        power.n = 1001  # type: ignore[misc]
 
 
 OPERATORS = {
@@ -241,3 +254,17 @@ def test_what_is_not_allowed_is_refused(f, order, options, field):
         with pytest.raises(InvalidInput) as raised:
             approximate(line, f, order, **options)
         assert raised.value.field == field
+
+
+@pytest.mark.parametrize(("side", "end"), [("left", -1), ("right", 0)])
+def test_a_derivative_that_hardly_converges_is_warned_of_at_the_end_of_the_integral(side, end):
+    """h / (b - a) = 0.055: with the order 0.97 there, 0.055^0.03 = 0.917 is left of the error; with 0.3, 0.055^0.7."""
+    line = ParticleLine(0.0, 5.0, 21)
+    order = np.full_like(line.x_all, 0.3)
+    np.put(order[line.inside], end, 0.97)
+    f = np.sin(line.x_all)
+    with pytest.warns(AccuracyWarning, match=r"order 0\.97 at the end .* = 0\.917;"):
+        rl_derivative(line, f, order, side=side)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", AccuracyWarning)
+        rl_derivative(line, f, order, side="left" if side == "right" else "right")

@@ -129,3 +129,54 @@ def test_the_limit_is_zero_where_the_symbol_is_positive(scheme, beta, order, ove
     setting = Setting(alpha=1.0 + beta, order=order, overlap=overlap)
     assert SCHEMES[scheme].symbol(theta, setting).max() > 0.0
     assert stability_limit(scheme, beta, order, overlap) == 0.0
+
+
+# --- where the search for the extremes, and the symbol itself, lose digits -------------------------------------------
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("overlap", [0.6, 1.25, 2.0, 8.0])
+@pytest.mark.parametrize("beta", [1e-9, 0.1, 0.5])
+def test_round_off_next_to_zero_is_no_growth(order, overlap, beta):
+    """DPSE: Phi^(theta) - Phi^(0) was round-off for small theta, times kappa^ ~ theta^(beta-1): a limit of zero."""
+    theta = np.geomspace(1e-9, 3.0, 200)
+    setting = Setting(alpha=1.0 + beta, order=order, overlap=overlap)
+    assert SCHEMES["DPSE"].symbol(theta, setting).max() <= 0.0
+    assert stability_limit("DPSE", beta, order, overlap) > 0.1
+
+
+def test_the_symbol_of_dpse_next_to_zero():
+    """To leading order -|theta|^alpha times the second moment of c_m, which is 2 but for the aliases."""
+    setting = Setting(alpha=1.5, overlap=2.0)
+    symbol = SCHEMES["DPSE"].symbol(np.array([1e-8]), setting)
+    assert symbol[0] == pytest.approx(-(1e-8**1.5), rel=1e-9)
+
+
+def test_a_kernel_with_positive_weights_grows_nowhere():
+    """KPSE of order II: next to beta = 1 the range is 1e-9 of what cancels in it at overlap 1/4."""
+    low, high = symbol_range("KPSE", 1.0 - 1e-9, 2, 0.25)
+    assert high == 0.0
+    assert low < 0.0
+
+
+@pytest.mark.parametrize(("order", "overlap"), [(6, 0.6), (8, 0.6)])
+def test_a_bump_between_two_samples_is_found(order, overlap):
+    """FPSE, where its two factors change sign close to one another."""
+    theta = np.linspace(1e-3, np.pi, 200_001)
+    values = SCHEMES["FPSE"].symbol(theta, Setting(alpha=1.9, order=order, overlap=overlap))
+    assert values.max() > 0.0
+    assert symbol_range("FPSE", 0.9, order, overlap)[1] >= values.max()
+    assert stability_limit("FPSE", 0.9, order, overlap) == 0.0
+
+
+@pytest.mark.parametrize(("dim", "count"), [(2, 400), (3, 60)])
+@pytest.mark.parametrize("order", [4, 12])
+def test_in_a_box_the_range_holds_a_symbol_that_is_nearly_radial(dim, count, order):
+    """The least value lies on a sphere, little less than elsewhere on it."""
+    axis = np.linspace(0.0, 2.2, count)
+    theta = np.stack(np.meshgrid(*[axis] * dim, indexing="ij"), axis=-1).reshape(-1, dim)
+    theta = theta[(np.diff(theta, axis=1) >= 0.0).all(axis=1)]
+    values = SCHEMES["DD"].symbol(theta, Setting(alpha=1.5, order=order, overlap=2.0, dim=dim))
+    low, _ = symbol_range("DD", 0.5, order, 2.0, dim)
+    assert low <= values.min() * (1.0 - 1e-9)
+    assert low == pytest.approx(values.min(), rel=2e-3)

@@ -10,7 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from fracparticles.errors import AccuracyWarning, FracparticlesError, InvalidInput, StabilityWarning
+from fracparticles.errors import (
+    AccuracyWarning,
+    FracparticlesError,
+    InvalidInput,
+    NonFiniteSolution,
+    StabilityWarning,
+)
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
@@ -232,6 +238,42 @@ def test_what_would_take_too_long_is_refused_before_it_starts():
         prepare(
             stiff(scheme="FPSE", dim=2, spacing=0.5, half_width=4.0, t_initial=0.0, t_final=1e11)
         )
+
+
+@pytest.mark.parametrize("size", [1e-290, 1.0, 1e290])
+def test_data_of_any_size_decay_with_all_their_digits(size):
+    flow = exponential_flow(diagonal([-1.0, -0.3, -0.03]), 1000.0, -1.0, 0.0)
+    assert flow(size * np.ones(3))[2] == pytest.approx(size * np.exp(-30.0), rel=1e-9)
+
+
+def test_what_is_below_every_number_is_zero_and_not_waited_for():
+    flow = exponential_flow(diagonal([-1.0, -0.3]), 1e8, -1.0, 0.0)
+    u, applications = flow.run(np.ones(2))
+    assert np.array_equal(u, np.zeros(2))
+    assert (
+        applications < 5 * flow.operator_applications
+    )  # the pieces that were tried, and some hundreds
+
+
+def test_growth_beyond_all_numbers_says_when():
+    flow = exponential_flow(diagonal([-1.0, 0.01]), 60_000.0, -1.0, 0.01)
+    grown = flow(np.array([0.0, 1e-200]))
+    assert grown[1] == pytest.approx(1e-200 * np.exp(600.0), rel=1e-9)
+    with pytest.raises(NonFiniteSolution, match=r"overflow after .* of the time"):
+        flow(np.array([0.0, 1e100]))
+
+
+def test_a_series_that_would_take_too_many_terms_is_refused_at_once():
+    with pytest.raises(FracparticlesError, match="more than 33554432 terms"):
+        exponential_flow(diagonal([-1.0, 0.0]), 1e15, -1.0, 0.0)
+
+
+def test_dpse_keeps_the_mass_to_the_round_off_of_its_operator():
+    """The constant of the Riesz potential, 1 / beta, is taken off: its roundings would be ten times these."""
+    case = stiff(scheme="DPSE", beta=0.1, half_width=8.0, spacing=1.0, t_final=1e6)
+    u0 = bump(case.x)
+    room = 10.0 * EPS * 1e6 * case.setting.rate * -case.symbol_range[0]
+    assert prepare(case).solve(u0).sum() == pytest.approx(u0.sum(), rel=room)
 
 
 # --- an overlap too small for the order ------------------------------------------------------------------------------

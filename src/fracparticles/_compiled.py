@@ -5,12 +5,18 @@ the module, or in the cache folder of the user. Where none of these can be writt
 process. A cache that cannot be read, cut in half by a power cut say, is emptied and made again; one that cannot be
 written, on a full disk say, is left alone. numba compiles a function anew when its own file changes; here also when a
 file changes whose compiled functions it calls, since these are compiled into it.
+
+Code in which one byte has changed gives another number, or ends the process. So what is kept has a digest, and says
+what it was compiled from: the index may name code of another version, or for other arguments, if a process was killed
+between the two files, or if two processes wrote them at the same moment.
 """
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -23,11 +29,41 @@ from numba.core.runtime.nrt import rtsys
 __all__ = ["njit"]
 
 
+class _Sealed:
+    """Pickled data, pickled once more with their digest: without it they are not unpickled."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data = data
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _opened, (self._data, sha256(self._data).digest())
+
+
+def _opened(data: bytes, digest: bytes) -> Any:
+    if sha256(data).digest() != digest:
+        raise pickle.UnpicklingError("the data have changed since they were written")
+    return pickle.loads(data)
+
+
+class _CacheFile(IndexDataCacheFile):
+    """The files of a function: an index, and the code for each kind of arguments with what it was compiled from."""
+
+    def save(self, key: Any, data: Any) -> None:
+        super().save(key, (self._source_stamp, key, data))
+
+    def load(self, key: Any) -> Any:
+        found = super().load(key)
+        return found[2] if found is not None and found[:2] == (self._source_stamp, key) else None
+
+    def _dump(self, obj: Any) -> bytes:
+        return pickle.dumps(_Sealed(super()._dump(obj)))
+
+
 class _Cache(FunctionCache):
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
         stamps = sorted((file.stat().st_mtime, file.stat().st_size) for file in _files(function))
-        self._cache_file = IndexDataCacheFile(
+        self._cache_file = _CacheFile(
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
             source_stamp=tuple(stamps),

@@ -45,7 +45,8 @@ class InvalidInput(FracparticlesError, ValueError):
     def __str__(self) -> str:
         value = " ".join(repr(self.value).split())
         shown = value if len(value) <= _LONGEST else f"{value[:_LONGEST]}..."
-        return f"{self.field} = {shown} is not allowed: {self.allowed}. {self.remedy}"
+        line = f"{self.field} = {shown} is not allowed: {self.allowed}. {self.remedy}"
+        return " ".join(line.split())  # a name may hold a line feed, too
 
 
 def spelled(values: Iterable[object], last: str = " or ") -> str:

@@ -1,10 +1,16 @@
-"""Files that are whole or not there, written under a temporary name and renamed when done; and how NetCDF is read."""
+"""Files that are whole or not there, written under a temporary name and renamed when done; and how NetCDF is read.
+
+NetCDF does not notice a byte that has changed: the number that it belongs to is another one. So our files are sealed.
+They end with the digest of all that stands before it, where the NetCDF libraries do not look.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +19,10 @@ from fracparticles.errors import InvalidInput, reason_of
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["load_netcdf", "replaceable", "replacing", "write_text"]
+__all__ = ["intact", "load_netcdf", "replaceable", "replacing", "seal", "write_text"]
+
+_SEAL = b"\nsha256 "
+_LENGTH = len(_SEAL) + 64 + 1  # with the digest and the end of the line
 
 
 def replaceable(path: Any, field: str = "path") -> Path:
@@ -47,6 +56,7 @@ def replacing(path: Any) -> Iterator[Path]:
     """Give a temporary path beside the file `path`, which takes its place when the block ends without an error.
 
     The file gets the mode that the umask gives; folders are made. A link is followed: what it links to is replaced.
+    What a call that was killed has left of the same file is removed.
 
     Raises
     ------
@@ -58,15 +68,43 @@ def replacing(path: Any) -> Iterator[Path]:
     target = replaceable(path)
     target.parent.mkdir(parents=True, exist_ok=True)
     stem = target.stem.encode(errors="ignore")[:80].decode(errors="ignore")
-    temporary = target.with_name(f".{stem}-{os.urandom(8).hex()}{target.suffix[:40]}")
-    # Made here and now: it is ours alone, and its mode is what the umask leaves.
-    os.close(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    before, after = f".{stem}-", target.suffix[:40]
+    with _in_use(target.parent, re.compile(f"{re.escape(before)}[0-9a-f]{{16}}{re.escape(after)}")):
+        temporary = target.with_name(f"{before}{os.urandom(8).hex()}{after}")
+        # Made here and now: it is ours alone, and its mode is what the umask leaves.
+        os.close(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+        try:
+            yield temporary
+            os.replace(temporary, target)
+        except BaseException:
+            with suppress(OSError):  # the folder may be gone
+                temporary.unlink(missing_ok=True)
+            raise
+
+
+@contextmanager
+def _in_use(folder: Path, left: re.Pattern[str]) -> Iterator[None]:
+    """Say that a folder is written to; if nobody else is at it, first remove the temporary files left there.
+
+    By a lock of the folder, shared by all who write. The system lets go of it when a process ends, whatever ends it.
+    Where there are no such locks, nothing is removed.
+    """
+    handle = None
     try:
-        yield temporary
-        os.replace(temporary, target)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+        with suppress(ImportError, OSError):
+            from fcntl import LOCK_EX, LOCK_NB, LOCK_SH, flock
+
+            handle = os.open(folder, os.O_RDONLY)
+            try:
+                flock(handle, LOCK_EX | LOCK_NB)
+                for name in filter(left.fullmatch, os.listdir(folder)):
+                    (folder / name).unlink()
+            finally:
+                flock(handle, LOCK_SH | LOCK_NB)
+        yield
+    finally:
+        if handle is not None:
+            os.close(handle)
 
 
 def write_text(path: Any, text: str) -> None:
@@ -81,25 +119,53 @@ def write_text(path: Any, text: str) -> None:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
+def seal(path: Path) -> None:
+    """End a file with the digest of what it holds, a line "sha256 ..."."""
+    with open(path, "rb+") as file:
+        digest = file_digest(file, "sha256")  # reads to the end
+        file.write(_SEAL + digest.hexdigest().encode() + b"\n")
+
+
+def intact(path: Path) -> Path:
+    """Return the path of a NetCDF file that holds what was sealed, or has no seal: another program has written it.
+
+    Raises
+    ------
+    InvalidInput
+        If its digest is another one.
+    OSError
+        If it cannot be read.
+    """
+    with open(path, "rb") as file:
+        content = file.read()
+    body, end = memoryview(content)[:-_LENGTH], content[-_LENGTH:]
+    if end.startswith(_SEAL) and end[len(_SEAL) :] != sha256(body).hexdigest().encode() + b"\n":
+        readable = "a readable NetCDF file (it has changed since it was written, says its digest)"
+        raise InvalidInput("file", str(path), readable, "Write or copy it again.")
+    return path
+
+
 def load_netcdf(path: Path, names: Sequence[str] | None = None) -> xr.Dataset:
     """Read a NetCDF file, or some variables of it: no other is decoded. Units of time are left as they are.
 
     Raises
     ------
     InvalidInput
-        If there is no readable NetCDF file.
+        If there is no readable NetCDF file, or one of ours that has changed since it was written.
     """
     import xarray as xr
 
-    if path.exists() and not path.is_file() and not path.is_dir():
-        raise InvalidInput("file", str(path), "a regular file", "Copy the data into one.")
     try:
-        with xr.open_dataset(path, engine="netcdf4", decode_cf=False) as raw:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            raise InvalidInput("file", str(path), "a regular file", "Copy the data into one.")
+        with xr.open_dataset(intact(path), engine="netcdf4", decode_cf=False) as raw:
             wanted = raw
             if names is not None:
                 wanted = raw[[name for name in names if name in raw.variables]]
                 wanted = wanted.drop_vars([name for name in wanted.coords if name not in names])
             return xr.decode_cf(wanted, decode_times=False).load()
+    except InvalidInput:
+        raise
     except FileNotFoundError:
         raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
     except Exception as error:  # the library raises many kinds for damaged files

@@ -234,16 +234,26 @@ def _natural(name: str) -> list[tuple[bool, int, str]]:
 def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
     try:
         tree = yaml.safe_load(file.read_text("utf-8"))
-    except yaml.YAMLError as error:
+    except (
+        yaml.YAMLError,
+        ValueError,
+        RecursionError,
+    ) as error:  # not UTF-8, no such date, too deep
         problem = " ".join(str(error).split())
         raise InvalidInput(str(file), problem, "YAML", "Mend the file.") from None
     if not isinstance(tree, dict):
         raise InvalidInput(str(file), tree, "a mapping with title and runs", "Fill it in.")
     variants = tree.pop("variants", {file.parent.name: {}})
+    if not (isinstance(variants, dict) and all(isinstance(own, dict) for own in variants.values())):
+        raise InvalidInput(f"{file}: variants", variants, "mappings by name", "Mend them.")
     for name, own in variants.items():
         fields = resolved(merged(tree, own), smoke)
+        for key in {"name", "folder"} & fields.keys():
+            raise InvalidInput(
+                f"{file}: {key}", fields[key], "left out: paths say it", "Remove it."
+            )
         try:
-            yield Scene(name=name, folder=file.parent, **fields)
+            yield Scene.model_validate({**fields, "name": name, "folder": file.parent})
         except ValidationError as error:
             raise complaint(error, f"{file}: ", Scene) from None
 

@@ -9,7 +9,12 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from fracparticles.lattice.exterior_box import BoxFarField, _transforms, box_far_field
+from fracparticles.lattice.exterior_box import (
+    BoxFarField,
+    _transforms,
+    box_continuation,
+    box_far_field,
+)
 from fracparticles.schemes import SCHEMES, Setting
 
 ALPHA = 1.5
@@ -140,3 +145,15 @@ def test_the_transforms_of_the_smooth_modes(alpha, dim):
         expected = [scale * float(mp.expint(1.0 + q, one**2 / 120.0)) for one in k]
         # The recurrence subtracts: what it loses grows with z and with 1 / (alpha - 1).
         assert ours == pytest.approx(expected, rel=1e-13, abs=1e-13 * expected[0])
+
+
+@pytest.mark.parametrize(("dim", "n"), [(2, 6), (2, 12), (3, 8)])
+def test_the_continuation_of_the_modes_is_the_modes(dim, n):
+    """A field that is a sum of the modes is what it is continued to, inwards to 3 n / 4."""
+    j = np.indices((2 * n + 1,) * dim).reshape(dim, -1) - n
+    away = np.abs(j).max(axis=0) > 0
+    u = np.zeros((2 * n + 1) ** dim)
+    u[away] = np.arange(1.0, dim + 3.0) @ np.array(modes(j[:, away], n))
+    places, values = box_continuation(u.reshape((2 * n + 1,) * dim), n, ALPHA)
+    assert np.array_equal(np.abs(j[:, places]).max(axis=0), np.full(places.size, round(0.75 * n)))
+    assert values == pytest.approx(u[places], rel=1e-11)

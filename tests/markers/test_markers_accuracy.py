@@ -41,3 +41,9 @@ def test_what_cannot_be_is_refused():
         smoothing_exponent("S8")
     with pytest.raises(InvalidInput):
         optimal_support(SHAPES["S8"], 0.0)
+    for h in (1e-9, 2.0):
+        with pytest.raises(InvalidInput, match="h <= 1"):
+            optimal_support(SHAPES["S8"], h)
+    # h^(1/2) is 31 h.
+    with pytest.raises(InvalidInput, match="at most 14 h"):
+        optimal_support(SHAPES["S3"], 1e-3)

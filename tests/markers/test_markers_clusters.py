@@ -29,6 +29,11 @@ def test_the_spectrum_tells_clusters_from_order():
     assert marker_spectrum(even, q, 8.0).max() < 1e-3
 
 
+def test_a_spectrum_needs_markers():
+    with pytest.raises(InvalidInput, match="with markers"):
+        marker_spectrum(np.array([5.0]), np.ones(1), 1.0)
+
+
 @pytest.mark.parametrize("function", [cluster_centres, emptiness])
 @pytest.mark.parametrize("lengths", [(0.0, 3.0), (0.2, np.nan)])
 def test_lengths_are_positive(function, lengths):

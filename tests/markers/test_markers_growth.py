@@ -27,9 +27,28 @@ def test_the_largest_step_is_that_of_the_transform():
     assert largest_step(SHAPES["S4"], 0.3) == pytest.approx(extremes(SHAPES["S4"]).eta, rel=3e-3)
 
 
+def test_all_markers_moved_alike_stay_so():
+    """A wave of one marker's length is none."""
+    _, rate = measured_rate(SHAPES["S8"], 64, **WAVE, steps=4)
+    assert abs(rate) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["S2", "S3"])
+def test_no_limit_within_the_range_is_said(name):
+    with pytest.raises(InvalidInput, match="a limit between"):
+        largest_step(SHAPES[name])
+
+
 @pytest.mark.parametrize(
     ("shape", "changes"),
-    [("S8", {"amplitude": 0.0}), ("S8", {"period": np.nan}), ("S8", {"mode": 65}), ("S1", {})],
+    [
+        ("S8", {"amplitude": 0.0}),
+        ("S8", {"period": np.nan}),
+        ("S8", {"mode": 65}),
+        ("S1", {}),
+        ("S8", {"amplitude": 1e-100}),
+        ("S8", {"mode": 32}),  # cos(pi (j + 1/2)) = 0
+    ],
 )
 def test_what_cannot_be_is_refused(shape, changes):
     with pytest.raises(InvalidInput):

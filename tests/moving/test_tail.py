@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import quad
 
 from fracparticles.errors import InvalidInput, NonFiniteSolution
@@ -253,3 +254,22 @@ def test_what_does_not_go_together(changes, field):
     with pytest.raises(InvalidInput) as refused:
         Case(**{**GIVEN, "dt": 0.01, **changes})
     assert refused.value.field == field
+
+
+def test_the_strengths_beyond_the_particles_are_those_of_an_open_run_only():
+    """Particles that end half-way: on the lattice beyond them there is nothing, or the tail |x|^(-1-alpha)."""
+    h, x = 0.1, lattice(400, 0.1)
+    particles = x[200:-200]
+    run = xr.Dataset(
+        {"particle_position": ("particle", particles), "particle_strength": ("particle", h * power(particles, 1.5))},
+        {"x": x, "particle_spacing": h, "remeshing": "M4'", "beta": 0.5, "overlap": 2.0},
+    )  # fmt: skip
+    ended = lattice_strengths(run.assign_coords(exterior="truncated"))
+    assert ended[200:-200] == pytest.approx(power(particles, 1.5))
+    assert not ended[:200].any()
+    assert not ended[-200:].any()
+    open_ = lattice_strengths(run.assign_coords(exterior="open"))
+    # The tail's particles grow apart, and the farthest of them lie beyond the lattice.
+    tail = (20.05**-1.5 - 40.05**-1.5) / 1.5
+    for beyond in (open_[:200], open_[-200:]):
+        assert 0.1 * tail < h * beyond.sum() < tail

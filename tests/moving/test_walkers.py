@@ -31,6 +31,10 @@ def test_few_walkers():
         ("error", lambda: walkers_to_equal([0.5], 0.0)),
         ("walkers", lambda: few_walkers_beyond(0, 0.25, 1.5, 1.5)),
         ("width", lambda: few_walkers_beyond(10, -1.0, 1.5, 1.5)),
+        ("masses", lambda: walkers_to_equal([0.0, 0.0], 0.1)),
+        ("masses", lambda: walkers_to_equal([], 0.1)),
+        ("masses", lambda: walkers_to_equal([1e-320], 1e-100)),
+        ("walkers", lambda: few_walkers_beyond(10**400, 1.0, 1.0, 1.5)),
     ],
 )
 def test_what_is_refused(field, call):

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import mpmath as mp
+import numpy as np
 import pytest
 
+from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.special.stable import reduced_green
 from fracparticles.special.tails import exchange_truncation_error, tail_constant
+
+EPS = np.finfo(float).eps
 
 
 @pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
@@ -33,3 +38,16 @@ def test_the_closed_form_is_the_truncation_error_of_an_exchange_scheme(beta, spa
     )
     error = relative_l1_error(case, compute(case).u)
     assert error == pytest.approx(exchange_truncation_error(case.reach, 1 + beta, 1.0), rel=0.05)
+
+
+@pytest.mark.parametrize("distance", [1e-3, 1e-9, 1e-12, EPS])
+def test_the_constant_keeps_its_digits_near_two(distance):
+    alpha = 2.0 - distance
+    with mp.workdps(40):
+        exact = mp.gamma(1 + mp.mpf(alpha)) * mp.sin(mp.pi * mp.mpf(alpha) / 2) / mp.pi
+    assert tail_constant(alpha) == pytest.approx(float(exact), rel=1e-14)
+
+
+def test_the_constant_is_that_of_an_order():
+    with pytest.raises(InvalidInput, match=r"^alpha = "):
+        tail_constant(2.0)

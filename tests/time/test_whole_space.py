@@ -193,8 +193,9 @@ def test_no_silent_error(alpha, half_width):
 
 
 def test_a_prepared_run_is_refused_alike():
-    with pytest.raises(InvalidInput, match="lattice"):
+    with pytest.raises(InvalidInput, match="lattice") as error:
         WholeSpace(16, 1, 1.5, 1e4)
+    assert "= 417.7 spacings" in str(error.value)  # 0.9 (1e4)^(2/3)
 
 
 @pytest.mark.parametrize("points", range(8, 17))
@@ -209,3 +210,118 @@ def test_small_data_beside_large_ones_are_warned_of():
     run = WholeSpace(128, 1, 1.5, h**-1.5)
     alone, both = (run.solve_and_compare(data)[1] for data in (narrow, np.array([narrow, wide])))
     assert both >= alone * (1.0 - 1e-9)
+
+
+# --- the ends of alpha -----------------------------------------------------------------------------
+
+
+def bump(dim: int, alpha: float, t: float) -> tuple[np.ndarray, float]:
+    """The fundamental solution on a lattice that holds and resolves it."""
+    points, half_width = {1: (1024, 64.0), 2: (96, 16.0), 3: (40, 10.0)}[dim]
+    x, h = line(points, half_width)
+    r = np.sqrt(
+        sum(np.square(axis) for axis in np.meshgrid(*(x,) * dim, indexing="ij", sparse=True))
+    )
+    return np.asarray(fp.green(r, t, alpha, dim)), h
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize("terms", range(7))
+@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, np.finfo(float).eps])
+def test_the_tails_near_alpha_two(dim, terms, distance):
+    """1 / kappa has a pole at each exponent, of which nothing may be left. The second term is 1e-4 of the first."""
+    alpha = 2.0 - distance
+    (start, h), (end, _) = bump(dim, alpha, 1.0), bump(dim, alpha, 2.0)
+    # Without terms there are the periodic images of the tail, and of the Gaussian: exp(-10^2 / 8) at the ends in space.
+    bound = 1e-8 + 1e-4 * distance if terms else 1e-5 + distance
+    assert np.abs(evolve(start, h, alpha, 1.0, terms=terms) - end).max() <= bound * end.max()
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize("terms", range(1, 7))
+@pytest.mark.parametrize("alpha", [1.0 + 1e-9, 1.0 + 1e-6, 1.33333333, 1.5 + 1e-8])
+def test_terms_that_nearly_belong_to_no_tail_cost_no_digits(dim, terms, alpha):
+    """More terms are no worse than the first alone: they do not magnify the round-off, 1e-16 over their distance."""
+    (start, h), (end, _) = bump(dim, alpha, 1.0), bump(dim, alpha, 2.0)
+
+    def error(terms: int) -> float:
+        return float(np.abs(evolve(start, h, alpha, 1.0, terms=terms) - end).max() / end.max())
+
+    assert error(terms) <= 1.1 * error(1) + 1e-9
+
+
+def test_no_exponent_is_nearly_even_but_alpha():
+    assert tail_exponents(2.0 - 1e-6, 6) == pytest.approx([2.0 - 1e-6])
+    assert tail_exponents(2.0 - 1e-12, 6).size == 0
+    assert tail_exponents(1.0 + 1e-9, 4) == pytest.approx([1.0, 3.0, 5.0, 7.0])
+    assert tail_exponents(4.0 / 3.0 + 1e-9, 5) == pytest.approx(np.array([4, 8, 10, 14, 16]) / 3)
+
+
+@pytest.mark.parametrize("tail", [(), (2.5,), (2.0, 4.0)])
+def test_data_of_their_own_near_alpha_two(tail):
+    """The heat equation to 1e-12 and what the images of the tail leave."""
+    x, h = line(512, 40.0)
+    u = evolve(np.exp(-x * x), h, 2.0 - 1e-12, 1.0, tail=tail)
+    assert np.abs(u - np.exp(-x * x / 5.0) / np.sqrt(5.0)).max() <= 1e-11
+
+
+# --- what is said, and what is refused ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("dim", "points", "half_width"), [(1, 64, 32.0), (2, 64, 16.0), (3, 40, 10.0)]
+)
+@pytest.mark.parametrize("shift", [0.0, 0.5])
+def test_data_that_the_lattice_does_not_resolve_are_spoken_of(dim, points, half_width, shift):
+    x, h = line(points, half_width)
+    at = np.meshgrid(*(x - shift * h,) * dim, indexing="ij", sparse=True)
+    r = np.sqrt(sum(np.square(axis) for axis in at))
+    with pytest.warns(AccuracyWarning, match="does not resolve"):
+        u = evolve(fp.green(r, 0.5, 1.05, dim), h, 1.05, 1.0)
+    exact = fp.green(r, 1.5, 1.05, dim)
+    assert np.abs(u - exact).max() > 1e-3 * exact.max()
+
+
+def test_data_that_it_resolves_are_not():
+    x, h = line(256, 32.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        evolve(fp.green(x, 0.5, 1.5), h, 1.5, 1.0)
+        evolve(np.exp(-x * x), h, 1.5, 1.0, tail=())
+        evolve(np.zeros(256), h, 1.5, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"spacing": 1e-300}, "spacing"),
+        ({"time": 1e300}, "time"),
+        ({"diffusivity": 1e100, "time": 1e100}, "lattice"),
+        ({"u": np.full(16, 1e308)}, "u"),
+        ({"u": np.full(16, np.inf)}, "u"),
+        ({"terms": 2.0}, "terms"),
+        ({"terms": True}, "terms"),
+        ({"stretch": np.inf}, "stretch"),
+        ({"stretch": 1e12}, "stretch"),
+        ({"stretch": "3"}, "stretch"),
+        ({"tail": 5.0}, "tail"),
+        ({"tail": (1e300,)}, "tail"),
+        ({"tail": (2.0,) * 7}, "tail"),
+        ({"dim": 1.0}, "dim"),
+        ({"dim": True}, "dim"),
+    ],
+)
+def test_other_bad_arguments_are_named(change, field):
+    given = {"u": np.ones(16), "spacing": 1.0, "alpha": 1.5, "time": 1.0} | change
+    with pytest.raises(InvalidInput) as error:
+        evolve(**given)
+    assert error.value.field == field
+
+
+def test_a_time_that_is_no_time_at_all_leaves_the_data():
+    u = np.exp(-(np.linspace(-5.0, 5.0, 33) ** 2))
+    assert_allclose(evolve(u, 1e100, 1.9, 1e-100, diffusivity=1e-100), u, atol=1e-15)
+
+
+def test_no_data_at_all():
+    assert evolve(np.ones((0, 16)), 1.0, 1.5, 1.0, dim=1).shape == (0, 16)

@@ -29,6 +29,7 @@ import math
 
 import numpy as np
 
+from fracparticles._compiled import njit
 from fracparticles.arguments import choice, fractional_order, positive_real
 from fracparticles.graded.particles import FORMS, graded_particles, green_step, refuse_many
 from fracparticles.special import green
@@ -41,7 +42,6 @@ GRADED_FORMS = (*FORMS, INTERPOLATED)
 # The worst panel, of length d, has singularities over one of its ends, d away from it: the error of Gauss's rule is
 # about 4.6^(-2 n), 1e-16 for 12 nodes.
 _NODES = 12
-_BLOCK = 2**22  # values of sincs at a time: 32 MB
 
 
 def graded_step(
@@ -153,8 +153,14 @@ def _against_sincs(values: np.ndarray, t: np.ndarray, j: np.ndarray) -> np.ndarr
     distance = np.where(t == nearest, np.finfo(float).tiny, t - nearest)
     waves = values * np.sin(np.pi * distance) / np.pi * (1.0 - 2.0 * (nearest % 2.0))
     total = np.zeros(j.size)
-    for block in np.array_split(np.arange(t.size), math.ceil(t.size * j.size / _BLOCK)):
-        apart = t[block, None] - j
-        apart[apart == 0.0] = np.finfo(float).tiny
-        total += waves[block] @ np.divide(1.0, apart, out=apart)
+    _add_poles(waves, t, j.astype(float), np.finfo(float).tiny, total)
     return (1.0 - 2.0 * (j % 2)) * total
+
+
+@njit()
+def _add_poles(waves, t, j, least, total):
+    """total_k += sum_q waves_q / (t_q - j_k), in one order, so that the bits do not depend on threads."""
+    for q in range(t.size):
+        for k in range(j.size):
+            apart = t[q] - j[k]
+            total[k] += waves[q] / (apart if apart != 0.0 else least)

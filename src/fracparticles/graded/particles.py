@@ -18,14 +18,20 @@ falls faster than any power of ds where the volumes resolve E, about V_j < epsil
 exchange is right to leading order, since particle i keeps what no neighbour takes; it conserves sum V u. There the
 quadrature gives a particle V E(0) times its own strength, far more than it has. A step is a product with an N x N
 matrix: for tens or some hundred of particles, where it is faster than any sum by FFT.
+
+Volumes that do not belong to the positions can make a particle give away more than twice what it has. Then the exchange
+amplifies: it is symmetric in the scalar product of V, so that its greatest factor is from s - 1 to 2 s - 1, s
+the greatest sum of the weights of a particle's neighbours.
 """
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from fracparticles import arguments as check
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
 from fracparticles.special import green
 
 __all__ = ["FORMS", "MOST", "graded_particles", "green_step", "refuse_many"]
@@ -33,6 +39,9 @@ __all__ = ["FORMS", "MOST", "graded_particles", "green_step", "refuse_many"]
 FORMS = ("exchange", "quadrature")
 MOST = 10001  # particles: the matrix then takes 800 MB
 _LARGEST = 1e150  # of the positions and volumes that `green_step` takes
+_DENSE = 64  # particles up to which all eigenvalues are computed
+_GROWS = 1e-6  # what a factor must exceed 1 by
+_TOO_MUCH = 1.25  # of a constant of 1, what the quadrature may make
 
 
 def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray, np.ndarray]:
@@ -95,6 +104,13 @@ def green_step(
     ------
     InvalidInput
         If an argument is outside its range.
+
+    Warns
+    -----
+    StabilityWarning
+        If the exchange amplifies.
+    AccuracyWarning
+        If the quadrature makes much more of a constant somewhere.
     """
     check.choice("form", form, FORMS)
     alpha, time = check.fractional_order(alpha), check.positive_real("time", time)
@@ -105,5 +121,51 @@ def green_step(
     matrix = volumes * np.asarray(green(x[:, None] - x, time, alpha))
     if form == "exchange":
         np.fill_diagonal(matrix, 0.0)
-        np.fill_diagonal(matrix, 1.0 - matrix.sum(axis=1))
+        weights = matrix.sum(axis=1)
+        np.fill_diagonal(matrix, 1.0 - weights)
+        _warn_of_growth(matrix, volumes, float(weights.max(initial=0.0)))
+    else:
+        _warn_of_excess(matrix.sum(axis=1))
     return matrix
+
+
+def _warn_of_growth(matrix: np.ndarray, volumes: np.ndarray, most: float) -> None:
+    factor = most - 1.0
+    if 1.0 < most <= 2.0 + _GROWS:
+        factor = -_least_eigenvalue(matrix, np.sqrt(volumes))
+    if factor > 1.0 + _GROWS:
+        warnings.warn(
+            f"the exchange amplifies, by the factor {factor:.4g} or more in a step: some particle gives away "
+            f"{most:.3g} times what it has. Take volumes that belong to the positions, or a longer time.",
+            StabilityWarning,
+            stacklevel=3,
+        )
+
+
+def _least_eigenvalue(matrix: np.ndarray, root: np.ndarray) -> float:
+    """Of a matrix that the square roots of the volumes make symmetric."""
+    n = root.size
+    if n <= _DENSE:
+        return float(np.linalg.eigvalsh(matrix * root[:, None] / root).min())
+    from scipy.sparse.linalg import (
+        ArpackNoConvergence,
+        LinearOperator,
+        eigsh,
+    )  # a tenth of a second
+
+    symmetric = LinearOperator((n, n), lambda u: root * (matrix @ (u / root)), dtype=float)
+    start = np.cos(2.4 * np.arange(n))  # anything that is not a constant, the same every time
+    try:
+        return float(eigsh(symmetric, 1, which="SA", v0=start, tol=1e-6)[0][0])
+    except ArpackNoConvergence as error:
+        return float(error.eigenvalues.min(initial=0.0))
+
+
+def _warn_of_excess(constant: np.ndarray) -> None:
+    if constant.max(initial=0.0) > _TOO_MUCH:
+        warnings.warn(
+            f"the quadrature makes {constant.max():.3g} of a constant of 1: volumes are too large for the Green's "
+            "function, or do not belong to the positions. Take the form 'exchange', or more particles.",
+            AccuracyWarning,
+            stacklevel=3,
+        )

@@ -21,7 +21,7 @@ from fracparticles.arguments import choice
 from fracparticles.errors import InvalidInput, one_of
 from fracparticles.kernels.high_order import GAMMA, ORDERS
 from fracparticles.kernels.printed import PRINTED
-from fracparticles.kernels.rules import FloatArray, KernelFamily
+from fracparticles.kernels.rules import FloatArray, KernelFamily, is_order
 
 __all__ = [
     "FAMILIES",
@@ -160,7 +160,7 @@ def kernel_transform(
 def _family(name: str, order: int, family: str | None) -> KernelFamily:
     """The kernel family that has the kernel in this order; of the two that have order 2, the printed one."""
     entry = KERNELS[choice("name", name, tuple(KERNELS))]
-    if order not in entry.orders:
+    if not is_order(order, entry.orders):
         raise one_of("order", order, entry.orders, name)
     if family is not None and len(entry.orders) == 1:
         raise InvalidInput("family", family, f"nothing for {name}", "Leave it out.")

@@ -15,6 +15,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -24,7 +26,7 @@ from scipy.special import gamma
 from fracparticles.arguments import choice, dimension, fractional_order, like, real_array
 from fracparticles.errors import InvalidInput, one_of
 
-__all__ = ["KernelFamily", "gamma_nb"]
+__all__ = ["KernelFamily", "distances", "gamma_nb", "is_order"]
 
 FloatArray = NDArray[np.float64]
 
@@ -35,6 +37,24 @@ def gamma_nb(n: int, b: int, alpha: float) -> float:
     """Gamma_{n,b}(alpha) = 2^alpha Gamma((alpha+n)/2) / (pi^(n/2) Gamma((n+b)/2) b!)  (B.14)."""
     below = math.pi ** (0.5 * n) * gamma(0.5 * (n + b)) * math.factorial(b)
     return float(2.0**alpha * gamma(0.5 * (alpha + n)) / below)
+
+
+def distances(r: Any, dim: int) -> FloatArray:
+    """Return the distances that a kernel takes, |r| <= 1e150, with a sign on the line alone, as an array.
+
+    Raises `InvalidInput` if they are something else.
+    """
+    r = real_array("r", r)
+    if (np.abs(r) > _LARGEST).any():
+        raise InvalidInput("r", float(np.abs(r).max()), "|r| <= 1e150", "Scale the distances.")
+    if dim > 1 and (r < 0.0).any():
+        raise InvalidInput("r", float(r.min()), "a radius r >= 0 for dim > 1", "Give |r|.")
+    return r
+
+
+def is_order(order: Any, orders: Sequence[int]) -> bool:
+    """Return whether a value is one of these orders."""
+    return isinstance(order, Real) and not isinstance(order, bool) and order in orders
 
 
 class KernelFamily(ABC):
@@ -97,7 +117,7 @@ class KernelFamily(ABC):
 
     def kappa_hat(self, k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
         """The transform of kappa: infinite at k = 0."""
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", over="ignore"):
             return k ** (alpha - 2.0) * self.eta_hat(k, alpha, n, order)
 
     def f_hat(self, k: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
@@ -117,11 +137,7 @@ class KernelFamily(ABC):
     ) -> FloatArray | float:
         """Return the kernel `name` at distance r; parameters and errors as of `families.kernel`."""
         alpha = self._checked(name, alpha, dim, order)
-        r = real_array("r", r)
-        if (np.abs(r) > _LARGEST).any():
-            raise InvalidInput("r", float(np.abs(r).max()), "|r| <= 1e150", "Scale the distances.")
-        if dim > 1 and (r < 0.0).any():
-            raise InvalidInput("r", float(r.min()), "a radius r >= 0 for dim > 1", "Give |r|.")
+        r = distances(r, dim)
         return like(r, getattr(self, name.lower())(r, alpha, dim, order))
 
     def kernel_transform(
@@ -136,7 +152,7 @@ class KernelFamily(ABC):
 
     def check_order(self, order: Any) -> None:
         """Refuse an order that the kernel family does not have."""
-        if isinstance(order, bool) or order not in self.orders:
+        if not is_order(order, self.orders):
             raise one_of("order", order, self.orders)
 
     def _checked(self, name: str, alpha: Any, dim: Any, order: Any) -> float:

@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.arguments import positive_real
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels.families import kernel
+from fracparticles.kernels.families import KERNELS, kernel
+from fracparticles.kernels.rules import distances
 
 __all__ = ["KernelValues", "tabulated"]
 
@@ -36,11 +38,14 @@ def tabulated(step: float, family: str | None = None) -> KernelValues:
     Raises
     ------
     InvalidInput
-        By the function, if the distances ask for a table of more than 2^25 points.
+        If the step is not a positive number; by the function as by `kernel`, and if the distances ask for a table of
+        more than 2^25 points.
     """
+    step = positive_real("kernel_table", step)
 
     def values(name: str, r: Any, alpha: float, dim: int = 1, order: int = 2) -> np.ndarray:
-        size = np.abs(np.asarray(r, dtype=float))
+        r = distances(r, dim)
+        size = np.abs(r)
         largest = float(size.max(initial=0.0))
         if not largest < _MOST_POINTS * step:
             least = f"at least {largest / _MOST_POINTS:.3g}"
@@ -49,6 +54,7 @@ def tabulated(step: float, family: str | None = None) -> KernelValues:
             raise InvalidInput("kernel_table", step, allowed, remedy)
         points = step * np.arange(int(largest / step) + 2)
         table = np.asarray(kernel(name, points, alpha, dim=dim, order=order, family=family))
-        return np.interp(size, points, table)
+        interpolated = np.interp(size, points, table)
+        return np.copysign(1.0, r) * interpolated if KERNELS[name].parity == "odd" else interpolated
 
     return values

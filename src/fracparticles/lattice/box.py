@@ -25,6 +25,7 @@ __all__ = ["BoxConvolution", "NaiveBoxConvolution"]
 # Lines that are transformed together: enough for whole cache lines to be copied, few enough to stay in the cache.
 _ROWS = 16
 _COLUMNS = 8
+_SHORTEST = 4  # so that an odd weight has a sine transform, of the one point between 0 and L / 2
 
 
 class BoxConvolution:
@@ -53,7 +54,7 @@ class BoxConvolution:
     ) -> None:
         dim = weights[0].ndim
         self._dim, self._sources, self._targets = dim, sources, targets
-        length = transform_length(sources + targets - 1)
+        length = transform_length(max(_SHORTEST, sources + targets - 1))
         half = length // 2 + 1
         self._symbols = [_symbol(w, odd, length) for w, odd in zip(weights, odd_axes, strict=True)]
         self._odd_axes = [_axis_of_three(odd, dim) for odd in odd_axes]

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fracparticles._compiled import njit
+from fracparticles.errors import InvalidInput
 from fracparticles.lattice.fourier import valid_convolution
 from fracparticles.special.quadrature import gauss_jacobi
 
@@ -86,6 +87,11 @@ def far_field(
         How many points beyond each end are wanted.
     terms : {1, 2, 3}
         Of the expansion that continues the solution.
+
+    Raises
+    ------
+    InvalidInput
+        If the lattice has too few particles for as many terms.
     """
     i = np.arange(-n - pad, n + pad + 1)
     depth, powers, fit = _expansion(n, alpha, terms)
@@ -150,6 +156,9 @@ def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray
     """Return the depths p, the powers 1 + k alpha, and in row k how much a_k takes of each strength that is met."""
     powers = 1.0 + alpha * np.arange(1, terms + 1)
     depth = np.array([round(n * share) for share in _DEPTHS[:terms]])
+    if n < 1 or np.unique(depth).size < terms:
+        least = f"a lattice that has {terms} particles from its middle to either end, for as many terms"
+        raise InvalidInput("n", n, least, "Take more particles, or exterior='truncated'.")
     return depth, powers, np.linalg.inv((n / (n - depth)[:, None]) ** powers)
 
 

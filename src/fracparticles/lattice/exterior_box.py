@@ -34,6 +34,7 @@ import numpy as np
 from scipy.special import gamma, gammaincc, j0, j1, spherical_jn
 
 from fracparticles._compiled import njit
+from fracparticles.errors import InvalidInput
 
 __all__ = ["BoxFarField", "box_continuation", "box_far_field"]
 
@@ -96,7 +97,14 @@ def box_far_field(symbol: Symbol, inside: Sums, alpha: float, n: int, dim: int) 
         Half the number of lattice intervals.
     dim : {2, 3}
         Space dimension.
+
+    Raises
+    ------
+    InvalidInput
+        If the lattice is a single particle.
     """
+    if n < 1:
+        raise InvalidInput("n", n, "at least 1", "Take more particles, or exterior='truncated'.")
     boundary, edge = _shell(n, dim, n)
     modes = _modes(edge / n, alpha)
     k = _radial_integral(dim)[0]

@@ -12,7 +12,8 @@ import math
 
 import numpy as np
 
-from fracparticles.arguments import instance, scale
+from fracparticles.arguments import instance, real_between, scale
+from fracparticles.errors import InvalidInput
 from fracparticles.markers.profiles import Gaussian
 from fracparticles.markers.shapes import Shape
 from fracparticles.markers.solver import MarkerVelocity
@@ -27,6 +28,7 @@ __all__ = [
 
 _T = 1.0
 _PER_UNIT = 6  # values of eps / h between whole numbers
+_FINEST = 1e-4  # h: thousands of markers in each of some hundred sums
 
 
 def smoothing_exponent(shape: Shape) -> float:
@@ -74,12 +76,17 @@ def optimal_support(shape: Shape, h: float) -> tuple[float, float]:
     """Return the eps with the least error of F for markers h apart; and the same over ranges of eps.
 
     At some eps / h the error of equally spaced markers happens to vanish: the second takes the worst of a range of eps
-    as wide as h, and is its middle.
+    as wide as h, and is its middle. From h to 14 h are tried.
+
+    Raises `InvalidInput` as the others; also if h is not from 1e-4 to 1, or the best epsilon is beyond 14 h.
     """
-    z, h = np.linspace(-1.0, 1.0, 97), scale("h", h)
+    z, h = np.linspace(-1.0, 1.0, 97), real_between("h", h, _FINEST, 1.0)
     ratios = np.arange(1.0, 14.0, 1.0 / _PER_UNIT)
     errors = [_error(shape, r * h, h, z) for r in ratios]
     worst = np.lib.stride_tricks.sliding_window_view(errors, _PER_UNIT + 1).max(axis=1)
+    if np.argmin(worst) >= worst.size - _PER_UNIT:
+        allowed = "markers for which the best epsilon is at most 14 h"
+        raise InvalidInput("h", h, allowed, "Take a larger h.")
     best, middle = ratios[int(np.argmin(errors))], ratios[int(np.argmin(worst))] + 0.5
     return float(best * h), float(middle * h)
 

@@ -94,7 +94,11 @@ class PointSource:
         z, _ = self._scaled(x, t)
         r = self.reynolds
         if r <= _LARGE:
-            return -2.0 * self.mu * np.log(self._phi(z))
+            # log1p where phi is near 1: the logarithm would lose the digits of the small part.
+            missing = 0.5 * math.expm1(-r) * erfc(-z)
+            with np.errstate(divide="ignore"):
+                near, far = np.log1p(missing), np.log(self._phi(z))
+            return -2.0 * self.mu * np.where(missing > -0.5, near, far)
         right = np.maximum(z, 0.0)
         least = np.minimum(right * right, r)
         with np.errstate(under="ignore"):

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fracparticles.arguments import finite_array, positions, scale
+from fracparticles.errors import InvalidInput
 
 __all__ = ["cluster_centres", "emptiness", "marker_spectrum"]
 
@@ -36,8 +37,14 @@ def marker_spectrum(x: Any, q: Any, within: float) -> np.ndarray:
     """Return |sum_j w_j exp(i q x_j)|^2 / sum_j w_j^2 with w = cos^2(pi x / (2 within)) for |x| < within.
 
     Independent markers give about 1, equally spaced ones about 0, clusters a peak at 2 pi / their distance.
+
+    Raises `InvalidInput` as the others, and if there are no markers there.
     """
     x, q, within = positions("x", x), finite_array("q", q), scale("within", within)
     x = x[np.abs(x) < within]
+    if not x.size:
+        raise InvalidInput(
+            "within", within, "a part of the line with markers", "Take a larger one."
+        )
     w = np.cos(0.5 * np.pi * x / within) ** 2
     return np.abs(np.exp(1j * np.multiply.outer(q, x)) @ w) ** 2 / np.sum(w * w)

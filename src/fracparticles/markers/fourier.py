@@ -25,3 +25,7 @@ class FourierMarkerVelocity(MarkerVelocity):
         profiles = [shape.kernel(m).profile for m in range(derivatives + 1)]
         kernels = [ScatteredKernel(profile, bandwidth=_BAND) for profile in profiles]
         self._sums = NonuniformFourierSum(kernels, self.epsilon)
+
+    def finer(self) -> FourierMarkerVelocity:
+        """See `MarkerVelocity`."""
+        return FourierMarkerVelocity(0.5 * self.epsilon, self.flux, 0)

@@ -12,12 +12,15 @@ import math
 import numpy as np
 
 from fracparticles.arguments import MOST, instance, positive_integer, scale
+from fracparticles.errors import InvalidInput
 from fracparticles.markers.shapes import Shape
-from fracparticles.markers.solver import MarkerVelocity, run
+from fracparticles.markers.solver import MarkerVelocity
 from fracparticles.markers.stability import extremes
+from fracparticles.moving.lagrangian import advance
 
 __all__ = ["largest_step", "measured_rate"]
 
+_LEAST = 1e-12
 _HALVINGS = 12
 _STEPS = 24
 
@@ -35,8 +38,8 @@ def measured_rate(
 ) -> tuple[float, float]:
     """Return k = eps q and eps^2 times the rate of a wave of `mode` wavelengths in a period.
 
-    Raises `InvalidInput` if a number is not positive, the mode or the steps are not whole, or the shape
-    function does not do.
+    Raises `InvalidInput` if a number is not positive, the mode or the steps are not whole, the shape function does not
+    do, or there is nothing to measure: an amplitude that round-off swallows, a wave that is zero at the markers.
     """
     shape, epsilon = instance("shape", shape, Shape), scale("epsilon", epsilon)
     period, amplitude, dt = scale("period", period), scale("amplitude", amplitude), scale("dt", dt)
@@ -47,15 +50,23 @@ def measured_rate(
     wave = np.cos(k / epsilon * lattice)
     velocity = MarkerVelocity(shape, epsilon, period=epsilon * period)
     x = lattice + amplitude * epsilon * wave
-    end = run(x, np.full(count, h), velocity, dt=dt * epsilon**2, steps=steps)
-    left = 2.0 * np.mean((end.x - lattice) * wave) / (amplitude * epsilon)
+    size = float(np.mean(wave * wave))
+    if size < _LEAST:
+        allowed = "a wave that is not zero at the markers"
+        raise InvalidInput("mode", mode, allowed, "Take another, or more markers.")
+    if amplitude < _LEAST * period:
+        allowed = f"at least {_LEAST * period:.3g}: less drowns in the round-off of the places"
+        raise InvalidInput("amplitude", amplitude, allowed, "Take a larger one.")
+    x, _, _ = advance(x, np.full(count, h), velocity, dt=scale("dt", dt * epsilon**2), steps=steps)
+    left = np.mean((x - lattice) * wave) / (size * amplitude * epsilon)
     return k, math.log(abs(left)) / (dt * steps)
 
 
 def largest_step(shape: Shape, epsilon: float = 1.0) -> float:
     """Return the largest dt / eps^2 from 0.05 to 2 at which the wave that decays fastest does not grow, by bisection.
 
-    Raises `InvalidInput` if it is no shape function with a first derivative, or epsilon is not positive.
+    Raises `InvalidInput` if it is no shape function with a first derivative, epsilon is not positive, or the wave grows
+    at every such step, or at none.
     """
     wavelength = 2.0 * math.pi / extremes(shape).k_decay
     waves = math.floor(2.0 * shape.reach / wavelength) + 1
@@ -64,9 +75,16 @@ def largest_step(shape: Shape, epsilon: float = 1.0) -> float:
     off = np.abs(np.mod(shape.reach * counts / (waves * wavelength), 1.0) - 0.5)
     period = waves * wavelength
     lattice = {"spacing": period / counts[int(np.argmin(off))], "period": period, "amplitude": 1e-6}
+
+    def grows(dt: float) -> bool:
+        found = measured_rate(shape, waves, **lattice, dt=dt, steps=_STEPS, epsilon=epsilon)
+        return found[1] > 0.0
+
     low, high = 0.05, 2.0
+    if grows(low) or not grows(high):
+        allowed = f"one with a limit between {low} and {high} epsilon^2"
+        raise InvalidInput("shape", shape.name, allowed, "Take another: markers see its kinks.")
     for _ in range(_HALVINGS):
         dt = 0.5 * (low + high)
-        _, rate = measured_rate(shape, waves, **lattice, dt=dt, steps=_STEPS, epsilon=epsilon)
-        low, high = (dt, high) if rate <= 0.0 else (low, dt)
+        low, high = (low, dt) if grows(dt) else (dt, high)
     return 0.5 * (low + high)

@@ -101,7 +101,7 @@ class NonlinearDiffusion:
         return self._cumulative_source(check.places("x", x))
 
     def _diffusivity(self, f: np.ndarray) -> np.ndarray:
-        return self.d0 * f * np.exp(-f)
+        return self.d0 * (f * np.exp(-f))
 
     def _potential(self, f: np.ndarray) -> np.ndarray:
         """Phi to round-off of its largest values, which is what its differences have."""
@@ -235,7 +235,8 @@ class Lines:
             return f[self._inside].min()
 
         lowest.terminal = True  # type: ignore[attr-defined]
-        return solve_ivp(
-            self.rate, (0.0, until), f, method="BDF", t_eval=times, jac=self.jacobian,
-            events=lowest, rtol=1e-8, atol=1e-11,
-        )  # fmt: skip
+        with np.errstate(all="ignore"):  # scipy works on numbers that it has not set yet
+            return solve_ivp(
+                self.rate, (0.0, until), f, method="BDF", t_eval=times, jac=self.jacobian,
+                events=lowest, rtol=1e-8, atol=1e-11,
+            )  # fmt: skip

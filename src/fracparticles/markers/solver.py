@@ -19,14 +19,12 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
+from fracparticles.markers.reliability import warn_of_resolution, warn_of_waves
 from fracparticles.markers.shapes import Shape
-from fracparticles.markers.stability import extremes
 from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
 from fracparticles.moving.scattered import NeighbourSum, ScatteredSum
 
-__all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run", "warn_of_step"]
-
-_FAR_BEYOND = 3.0  # times the linear limit. Up to there the error of a run grows, but the markers stay together
+__all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run"]
 
 # flux(x, fields), shape (N,): fields[m] is the m-th derivative of F at x.
 Flux = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -107,6 +105,10 @@ class MarkerVelocity:
         fields = self.fields(x, weights)
         return quotient_velocity(self.flux(x, fields), fields[0], x, self._sums.accuracy)
 
+    def finer(self) -> MarkerVelocity:
+        """Return the same with half of epsilon, without derivatives: it says how much F depends on epsilon."""
+        return MarkerVelocity(self.shape, 0.5 * self.epsilon, self.flux, 0, self.period)
+
     def _continued(self, x: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The markers of one period, and those that reach into it from the next."""
         assert self.period is not None
@@ -163,40 +165,24 @@ def run(
     Warns
     -----
     StabilityWarning
-        If dt is so large that the markers lose one another: see `warn_of_step`, and a half step that takes most of
-        them farther from all others than the shape function reaches. F at such a marker is its own only.
+        If waves of the markers' places grow, because of dt or of the shape function (`reliability`); or if a half step
+        takes most of the markers farther from all others than the shape function reaches. F at such a marker is its
+        own only.
+    AccuracyWarning
+        If the markers are too far apart for epsilon, or epsilon or dt is too large for the field.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x = check.positions("x", x)
     weights, dt = check.vector("weights", weights, x.size), check.scale("dt", dt)
-    warn_of_step(velocity, dt)
+    steps = check.positive_integer("steps", steps, most=check.MOST_STEPS)
+    warn_of_waves(velocity, x, weights, dt, steps)
     _warn_of_tearing(x, weights, velocity, dt)
+    at_start = x, weights
     x, weights, history = advance(
         x, weights, velocity, dt=dt, steps=steps, start=start, observe=observe
     )
+    warn_of_resolution(velocity, at_start, (x, weights))
     return MarkerRun(x, weights, history, velocity)
-
-
-def warn_of_step(velocity: MarkerVelocity, dt: float, interval: float = 2.0) -> None:
-    """Warn if dt is more than three times the limit of the linear theory of `diffusion`, see `stability`.
-
-    `interval` is the length of the stability interval of the time integration, 2 for the midpoint rule.
-
-    Warns
-    -----
-    StabilityWarning
-    """
-    unit = 0.5 * interval * velocity.epsilon**2
-    if velocity.flux is not diffusion or dt <= unit:  # the limit is a third of it at least
-        return
-    limit = extremes(velocity.shape).eta * unit
-    if dt > _FAR_BEYOND * limit:
-        warnings.warn(
-            f"dt = {dt:g} is {dt / limit:.3g} times the limit of stability, eta eps^2 = {limit:.3g}: the markers "
-            "are not those of the equation. Take a smaller dt, or a larger epsilon.",
-            StabilityWarning,
-            stacklevel=3,
-        )
 
 
 def _warn_of_tearing(x: np.ndarray, weights: np.ndarray, velocity: Any, dt: float) -> None:

@@ -27,7 +27,8 @@ from scipy.special import erf, erfc
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.markers.profiles import Gaussian
-from fracparticles.markers.solver import Flux, MarkerVelocity, warn_of_step
+from fracparticles.markers.reliability import warn_of_resolution, warn_of_waves
+from fracparticles.markers.solver import Flux, MarkerVelocity
 from fracparticles.moving.lagrangian import quotient_velocity
 from fracparticles.time.rkc import ChebyshevStep
 
@@ -75,14 +76,16 @@ def advance_weights(
     Warns
     -----
     StabilityWarning
-        If dt is far too large for these stages: see `solver.warn_of_step`.
+        If dt is too large for these stages, or waves of the markers' places grow: see `reliability`.
+    AccuracyWarning
+        If the markers are too far apart for epsilon, or epsilon is too large for the field.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x, source = check.positions("x", x), check.function("source", source)
     weights, dt = check.vector("weights", weights, x.size), check.scale("dt", dt)
     steps = check.positive_integer("steps", steps, most=check.MOST_STEPS)
     step = ChebyshevStep(stages)
-    warn_of_step(velocity, dt, step.stability_interval)
+    warn_of_waves(velocity, x, weights, dt, steps, np.exp, step.stability_interval)
     sign = np.sign(weights)
 
     def rate(state: np.ndarray) -> np.ndarray:
@@ -100,6 +103,7 @@ def advance_weights(
             )
 
     state = step.advance(rate, np.stack([x, weights]), dt=dt, steps=steps, observe=observe)
+    warn_of_resolution(velocity, (x, weights), (state[0], state[1]))
     return state[0], state[1]
 
 
@@ -132,14 +136,16 @@ class GaussianSource:
         """Q(x)."""
         x = check.places("x", x)
         factor = 1.0 if self.derivative == 0 else 4.0 * x * x - 2.0
-        return self.q * factor * np.exp(-x * x)
+        with np.errstate(over="ignore"):
+            return check.finite_result("q", self.q * (factor * np.exp(-x * x)))
 
     def cumulative(self, x: Any) -> np.ndarray:
         """S^(x)."""
         x = check.places("x", x)
         if self.derivative == 0:
             return 0.5 * self.total * (1.0 + erf(x))
-        return -2.0 * self.q * x * np.exp(-x * x)
+        with np.errstate(over="ignore"):
+            return check.finite_result("q", self.q * (-2.0 * x * np.exp(-x * x)))
 
     def solution(self, x: Any, t: float) -> np.ndarray:
         r"""f(x, t), from g(x, 0) = exp(-x^2) with the solution g(x, t) of the equation without a source.
@@ -152,7 +158,8 @@ class GaussianSource:
         x, t = check.places("x", x), check.not_negative("t", t)
         g, g0 = Gaussian().value(x, t), Gaussian().value(x, 0.0)
         if self.derivative == 2:
-            return g + self.q * (g - g0)
+            with np.errstate(over="ignore"):
+                return check.finite_result("q", g + self.q * (g - g0))
 
         def antiderivative(w: float) -> np.ndarray:
             r = math.sqrt(w)
@@ -161,7 +168,9 @@ class GaussianSource:
             part = np.where(np.abs(x) > _FAR, -erfc(z), erf(z))
             return r * np.exp(-x * x / w) + math.sqrt(math.pi) * np.abs(x) * part
 
-        return g + 0.5 * self.q * (antiderivative(1.0 + 4.0 * t) - antiderivative(1.0))
+        gained = antiderivative(1.0 + 4.0 * t) - antiderivative(1.0)
+        with np.errstate(over="ignore"):
+            return check.finite_result("q", g + 0.5 * self.q * gained)
 
 
 def _zero_or_two(field: str, value: Any) -> int:

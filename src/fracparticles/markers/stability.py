@@ -111,7 +111,9 @@ def extremes(shape: Shape, largest: float = 30.0) -> Extremes:
 
 
 def _peak(k: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    i = int(np.clip(np.argmax(y), 1, k.size - 2))
+    i = int(np.argmax(y))
+    if i in (0, k.size - 1):
+        return float(k[i]), float(y[i])
     a, b, c = y[i - 1 : i + 2]
     shift = 0.5 * (a - c) / (a - 2.0 * b + c)
     return float(k[i] + shift * (k[1] - k[0])), float(b - 0.25 * (a - c) * shift)

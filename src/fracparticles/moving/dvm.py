@@ -13,18 +13,32 @@ Stability: in a uniform field a displacement wave xi exp(i k x) of the particles
 D dt / h^alpha <= a with DD's a, although the strengths never change. At the ends of a truncated set, where the
 particles run into the void, the step is limited sooner, by what the remeshing of wide gaps makes of the field.
 
+A run says by a warning what it can know of itself: a step beyond that limit, particles too far apart for the smoothing
+length (`moving.reliability`), strength that a threshold or the ends of the lattice took away, tails that do not
+continue the field inside.
+
 An open exterior continues the set by its far field (`moving.tail`): the end particles keep to the paths of the
 solution, and what is left to remesh for is that all spacings grow.
 """
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
-from fracparticles.arguments import choice, fractional_order, positive_real, real_array
-from fracparticles.errors import InvalidInput
+from fracparticles.arguments import (
+    choice,
+    finite_array,
+    finite_result,
+    fractional_order,
+    positive_real,
+    real_array,
+    scale,
+)
+from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
+from fracparticles.kernels.families import kernel_transform
 from fracparticles.moving.lagrangian import (
     REMESH_ABOVE,
     REMESHING,
@@ -35,6 +49,7 @@ from fracparticles.moving.lagrangian import (
     advance,
     quotient_velocity,
 )
+from fracparticles.moving.reliability import ripple, warn_of_ripple
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
 from fracparticles.moving.tail import REACH, TailModel
 
@@ -44,6 +59,10 @@ EXTERIORS = ("truncated", "open")
 # ripple of wavelength h / (1 - 1 / rho) on the field, until diffusion takes it away: with M4' at order II it is fifteen
 # times the error of the run for rho = 1.2, five times for 1.1, and less than the error for 1.05.
 REMESH_ABOVE_OPEN = 1.05
+_GONE = 0.05  # of the total strength: what a threshold, or the ends of a truncated lattice, may leave out
+_MISFIT = 0.125  # of the total strength: what the tails of an open exterior may hold wrongly; runs err by a third of it
+_MIDPOINT_LIMIT = 2.0  # |1 + z + z^2/2| <= 1 for real z in [-2, 0]
+_WAVENUMBERS = np.linspace(0.0, 12.0, 2401)
 
 
 class DiffusionVelocity:
@@ -75,8 +94,8 @@ class DiffusionVelocity:
         exterior: str = "truncated",
     ) -> None:
         self.alpha, self.order = fractional_order(alpha), order
-        self.epsilon = positive_real("epsilon", epsilon)
-        self.diffusivity = positive_real("diffusivity", diffusivity)
+        self.epsilon = scale("epsilon", epsilon)
+        self.diffusivity = scale("diffusivity", diffusivity)
         kernels = [smooth_kernel(name, alpha, order) for name in ("eta", "F")]
         self._sums = scattered_sum(summation, kernels, epsilon)
         self.tail: TailModel | None = None
@@ -113,6 +132,16 @@ class DiffusionVelocity:
         u[near] = self._sums(*tail.continued(x, strength), z[near])[0]
         u[~near] = self.tail.far_field(tail, z[~near])
         return u
+
+    def transform(self, k: np.ndarray) -> np.ndarray:
+        """Return eta^(k), the Fourier transform of the kernel of the field, for unit smoothing length."""
+        return np.asarray(kernel_transform("eta", k, self.alpha, order=self.order))
+
+    @property
+    def largest_stable_step(self) -> float:
+        """2 epsilon^alpha / (D max k^alpha eta^(k)): no displacement wave grows, aliases neglected."""
+        decay = (_WAVENUMBERS**self.alpha * self.transform(_WAVENUMBERS)).max()
+        return float(_MIDPOINT_LIMIT * self.epsilon**self.alpha / (self.diffusivity * decay))
 
     def _flux(self, f: np.ndarray) -> np.ndarray:
         return -(self.diffusivity / self.epsilon ** (self.alpha - 1.0)) * f
@@ -203,8 +232,16 @@ def run(
         If the arguments cannot be worked with.
     NonFiniteSolution
         If the run cannot go on.
+
+    Warns
+    -----
+    StabilityWarning
+        If the step is larger than `DiffusionVelocity.largest_stable_step`.
+    AccuracyWarning
+        If the particles are too far apart for the smoothing length, much of the strength has been left out, or the far
+        field of an open exterior is not what lies beyond.
     """
-    spacing, overlap = positive_real("spacing", spacing), positive_real("overlap", overlap)
+    spacing, overlap = scale("spacing", spacing), positive_real("overlap", overlap)
     x = real_array("x", x)
     choice("lattice", lattice, LATTICES)
     if exterior == "open" and lattice != "initial":
@@ -217,9 +254,13 @@ def run(
         continued = None if velocity.tail is None else velocity.tail.continued
         above = largest_gap(exterior) if remesh_above is None else remesh_above
         redistribution = Remeshing(remeshing, spacing, above, ends, continued)
+    with np.errstate(over="ignore"):
+        given = finite_result("u", spacing * finite_array("u", u))
+    _warn_of_step(velocity, dt)
+    initial = x
     x, strength, history = advance(
         x,
-        spacing * real_array("u", u),
+        given,
         velocity,
         dt=dt,
         steps=steps,
@@ -228,4 +269,53 @@ def run(
         threshold=threshold,
         observe=observe,
     )
+    states = ((initial, given), (x, strength))
+    found = max(ripple(p, q, velocity.epsilon, velocity.transform) for p, q in states)
+    warn_of_ripple(
+        found, velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=2
+    )
+    _warn_of_loss(history, exterior)
+    if velocity.tail is not None:
+        _warn_of_misfit(velocity.tail.misfit(x, strength))
     return ParticleRun(x, strength, history, velocity)
+
+
+def _warn_of_step(velocity: DiffusionVelocity, dt: float) -> None:
+    limit = velocity.largest_stable_step
+    if positive_real("dt", dt) > limit:
+        warnings.warn(
+            f"dt = {dt:.6g} lies outside the stability interval of DVM: at most {limit:.6g} is stable. Beyond, waves "
+            "of the particles' places grow. The run is computed as it is. Take a smaller dt.",
+            StabilityWarning,
+            stacklevel=3,
+        )
+
+
+def _warn_of_loss(history: History, exterior: str) -> None:
+    weak, lost = (
+        abs(part / history.total_initial)
+        for part in (history.eliminated_strength, history.lost_strength)
+    )
+    if weak > _GONE:
+        warnings.warn(
+            f"the particles left out for their small strengths held {weak:.2g} of the total. Take a smaller threshold.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    if lost > _GONE and exterior == "truncated":
+        warnings.warn(
+            f"remeshing onto the initial lattice has left out {lost:.2g} of the total strength, which now lies beyond "
+            "its ends. Take a wider lattice, exterior='open' or lattice='extended'.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+
+
+def _warn_of_misfit(found: float) -> None:
+    if found > _MISFIT:
+        warnings.warn(
+            f"the far field that continues u beyond the particles does not meet the field inside: "
+            f"{min(found, 1.0):.2g} of the total may be wrong. Take a wider lattice, or data about the origin.",
+            AccuracyWarning,
+            stacklevel=3,
+        )

@@ -15,14 +15,17 @@ _FEWEST = 32  # particles
 _ULPS = 4.0  # that a position p h may be off
 
 
-def equal_spacing(x: np.ndarray) -> float | None:
-    """Return the spacing of particles that are in order and equally spaced, to round-off; None of others, or a few."""
+def equal_spacing(x: np.ndarray, slack: float = np.inf) -> float | None:
+    """Return the spacing of particles that are in order and equally spaced, to round-off; None of others, or a few.
+
+    Far from the origin the round-off of the positions may be more than a sum allows: its `slack`.
+    """
     n = x.size
     if n < _FEWEST:
         return None
     first, last = float(x[0]), float(x[-1])
     gap = (last - first) / (n - 1)
-    off = _ULPS * float(np.spacing(max(abs(first), abs(last))))
+    off = min(_ULPS * float(np.spacing(max(abs(first), abs(last)))), slack)
     # One look at the middle spares the whole for nearly all other sets.
     if not gap > 4.0 * off or abs(x[n // 2] - first - n // 2 * gap) > off:
         return None

@@ -28,7 +28,7 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolution
-from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh
+from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh, total_of
 
 __all__ = [
     "REMESHING",
@@ -224,7 +224,7 @@ def advance(
         check.instance("remeshing", remeshing, Remeshing)
     if observe is not None:
         check.function("observe", observe)
-    history = History(total_initial=float(strength.sum()))
+    history = History(total_initial=total_of(strength))
     x, strength = _keep(x, strength, threshold, history)
     history.particles.append(x.size)
     order = None if (x[1:] >= x[:-1]).all() else np.argsort(x, kind="stable")
@@ -257,7 +257,7 @@ def advance(
         if observe is not None:
             observe(time, x, strength)
     history.velocity_evaluations = 2 * steps
-    history.total_final = float(strength.sum())
+    history.total_final = total_of(strength)
     return x, strength, history
 
 
@@ -275,16 +275,16 @@ def _redistribute(
 ) -> tuple[np.ndarray, np.ndarray]:
     added = 0.0
     if remeshing.continued is not None:
-        own = float(strength.sum())
+        own = total_of(strength)
         x, strength = remeshing.continued(x, strength)
-        added = float(strength.sum()) - own
+        added = total_of(strength) - own
     x, strength = remesh(x, strength, remeshing.spacing, remeshing.name)
     history.lost_strength -= added
     if remeshing.ends is None:
         return x, strength
     slack = 0.25 * remeshing.spacing  # the ends are lattice points, up to round-off
     inside = (x > remeshing.ends[0] - slack) & (x < remeshing.ends[1] + slack)
-    history.lost_strength += float(strength[~inside].sum())
+    history.lost_strength += total_of(strength[~inside])
     return x[inside], strength[inside]
 
 

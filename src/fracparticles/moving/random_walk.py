@@ -29,7 +29,7 @@ from fracparticles import arguments as check
 from fracparticles._compiled import njit
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
-from fracparticles.special.stable import tail_mass
+from fracparticles.special.stable import green, tail_mass
 
 __all__ = [
     "cell_counts",
@@ -41,6 +41,7 @@ __all__ = [
     "walk",
 ]
 
+_NARROW = 1e-3  # cell, in units of the nearest length: the error of Simpson's rule is its fourth power / 2880
 _CHUNK = 2**14  # walkers at a time: their random numbers stay in the cache
 _MOST_WALKERS = 10**9  # beyond, the logarithms in `expected_deviation` lose digits
 
@@ -151,9 +152,10 @@ def _count(x, half_width, cells_per_length, counts):
     size = x.size // ensembles
     for e in range(ensembles):
         for i in range(e * size, (e + 1) * size):
-            place = (x[i] + half_width) * cells_per_length
-            if 0.0 <= place < cells:
-                counts[e, int(place)] += 1
+            if -half_width <= x[i] < half_width:
+                # Next to the end the place may be rounded up to the number of cells.
+                place = int((x[i] + half_width) * cells_per_length)
+                counts[e, min(place, cells - 1)] += 1
 
 
 def cell_masses(edges: Any, t: float, alpha: float) -> FloatArray:
@@ -175,7 +177,17 @@ def cell_masses(edges: Any, t: float, alpha: float) -> FloatArray:
     left, right = beyond[:-1], beyond[1:]
     # Differences of the tail on either side of 0: those of the distribution would cancel there.
     one_sided = np.where(edges[:-1] >= 0.0, left - right, right - left)
-    return np.where((edges[:-1] < 0.0) & (edges[1:] > 0.0), 1.0 - left - right, one_sided)
+    mass = np.where((edges[:-1] < 0.0) & (edges[1:] > 0.0), 1.0 - left - right, one_sided)
+    width = edges[1:] - edges[:-1]
+    narrow = width < _NARROW * (t ** (1.0 / alpha) + np.abs(edges[:-1]))
+    if narrow.any():
+        # Of a narrow cell the difference has few digits; Simpson's rule has all.
+        low, high = edges[:-1][narrow], edges[1:][narrow]
+        density = (
+            green(low, t, alpha) + 4.0 * green(0.5 * (low + high), t, alpha) + green(high, t, alpha)
+        )
+        mass[narrow] = width[narrow] / 6.0 * density
+    return mass
 
 
 def distribution(x: Any, t: float, alpha: float) -> FloatArray:

@@ -67,7 +67,11 @@ _EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: the cut-off is 1 on one side of this, 0 on
 # How much wider than a set that grew the box is made, so that it is not made anew at every step.
 _MARGIN = 1.125
 _MOST_MODES = 2**24  # about 1 GiB of buffers
-_LARGEST = float(np.finfo(float).max)
+_ACCURACY = 1e-11
+_ULP = 2.0**-52
+_ORDINARY = (
+    1e150  # strengths: divided by the least epsilon, 1e-100, and summed they do not overflow
+)
 _PAIRS = 2**14  # pairs evaluated together: they stay in the second-level cache
 
 
@@ -137,13 +141,20 @@ class ScatteredSum(ABC):
     def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
         """Return y, shape (kernels, M), a new array: the sums at the points z, or at the particles themselves.
 
-        Raises `InvalidInput` if the arrays do not fit together, a position is not finite, or the set is too wide.
+        Raises `InvalidInput` if the arrays do not fit together, a position is not finite, the set is too wide, or the
+        sums overflow.
         """
-        x, q, z = _checked(x, q, z)
+        x, q, z, ordinary = _checked(x, q, z)
         out = np.zeros((len(self._kernels), x.size if z is None else z.size))
-        if x.size and out.size:
+        if not (x.size and out.size):
+            return out
+        if ordinary:
             self._add_to(out, x, q, z)
-        return out
+            return out
+        with np.errstate(over="ignore", invalid="ignore"):
+            self._add_to(out, x, q, z)
+        finite: np.ndarray = check.finite_result("q", out)
+        return finite
 
     @abstractmethod
     def _add_to(
@@ -177,11 +188,12 @@ def scattered_sum(
 class NonuniformFourierSum(ScatteredSum):
     """The sums by non-uniform fast Fourier transforms, for kernels of finite bandwidth.
 
-    The accuracy is relative to the largest value of each. The periodic box is made when it is needed, and made anew, an
-    eighth wider than the set, when particles leave it. Sums at particles that lie on a lattice are one convolution.
+    The accuracy is relative to the largest value of each; positions are rounded to an ulp of the box, so that it is
+    less in a very wide one. The periodic box is made when it is needed, and made anew, an eighth wider than the set,
+    when particles leave it. Sums at particles that lie on a lattice are one convolution.
     """
 
-    accuracy = 1e-11
+    accuracy = _ACCURACY
 
     def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
         super().__init__(kernels, epsilon)
@@ -202,7 +214,7 @@ class NonuniformFourierSum(ScatteredSum):
     def _transform(
         self, out: np.ndarray, x: np.ndarray, q: np.ndarray, z: np.ndarray | None
     ) -> None:
-        spacing = equal_spacing(x) if z is None else None
+        spacing = equal_spacing(x, _ACCURACY * self._epsilon) if z is None else None
         if spacing is not None:
             if self._lattice is None or not self._lattice.holds(spacing, x.size):
                 profiles = [k.profile for k in self._kernels]
@@ -242,6 +254,7 @@ class NonuniformFourierSum(ScatteredSum):
         self._low, self._high = centre - half, centre + half
         size = 2 * next_fast_len(math.ceil(0.5 * needed), real=True)  # even: odd ones take longer
         self._step = period / size
+        self.accuracy = max(_ACCURACY, size * _ULP)
         r = np.fft.fftfreq(size, 1.0 / size) * self._step
         cut_off = 0.5 * erfc((np.abs(r) - (0.5 * period - _EDGE * scale)) / scale)
         kernels = np.array([cut_off * k.profile(r / self._epsilon) for k in self._kernels])
@@ -314,14 +327,16 @@ def _kernels(kernels: Any) -> list[ScatteredKernel]:
     return [check.instance("kernels", k, ScatteredKernel) for k in listed]
 
 
-def _checked(x: Any, q: Any, z: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+def _checked(x: Any, q: Any, z: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, bool]:
+    """The arrays, and whether no sum of them can overflow."""
     x = x if _in_range(x, check.SIZES[1]) else check.positions("x", x, least=0)
-    if not (_in_range(q, _LARGEST) and q.shape == x.shape):
+    ordinary = _in_range(q, _ORDINARY)
+    if not (ordinary and q.shape == x.shape):
         q = check.vector("q", q, x.size, least=0)
     if z is not None:
         z = z if _in_range(z, check.SIZES[1]) else check.positions("z", z, least=0)
         z = np.ascontiguousarray(z)
-    return np.ascontiguousarray(x), np.ascontiguousarray(q), z
+    return np.ascontiguousarray(x), np.ascontiguousarray(q), z, ordinary
 
 
 def _in_range(values: Any, largest: float) -> bool:

@@ -26,6 +26,7 @@ from scipy.special import hyp2f1
 from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.moving.polynomials import fitted, horner
+from fracparticles.moving.reliability import cells
 from fracparticles.special.tails import tail_constant
 
 __all__ = ["FITTED", "REACH", "Tail", "TailEnd", "TailModel"]
@@ -34,6 +35,7 @@ FITTED = 8  # particles that say what c is, at most,
 _SHARE = 8  # and of all this fraction, but
 _FEWEST = 2
 _CLOSEST = 1e-3  # smoothing lengths between two particles of the tail, for others that coincide
+_HALF_WAY = 0.05  # of the way to the end, either way: where the power is held against the field
 REACH = 20.0  # smoothing lengths; there F misses its far field by alpha (alpha + 1) / (4 REACH^2), 0.4 % at most
 # Of log(1 - xi): how much more than asked for the table of g covers, so that it is not made anew at every step.
 _MARGIN = 0.5
@@ -145,6 +147,22 @@ class TailModel:
         strengths = share * (beyond[:-1] - beyond[1:])
         places = 0.5 * (edges[:-1] + edges[1:])
         return TailEnd(self.alpha * share, last, float(edges[-1]), places, strengths)
+
+    def misfit(self, x: np.ndarray, strength: np.ndarray) -> float:
+        """Return how much of the total the tails hold wrongly: what is in them times the misfit of their power.
+
+        The misfit of an end, at most 1, is that of c |y|^(-1-alpha) on the field half-way from the origin to the end.
+        Errors as of a call.
+        """
+        tail = self(x, strength)
+        width, wrong = cells(x), 0.0
+        for end, side in ((tail.left, -1.0), (tail.right, 1.0)):
+            there = np.abs(side * x / end.last - 0.5) < _HALF_WAY
+            beyond = end.amplitude / self.alpha * end.last**-self.alpha
+            field = float(strength[there].sum() / width[there].sum()) if there.any() else np.inf
+            power = end.amplitude * (0.5 * end.last) ** (-1.0 - self.alpha)
+            wrong += abs(beyond) * min(abs(field / power - 1.0) if power else 0.0, 1.0)
+        return float(wrong / np.abs(strength).sum())
 
     def continued(self, x: np.ndarray, strength: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the particles followed by those of both tails."""

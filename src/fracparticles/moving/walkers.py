@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from fracparticles.arguments import positive_integer, real_array, scale, within
+from fracparticles.arguments import SIZES, positive_integer, real_array, scale, within
+from fracparticles.errors import InvalidInput
 from fracparticles.special.stable import green
 
 __all__ = ["few_walkers_beyond", "walkers_to_equal"]
+
+_MOST = 2**53  # walkers: more are not told apart in float64
 
 
 def walkers_to_equal(masses: Any, error: float) -> float:
@@ -27,9 +30,11 @@ def walkers_to_equal(masses: Any, error: float) -> float:
     Raises
     ------
     InvalidInput
-        If a mass is not within [0, 1], or the error not positive.
+        If a mass is not within [0, 1], there is none, or the error is not positive.
     """
     p = within("masses", real_array("masses", masses), 0.0, 1.0)
+    if not p.sum() >= SIZES[0]:
+        raise InvalidInput("masses", masses, f"masses of {SIZES[0]:g} in all, or more", "Add some.")
     root = np.sqrt(p * (1.0 - p)).sum() / p.sum()
     return float(2.0 / math.pi * (root / scale("error", error)) ** 2)
 
@@ -42,7 +47,7 @@ def few_walkers_beyond(
     Parameters
     ----------
     walkers : int
-        n.
+        n, at most 2^53.
     width : float
         Width of a cell.
     t, alpha : float
@@ -60,7 +65,8 @@ def few_walkers_beyond(
     InvalidInput
         If an argument is outside its range.
     """
-    level = scale("few", few) / (positive_integer("walkers", walkers) * scale("width", width))
+    n = positive_integer("walkers", walkers, most=_MOST)
+    level = scale("few", few) / (n * scale("width", width))
     if green(0.0, t, alpha) <= level:
         return 0.0
     far = 1.0

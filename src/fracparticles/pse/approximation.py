@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
-from fracparticles.pse.moments import nodes_and_weights
+from fracparticles.pse.moments import nodes_and_weights, warn_of_moment
 from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["derivative", "lattice", "reconstruct", "regularised"]
@@ -80,6 +80,9 @@ def derivative(
 
     Errors as of `reconstruct`; also if the order is not a whole number from 1 to 24.
 
+    Warns with `AccuracyWarning` if the particles near some of the points make far less or far more than one of the
+    moment that this needs, sum_p V_p (x_p - x)^beta eta_eps(x - x_p) / (beta! eps^beta).
+
     Parameters
     ----------
     x, at : array_like, shape (M,)
@@ -95,7 +98,13 @@ def derivative(
     at = check.vector("at", at, weights.shape[0], least=0, complex_too=True)
     with np.errstate(all="ignore"):
         differences = values - at[:, None]
-        return check.finite_result("values", (weights * differences).sum(axis=1) / divisor)
+        result = check.finite_result("values", (weights * differences).sum(axis=1) / divisor)
+        z = np.where(
+            weights == 0.0, 0.0, (np.asarray(particles) - np.asarray(x)[:, None]) / epsilon
+        )
+        moments = np.einsum("ij,ij->i", weights, z**order) / math.factorial(order)
+    warn_of_moment(moments, "points", stacklevel=2)
+    return np.asarray(result)
 
 
 def regularised(

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array, diags_array, eye_array
+from scipy.sparse.linalg import ArpackNoConvergence, eigsh
 from scipy.spatial import cKDTree
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
+from fracparticles.pse.moments import warn_of_moment
 from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["StrengthExchange", "cell_volumes"]
 
 _MOST_PAIRS = 2**25  # of neighbours, each twice in the matrix
+_VOLUMES = 1e-300, 1e300  # their products with a kernel keep all digits
+_DENSE = 64  # particles up to which all eigenvalues are computed
+_GROWS = 1e-5  # of the rate, what an eigenvalue must exceed zero by
 
 
 class StrengthExchange:
@@ -27,6 +33,10 @@ class StrengthExchange:
 
     Raises `InvalidInput` if a volume, the radius or the diffusivity is not positive and finite, a position not
     finite, the kernel of another dimension, or the particles have more neighbours than memory holds.
+
+    Warns with `AccuracyWarning` if eta is not symmetric, or the particles near some of them make far less or far more
+    than one of its second moment, sum_p V_p |x_p - x_i|^2 eta_eps / (2 d eps^2): so much too slow or too fast is the
+    diffusion there. Warns with `StabilityWarning` if eta is negative somewhere and makes A amplify, whatever the step.
 
     Parameters
     ----------
@@ -64,7 +74,7 @@ class StrengthExchange:
             raise InvalidInput("x", shown, allowed, "Mend it.")
         self.size, dim = points.shape
         kernel = kernel_of(dim, kernel)
-        v = check.within("volumes", volumes, 0.0, inside=True, shape=(self.size,))
+        v = check.within("volumes", volumes, *_VOLUMES, shape=(self.size,))
         epsilon = check.scale("epsilon", epsilon)
         diffusivity = check.scale("diffusivity", diffusivity)
         if abs((2 + dim) * math.log10(epsilon)) > 300.0:
@@ -81,9 +91,22 @@ class StrengthExchange:
         with np.errstate(over="ignore", invalid="ignore"):
             eta = diffusivity / epsilon ** (2 + dim) * kernel(z)
             gain = csr_array((v[i] * eta, (i, p)), shape=(self.size, self.size))
-            loss = np.bincount(i, v[p] * eta, self.size)
+            loss = np.bincount(i, v[p] * eta, self.size).astype(float)  # whole without neighbours
             self.matrix = (gain - diags_array(loss)).tocsr()
             self.rate = float(check.finite_result("volumes", abs(self.matrix).sum(axis=0).max()))
+            unit = epsilon**2 / (2.0 * dim * diffusivity)
+            moments = np.bincount(i, unit * v[p] * eta * z * z, self.size).astype(float)
+        half = len(pairs)
+        if not np.array_equal(eta[:half], eta[half:]):
+            warnings.warn(
+                "the kernel is not symmetric: the exchange does not conserve the total on any particles but a lattice. "
+                "Take a symmetric kernel.",
+                AccuracyWarning,
+                stacklevel=2,
+            )
+        elif eta.min(initial=0.0) < 0.0:
+            _warn_of_growth(self.matrix, np.sqrt(v), self.rate)
+        warn_of_moment(moments, "particles", stacklevel=2)
 
     def apply(self, u: FloatArray) -> FloatArray:
         """Return A Q, for an array of shape (N,).
@@ -101,6 +124,29 @@ class StrengthExchange:
         out *= keep
         out += shift * u
         out += scale * (self.matrix @ u)
+
+
+def _warn_of_growth(matrix: csr_array, root: np.ndarray, rate: float) -> None:
+    """Warn if the greatest eigenvalue of a matrix that the square roots of the volumes make symmetric is positive."""
+    n = root.size
+    symmetric = diags_array(1.0 / root) @ matrix @ diags_array(root)
+    if n <= _DENSE:
+        greatest = float(np.linalg.eigvalsh(symmetric.toarray()).max())
+    else:
+        # With all eigenvalues positive, so that the tolerance is one of the rate.
+        shifted = symmetric + rate * eye_array(n)
+        start = np.cos(2.4 * np.arange(n))  # anything that is not a constant, the same every time
+        try:
+            greatest = float(eigsh(shifted, 1, which="LA", v0=start, tol=1e-6)[0][0]) - rate
+        except ArpackNoConvergence as error:
+            greatest = float(error.eigenvalues.max(initial=rate)) - rate
+    if greatest > _GROWS * rate:
+        warnings.warn(
+            f"strengths grow like exp({greatest:.3g} t), whatever the step: the kernel is negative somewhere, and the "
+            "particles are too irregular for it. Take a larger epsilon, or a kernel that is positive.",
+            StabilityWarning,
+            stacklevel=3,
+        )
 
 
 def cell_volumes(x: ArrayLike) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["absolute_moment", "gaussian_moment", "lattice_moment", "moment", "nodes_and_weights"]
@@ -19,6 +20,7 @@ _BEYOND = 4.0
 _HIGHEST = 60  # z^60 exp(-z^2) is below 1e-16 of its maximum beyond the reach and `_BEYOND`
 _SCANNED = 4096  # points between which a kernel changes its sign once at most
 _MOST_POINTS = 2**26  # of lattices
+_ENOUGH = 0.25  # of a moment
 
 # On pieces of length 1, exact for the splines; for exp(-z^2) times a polynomial of degree 30 at round-off.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -114,6 +116,35 @@ def lattice_moment(
         eta = kernel(z)
         return check.finite_result(
             "overlap", (np.where(eta == 0.0, 0.0, z) ** k * eta).sum(axis=-1) / s
+        )
+
+
+def warn_of_moment(found: FloatArray, places: str, stacklevel: int) -> None:
+    """Warn if particles make less than a quarter, or more than four times, of the moment that an operator needs.
+
+    At the end of a set of particles it is a half.
+
+    Parameters
+    ----------
+    found : array, shape (M,)
+        The moment at each place, over what it must be.
+    places : str
+        What these are.
+    stacklevel : int
+        That of the caller.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    off = (found < _ENOUGH) | (found > 1.0 / _ENOUGH)
+    if off.any():
+        warnings.warn(
+            f"at {np.count_nonzero(off)} of {off.size} {places} the particles nearby make from {found.min():.2g} to "
+            f"{found.max():.2g} of the moment of the kernel that must be 1: the result is wrong there by this factor. "
+            "Take a larger epsilon, or volumes that belong to the positions.",
+            AccuracyWarning,
+            stacklevel=stacklevel + 1,
         )
 
 

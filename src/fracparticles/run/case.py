@@ -47,7 +47,7 @@ class Case(Parameters):
             if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
                 raise InvalidInput(name, data[name], allowed(field), "Give such a value.")
         plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
-        if plain.get("evaluation") == "auto":
+        if isinstance(plain.get("evaluation"), str) and plain["evaluation"] == "auto":
             plain["evaluation"] = fastest_evaluation(plain)
         return plain
 

@@ -25,6 +25,7 @@ _MOST_STEPS = 2**53  # more are not told apart in float64
 _FAR_OVERLAPS = 10  # half the lattice in smoothing lengths, at least, and
 _FAR_STIFFEST = 1e6  # T D / h^alpha, at most, for more than one term of the exterior
 _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
+_NAIVE_OVERLAP = 20.0
 _ROUNDED = 1e-9  # of an overlap that is a quotient
 _OPEN = tuple(name for name, scheme in ALL_SCHEMES.items() if "open" in scheme.exteriors)
 _MOVING = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.moving)
@@ -163,7 +164,7 @@ def _check_size(case: Parameters) -> None:
         beyond = 2 * case.kind.padding(*kernels)
     if case.is_graded:
         bytes_each, power, most = _BYTES_PER_PAIR, 2, MOST
-    side = 2.0 * case.extent / case.spacing
+    side = min(2.0 * case.extent / case.spacing, 1e90)  # its cube is a number, too
     needed = bytes_each * (side + beyond) ** power
     if needed > 0.5 * memory or side > most:
         longest = max((0.5 * memory / bytes_each) ** (1.0 / power) - beyond, 1.0)
@@ -253,6 +254,10 @@ def _check_spread(case: Parameters) -> None:
 
 
 def _check_work(case: Parameters) -> None:
+    one_by_one = case.kind.moving and case.exterior == "open" and case.summation == "naive"
+    if one_by_one and case.resolved_overlap > _NAIVE_OVERLAP:  # a second a step, like its cube
+        most = f"at most {_NAIVE_OVERLAP:g} for naive sums with an open exterior"
+        raise InvalidInput("overlap", case.overlap, most, "Leave summation out.")
     if not case.steps_taken and case.span * case.setting.rate > _STIFFEST:
         latest = case.t_initial + _STIFFEST / case.setting.rate
         most = f"at most {latest:.6g} with this spacing and diffusivity"

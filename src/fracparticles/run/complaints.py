@@ -28,9 +28,9 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):  # one of our own checks
         return cause
-    name, value = str(first["loc"][0]), first["input"]
-    fields = model.model_fields
-    if first["type"] == "extra_forbidden":
+    value, fields = first["input"], model.model_fields
+    name = str(first["loc"][0] if first["loc"] else value)  # none for a name that is not UTF-8
+    if first["type"] in ("extra_forbidden", "string_unicode") and name not in fields:
         return one_of(name, value, fields, remedy=closest(name, fields) or "Leave it out.")
     if first["type"] == "missing":
         return InvalidInput(name, None, allowed(fields[name]), f"Give {name}.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from functools import lru_cache
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from fracparticles import __version__
 from fracparticles.errors import InvalidInput, reason_of
-from fracparticles.files import load_netcdf, replacing
+from fracparticles.files import load_netcdf, replacing, seal
 from fracparticles.graded.field import INTERPOLATED
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.complaints import label_of
@@ -152,7 +153,7 @@ def _particle_variables(run: ParticleRun, store: str) -> Variables:
 
 
 def write(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a data set under a temporary name and rename it when it is whole.
+    """Write a data set under a temporary name, seal it (see `files`) and rename it when it is whole.
 
     Raises
     ------
@@ -168,10 +169,14 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
     with replacing(path) as temporary:
         try:
             _to_netcdf(dataset, temporary)
+            seal(temporary)
         except Exception as error:  # the libraries raise many kinds
             _refuse_what_does_not_fit(dataset, temporary)
-            free = f"{shutil.disk_usage(temporary.parent).free} bytes are free"
-            raise OSError(f"cannot write {str(path)!r} ({reason_of(error)}); {free}") from None
+            try:
+                room = f"{shutil.disk_usage(temporary.parent).free} bytes are free"
+            except OSError:
+                room = "its folder is gone"
+            raise OSError(f"cannot write {str(path)!r} ({reason_of(error)}); {room}") from None
 
 
 def _to_netcdf(dataset: xr.Dataset, path: Path) -> None:
@@ -215,7 +220,9 @@ def read_run(path: str | Path) -> xr.Dataset:
     InvalidInput
         If the file is missing, not NetCDF, damaged, or not a run of this package.
     """
-    dataset = load_netcdf(Path(path))
+    if not isinstance(path, str | os.PathLike):
+        raise InvalidInput("file", path, "the path of a file", "Give such a path.")
+    dataset = load_netcdf(Path(os.fsdecode(path)))
     if "case" not in dataset.attrs or "mass_final" not in dataset:
         remedy = "Make one with `fracparticles solve`."
         raise InvalidInput("file", str(path), "a run written by fracparticles", remedy)
@@ -291,10 +298,13 @@ def source() -> str:
     plain = f"fracparticles {__version__}"
     if not (root / ".git").exists():
         return plain
-    done = subprocess.run(
-        ["git", "-C", str(root), "rev-parse", "--short=12", "HEAD"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    return f"{plain} ({done.stdout.strip()})" if done.returncode == 0 else plain
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(root), "rev-parse", "--short=12", "HEAD"],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+    except (OSError, subprocess.CalledProcessError):  # no git, or not its folder
+        return plain
+    return f"{plain} ({done.stdout.strip()})"

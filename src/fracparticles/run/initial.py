@@ -85,6 +85,10 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
         given, what = source, "array"
     u0, has_time = _on_lattice(case, given, what)
     refuse_non_finite(u0, case.x)
+    if not np.isfinite(case.integral(np.abs(u0))):
+        allowed = "strengths whose sum, the mass, is below 1.8e308"
+        shown = f"strengths up to {np.abs(u0).max():.3g} of the volume {np.max(case.volumes):.3g}"
+        raise InvalidInput("initial", shown, allowed, "Change the unit of u, or of length.")
     digest = hashlib.sha256(u0.tobytes()).hexdigest()[:16]
     if case.initial.startswith(_GIVEN) and case.initial != _GIVEN + digest:
         raise InvalidInput(

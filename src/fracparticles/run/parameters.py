@@ -45,15 +45,16 @@ _ONE_SUM = _schemes(lambda scheme: "open" in scheme.exteriors and not scheme.mov
 
 def fastest_evaluation(fields: Mapping[str, Any]) -> str | None:
     """Return what evaluation="auto" stands for: "convolution" where it is allowed, nothing elsewhere."""
-    scheme = ALL_SCHEMES.get(fields.get("scheme", ""))
+    named = {name: value for name, value in fields.items() if isinstance(value, str)}
+    scheme = ALL_SCHEMES.get(named.get("scheme", ""))
     allowed = (
         scheme is not None
         and not scheme.moving
-        and fields.get("exterior") == "open"
+        and named.get("exterior") == "open"
         and fields.get("kernel_table") is None
         and fields.get("graded_scale") is None
-        and fields.get("summation", "fft") == "fft"
-        and (scheme.self_timed or fields.get("integrator") == "exponential")
+        and named.get("summation", "fft") == "fft"
+        and (scheme.self_timed or named.get("integrator") == "exponential")
     )
     return "convolution" if allowed else None
 
@@ -266,9 +267,10 @@ class Parameters(BaseModel):
     def integral(self, values: np.ndarray) -> float:
         """Return sum_i V_i f_i from the values at the particles; numpy sums pairwise: to a few ulp."""
         volumes = self.volumes
-        if isinstance(volumes, float):
-            return float(volumes * values.sum())
-        return float((volumes * values).sum())
+        with np.errstate(over="ignore"):  # it is infinite then
+            if isinstance(volumes, float):
+                return float(volumes * values.sum())
+            return float((volumes * values).sum())
 
     @property
     def positions(self) -> list[np.ndarray]:

@@ -3,14 +3,20 @@
 No estimate knows the exact solution. Each looks at one assumption of the schemes:
 
 resolution
-    s theta, s = epsilon / h, with the wavenumber of the initial data from sin(theta / 2) = |delta u| / (2 |u|), delta
-    the difference of neighbours, |.| the 2-norm. A kernel of order r damps a wave like (s theta / 2)^r.
+    s theta, s = epsilon / h but at least 1.1, with the wavenumber of the initial data from sin(theta / 2) =
+    |delta u| / (2 |u|), delta the difference of neighbours, |.| the 2-norm. A kernel of order r damps a wave like
+    (s theta / 2)^r. A peak in the middle between two particles, of which they see the tails |x|^-2, has theta = 0.92.
+between_particles
+    Of data that are a function: half the relative difference of int |u| by the trapezoidal rule, from the values at the
+    particles, and by the midpoint rule, from those half-way between. What lies between the particles no other estimate
+    can see.
 wave_error
     The greatest |p(A dt)^n - exp(-T D |k|^alpha)|, from the symbol of A, over some waves that the data hold: of their
     wavenumber, a half, and a quarter of it, and the one that decays to 1/e. It sees an overlap too small, a first
-    order, a coarse time step.
+    order, a coarse time step. Of DVM it is what the field (7) lacks of these waves.
 growth
-    max |u(t_f)| / max |u(t_i)|, at most 1 for the equation.
+    max |u(t_f)| / max |u(t_i)|, or int |u(t_f)| / int |u(t_i)| on the lattice less the share of u(t_i) that lies beyond
+    it: both are at most 1 for the equation.
 table_error
     T |(A - A') u| / |u|, A' with interpolated kernels, A with exact ones, |.| the 1-norm.
 outside_share
@@ -28,7 +34,8 @@ round_off
     64 T |lambda| 2^-52: an application of A is exact to some 2^-53 |lambda|, and the recurrence of a series adds to it.
 
 They cost a few passes over the strengths. Graded particles have the first, `growth` and `outside_share` alone: the
-wavenumber is that in the mapped variable, in which they are equally spaced.
+wavenumber is that in the mapped variable, in which they are equally spaced. DVM, whose particles spread with the
+solution, has these of u(t_i), and `wave_error`; see also `moving.dvm`.
 """
 
 from __future__ import annotations
@@ -36,11 +43,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fracparticles.errors import AccuracyWarning
+from fracparticles.graded.particles import graded_particles
+from fracparticles.kernels.families import kernel_transform
 from fracparticles.lattice.exterior import continuation
 from fracparticles.lattice.exterior_box import box_continuation
 from fracparticles.schemes import SCHEMES
@@ -57,6 +66,7 @@ Estimates = dict[str, tuple[float, str]]
 # Above these a warning is given.
 _LIMITS = {
     "resolution": 1.0,  # an error of a quarter in the operator, at order II
+    "between_particles": 0.05,  # of the mass
     "growth": 1.1,
     "wave_error": 0.05,
     "table_error": 0.05,
@@ -65,11 +75,12 @@ _LIMITS = {
     "round_off": 1e-6,
     "decay": 0.01,
 }
+_LEAST_SMOOTHING = 1.1  # 1 / 0.91
 _ULPS = 64.0  # measured, of a Chebyshev series, with sums by transforms and with a matrix alike
 _SURFACE = {1: 2.0, 2: 2.0 * np.pi, 3: 4.0 * np.pi}  # of the unit sphere
 
 
-def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
+def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) -> Estimates:
     """Return each estimate by name, with what it is in words.
 
     Parameters
@@ -77,19 +88,31 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
     case : Case
     u0, u : array, shape `case.shape`
         Initial and final strengths.
+    initial : optional
+        What the initial strengths were given as: if it is a function, it is asked between the particles, too.
     """
+    greatest, hidden = _growth(u0, u), between_particles(case, u0, initial)
+    u0, u = _unit(u0), _unit(u)  # sums of them do not overflow
+    outside = outside_share(case, u0)
+    total = greatest * _ratio(_inside(case, u), _inside(case, u0)) * (1.0 - outside)
     smooths = case.kind.has_kernel and not case.kind.self_timed
-    resolution = (case.resolved_overlap if smooths else 1.0) * wavenumber(u0)
-    growth = _ratio(np.abs(u).max(), np.abs(u0).max())
+    smoothing = max(_LEAST_SMOOTHING, case.resolved_overlap if smooths else 0.0)
+    resolution = smoothing * wavenumber(u0)
     found = {
         "resolution": (resolution, "epsilon times the wavenumber of the initial data"),
-        "growth": (growth, "greatest |u| over that at t_initial"),
+        "growth": (max(greatest, total), "greatest |u|, or sum |u|, over that at t_initial"),
     }
-    if case.kind.moving:  # its particles spread with the solution
-        return found
+    if callable(initial):
+        found["between_particles"] = (hidden, "error of int |u(t_initial)| from the particles")
     if not case.is_graded:  # whose operator has no symbol
+        error = wave_error(case, u0)
+        found["wave_error"] = (error, "error in the amplitude of waves that the data hold")
+    if case.kind.moving:  # its particles spread with the solution
+        found["outside_share"] = (outside, "estimated share of |u| beyond the lattice at t_initial")
+        return found
+    if not case.is_graded:
         found |= _of_the_operator(case, u0, u)
-    outside = max(outside_share(case, u0), outside_share(case, u))
+    outside = max(outside, outside_share(case, u))
     if case.exterior == "truncated":
         outside = max(outside, _beyond(case, case.reach))
     found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
@@ -104,11 +127,10 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
 def _of_the_operator(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
     """What the symbol of the operator says, and its kernel table."""
     low, high = (case.span * case.setting.rate * value for value in case.symbol_range)
-    round_off, error = -_ULPS * 2.0**-52 * low, wave_error(case, u0)
+    round_off = -_ULPS * 2.0**-52 * low
     found = {
         "decay": (max(0.0, -high), "exponent by which a constant decays on the infinite lattice"),
         "round_off": (round_off, "what the round-off of the operator may add up to"),
-        "wave_error": (error, "error in the amplitude of waves that the data hold"),
     }
     if case.kernel_table is not None:
         error = table_error(case, u0, u)
@@ -148,6 +170,11 @@ def _complaints(
             f"smoothing length {smoothing:.3g} do not resolve. Take spacing <= "
             f"{0.25 * h / value['resolution']:.2g} and see whether the result changes, or wider data."
         )
+    if "between_particles" in large:
+        yield (
+            f"the initial data vary between the particles, of spacing h = {h:.3g}: their integral is wrong by about "
+            f"{value['between_particles']:.2g} of itself. Take a smaller spacing, or wider data."
+        )
     if "wave_error" in large:
         yield (
             f"waves of the length that the initial data hold come out wrong by {value['wave_error']:.2g} of their "
@@ -162,10 +189,12 @@ def _complaints(
     if "growth" in large:
         place = np.unravel_index(int(np.abs(u).argmax()), u.shape)
         where = ", ".join(f"{case.x[k]:.4g}" for k in place)
+        which = "greatest |u|" if _growth(u0, u) >= value["growth"] else "integral of |u|"
         yield (
-            f"the greatest |u| has grown by the factor {value['growth']:.4g}, which the equation does not allow; it is "
-            f"at x = {where} of |x| <= {case.reach:.4g}. At an end of the lattice it is a layer of the truncated "
-            "scheme: take a wider lattice. Elsewhere the scheme is unstable: take a larger overlap or a smaller step."
+            f"the {which} has grown by the factor {value['growth']:.4g}, which the equation does not allow; |u| is "
+            f"greatest at x = {where} of |x| <= {case.reach:.4g}. At an end of the lattice it is a layer of the "
+            "truncated scheme, or data that the open exterior continues wrongly: take a wider lattice. Elsewhere the "
+            "scheme is unstable: take a larger overlap or a smaller step."
         )
     if "outside_share" in large:
         could_open = (
@@ -194,13 +223,17 @@ def _complaints(
         )
 
 
+def _growth(u0: np.ndarray, u: np.ndarray) -> float:
+    """Return max |u| / max |u0|."""
+    return _ratio(np.abs(u).max(), np.abs(u0).max())
+
+
 def wavenumber(u: np.ndarray) -> float:
     """Return theta = k h of sin(theta / 2) = |delta u| / (2 |u|), the greatest over the axes; 0 for u = 0."""
-    size = np.abs(u).max()
-    if size == 0.0:
-        return 0.0
-    u = u / size
+    u = _unit(u)
     norm = np.sqrt(np.sum(u * u))
+    if norm == 0.0:
+        return 0.0
     slopes = [np.diff(u, axis=axis) for axis in range(u.ndim)]
     half_sine = max(float(np.sqrt(np.sum(slope * slope))) for slope in slopes) / (2.0 * norm)
     return 2.0 * float(np.arcsin(min(half_sine, 1.0)))
@@ -218,21 +251,52 @@ def table_error(case: Case, *strengths: np.ndarray) -> float:
     )
 
 
+def between_particles(case: Case, u0: np.ndarray, initial: Any) -> float:
+    """Return |T - M| / (T + M) of the two rules for int |u|; 0 if the data cannot be asked for at other points."""
+    if not callable(initial):
+        return 0.0
+    x, volumes = _half_way(case)
+    middles = np.meshgrid(*(x,) * case.dim, indexing="ij", sparse=True)
+    try:
+        with np.errstate(all="ignore"):
+            values = np.asarray(initial(*middles), dtype=float)
+        between = np.abs(np.broadcast_to(values, (x.size,) * case.dim))
+    except Exception:  # whatever it may raise: at the particles it has given numbers
+        return 0.0
+    greatest = max(np.abs(u0).max(), between.max())
+    if not 0.0 < greatest < np.inf:
+        return 0.0
+    corners = case.volumes / case.reach**case.dim * np.abs(u0 / greatest)
+    for axis in range(case.dim):  # the mean of those of each cell
+        corners = 0.5 * (
+            corners.take(range(1, x.size + 1), axis) + corners.take(range(x.size), axis)
+        )
+    trapezoidal = corners.sum()
+    midpoint = (volumes / case.reach**case.dim * (between / greatest)).sum()
+    return _ratio(abs(trapezoidal - midpoint), trapezoidal + midpoint)
+
+
+def _half_way(case: Case) -> tuple[np.ndarray, np.ndarray | float]:
+    """The points half-way between neighbours along an axis, in s for graded particles, and what they stand for."""
+    if case.graded_scale is None:
+        return case.x[:-1] + 0.5 * case.particle_spacing, case.volumes
+    x, volumes = graded_particles(2 * case.particles - 1, case.reach, case.graded_scale)
+    return x[1::2], 2.0 * volumes[1::2]
+
+
 def outside_share(case: Case, u: np.ndarray) -> float:
     """Return the share of int |u| that lies beyond the lattice, if |u| goes on as c |x|^(-n-alpha)."""
-    lattice = np.abs(u)
-    if lattice.max() == 0.0:
-        return 0.0
     dim, alpha, half = case.dim, case.alpha, case.reach
+    lattice = np.abs(u)
     edges = [
         (np.take(lattice, k, axis), np.take(case.radius, k, axis) / half)
         for axis in range(dim)
         for k in (0, -1)
     ]
-    # c in units of L^(n+alpha), the mean over the boundary.
+    # The unit of length is the half-width; c is the mean over the boundary.
     c = np.mean([np.mean(strength * radius ** (dim + alpha)) for strength, radius in edges])
-    beyond = c * _SURFACE[dim] * half**dim / alpha
-    return float(beyond / (beyond + case.integral(lattice)))
+    beyond = float(c) * _SURFACE[dim] / alpha
+    return _ratio(beyond, beyond + _inside(case, u))
 
 
 def tail_misfit(case: Case, u: np.ndarray) -> float:
@@ -251,6 +315,9 @@ def wave_error(case: Case, u: np.ndarray) -> float:
     # The wavenumber of data that vary along every axis alike.
     theta = np.sqrt(case.dim) * wavenumber(u) * np.array([1.0, 0.5, 0.25])
     theta = np.unique(np.append(theta, min(theta[0], tau ** (-1.0 / case.alpha))))
+    exact = np.exp(-tau * theta**case.alpha)
+    if case.kind.moving:
+        return float((np.abs(1.0 - _of_the_field(case, theta)) * exact).max())
     along = theta if case.dim == 1 else theta[:, None] * np.eye(case.dim)[0]
     symbol = SCHEMES[case.scheme].symbol(along, case.setting)
     with np.errstate(over="ignore"):
@@ -260,7 +327,13 @@ def wave_error(case: Case, u: np.ndarray) -> float:
             amplitude = sign * np.exp(exponent)
         else:
             amplitude = np.exp(tau * symbol)
-    return float(np.abs(amplitude - np.exp(-tau * theta**case.alpha)).max())
+    return float(np.abs(amplitude - exact).max())
+
+
+def _of_the_field(case: Case, theta: np.ndarray) -> np.ndarray:
+    """eta^(s theta): what the field (7) has of a wave that the strengths hold."""
+    k = case.resolved_overlap * theta
+    return np.asarray(kernel_transform("eta", k, case.alpha, order=case.order))
 
 
 def _beyond(case: Case, radius: float) -> float:
@@ -269,5 +342,16 @@ def _beyond(case: Case, radius: float) -> float:
     return 1.0 - float(central_mass(radius, time, case.alpha, case.dim))
 
 
+def _inside(case: Case, u: np.ndarray) -> float:
+    """int |u| over the lattice, whose half-width is the unit of length."""
+    return float((case.volumes / case.reach**case.dim * np.abs(u)).sum())
+
+
+def _unit(u: np.ndarray) -> np.ndarray:
+    """u over its greatest |u|, where that is not zero."""
+    size = np.abs(u).max()
+    return u / size if size > 0.0 else u
+
+
 def _ratio(part: float, whole: float) -> float:
-    return float(part / whole) if whole > 0.0 else 0.0
+    return float(part) / float(whole) if whole > 0.0 else 0.0

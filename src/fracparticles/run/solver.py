@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fracparticles import arguments as check
 from fracparticles.errors import (
     FracparticlesError,
     InvalidInput,
@@ -25,8 +26,12 @@ from fracparticles.run.initial import Initial, bare_strengths, initial_strengths
 from fracparticles.run.reliability import estimates, warn_if_doubtful
 from fracparticles.run.solution import Solution
 from fracparticles.schemes import SCHEMES
-from fracparticles.schemes.spectrum import largest_degree, spectral_interval
-from fracparticles.schemes.stability import grows
+from fracparticles.schemes.spectrum import (
+    eigenvalue_bounds,
+    largest_degree,
+    spectral_interval,
+)
+from fracparticles.schemes.stability import grows, range_in
 from fracparticles.time import (
     STEP_POLYNOMIALS,
     Flow,
@@ -55,6 +60,8 @@ __all__ = [
 
 _LARGEST_MATRIX = 16384  # particles
 _NO_GROWTH = 1e-3  # over the run, as an exponent
+_NEAR_ONE = 16  # exponents of two
+_RATES = 1e-8, 1e8  # D / h^alpha
 Advance = Callable[[np.ndarray], np.ndarray]
 
 
@@ -97,15 +104,15 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:
     """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
+    check.instance("case", case, Case)
     u0, origin = initial_strengths(case, initial)
     particles = None
     if case.kind.moving:
-        warn_if_unstable(case)
         particles = advect(case, u0)
         u, applications = particles.field(case.x), particles.history.velocity_evaluations
     else:
-        u, applications = prepare(case).run(u0)
-    found = estimates(case, u0, u)
+        u, applications = _in_range(prepare(case).run, u0)
+    found = estimates(case, u0, u, initial)
     warn_if_doubtful(case, u0, u, found)
     return Solution(case, case.x, u0, u, applications, origin, particles, found)
 
@@ -148,8 +155,8 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
         raise _named(case, error) from None
 
 
-def warn_if_unstable(case: Case) -> None:
-    """Warn, with the numbers, if some wave grows: outside the stability interval, or where the symbol is positive.
+def warn_if_unstable(case: Case, operator: LatticeOperator) -> None:
+    """Warn, with the numbers, if some wave grows: outside the stability interval, or where an eigenvalue is positive.
 
     A single step of GPSE, the whole run, cannot grow; whoever takes it for its speed does not pay for its limit.
 
@@ -159,25 +166,39 @@ def warn_if_unstable(case: Case) -> None:
     """
     if case.kind.self_timed and case.is_one_step:
         return
-    low, high = case.symbol_range
-    exponent = case.span * case.setting.rate * high
+    setting = case.setting
+    low, high = (setting.rate * end for end in range_in(case.scheme, setting))
+    of_the_symbol = grows(low, high)
+    if not of_the_symbol:
+        low, high = eigenvalue_bounds(case.scheme, setting, operator)
+    exponent = case.span * high
     if grows(low, high):
         if exponent > _NO_GROWTH:
             warnings.warn(
                 f"{case.scheme} of order {case.order} amplifies some waves at overlap = {case.resolved_overlap:.4g}, "
-                f"beta = {case.beta:g}, whatever the time step: by exp({exponent:.4g}) over this run. The run is "
-                "computed as it is. Take a larger overlap, or a lower order.",
+                f"beta = {case.beta:g}, {_cause(case, of_the_symbol)}whatever the time step: by exp({exponent:.4g}) "
+                "over this run. The run is computed as it is. Take a larger overlap, or a lower order.",
                 StabilityWarning,
                 stacklevel=3,
             )
-    elif case.time_step > case.largest_stable_step:
-        warnings.warn(
-            f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
-            f"{case.resolved_integrator}: at most {case.largest_stable_step:.6g} is stable. "
-            "The run is computed as it is.",
-            StabilityWarning,
-            stacklevel=3,
-        )
+    elif case.steps:
+        polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
+        _, exponents = polynomial.log_power(np.array([case.time_step * low]), case.steps)
+        if exponents[0] > _NO_GROWTH:
+            warnings.warn(
+                f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
+                f"{case.resolved_integrator}: at most {-polynomial.stability_interval / low:.6g} is stable. "
+                "The run is computed as it is.",
+                StabilityWarning,
+                stacklevel=3,
+            )
+
+
+def _cause(case: Case, of_the_symbol: bool) -> str:
+    """What makes waves grow, if it is not the scheme alone."""
+    if case.kernel_table is not None:
+        return f"with kernel_table = {case.kernel_table:g}, "
+    return "" if of_the_symbol else "at the ends of the lattice, "
 
 
 @dataclass(frozen=True)
@@ -222,7 +243,16 @@ class Prepared:
 
     def run(self, u0: np.ndarray) -> tuple[np.ndarray, int]:
         """Return what `solve` does, and how often the operator was applied."""
-        u0, applications = bare_strengths(u0, self.shape), self.operator_applications
+        u0 = bare_strengths(u0, self.shape)
+        return _in_range(self._run, u0) if self._scales else self._run(u0)
+
+    @cached_property
+    def _scales(self) -> bool:
+        """Whether the units of time are so far from one that A u may be no number though u is."""
+        return not _RATES[0] < self.case.setting.rate < _RATES[1]
+
+    def _run(self, u0: np.ndarray) -> tuple[np.ndarray, int]:
+        applications = self.operator_applications
         flat = u0 if u0.ndim == 1 else u0.reshape(-1)
         try:
             if isinstance(self.advance, Flow):
@@ -241,6 +271,24 @@ class Prepared:
         takes N^dim solves.
         """
         return matrix_of(self.solve, self.shape)
+
+
+def _in_range(
+    run: Callable[[np.ndarray], tuple[np.ndarray, int]], u0: np.ndarray
+) -> tuple[np.ndarray, int]:
+    """Do a linear run on strengths near one, a power of two away from those given: the same bits, but no A u vanishes.
+
+    A u has the unit of u over that of time. Far from units near one it may be no number though u is.
+    """
+    exponent = int(np.frexp(np.abs(u0).max())[1])
+    if abs(exponent) <= _NEAR_ONE:
+        return run(u0)
+    u, applications = run(np.ldexp(u0, -exponent))
+    with np.errstate(over="ignore"):  # said below
+        u = np.ldexp(u, exponent)
+    if not all_finite(u.reshape(-1)):
+        raise NonFiniteSolution("the particle strengths overflow: change the unit of u")
+    return u, applications
 
 
 def matrix_of(solve: Advance, shape: tuple[int, ...]) -> np.ndarray:
@@ -272,10 +320,11 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     Raises
     ------
     InvalidInput
-        If the particles move.
+        If the particles move, or the operator is of another lattice.
     NonFiniteSolution
         If the time steps would overflow.
     """
+    check.instance("case", case, Case)
     if case.kind.moving:
         resting = "a scheme whose particles stay on the lattice"
         remedy = f"Use solve: the operator of {case.scheme} depends on the solution."
@@ -287,7 +336,10 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         return Prepared(case, None, 1, _on_the_whole_space(case))
     if operator is None:
         operator = SCHEMES[case.scheme].operator(case.setting)
-    warn_if_unstable(case)
+    elif check.instance("operator", operator, LatticeOperator).size != case.particles:
+        fits = f"an operator of the {case.particles} particles of the case"
+        raise InvalidInput("operator", f"one of {operator.size}", fits, "Leave it out.")
+    warn_if_unstable(case, operator)
     if case.steps_taken:
         polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
         dt, steps = case.time_step, case.steps

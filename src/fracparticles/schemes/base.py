@@ -160,7 +160,7 @@ class OnePass(LatticeScheme):
             setting,
             lambda m: self.weights(m, setting),
             exchange_sum,
-            lambda theta: self.scaled_transform(theta, setting),
+            lambda theta: self.scaled_transform(theta, exact),
             lambda m: self.weights(m, exact),
         )
 
@@ -214,29 +214,31 @@ def one_pass_operator(
     transform : callable, optional
         sum_m a_m e^{-i m.theta}, for an open exterior in two and three dimensions.
     exact_weights : callable, optional
-        Those that have this transform, since `weights` may come from a table.
+        Those that have this transform, since `weights` may come from a table; the exterior is made of them.
     """
-    size, dim = setting.size, setting.dim
+    size, dim, rate = setting.size, setting.dim, setting.rate
     far: FarField | None = None
-
-    def scaled(m: np.ndarray) -> np.ndarray:
-        return setting.rate * weights(m)
-
+    exact_weights = exact_weights or weights
+    m = np.arange(size, dtype=float)
     convolve: Function
     if dim == 1:
-        w = scaled(np.arange(size, dtype=float))
+        w = rate * weights(m)
         convolve = SUMMATIONS[setting.summation](w, size)
         if setting.is_open:
             far = far_field(
-                scaled, 1.0 + setting.alpha, setting.alpha, setting.n, terms=setting.far_terms
+                lambda offset: rate * exact_weights(offset),
+                1.0 + setting.alpha,
+                setting.alpha,
+                setting.n,
+                terms=setting.far_terms,
             )
     else:
         convolve = _box_sums(setting, weights)
-        if setting.is_open and transform is not None and exact_weights is not None:
+        if setting.is_open and transform is not None:
             exact = exactly_summed(setting)
             inside = convolve if exact == setting else _box_sums(exact, exact_weights)
             far = box_far_field(
-                lambda theta: setting.rate * transform(theta),
+                lambda theta: rate * transform(theta),
                 lambda u: inside(u).reshape(u.shape),
                 setting.alpha,
                 setting.n,
@@ -245,13 +247,19 @@ def one_pass_operator(
     particles = size**dim
     if exchange_sum is None:
         return ConvolutionOperator(convolve, np.zeros(particles), far, dim=dim)
-    infinite = -setting.rate * exchange_sum
-    if setting.is_open:
+    infinite = -rate * exchange_sum
+    if not setting.is_open:
+        diagonal = (
+            -sums_of_weights(w, parity=1, size=size) if dim == 1 else -convolve(np.ones(particles))
+        )
+    elif setting.kernel_table is None or transform is None:
         diagonal = np.full(particles, infinite)
-    elif dim == 1:
-        diagonal = -sums_of_weights(w, parity=1, size=size)
-    else:
-        diagonal = -convolve(np.ones(particles))
+    else:  # the table within the lattice, exact weights beyond it: a constant stays one
+        diagonal = np.full(particles, -rate * transform(np.zeros((1, dim))).flat[0])
+        if dim == 1:
+            diagonal -= sums_of_weights(w - rate * exact_weights(m), parity=1, size=size)
+        else:
+            diagonal += inside(np.ones(particles)) - convolve(np.ones(particles))
     return ConvolutionOperator(convolve, diagonal, far, infinite, dim)
 
 

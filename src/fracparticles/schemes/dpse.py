@@ -65,8 +65,8 @@ class DirectExchange(LatticeScheme):
         nearly_constant = setting.alpha - 1.0 < _NEARLY_CONSTANT
         potential = potential_differences if nearly_constant else potential_weights
         b = potential(np.arange(setting.size, dtype=float), setting)
-        reach = BandedConvolution.reach(setting.overlap, setting.order)
-        c = laplacian_weights(np.arange(reach + 1, dtype=float), setting)
+        b -= b[setting.n]
+        c = laplacian_weights(np.arange(_reach(setting) + 1, dtype=float), setting)
         return TwoPassOperator(
             SUMMATIONS[setting.summation](setting.rate * b, setting.size),
             BandedConvolution(c, parity=1),
@@ -75,15 +75,22 @@ class DirectExchange(LatticeScheme):
         )
 
     def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
-        """Return A(theta) h^alpha / D = 2 s^(-1-beta) kappa^(theta) [Phi^(theta) - Phi^(0)], sums over the aliases.
+        """Return A(theta) h^alpha / D = -4 s^(1-alpha) kappa^(theta) sum_(m>0) c_m sin^2(m theta / 2).
 
-        At theta = 0 the potential's kappa^ ~ |k|^(alpha-2) is infinite and the product zero.
+        kappa^ is a sum over the aliases. The second factor is Phi^(theta) - Phi^(0), without the cancellation, which
+        kappa^ ~ |theta|^(alpha-2) would magnify. At theta = 0 the product is zero.
         """
         theta = np.asarray(theta, dtype=float)
         out = np.zeros_like(theta)
         t = theta[theta != 0.0]
+        m = np.arange(_reach(setting) + 1, dtype=float)
+        laplacian = np.zeros_like(t)
+        for k, weight in zip(m[1:], laplacian_weights(m, setting)[1:], strict=True):
+            laplacian -= 4.0 * weight * np.sin(0.5 * k * t) ** 2
         potential = lattice_transform("kappa", t, setting)
-        at_zero = lattice_transform("Phi", np.zeros_like(t), setting)
-        laplacian = lattice_transform("Phi", t, setting) - at_zero
-        out[theta != 0.0] = 2.0 * setting.overlap**-setting.alpha * potential * laplacian
+        out[theta != 0.0] = setting.overlap ** (2.0 - setting.alpha) * potential * laplacian
         return out
+
+
+def _reach(setting: Setting) -> int:
+    return BandedConvolution.reach(setting.overlap, setting.order)

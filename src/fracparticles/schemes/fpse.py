@@ -10,6 +10,7 @@ Stable for D dt / h^alpha <= a; order II, aliases neglected: a = 2 (s/2)^alpha (
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import e
 
 import numpy as np
@@ -74,7 +75,8 @@ class FluxExchange(LatticeScheme):
 
         f and e are the sums over the aliases of F^ = i (k / |k|) |k|^beta eta^(k) and of eta1^.
         """
-        product = lattice_transform("F", theta, setting) * lattice_transform("eta1", theta, setting)
+        exact = replace(setting, kernel_table=None)  # as eta1 is
+        product = lattice_transform("F", theta, setting) * lattice_transform("eta1", theta, exact)
         if setting.dim > 1:
             product = product.sum(axis=-1)
         return -(setting.overlap**-setting.alpha) * product
@@ -95,18 +97,18 @@ class FluxExchange(LatticeScheme):
 
 
 def _line_operator(setting: Setting, pad: int) -> LatticeOperator:
-    alpha, size = setting.alpha, setting.size
+    alpha, size, exact = setting.alpha, setting.size, replace(setting, kernel_table=None)
     reach = BandedConvolution.reach(setting.overlap, setting.order, setting.family)
 
-    def flux(m: np.ndarray) -> np.ndarray:
-        return setting.rate * flux_weights(m, setting)
+    def flux_from_outside(m: np.ndarray) -> np.ndarray:
+        return setting.rate * flux_weights(m, exact)
 
-    b = flux(np.arange(size + pad, dtype=float))
+    b = setting.rate * flux_weights(np.arange(size + pad, dtype=float), setting)
     c = divergence_weights(np.arange(reach + 1, dtype=float), setting)
     divergence = BandedConvolution(c, parity=-1)
     far, diagonal = None, np.zeros(size)
     if setting.is_open:
-        far = far_field(flux, alpha, alpha, setting.n, -1, pad, setting.far_terms)
+        far = far_field(flux_from_outside, alpha, alpha, setting.n, -1, pad, setting.far_terms)
         if setting.summation == "fft":
             # With all of the flux that the divergence reaches the two sums are one, with the weights c * b.
             both = divergence(np.concatenate([-b[:0:-1], b]), np.empty(2 * size - 1))

@@ -13,11 +13,20 @@ from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.stability import grows, range_in
 
-__all__ = ["dense_matrix", "largest_degree", "power_iteration", "spectral_interval"]
+__all__ = [
+    "dense_matrix",
+    "eigenvalue_bounds",
+    "largest_degree",
+    "power_iteration",
+    "spectral_interval",
+]
 
 # Below the symbol the function of time is bounded, and a little room costs nothing; above zero it would grow.
 _ROOM = 1e-6
-_ROOM_OF_A_TABLE = 1e-2  # interpolated kernels have eigenvalues of their own
+_ROOM_OF_A_TABLE = 1e-2  # in a box: interpolated kernels have eigenvalues of their own
+_ROOM_OF_STEPS = (
+    0.1  # of all n: a step at the limit amplifies what is below, so that a run does by two at most
+)
 # Where the eigenvalues are not proved to be real and in the interval, T_k of the operator may grow like exp(g k). The
 # coefficients of a series of degree K fall like exp(-74 (k / K)^2), so that its terms grow by exp((g K)^2 / 300) at
 # most. Measured (tests/test_stiff.py): on the line with exact kernels, unless the ends amplify, g < 0.001 and
@@ -27,10 +36,12 @@ _LARGEST_DEGREE = {"line": 10_000, "other": 400}
 _FEW_OVERLAPS, _FEW = 24, 150
 
 
-def spectral_interval(
-    name: str, setting: Setting, operator: LatticeOperator, steps: int = 0
+def eigenvalue_bounds(
+    name: str, setting: Setting, operator: LatticeOperator
 ) -> tuple[float, float]:
-    """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
+    """Return bounds of the real parts of the eigenvalues of A, at most zero if nothing grows.
+
+    They are the range of the symbol, that of an infinite lattice, and what the ends of a bounded one add to it.
 
     Parameters
     ----------
@@ -39,8 +50,6 @@ def spectral_interval(
     setting : Setting
     operator : LatticeOperator
         A of the scheme in this setting.
-    steps : int
-        The number of time steps that the series stands for; 0 for the exponential.
 
     Notes
     -----
@@ -49,7 +58,7 @@ def spectral_interval(
     of the lattice: positive weights only raise the eigenvalues, to zero at most, and where weights change sign (KPSE
     of order IV from beta = 0.85, of higher orders) the lowest falls by no more than the least element of that
     diagonal (Weyl). DPSE is the product of a negative and a positive symmetric matrix, so that its eigenvalues are
-    real. A dissipative scheme ends at zero, and not a little above: a series of exp(z t) grows with what is above.
+    real. The symbol is that of interpolated kernels, on the line.
 
     The rest is not proved: that exchanges whose weights change sign stay below zero, and that the eigenvalues of DPSE,
     FPSE and of the open exterior lie in the range of the symbol, and are real on the line, was found by computation
@@ -60,19 +69,38 @@ def spectral_interval(
     """
     low, high = range_in(name, setting)
     one, rate = scheme(name), setting.rate
-    share = _ROOM if setting.kernel_table is None else _ROOM_OF_A_TABLE
-    room = share * (max(high, 0.0) - low)
     if not one.dissipative or grows(low, high):
-        high = max(high, _greatest_eigenvalue(operator, rate * high) / rate) + room
+        high = max(high, _greatest_eigenvalue(operator, rate * high) / rate)
     elif one.ends_amplify(setting):
         few = min(setting.n, _FEW, int(np.ceil(_FEW_OVERLAPS * setting.overlap)))
         small = replace(setting, n=few, spacing=1.0, diffusivity=1.0)
         high = max(0.0, _greatest_by_matrix(name, small))
     else:
         high = max(0.0, high)
-    if steps:  # the polynomial of a step grows below its interval: by exp(8) over the run at most
-        room = min(room, -low / steps)
-    return rate * (low - room) + operator.diagonal_shift[0], rate * high
+    return rate * low + operator.diagonal_shift[0], rate * high
+
+
+def spectral_interval(
+    name: str, setting: Setting, operator: LatticeOperator, steps: int = 0
+) -> tuple[float, float]:
+    """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
+
+    Their bounds, with some room. A dissipative scheme ends at zero, and not a little above: a series of exp(z t) grows
+    with what is above.
+
+    Parameters
+    ----------
+    name, setting, operator
+        As of `eigenvalue_bounds`.
+    steps : int
+        The number of time steps that the series stands for; 0 for the exponential.
+    """
+    low, high = eigenvalue_bounds(name, setting, operator)
+    tabulated_box = setting.kernel_table is not None and setting.dim > 1
+    room = (_ROOM_OF_A_TABLE if tabulated_box else _ROOM) * (high - low)
+    below = min(room, -_ROOM_OF_STEPS * low / steps) if steps else room
+    positive = grows(*range_in(name, setting)) or not scheme(name).dissipative
+    return low - below, high + room if positive else high
 
 
 def largest_degree(name: str, setting: Setting, operator: LatticeOperator) -> int | None:

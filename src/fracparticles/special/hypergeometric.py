@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.special import gamma, poch, rgamma
 
 from fracparticles._compiled import njit
-from fracparticles.arguments import elementwise, real_array
+from fracparticles.arguments import elementwise, finite_real, real_array
 from fracparticles.errors import InvalidInput
 from fracparticles.special import chebyshev
 
@@ -114,6 +114,7 @@ def _table(c: float, b: float) -> _Table:
 
 
 def _checked(c: float, b: float, z: Any) -> tuple[_Table, NDArray[np.float64]]:
+    c, b = finite_real("b - a", c), finite_real("b", b)
     if not (-1.0 < c < b <= 4.0 and b - c <= 4.0 and c != 0.0):
         allowed = "-1 < b - a < b <= 4, b - a not 0, and a <= 4"
         remedy = "The kernels of the fractional operators lie inside this range."
@@ -121,7 +122,7 @@ def _checked(c: float, b: float, z: Any) -> tuple[_Table, NDArray[np.float64]]:
     z = real_array("z", z)
     if (z < 0.0).any():
         raise InvalidInput("z", float(z.min()), "z >= 0", "Give the squared distance.")
-    return _table(float(c), float(b)), z
+    return _table(c, b), z
 
 
 def kummer(a: float, b: float, z: Any) -> NDArray[np.float64] | float:

@@ -55,7 +55,8 @@ def planar_asymptotic(r: ArrayLike, alpha: float, terms: int) -> FloatArray:
     """
     k = np.arange(1.0, terms + 1.0)
     size = np.exp(alpha * k * np.log(2.0) + 2.0 * gammaln(1.0 + 0.5 * alpha * k) - gammaln(k + 1.0))
-    factor = (-1.0) ** (k + 1.0) * size * np.sin(0.5 * pi * alpha * k) / pi**2
+    # (-1)^(k+1) sin(pi alpha k/2), written with 2 - alpha to keep its digits.
+    factor = size * np.sin(0.5 * pi * (2.0 - alpha) * k) / pi**2
     return (factor * np.asarray(r, dtype=float)[..., None] ** (-alpha * k - 2.0)).sum(axis=-1)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import gamma
 
+from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 
 __all__ = ["exchange_truncation_error", "tail_constant"]
@@ -14,9 +15,12 @@ __all__ = ["exchange_truncation_error", "tail_constant"]
 def tail_constant(alpha: float) -> float:
     """Return C of (-Laplacian)^(alpha/2) u(x) = C int (u(x) - u(y)) |x - y|^(-1-alpha) dy on the line.
 
-    C = 2^(alpha-1) alpha Gamma((1+alpha)/2) / (sqrt(pi) Gamma(1-alpha/2)) = Gamma(1+alpha) sin(pi alpha/2) / pi.
+    C = 2^(alpha-1) alpha Gamma((1+alpha)/2) / (sqrt(pi) Gamma(1-alpha/2)) = Gamma(1+alpha) sin(pi alpha/2) / pi,
+    1 < alpha < 2. Raises `InvalidInput` for another.
     """
-    return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) / np.pi)
+    alpha = check.fractional_order(alpha)
+    # sin(pi alpha/2) keeps all digits as alpha nears 2.
+    return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * (2.0 - alpha)) / np.pi)
 
 
 def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) -> FloatArray:

@@ -8,23 +8,27 @@ V_j = m_j / rho_j. Equation (19) prints L_i^{-1} for what is L_i: the gradient o
 Equation (37), Brookshaw's, has eta = 0.0001 (1/h)^2 in print, far larger than a distance and of another dimension;
 the paper's digits come with eta = 0.0001 h^2.
 
-A point within 2 h of the last particle lacks a part of its sums: see the virtual particles of `particles`.
+A point within 2 h of the last particle lacks a part of its sums: see the virtual particles of `particles`. What the
+particles make of L says whether they are enough: 1 inside, a half at the end of a line. Less than a quarter, or more
+than four, is warned of with `AccuracyWarning`.
 """
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles._compiled import njit
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.sph.cubic_spline import SUPPORT, dw
 
 __all__ = ["BROOKSHAW_ETA", "correction", "gradient", "second_derivative"]
 
 BROOKSHAW_ETA = 1.0e-4  # eta / h^2
+_ENOUGH = 0.25  # of L
 
 
 def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
@@ -102,15 +106,25 @@ def _particles(
 def _divided(
     sums: np.ndarray, z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float, corrected: bool
 ) -> np.ndarray:
-    if check.flag("corrected", corrected):
-        factor = _correction_at(z, x, volumes, h)
+    corrected = check.flag("corrected", corrected)
+    factor = _correction_at(z, x, volumes, h)
+    if corrected:
         if not (factor > 0.0).all():
             lonely = float(z[~(factor > 0.0)][0])
             allowed = "only points with a particle nearer than 2 h, and not in the same place"
             raise InvalidInput("z", lonely, allowed, "Take a larger h, or leave the point out.")
         with np.errstate(all="ignore"):
             sums = sums / factor
-    return check.finite_result("f", sums)
+    result: np.ndarray = check.finite_result("f", sums)
+    off = (factor < _ENOUGH) | (factor > 1.0 / _ENOUGH)
+    if off.any():
+        warnings.warn(
+            f"L of (19) is from {factor.min():.2g} to {factor.max():.2g} at {np.count_nonzero(off)} of {off.size} "
+            "points, where it must be near 1: do not trust the derivative there. Take a larger h, or other volumes.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    return result
 
 
 def _correction_at(z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float) -> np.ndarray:

@@ -32,8 +32,9 @@ def relative_l2(exact: Any, ours: Any) -> float:
 def r2_score(exact: Any, ours: Any) -> float:
     """(40), as `relative_l2`; the exact values must not be all the same."""
     exact, ours = _values(exact, ours)
-    spread = np.sum((exact - exact.mean()) ** 2)
-    return float(1.0 - np.sum(np.abs(exact - ours) ** 2) / _size(exact, spread))
+    with np.errstate(over="ignore", invalid="ignore"):
+        spread = _size(exact, np.sum((exact - exact.mean()) ** 2))
+        return float(1.0 - np.sum(np.abs(exact - ours) ** 2) / spread)
 
 
 def _values(exact: Any, ours: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -39,7 +39,6 @@ _LARGEST_EXPONENT = np.log(np.finfo(float).max)
 _LOOK_EVERY = 32  # terms between two looks at their size
 _DIGITS_KEPT = 1e-10  # the share of the sum that the round-off of its terms may reach
 _SHORT = 64  # so few terms cannot cancel by much: a piece of this degree is taken as it is
-_UNDERFLOW = 1e-280  # below this the strengths have no full precision to lose
 
 
 class LostDigits(FracparticlesError):
@@ -69,6 +68,7 @@ class ChebyshevSeries:
         low: float,
         high: float,
         condition: Callable[[np.ndarray], np.ndarray] = np.ones_like,
+        expected: float = 0.0,
     ) -> ChebyshevSeries:
         """Interpolate f at Chebyshev points.
 
@@ -83,7 +83,7 @@ class ChebyshevSeries:
         """
         ends = np.array([low, high])
         at_ends = f(ends)
-        points = 32
+        points = 1 << max(5, int(expected).bit_length() - 1)
         while points <= _MOST_POINTS:
             angle = (np.arange(points) + 0.5) * (np.pi / points)
             # (1 + cos) / 2 = cos^2(angle / 2): the distance to `high` keeps its relative accuracy.
@@ -97,11 +97,8 @@ class ChebyshevSeries:
             )
             significant = np.flatnonzero(np.abs(coefficients) > noise)
             degree = significant[-1] if significant.size else 0
-            sums = np.array(
-                [coefficients[::2].sum() - coefficients[1::2].sum(), coefficients.sum()]
-            )
-            met = bool((np.abs(sums - at_ends) <= _MET * largest).all())
-            if met and degree < 2 * points // 3:
+            met = np.abs(cls(coefficients, low, high).at_ends - at_ends) <= _MET * largest
+            if met.all() and degree < 2 * points // 3:
                 return cls(coefficients[: degree + 1], low, high)
             points *= 2
         raise FracparticlesError(
@@ -114,15 +111,21 @@ class ChebyshevSeries:
         """The number of operator applications that an evaluation takes."""
         return self.coefficients.size - 1
 
+    @property
+    def at_ends(self) -> tuple[float, float]:
+        """f at the ends of the interval."""
+        even, odd = self.coefficients[::2].sum(), self.coefficients[1::2].sum()
+        return float(even - odd), float(even + odd)
+
     def __call__(self, operator: Operator, u: np.ndarray) -> np.ndarray:
         """Return f(A) u, shape (N,).
 
         Raises
         ------
         LostDigits
-            If the round-off of the terms is more than 1e-10 of the sum, in the maximum norm.
+            If the round-off of the terms is more than 1e-10 of the sum, in the maximum norm, or they overflow.
         NonFiniteSolution
-            If a particle strength is not finite.
+            If a sum of no more than 65 terms is not finite.
         """
         c = self.coefficients
         scale = 2.0 / (self.high - self.low)
@@ -147,15 +150,18 @@ class ChebyshevSeries:
         return total
 
     def _look_at(self, largest: float, total: np.ndarray) -> None:
-        if not all_finite(total):
-            raise NonFiniteSolution(
-                "the particle strengths overflow: the time step lies far outside the stability interval. "
-                "Take a smaller dt or integrator='exponential'."
-            )
+        if self.degree <= _SHORT:
+            if not all_finite(total):
+                raise NonFiniteSolution(
+                    "the particle strengths overflow: the time step lies far outside the stability interval. "
+                    "Take a smaller dt or integrator='exponential'."
+                )
+            return
+        size = _size(total) if all_finite(total) else np.inf
         lost = _ROUND_OFF * np.sqrt(self.degree) * largest
-        if self.degree > _SHORT and largest > _UNDERFLOW and lost > _DIGITS_KEPT * _size(total):
+        if not lost <= _DIGITS_KEPT * size < np.inf:
             raise LostDigits(
-                f"terms of {largest:.3g} in a Chebyshev series whose sum is {_size(total):.3g}"
+                f"terms of {largest:.3g} in a Chebyshev series whose sum is {size:.3g}"
             )
 
 
@@ -187,7 +193,8 @@ def power(
         _, exponent = polynomial.log_power(z * dt, steps)
         return 1.0 + np.abs(exponent) + polynomial.sensitivity(z * dt, steps)
 
-    series = ChebyshevSeries.of(amplification, low, high, condition)
+    expected = min(steps * polynomial.stages, _expected_degree(steps * dt, low, high))
+    series = ChebyshevSeries.of(amplification, low, high, condition, expected)
     # A polynomial of degree `steps * stages`: what comes after is round-off.
     return replace(series, coefficients=series.coefficients[: steps * polynomial.stages + 1])
 
@@ -207,8 +214,17 @@ def exponential(time: float, low: float, high: float) -> ChebyshevSeries:
             f"time {time:.6g}: the particle strengths overflow. Take a larger overlap, or a shorter time."
         )
     return ChebyshevSeries.of(
-        lambda z: np.exp(z * time), low, high, lambda z: 1.0 + np.abs(z * time)
+        lambda z: np.exp(z * time),
+        low,
+        high,
+        lambda z: 1.0 + np.abs(z * time),
+        _expected_degree(time, low, high),
     )
+
+
+def _expected_degree(time: float, low: float, high: float) -> float:
+    """The coefficients of exp(z time) fall like exp(-k^2 / (time (high - low))), to 2^-54 of the condition."""
+    return float(np.sqrt(25.0 * time * (high - low)))
 
 
 def _size(u: np.ndarray) -> float:

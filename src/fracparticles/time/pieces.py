@@ -3,7 +3,9 @@
 f(A)^n = f(A)^{n_1} f(A)^{n_2} ...: a span of n units is done by one Chebyshev series, or by several in a row. One
 takes about sqrt(n) applications of A, m pieces take sqrt(m) times as many, so pieces are made only where one
 series loses digits (`chebyshev.LostDigits`): where its terms are far larger than their sum, because A is not normal, or
-because the solution decays by many decades. Each piece is exact to the round-off of its own terms.
+because the solution decays by many decades. Each piece is exact to the round-off of its own terms. Between the pieces
+the strengths are scaled by powers of two, so that what decays keeps its digits to the end; what is then below every
+number is zero.
 
 The unit is a step of a Runge-Kutta scheme; for the exponential, a 2^-30th of the time.
 """
@@ -12,18 +14,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import NoReturn
 
 import numpy as np
 
-from fracparticles.errors import FracparticlesError
+from fracparticles.errors import FracparticlesError, NonFiniteSolution
 from fracparticles.lattice.operators import Operator
 from fracparticles.time.chebyshev import ChebyshevSeries, LostDigits, exponential, power
 from fracparticles.time.polynomial import StepPolynomial
+from fracparticles.time.stepping import all_finite
 
 __all__ = ["Flow", "exponential_flow", "power_flow"]
 
 _UNITS = 2**30  # of the exponential: a power of two, so that every piece has an exact length
 _MOST_APPLICATIONS = 3e7  # ten minutes for a hundred particles
+_GONE = -1100  # 2^-1100 is below every number, even times the 2^26 by which an operator that is not normal may amplify
+_OVERFLOW = 1024
+_NO_GROWTH = 1e-12  # of a piece: round-off
 
 
 class Flow:
@@ -61,11 +68,12 @@ class Flow:
         self.operator, self._units = operator, units
         self._series = lru_cache(maxsize=4)(series_of)
         self._piece = units
-        while largest_degree is not None and self._piece > 1:
-            if self._series(self._piece).degree <= largest_degree:
-                break
-            self._piece = -(-self._piece // 2)
         degree = self._series(self._piece).degree
+        while largest_degree is not None and self._piece > 1 and degree > largest_degree:
+            # The degree grows like the root of the piece: so many halves are too much for certain.
+            for _ in range(max(1, int(2.0 * np.log2(degree / largest_degree)) - 1)):
+                self._piece = -(-self._piece // 2)
+            degree = self._series(self._piece).degree
         whole, rest = divmod(units, self._piece)
         self.operator_applications = whole * degree + (self._series(rest).degree if rest else 0)
         if self.operator_applications > _MOST_APPLICATIONS:
@@ -94,9 +102,14 @@ class Flow:
         FracparticlesError
             If the digits cannot be kept within 3e7 applications.
         """
-        left, piece, applications = self._units, self._piece, 0
+        left, piece, applications, exponent = self._units, self._piece, 0, 0
         while left:
+            u, exponent = _near_one(u, exponent)
+            if exponent > _OVERFLOW:
+                self._overflow(left)
             series = self._series(min(piece, left))
+            if exponent < _GONE and max(map(abs, series.at_ends)) <= 1.0 + _NO_GROWTH:
+                return np.zeros_like(u), applications
             applications += series.degree
             try:
                 u = series(self.operator, u)
@@ -110,7 +123,24 @@ class Flow:
                     ) from None
             else:
                 left -= min(piece, left)
+        with np.errstate(over="ignore"):  # said below
+            u = np.ldexp(u, exponent)
+        if not all_finite(u):
+            self._overflow(left)
         return u, applications
+
+    def _overflow(self, left: int) -> NoReturn:
+        raise NonFiniteSolution(
+            f"the particle strengths overflow after {1.0 - left / self._units:.3g} of the time of the run. Take a "
+            "shorter run; a smaller dt, or integrator='exponential', where the steps are unstable; a larger overlap, "
+            "where the scheme is."
+        )
+
+
+def _near_one(u: np.ndarray, exponent: int) -> tuple[np.ndarray, int]:
+    """Return u 2^exponent as another such product, the greatest |u| near one: the same bits, but for underflow."""
+    more = int(np.frexp(np.abs(u).max(initial=0.0))[1])
+    return (np.ldexp(u, -more), exponent + more) if more else (u, exponent)
 
 
 def exponential_flow(

@@ -20,7 +20,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from fracparticles.arguments import MOST_STEPS, positive_integer, positive_real
+from fracparticles.arguments import (
+    MOST_STEPS,
+    finite_array,
+    finite_real,
+    function,
+    positive_integer,
+    positive_real,
+)
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = ["ChebyshevStep", "stages_for"]
@@ -56,8 +63,7 @@ class ChebyshevStep:
             raise InvalidInput("stages", s, f"from 2 to {_MOST_STAGES}", "Take another dt.")
         w0 = 1.0 + _DAMPING / s**2
         t, t1, t2 = (
-            np.array([chebyshev.chebval(w0, chebyshev.chebder(e, m)) for e in np.eye(s + 1)])
-            for m in range(3)
+            np.asarray(chebyshev.chebval(w0, chebyshev.chebder(np.eye(s + 1), m))) for m in range(3)
         )
         w1 = t1[s] / t2[s]
         b = np.empty(s + 1)
@@ -72,13 +78,23 @@ class ChebyshevStep:
         self._coefficients = np.column_stack([1.0 - m - n, m, n, rate, initial_rate])
 
     def __call__(self, f: Rate, y: np.ndarray, dt: float) -> np.ndarray:
-        """Return y after one step, a new array of any shape."""
-        f0 = f(y)
-        before, stage = y, y + self._first * dt * f0
-        for initial, last, last_but_one, rate, initial_rate in self._coefficients:
-            new = initial * y + last * stage + last_but_one * before
-            new += dt * (rate * f(stage) + initial_rate * f0)
-            before, stage = stage, new
+        """Return y after one step, a new array of any shape; what overflows is infinite or nan in it, without a word.
+
+        Raises
+        ------
+        InvalidInput
+            If f(y) has another shape than y.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            f0 = f(y)
+            if np.shape(f0) != np.shape(y):
+                allowed = f"rates of the shape of y, {np.shape(y)}"
+                raise InvalidInput("f", f"of shape {np.shape(f0)}", allowed, "Mend the function.")
+            before, stage = y, y + self._first * dt * f0
+            for initial, last, last_but_one, rate, initial_rate in self._coefficients:
+                new = initial * y + last * stage + last_but_one * before
+                new += dt * (rate * f(stage) + initial_rate * f0)
+                before, stage = stage, new
         return stage
 
     def advance(
@@ -96,12 +112,13 @@ class ChebyshevStep:
         Raises
         ------
         InvalidInput
-            If dt or steps is not positive.
+            If dt or steps is not positive, y or start is not finite, or f is no function to rates of the shape of y.
         NonFiniteSolution
             If y is no longer finite, or f says so; of the kind that f raised, with the step and the time.
         """
         dt, steps = positive_real("dt", dt), positive_integer("steps", steps, most=MOST_STEPS)
-        y = np.array(y, dtype=float)
+        f, start = function("f", f), finite_real("start", start)
+        y = np.array(finite_array("y", y))
         if observe is not None:
             observe(start, y)
         for n in range(1, steps + 1):

@@ -115,7 +115,7 @@ def _target(one: Property) -> tuple[list[Any], Callable[[bytes], Any]]:
     def keep(case: Any) -> None:
         drawn.append(case)
 
-    return drawn, keep.hypothesis.fuzz_one_input
+    return drawn, keep.hypothesis.fuzz_one_input  # type: ignore[attr-defined]
 
 
 @contextmanager
@@ -142,12 +142,14 @@ def row(one: Property, count: int, first: int = 0) -> tuple[Probe, dict[str, int
     outcomes = [outcome(one, seed) for seed in range(first, first + count)]
     bad = [found for found in outcomes if found.verdict in BAD]
     for found in bad:
-        print(f"{one.name!r}, seed {found.seed}: {found.verdict}: {found.words}")
+        print(f"{one.name!r}, seed {found.seed}: {found.verdict}: {found.words!a}", flush=True)
     counts = {
         str(verdict): sum(found.verdict is verdict for found in outcomes) for verdict in Verdict
     }
     counts = {"cases": count, **counts, "not run": sum(found.verdict is None for found in outcomes)}
-    worst = max((found.verdict for found in bad if found.verdict), key=BAD.index, default=Verdict.HELD)
+    worst = max(
+        (found.verdict for found in bad if found.verdict), key=BAD.index, default=Verdict.HELD
+    )
     words = f"seed {bad[0].seed}: {bad[0].words}" if bad else "as expected"
     case = f"{count} cases"
     return (

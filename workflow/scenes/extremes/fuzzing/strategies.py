@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -19,26 +20,65 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-__all__ = ["anything", "between", "chance", "given_fields", "numbers", "texts", "value_of"]
+__all__ = [
+    "anything",
+    "between",
+    "chance",
+    "fields_of",
+    "given_fields",
+    "numbers",
+    "texts",
+    "value_of",
+]
 
 Strategy = st.SearchStrategy[Any]
 
 _FINE = 2**32
 _ORDINARY = (0.0, 0.01, 0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 10.0, 100.0)
-_EXTREME = (5e-324, 2.3e-308, 1e-300, 1e-100, 1e-16, 1e-3, 1e6, 1e16, 1e100, 1e300, 1.7976931348623157e308)
-_WORDS = ("", " ", "fundamental", "none", "nan", "1e-3", "1_0", "\0", "\n", "é\ud800", "../x", "x" * 3000, "{}", "%s")
+_EXTREME = (
+    5e-324,
+    2.3e-308,
+    1e-300,
+    1e-100,
+    1e-16,
+    1e-3,
+    1e6,
+    1e16,
+    1e100,
+    1e300,
+    1.7976931348623157e308,
+)
+_WORDS = (
+    "",
+    " ",
+    "fundamental",
+    "none",
+    "nan",
+    "1e-3",
+    "1_0",
+    "\0",
+    "\n",
+    "é\ud800",
+    "../x",
+    "x" * 3000,
+    "{}",
+    "%s",
+)
 
 
+@cache
 def chance(percent: int) -> st.SearchStrategy[bool]:
     """Draw whether something happens that happens so often."""
     return st.integers(0, 99).map(lambda number: number < percent)
 
 
+@cache
 def between(low: float, high: float) -> st.SearchStrategy[float]:
     """Draw numbers that are spread evenly."""
     return st.integers(0, _FINE).map(lambda k: low + (high - low) * (k / _FINE))
 
 
+@cache
 def numbers(
     low: float = -math.inf, high: float = math.inf, *, inside: tuple[bool, bool] = (False, False)
 ) -> st.SearchStrategy[float]:
@@ -50,7 +90,9 @@ def numbers(
         return [value for value in values if least <= value <= most]
 
     signed = [*_ORDINARY, *_EXTREME, *(-x for x in (*_ORDINARY, *_EXTREME))]
-    ordinary = allowed([*_ORDINARY[1:], *(-x for x in _ORDINARY[1:])]) or [max(least, min(most, 1.0))]
+    ordinary = allowed([*_ORDINARY[1:], *(-x for x in _ORDINARY[1:])]) or [
+        max(least, min(most, 1.0))
+    ]
     kinds = [st.sampled_from(ordinary)] * 4
     kinds.append(st.sampled_from(allowed([least, most, *signed]) or ordinary))
     if math.isfinite(least) and math.isfinite(most):
@@ -61,6 +103,7 @@ def numbers(
     return st.one_of(kinds)
 
 
+@cache
 def texts() -> st.SearchStrategy[str]:
     """Draw texts: words with a meaning somewhere, and any characters."""
     return st.one_of(st.sampled_from(_WORDS), st.text(max_size=12))
@@ -157,6 +200,7 @@ _ODD: tuple[Callable[[], Any], ...] = (
 )
 
 
+@cache
 def anything() -> Strategy:
     """Draw values of all kinds, most of which mean nothing where they are given."""
     return st.one_of(
@@ -182,7 +226,9 @@ def value_of(annotation: Any, constraints: Any = ()) -> Strategy:
     if origin in (Union, UnionType):
         kinds = [kind for kind in arguments if kind is not NoneType]
         drawn = [value_of(kind, constraints) for kind in kinds]
-        return st.one_of(*drawn) if len(kinds) == len(arguments) else st.one_of(*drawn * 3, st.none())
+        return (
+            st.one_of(*drawn) if len(kinds) == len(arguments) else st.one_of(*drawn * 3, st.none())
+        )
     if origin in (list, tuple, set, frozenset):
         each = st.lists(value_of(arguments[0] if arguments else Any, constraints), max_size=4)
         return each if origin is list else each.map(origin)
@@ -225,15 +271,21 @@ def _bounds(constraints: Any) -> dict[str, Any]:
     }
 
 
+@cache
+def fields_of(model: type[BaseModel]) -> dict[str, Strategy]:
+    """Return what draws each field of a model."""
+    return {name: value_of(field) for name, field in model.model_fields.items()}
+
+
 @st.composite
 def given_fields(
     draw: st.DrawFn, model: type[BaseModel], *, share: int = 20, wrong: int = 50
 ) -> dict[str, Any]:
     """Draw fields for a model: those that it needs, others in `share` per cent, in `wrong` per cent with mistakes."""
     given = {
-        name: draw(value_of(field))
-        for name, field in model.model_fields.items()
-        if field.is_required() or draw(chance(share))
+        name: draw(values)
+        for name, values in fields_of(model).items()
+        if model.model_fields[name].is_required() or draw(chance(share))
     }
     if draw(chance(wrong)):
         names = list(model.model_fields)

@@ -1,0 +1,75 @@
+r"""What the particles of a run say of its accuracy. No estimate knows the exact solution.
+
+ripple
+    Particles a distance d apart make of a uniform field one that ripples by 2 K^(2 pi eps / d) of itself, K^ the
+    Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths, of
+    the greatest value that a gap of this size or a smaller one can give.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+
+import numpy as np
+
+from fracparticles.errors import AccuracyWarning
+
+__all__ = ["RIPPLE", "cells", "ripple", "warn_of_ripple"]
+
+RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
+_WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
+
+Transform = Callable[[np.ndarray], np.ndarray]
+
+
+def cells(x: np.ndarray) -> np.ndarray:
+    """Return what each particle has of the line: half the way to either neighbour; at an end the whole way to one.
+
+    Parameters
+    ----------
+    x : array, shape (N,)
+        Positions in any order; N at least 2.
+    """
+    order = np.argsort(x, kind="stable")
+    gap = np.diff(x[order])
+    width = np.empty(x.size)
+    width[order] = 0.5 * (np.append(gap[:1], gap) + np.append(gap, gap[-1:]))
+    return width
+
+
+def ripple(x: np.ndarray, strength: np.ndarray, epsilon: float, transform: Transform) -> float:
+    """Return the mean relative ripple that the gaps between the particles leave on their field; 1 for a single one.
+
+    Parameters
+    ----------
+    x, strength : array, shape (N,)
+    epsilon : float
+        Smoothing length.
+    transform : callable
+        K^(k) of the kernel of unit smoothing length.
+    """
+    if x.size < 2:
+        return 1.0
+    sizes = 2.0 * np.abs(transform(_WAVENUMBERS))
+    envelope = np.minimum(np.maximum.accumulate(sizes[::-1])[::-1], 1.0)
+    with np.errstate(divide="ignore", over="ignore"):
+        k = 2.0 * np.pi * epsilon / cells(x)
+    share = np.abs(strength) / np.abs(strength).max()
+    return float(share @ np.interp(k, _WAVENUMBERS, envelope) / share.sum())
+
+
+def warn_of_ripple(found: float, epsilon: float, remedy: str, stacklevel: int) -> None:
+    """Warn if the ripple is more than `RIPPLE`.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    if found > RIPPLE:
+        warnings.warn(
+            f"the particles are too far apart for the smoothing length {epsilon:.4g}: their field is wrong by about "
+            f"{min(found, 1.0):.2g} of itself. {remedy}",
+            AccuracyWarning,
+            stacklevel=stacklevel + 1,
+        )

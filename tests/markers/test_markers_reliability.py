@@ -1,0 +1,164 @@
+"""Rates of waves against closed forms, and the warnings of runs that would be wrong without a word."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from fracparticles.errors import AccuracyWarning, StabilityWarning
+from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, random, run, uniform
+from fracparticles.markers.burgers import burgers
+from fracparticles.markers.kdv import Soliton, kdv
+from fracparticles.markers.nonlinear import NonlinearDiffusion
+from fracparticles.markers.reliability import (
+    coefficients,
+    midpoint,
+    noise,
+    rates,
+    smoothing,
+    wave_error,
+)
+from fracparticles.markers.source import GaussianSource, advance_weights
+from fracparticles.markers.stability import extremes
+
+EPSILON = 0.5
+K = np.linspace(0.0, 30.0, 601)[1:]
+X = np.arange(-20.0, 20.0, 0.05)
+ONES = np.full(X.size, 0.05)  # a uniform field of 1, but for the ends
+
+
+def rates_of(flux, derivatives, shape="S8"):
+    velocity = MarkerVelocity(SHAPES[shape], EPSILON, flux, derivatives)
+    sigma = rates(coefficients(velocity, X, ONES), K / EPSILON)
+    return sigma, velocity.fields(X, ONES)[0]
+
+
+def test_rates_of_burgers():
+    """V = f / 2 - mu f_x / f, so that V' = 1/2: sigma = -i q f / 2 - mu q^2."""
+    sigma, f = rates_of(burgers(0.1), 1)
+    q = K / EPSILON
+    at_ones = -(0.5j * f.max() * q + 0.1 * q * q)
+    assert np.abs(sigma - at_ones).max(axis=1).min() < 1e-7 * np.abs(at_ones).max()
+
+
+def test_rates_of_kdv():
+    """V = 3 f + f_xx / f: sigma = -3 i q f + i q^3."""
+    sigma, f = rates_of(kdv, 2)
+    q = K / EPSILON
+    at_ones = 1j * (q**3 - 3.0 * q * f.max())
+    assert np.abs(sigma - at_ones).max(axis=1).min() < 1e-7 * np.abs(at_ones).max()
+
+
+def test_rates_of_nonlinear_diffusion_are_those_of_its_largest_coefficient():
+    problem = NonlinearDiffusion()
+    sigma, _ = rates_of(problem.flux, 1)
+    # f = 1 is where D is largest. The source adds an imaginary part.
+    fastest = problem.largest_diffusivity * (K / EPSILON) ** 2
+    assert -sigma.real.min(axis=0) == pytest.approx(fastest, rel=1e-6)
+
+
+def test_what_a_step_multiplies_a_wave_by():
+    assert midpoint(np.array([-2.0, 0.0, -1.0, 1j])).tolist() == [1.0, 1.0, 0.5, 0.5 + 1j]
+
+
+def gaussian(count, half_width=2.8):
+    return uniform(Gaussian().value, (-half_width, half_width), count)
+
+
+def test_a_step_just_beyond_the_limit_is_warned_of():
+    x, w = gaussian(200)
+    velocity = MarkerVelocity(SHAPES["S8"], 0.2)
+    limit = extremes(SHAPES["S8"]).eta * 0.04
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run(x, w, velocity, dt=0.999 * limit, steps=1)
+    with pytest.warns(StabilityWarning, match=r"1\.01 times the limit of stability, 0\.0238"):
+        run(x, w, velocity, dt=1.01 * limit, steps=1)
+
+
+def test_the_limit_holds_for_any_flux():
+    x, w = gaussian(200)
+    limit = extremes(SHAPES["S8"]).eta * 0.04 / 10.0
+    with pytest.warns(StabilityWarning, match="times the limit of stability"):
+        run(x, w, MarkerVelocity(SHAPES["S8"], 0.2, burgers(10.0)), dt=1.1 * limit, steps=1)
+
+
+def test_waves_that_come_out_wrong_are_warned_of():
+    """A soliton narrower than epsilon falls behind: the velocity holds the third power of its wavenumber."""
+    soliton = Soliton(100.0, 1.0)
+    x, w = uniform(soliton.value, (-8.0, 8.0), 400)
+    velocity = MarkerVelocity(SHAPES["S8"], 0.3, kdv, 2)
+    with pytest.warns(AccuracyWarning, match="come out wrong"):
+        end = run(x, w, velocity, dt=1e-4, steps=100)
+    z = 0.01 * soliton.speed + np.linspace(-1.0, 1.0, 41)
+    assert np.abs(end.field(z) - soliton.value(z, 0.01)).max() > 0.2 * 50.0
+    fine = MarkerVelocity(SHAPES["S8"], 0.1, kdv, 2)
+    assert wave_error(fine, x, w, 1e-4, 100) < 0.1 * wave_error(velocity, x, w, 1e-4, 100)
+
+
+def test_clusters_are_warned_of():
+    """S3 at half the limit: waves grow by exp(3.04 T / eps^2), and F is wrong by a fifth."""
+    x, w = gaussian(200, 4.0)
+    epsilon = 0.16
+    with pytest.warns(StabilityWarning, match="gather in clusters"):
+        end = run(x, w, MarkerVelocity(SHAPES["S3"], epsilon), dt=0.004, steps=62)
+    z = np.linspace(-1.5, 1.5, 101)
+    assert np.abs(end.field(z) - Gaussian().value(z, 0.248)).max() > 0.1
+
+
+@pytest.mark.parametrize("shape", ["S4", "S8"])
+def test_markers_farther_apart_than_epsilon_are_warned_of(shape):
+    """They stand still, and the field stays as lumpy as it was."""
+    x, w = gaussian(56)
+    with pytest.warns(AccuracyWarning, match="too far apart"):
+        end = run(x, w, MarkerVelocity(SHAPES[shape], 0.05), dt=1e-4, steps=3)
+    assert np.abs(end.field(end.x) - Gaussian().value(end.x, 3e-4)).max() > 0.3
+
+
+def test_too_large_an_epsilon_is_warned_of():
+    x, w = gaussian(101)
+    velocity = MarkerVelocity(SHAPES["S4"], 5.0)
+    assert smoothing(velocity, x, w) > 0.2
+    with pytest.warns(AccuracyWarning, match="is too large for this field"):
+        end = run(x, w, velocity, dt=0.1, steps=1)
+    assert end.field([0.0])[0] < 0.5 * Gaussian().value(0.0, 0.1)
+    # f'' eps^2 / 14 of S4, of which half of epsilon leaves a quarter; f'' = -2 at the peak; then eps^4.
+    fine = smoothing(MarkerVelocity(SHAPES["S4"], 0.2), *gaussian(2000, 4.0))
+    assert fine == pytest.approx(0.75 * 0.04 / 14.0 * 2.0, rel=0.03)
+
+
+@pytest.mark.parametrize("count", [200, 1000])
+def test_the_noise_of_random_markers_is_the_measured_one(count):
+    velocity = MarkerVelocity(SHAPES["S8"], 0.1)
+    z = np.linspace(-0.8, 0.8, 161)
+    estimates, measured = [], []
+    for seed in range(8):
+        x, w = random(Gaussian(), count, np.random.default_rng(seed))
+        estimates.append(noise(velocity, x, w))
+        measured.append(np.mean((velocity.fields(x, w, z)[0] / Gaussian().value(z) - 1.0) ** 2))
+    # Eight samples of some sixteen widths each: ten per cent; the weak tails count in the estimate only.
+    assert np.mean(estimates) == pytest.approx(np.sqrt(np.mean(measured)), rel=0.25)
+    assert noise(velocity, *gaussian(count)) < 0.001
+
+
+def test_random_markers_are_warned_of():
+    x, w = random(Gaussian(), 200, np.random.default_rng(4))
+    with pytest.warns(AccuracyWarning, match="lie irregularly"):
+        run(x, w, MarkerVelocity(SHAPES["S8"], 0.1), dt=1e-3, steps=2)
+
+
+def test_weights_that_change_are_warned_of_too():
+    x, w = gaussian(56)
+    velocity = MarkerVelocity(SHAPES["S8"], 0.05)
+    with pytest.warns(AccuracyWarning, match="too far apart"):
+        advance_weights(x, w, velocity, GaussianSource(0.1).rate, dt=1e-4, steps=1)
+    with pytest.warns(StabilityWarning, match="limit of stability"):
+        advance_weights(
+            *gaussian(200),
+            MarkerVelocity(SHAPES["S8"], 0.2),
+            GaussianSource(0.1).rate,
+            dt=0.1,
+            steps=1,
+        )

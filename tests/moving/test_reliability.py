@@ -1,0 +1,104 @@
+"""What the particles of a run say of its accuracy, against what is measured."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
+from fracparticles.moving import dvm
+from fracparticles.moving.reliability import cells, ripple
+from fracparticles.schemes.stability import stability_limit
+from fracparticles.special.stable import green
+
+ALPHA, START = 1.5, 0.5
+
+
+def cloud(half_width=10.0, h=0.1):
+    n = round(half_width / h)
+    x = h * np.arange(-n, n + 1.0)
+    return x, green(x, START, ALPHA)
+
+
+def moved(x, u, *, dt=0.02, steps=10, **options):
+    return dvm.run(x, u, spacing=0.1, alpha=ALPHA, dt=dt, steps=steps, start=START, **options)
+
+
+def test_cells_fill_the_line():
+    x = np.array([3.0, 0.0, 1.0, 1.0])
+    # The gaps are 1, 0, 2; an end has the whole gap next to it.
+    assert cells(x).tolist() == [2.0, 1.0, 0.5, 1.0]
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("overlap", [0.4, 0.6, 0.8])
+def test_the_ripple_of_a_uniform_field_is_that_of_the_transform(order, overlap):
+    x = np.arange(-200.0, 201.0)
+    velocity = dvm.DiffusionVelocity(ALPHA, order, overlap)
+    z = np.linspace(-0.5, 0.5, 201)
+    field = velocity.field(x, np.ones(x.size), z)
+    # Between the crest and the mean; the second wave has K^(4 pi s) < 2e-3 at s = 0.4, four times as fine.
+    measured = 0.5 * (field.max() - field.min())
+    predicted = ripple(x, np.ones(x.size), overlap, velocity.transform)
+    assert predicted == pytest.approx(measured, rel=0.01)
+
+
+def test_no_ripple_of_particles_in_one_place_and_a_full_one_of_a_single_particle():
+    transform = dvm.DiffusionVelocity(ALPHA, 2, 1.0).transform
+    assert ripple(np.zeros(5), np.ones(5), 1.0, transform) == 0.0
+    assert ripple(np.zeros(1), np.ones(1), 1.0, transform) == 1.0
+
+
+@pytest.mark.parametrize(("overlap", "wrong"), [(0.4, 0.3), (0.5, 0.1)])
+def test_too_small_an_overlap_is_warned_of(overlap, wrong):
+    x, u = cloud()
+    with pytest.warns(AccuracyWarning, match="too far apart for the smoothing length"):
+        run = moved(x, u, dt=1e-3, steps=1000, overlap=overlap)
+    exact = green(x, START + 1.0, ALPHA)
+    assert np.abs(run.field(x) - exact).sum() > wrong * exact.sum()
+
+
+def test_a_fine_run_says_nothing(recwarn):
+    x, u = cloud()
+    moved(x, u)
+    moved(x, u, exterior="open")
+    assert not recwarn.list
+
+
+def test_what_a_threshold_takes_away_is_warned_of():
+    x, u = cloud()
+    with pytest.warns(AccuracyWarning, match=r"held 0\.\d+ of the total"):
+        run = moved(x, u, threshold=0.2)
+    assert run.history.eliminated_strength > 0.05 * run.history.total_initial
+
+
+def test_what_a_narrow_lattice_loses_is_warned_of():
+    x, u = cloud(half_width=2.0)
+    with pytest.warns(AccuracyWarning, match=r"left out 0\.\d+ of the total strength"):
+        moved(x, u, dt=0.05, steps=20)
+
+
+@pytest.mark.parametrize(("half_width", "centre"), [(2.0, 0.0), (10.0, 8.0)])
+def test_tails_that_do_not_continue_the_field_are_warned_of(half_width, centre):
+    x, _ = cloud(half_width)
+    with pytest.warns(AccuracyWarning, match="does not meet the field inside"):
+        run = moved(x, green(x - centre, START, ALPHA), dt=0.02, steps=50, exterior="open")
+    z = np.linspace(-0.9, 0.9, 91) * half_width
+    assert np.abs(run.field(z) - green(z - centre, START + 1.0, ALPHA)).max() > 0.01
+
+
+def test_a_step_beyond_the_limit_is_warned_of():
+    x, u = cloud()
+    velocity = dvm.DiffusionVelocity(ALPHA, 2, 0.2)
+    limit = stability_limit("DD", ALPHA - 1.0) * 0.1**ALPHA
+    # The same but for aliases, at this overlap exp(-pi^2 4 3/4) of the whole.
+    assert velocity.largest_stable_step == pytest.approx(limit, rel=1e-5)
+    with pytest.warns(StabilityWarning, match="outside the stability interval of DVM"):
+        moved(x, u, dt=1.01 * limit, steps=1)
+
+
+def test_numbers_that_overflow_are_refused():
+    x, u = cloud()
+    with pytest.raises(InvalidInput) as error:
+        dvm.run(x, 1e300 * u, spacing=1e50, alpha=ALPHA, dt=1.0, steps=1)
+    assert error.value.field == "u"

@@ -1,0 +1,131 @@
+"""Probes of the fundamental solution and what is derived from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import mpmath as mp
+
+from fracparticles.special import (
+    central_mass,
+    green,
+    green_flux,
+    green_rate,
+    green_slope,
+    mean_radius,
+    tail_constant,
+    tail_mass,
+)
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.ends_of_alpha import references
+from scenes.extremes.ends_of_alpha.names import distance, written
+
+__all__ = ["FUNCTIONS", "errors", "probes"]
+
+_FAR = 1e6
+# Documented: 1e-13, 1e-12 for what has a derivative.
+_BOUNDS = {"slope": 1e-12, "rate": 1e-12}
+
+
+def _exact(name: str, n: int, alpha: float, r: float) -> tuple[mp.mpf, mp.mpf]:
+    """The value at t = 1, and what its error is relative to: of the rate, which has a zero, the parts."""
+    value = references.density(n, alpha, r)
+    if name == "density":
+        return value, value
+    if name == "flux":
+        return r * value / mp.mpf(alpha), value
+    if name in ("central mass", "tail mass"):
+        inside = references.mass_inside(n, alpha, r)
+        return (inside, inside) if name == "central mass" else (1 - inside, 1 - inside)
+    slope = -2 * mp.pi * r * references.density(n + 2, alpha, r)  # Phi_n' = -2 pi r Phi_(n+2)
+    if name == "slope":
+        return slope, abs(slope)
+    return -(n * value + r * slope) / mp.mpf(alpha), n * value / mp.mpf(alpha)
+
+
+FUNCTIONS = {
+    "density": green,
+    "slope": green_slope,
+    "flux": green_flux,
+    "rate": green_rate,
+    "central mass": central_mass,
+    "tail mass": tail_mass,
+}
+
+
+def errors(name: str, n: int, alpha: float, radii: list[float]) -> float:
+    """Return the greatest relative error of a function at some radii, t = 1."""
+    worst = 0.0
+    for r in radii:
+        value, size = _exact(name, n, alpha, r)
+        worst = max(worst, float(abs(FUNCTIONS[name](r, 1.0, alpha, n) - value) / abs(size)))
+    return worst
+
+
+def probes(betas: list[float], radii: list[float], dims: list[int]) -> Iterator[Probe]:
+    """Each function in each dimension; the far tail at r = 10^6; the numbers that belong to alpha.
+
+    The second correction of the limits leaves some 100 distance^3, below round-off; far out it is the series.
+    """
+    for beta in betas:
+        alpha = 1.0 + beta
+        exact = distance(beta) > 1e-4  # the quadrature costs a second a value: one radius
+        for name in FUNCTIONS:
+            for n in dims:
+                yield probe(
+                    "density",
+                    f"{name}, n = {n}, {written(beta)}",
+                    "limit and corrections" if not exact else "the Fourier integral",
+                    partial(errors, name, n, alpha, [1.1] if exact else radii),
+                    _BOUNDS.get(name, 1e-13),
+                    source=references.source_of(alpha),
+                    must=Verdict.HELD,
+                )
+        yield from _far(beta, dims)
+        yield from _numbers(beta)
+
+
+def _far(beta: float, dims: list[int]) -> Iterator[Probe]:
+    alpha = 1.0 + beta
+    for n in dims:
+        for name, function, exact in (
+            ("density", green, references.tail_density),
+            ("tail mass", tail_mass, references.tail_mass),
+        ):
+            yield probe(
+                "far tail",
+                f"{name}, n = {n}, r = 1e6, {written(beta)}",
+                "three terms of the far series",
+                partial(_relative, partial(function, _FAR, 1.0, alpha, n), exact(n, alpha, _FAR)),
+                1e-13,
+                source="series, mpmath",
+                must=Verdict.HELD,
+            )
+
+
+def _numbers(beta: float) -> Iterator[Probe]:
+    """R_alpha (A.3) = (2/pi) Gamma(1 - 1/alpha), the constant of the tail, and Phi_n(0)."""
+    alpha = 1.0 + beta
+    with mp.workdps(40):
+        a = mp.mpf(alpha)
+        cases: dict[str, Any] = {
+            "mean radius": (mean_radius, 2 / mp.pi * mp.gamma(1 - 1 / a)),
+            "tail constant": (tail_constant, mp.gamma(1 + a) * mp.sin(mp.pi * a / 2) / mp.pi),
+            "peak": (lambda alpha: green(0.0, 1.0, alpha), mp.gamma(1 + 1 / a) / mp.pi),
+        }
+    for name, (function, exact) in cases.items():
+        yield probe(
+            "number",
+            f"{name}, {written(beta)}",
+            "its closed form",
+            partial(_relative, partial(function, alpha), exact),
+            1e-14,
+            source="closed form, mpmath",
+            must=Verdict.HELD,
+        )
+
+
+def _relative(function: Callable[[], Any], exact: Any) -> float:
+    return float(abs(mp.mpf(function()) / exact - 1))

@@ -1,0 +1,16 @@
+"""How a fractional order is written in a table."""
+
+from __future__ import annotations
+
+__all__ = ["distance", "written"]
+
+
+def distance(beta: float) -> float:
+    """Return the distance of alpha = 1 + beta, as the double that it is, to the nearer end."""
+    alpha = 1.0 + beta
+    return min(alpha - 1.0, 2.0 - alpha)
+
+
+def written(beta: float) -> str:
+    """Return beta, or 1 minus it where it is above a half, with one digit."""
+    return f"beta = {beta:.0e}" if beta < 0.5 else f"beta = 1 - {2.0 - (1.0 + beta):.0e}"

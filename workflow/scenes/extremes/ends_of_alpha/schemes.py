@@ -1,0 +1,159 @@
+"""Probes of the schemes, of their limits, and of what is no order at all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+from scipy.linalg import expm, toeplitz
+
+import fracparticles as fp
+from fracparticles.run.solver import compute
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.ends_of_alpha import kernels
+from scenes.extremes.ends_of_alpha.names import written
+
+__all__ = ["probes"]
+
+EPS = float(np.finfo(float).eps)
+_N, _H, _OVERLAP = 20, 0.25, 2.0  # 41 particles
+_TIME = 0.5
+_ROUND_OFF = 64.0 * EPS  # of T |lambda|, measured, see `run.reliability`
+
+
+def _values(name: str, beta: float, order: int) -> np.ndarray:
+    """Return the kernel at m / s, m = 0 .. 2 n, from mpmath."""
+    family = "printed" if order in (2, 4) else "gamma"
+    r = np.arange(2 * _N + 1) / _OVERLAP
+    return np.array(
+        [float(kernels.exact(name, float(x), 1.0 + beta, 1, order, family)[0]) for x in r]
+    )
+
+
+def _exchange(w: np.ndarray) -> np.ndarray:
+    """Return the matrix of sum_j w_{i-j} (u_j - u_i)."""
+    matrix = toeplitz(w)
+    np.fill_diagonal(matrix, 0.0)
+    return matrix - np.diag(matrix.sum(axis=1))
+
+
+def _matrix(scheme: str, beta: float, order: int) -> np.ndarray:
+    """Return A h^alpha of DD (10), KPSE (34), or DPSE (13), (16), truncated."""
+    alpha, s = 1.0 + beta, _OVERLAP
+    if scheme == "KPSE":
+        return _exchange(alpha * s ** (-1.0 - alpha) * _values("K", beta, order))
+    if scheme == "DD":
+        return toeplitz(s ** (-1.0 - alpha) * _values("G", beta, order))
+    # Only differences of the potential enter: the constant 1 / beta is taken off where there are digits for it.
+    with mp.workdps(40):
+        at = [kernels.exact("kappa", m / s, alpha, 1, 2, "printed")[0] for m in range(2 * _N + 1)]
+        potential = np.array([float(value - at[0]) for value in at]) * s ** (1.0 - alpha)
+    r = np.arange(2 * _N + 1) / s
+    laplacian = 2.0 * s**-3.0 * 2.0 / np.sqrt(np.pi) * np.exp(-r * r)  # (16), (17)
+    return _exchange(laplacian) @ toeplitz(potential)
+
+
+def _run(beta: float, **fields: Any) -> Any:
+    return compute(fp.Case(beta=beta, store="metrics", t_final=0.5 + _TIME, **fields))
+
+
+def _against_matrix(scheme: str, beta: float, order: int) -> float:
+    run = _run(
+        beta, scheme=scheme, order=order, half_width=_N * _H, spacing=_H, integrator="exponential"
+    )
+    exact = expm(_TIME * _H ** -(1.0 + beta) * _matrix(scheme, beta, order)) @ run.u0
+    return float(np.abs(run.u - exact).max() / np.abs(exact).max())
+
+
+def _dense(betas: list[float]) -> Iterator[Probe]:
+    """exp(A T) u0 with A element by element from mpmath: round-off of T |lambda| = 40, of DPSE over beta."""
+    for beta in betas:
+        for scheme, order in (("DD", 2), ("DD", 12), ("KPSE", 2), ("KPSE", 12), ("DPSE", 2)):
+            kept = 1.0 / beta if scheme == "DPSE" and beta > 5e-3 else 1.0
+            yield probe(
+                "scheme",
+                f"{scheme}, order {order}, 41 particles, {written(beta)}",
+                "exp(A T) of its matrix",
+                partial(_against_matrix, scheme, beta, order),
+                _ROUND_OFF * 40.0 * kept,
+                source="mpmath kernels, scipy expm",
+                must=Verdict.HELD,
+            )
+
+
+def _limits(betas: list[float]) -> Iterator[Probe]:
+    """a = 2 / |lambda_min|, of DD and FPSE of order II from k^alpha exp(-k^2/4) and k^alpha exp(-k^2/2).
+
+    The transform is greatest at k^2 = 2 alpha and alpha; the aliases, exp(-(2 pi s - k)^2 / 4), are below 1e-22.
+    GPSE: 1 - exp(-k^alpha) and its aliases, at theta = pi.
+    """
+    for beta in betas:
+        alpha = mp.mpf(1.0 + beta)
+        s = mp.mpf(_OVERLAP)
+        exact = {
+            "DD": (2 * alpha) ** (alpha / 2) * mp.exp(-alpha / 2),
+            "FPSE": alpha ** (alpha / 2) * mp.exp(-alpha / 2),
+            "GPSE": _green_range(alpha, s),
+        }
+        for scheme, value in exact.items():
+            yield probe(
+                "limit",
+                f"{scheme}, order 2, {written(beta)}",
+                "a from the transform",
+                partial(_off_limit, scheme, beta, 2 * s**alpha / value),
+                # The extreme is looked for among samples, to 1 / 256 of their distance: the square of it.
+                1e-9,
+                source="closed form, mpmath",
+                must=Verdict.HELD,
+            )
+
+
+def _off_limit(scheme: str, beta: float, exact: mp.mpf) -> float:
+    return float(abs(fp.stability_limit(scheme, beta) / exact - 1))
+
+
+def _green_range(alpha: mp.mpf, s: mp.mpf) -> mp.mpf:
+    """sum_l [exp(-|2 pi l s|^alpha) - exp(-|s (pi + 2 pi l)|^alpha)]."""
+    aliases = range(-12, 13)
+    zero = mp.fsum(mp.exp(-(abs(2 * mp.pi * m * s) ** alpha)) for m in aliases)
+    return zero - mp.fsum(mp.exp(-(abs(s * mp.pi * (2 * m + 1)) ** alpha)) for m in aliases)
+
+
+def _beyond() -> Iterator[Probe]:
+    """beta below half an ulp of 1 makes alpha 1, or 2 from the other side: there is no such equation here."""
+    x = np.linspace(-4.0, 4.0, 33)
+    for beta in (0.0, 5e-324, 1e-17, 1e-16, 1.0 - 1e-16, 1.0, float(np.nextafter(1.0, 0.0))):
+        alpha = 1.0 + beta
+        case = {"scheme": "KPSE", "beta": beta, "half_width": 4.0, "spacing": 0.25, "dt": 1e-3}
+        calls = {
+            "Case": partial(fp.Case, **case),
+            "green": partial(fp.green, 1.0, 1.0, alpha),
+            "kernel": partial(fp.kernel, "K", 1.0, alpha),
+            "evolve": partial(fp.evolve, np.exp(-x * x), 0.25, alpha, 0.1),
+            "mean_radius": partial(fp.mean_radius, alpha),
+            "stability_limit": partial(fp.stability_limit, "KPSE", beta),
+        }
+        for name, call in calls.items():
+            yield probe(
+                "no such alpha",
+                f"{name}, beta = {beta!r}",
+                "refused",
+                partial(_accepted, call),
+                0.0,
+                must=Verdict.REFUSED,
+            )
+
+
+def _accepted(call: Callable[[], Any]) -> float:
+    call()
+    return np.inf
+
+
+def probes(betas: list[float]) -> Iterator[Probe]:
+    """All of them."""
+    yield from _dense(betas)
+    yield from _limits(betas)
+    yield from _beyond()

@@ -1,0 +1,211 @@
+"""What holds of the configuration: it is read, and its cases are those that it names, or it is refused in a line."""
+
+from __future__ import annotations
+
+import datetime
+import tempfile
+from collections.abc import Iterator
+from contextlib import chdir
+from copy import deepcopy
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import yaml
+from hypothesis import strategies as st
+
+from fracparticles.run.case import Case
+from fracstudy.config import StudyConfig, batches, jobs, read_config, targets
+from fracstudy.scene import Scene, merged, resolved
+from scenes.extremes.fuzzing.harness import Property
+from scenes.extremes.fuzzing.strategies import chance, fields_of, numbers, texts
+
+__all__ = ["PROPERTIES"]
+
+Tree = Any  # of mappings, lists and values, as YAML gives it
+_STUDY: Tree = {
+    "results_dir": "results",
+    "report_dir": "report",
+    "site_dir": "site",
+    "scenes_dir": "scenes",
+    "documents": {"own": {"title": "Our own"}},
+    "smoke": False,
+}
+_RUNS: Tree = [
+    {
+        "scheme": ["DD", "KPSE"],
+        "order": [2, 4],
+        "beta": [0.3, 0.5],
+        "half_width": 10.0,
+        "spacing": 0.5,
+        "dt": 0.01,
+    },
+    {
+        "scheme": "DVM",
+        "beta": 0.5,
+        "truncation": 6.0,
+        "spacing": 0.5,
+        "dt": 0.05,
+        "store": "metrics",
+    },
+]
+_SCENE: Tree = {
+    "title": "Errors",
+    "place": 3,
+    "runs": _RUNS,
+    "smoke": {"title": "Few errors"},
+    "variants": {"one": {"runs": [{"beta": 0.7}]}, "two": {"place": 4, "runs": [{}, {"dt": 0.1}]}},
+}
+_KEYS = sorted(
+    {
+        *StudyConfig.model_fields,
+        *Scene.model_fields,
+        *Case.model_fields,
+        "variants",
+        "smoke",
+        "title",
+    }
+)
+_SCALARS = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(-3, 10**20),
+    numbers(),
+    st.sampled_from(
+        (
+            float("nan"),
+            float("inf"),
+            "1e-4",
+            "{beta}",
+            "{",
+            "x/../y",
+            "/",
+            datetime.date(2020, 1, 1),
+            b"x",
+        )
+    ),
+    texts(),
+)
+_TREES = st.recursive(
+    _SCALARS,
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3),
+        st.dictionaries(
+            st.one_of(st.sampled_from(_KEYS), texts(), st.integers(0, 3)), inner, max_size=3
+        ),
+    ),
+    max_leaves=5,
+)
+
+
+def _places(tree: Tree, at: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """The ways to every value of a tree."""
+    if at:
+        yield at
+    inner = (
+        tree.items()
+        if isinstance(tree, dict)
+        else enumerate(tree)
+        if isinstance(tree, list)
+        else ()
+    )
+    for key, value in inner:
+        yield from _places(value, (*at, key))
+
+
+@st.composite
+def _changed(draw: st.DrawFn, whole: Tree) -> Tree:
+    """Draw a tree with up to three values changed, left out, or set under another key."""
+    tree = deepcopy(whole)
+    for _ in range(draw(st.integers(0, 3))):
+        places = list(_places(tree))
+        if not places:
+            break
+        *way, last = draw(st.sampled_from(places))
+        holder = tree
+        for key in way:
+            holder = holder[key]
+        how = draw(st.integers(0, 5))
+        if how == 0:
+            del holder[last]
+        elif how == 1 and isinstance(holder, dict):
+            holder[draw(st.one_of(st.sampled_from(_KEYS), texts()))] = draw(_TREES)
+        elif how <= 3 and last in Case.model_fields:
+            values = fields_of(Case)[last]
+            holder[last] = draw(st.one_of(values, st.lists(values, max_size=3)))
+        else:
+            holder[last] = draw(_TREES)
+    return tree
+
+
+@st.composite
+def _files(draw: st.DrawFn) -> tuple[Tree, bytes]:
+    """Draw a configuration, and the text of a scene that may be spoilt."""
+    text = yaml.safe_dump(draw(_changed(_SCENE)), allow_unicode=draw(st.booleans())).encode(
+        "utf-8", "surrogatepass"
+    )
+    if draw(chance(30)):
+        at, length = draw(st.integers(0, len(text))), draw(st.integers(0, 5))
+        text = (
+            text[:at]
+            + draw(st.one_of(st.binary(max_size=3), texts().map(_bytes)))
+            + text[at + length :]
+        )
+    return draw(_changed(_STUDY)) if draw(chance(40)) else _STUDY, text
+
+
+def _bytes(text: str) -> bytes:
+    return text.encode("utf-8", "surrogatepass")
+
+
+def _read(parts: tuple[Tree, bytes]) -> float:
+    """A configuration is refused, or all that is made of it fits together."""
+    config, scene = parts
+    with tempfile.TemporaryDirectory() as folder, chdir(folder):
+        Path("scenes/own/errors").mkdir(parents=True)
+        Path("scenes/own/errors/scene.yaml").write_bytes(scene)
+        study, scenes = read_config(config if isinstance(config, dict) else {})
+        cases, groups = batches(scenes, study.smoke)
+        made = [case.path for group in groups.values() for case in group]
+        wanted = {case.path for of_scene in cases.values() for case in of_scene}
+        wrong = len(set(made)) != len(made) or set(made) != wanted
+        wrong |= sorted(
+            name for names in jobs(scenes, study.smoke).values() for name in names
+        ) != sorted(scenes)
+        wrong |= not set(scenes) <= set(targets(scenes))
+        for one in scenes.values():
+            again = Scene(**one.packed(runs=True))
+            wrong |= [case.path for case in again.cases] != [case.path for case in one.cases]
+            wrong |= len(one.cases) > sum(
+                prod(
+                    len(v) if isinstance(v, list) else 1
+                    for v in block.model_dump(exclude_none=True).values()
+                )
+                for block in one.runs
+            )
+        return 2.0 * wrong
+
+
+def _laid(parts: tuple[Tree, Tree, bool]) -> float:
+    """To lay a tree over itself, or an empty one over it, changes nothing; what is resolved stays as it is."""
+    tree, other, smoke = parts
+    before = deepcopy((tree, other))
+    whole = resolved(tree, smoke)
+    wrong = repr(merged(tree, {}) if isinstance(tree, dict) else tree) != repr(tree)
+    wrong |= isinstance(whole, dict) and "smoke" in whole
+    wrong |= isinstance(whole, dict) and repr(resolved(whole, smoke)) != repr(whole)
+    merged(tree, other)
+    return 2.0 * (wrong or repr((tree, other)) != repr(before))
+
+
+PROPERTIES = (
+    Property("study.yaml, scene.yaml, runs", "its cases, or a line", "", _files(), _read, 8),
+    Property(
+        "smoke, variants",
+        "laid over, nothing else",
+        "",
+        st.tuples(_TREES, _TREES, st.booleans()),
+        _laid,
+        4,
+    ),
+)

@@ -1,0 +1,372 @@
+"""What holds of the functions of the library, for arguments of all kinds."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import pickle
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.special import gamma, j0
+
+import fracparticles as fp
+from fracparticles.graded.particles import FORMS
+from fracparticles.kernels.families import FAMILIES, KERNELS
+from fracparticles.schemes import ALL_SCHEMES
+from fracstudy.probe import Verdict
+from scenes.extremes.fuzzing.cases import cases, refuse_dear
+from scenes.extremes.fuzzing.harness import NotRun, Property
+from scenes.extremes.fuzzing.strategies import anything, between, chance, numbers, texts
+
+__all__ = ["PROPERTIES"]
+
+_EPS = 2.0**-52
+_ALPHAS = st.one_of(
+    between(1.02, 1.98),
+    between(1.02, 1.98),
+    st.sampled_from((1.0 + 1e-9, 1.001, 1.999, 2.0 - 1e-9)),
+)
+_ERRORS = [
+    n
+    for n in fp.__all__
+    if isinstance(getattr(fp, n), type) and issubclass(getattr(fp, n), BaseException)
+]
+_CALLED = [name for name in fp.__all__ if callable(getattr(fp, name)) and name not in _ERRORS]
+
+# --- anything for every argument -------------------------------------------------------------------------
+
+# What an argument of that name is likely to be; of another name, what its annotation says, or anything.
+_LIKELY: dict[str, st.SearchStrategy[Any]] = {
+    "alpha": _ALPHAS,
+    "beta": between(0.02, 0.98),
+    "dim": st.integers(1, 3),
+    "order": st.sampled_from((2, 4, 6, 8, 10, 12)),
+    "overlap": between(0.8, 4.0),
+    "terms": st.integers(0, 6),
+    "points": st.integers(3, 40),
+    "count": st.integers(1, 30),
+    "form": st.sampled_from(FORMS),
+    "family": st.sampled_from((None, *FAMILIES)),
+    "name": st.sampled_from(tuple(KERNELS)),
+    "scheme": st.sampled_from(tuple(ALL_SCHEMES)),
+    "case": cases(),
+    "tail": st.one_of(st.none(), st.lists(numbers(0.0, 9.0), max_size=3)),
+    "stretch": st.one_of(st.none(), between(1.0, 4.0)),
+    "operator": st.none(),
+    "amplification": st.none(),
+}
+_ARRAYS = st.tuples(
+    st.integers(0, 12), st.integers(0, 10**6), st.sampled_from((1.0, 1.0, 1e-200, 1e200))
+).map(lambda drawn: drawn[2] * np.random.default_rng(drawn[1]).standard_normal(drawn[0]))
+
+
+def _argument(parameter: inspect.Parameter) -> st.SearchStrategy[Any]:
+    likely = _LIKELY.get(parameter.name)
+    if likely is None:
+        said = str(parameter.annotation)
+        positive = numbers(0.0, 1e100, inside=(True, False))
+        likely = {"float": positive, "int": st.integers(-2, 40), "str": texts()}.get(said, _ARRAYS)
+    return st.one_of(likely, likely, likely, anything())
+
+
+@st.composite
+def _calls(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
+    """Draw a name of the package and arguments for it: mostly likely ones."""
+    name = draw(st.sampled_from(_CALLED))
+    taken = inspect.signature(getattr(fp, name)).parameters.values()
+    given = {
+        one.name: draw(_argument(one))
+        for one in taken
+        if one.kind not in (one.VAR_KEYWORD, one.VAR_POSITIONAL)
+        and (one.default is one.empty or draw(chance(50)))
+    }
+    return name, given
+
+
+def _called(call: tuple[str, dict[str, Any]]) -> float:
+    """A call returns, or is refused; what it was given is as it was, and there is no file but a whole one."""
+    name, given = call
+    if name == "WholeSpace" or name == "evolve":
+        _refuse_large(given)
+    if isinstance(given.get("case"), fp.Case):
+        refuse_dear(given["case"])
+        if name in ("solve", "prepare") and given["case"].dim == 3:
+            raise NotRun("other properties take it")
+    arrays = {key: value.copy() for key, value in given.items() if type(value) is np.ndarray}
+    with tempfile.TemporaryDirectory() as folder:
+        if name in ("read_run", "write"):
+            given = {**given, "path": _inside(folder, given.get("path"))}
+        result = getattr(fp, name)(**given)
+        if name == "write":
+            left = [file for file in Path(folder).rglob("*") if file.is_file()]
+            if len(left) != 1 or not fp.read_run(left[0]).identical(given["dataset"]):
+                return 2.0
+    for key, before in arrays.items():
+        if not np.array_equal(given[key], before, equal_nan=before.dtype.kind in "fc"):
+            return 2.0
+    return 0.0 if not isinstance(result, np.ndarray) or not np.isnan(result).any() else 2.0
+
+
+def _refuse_large(given: dict[str, Any]) -> None:
+    points, stretch = given.get("points", 0), given.get("stretch", 0)
+    large = isinstance(points, int | np.integer) and points > 100
+    if large or (isinstance(stretch, int | float) and stretch > 100.0):
+        raise NotRun("many points")
+
+
+def _inside(folder: str, path: Any) -> Any:
+    """A path in a folder of its own, of the kind and the name that was given."""
+    if isinstance(path, str):
+        return str(Path(folder) / "x") + path.replace("/", "_")
+    return Path(folder) / "run.nc" if path is None or isinstance(path, Path) else path
+
+
+def _error(parts: tuple[Any, Any, str, str]) -> float:
+    """An error of ours is one line, whatever it is of, and goes from process to process."""
+    field, value, allowed, _ = parts
+    wrong = False
+    for name in _ERRORS:
+        kind = getattr(fp, name)
+        error = kind(*parts) if kind is fp.InvalidInput else kind(f"{field} {allowed}")
+        try:
+            pickle.dumps(value)
+        except Exception:  # the value's own
+            again = error
+        else:
+            again = pickle.loads(pickle.dumps(error))
+        wrong |= "\n" in str(error) or str(again) != str(error) or type(again) is not kind
+    return 2.0 * wrong
+
+
+# --- right against something independent -------------------------------------------------------------------
+
+
+def _density(x: float, alpha: float, dim: int) -> float:
+    """The Fourier integral of exp(-k^alpha), by quadrature."""
+
+    def integral(of: Callable[[float], float], **weight: Any) -> float:
+        end = 42.0 ** (1.0 / alpha)  # exp(-42) = 6e-19
+        return float(
+            quad(
+                lambda k: of(k) * math.exp(-(k**alpha)), 0.0, end, epsabs=1e-14, limit=400, **weight
+            )[0]
+        )
+
+    if dim == 1:
+        return integral(lambda k: 1.0, weight="cos", wvar=x) / math.pi
+    if dim == 2:
+        return integral(lambda k: k * j0(k * x)) / (2.0 * math.pi)
+    if x < 1e-3:
+        return integral(lambda k: k * k * (1.0 - (k * x) ** 2 / 6.0)) / (2.0 * math.pi**2)
+    return integral(lambda k: k, weight="sin", wvar=x) / (2.0 * math.pi**2 * x)
+
+
+def _green(parts: tuple[float, float, float, int]) -> float:
+    """G by quadrature of its Fourier integral, to 1e-10 of its maximum."""
+    r, t, alpha, dim = parts
+    scale = t ** (-1.0 / alpha)
+    x = r / scale
+    found = np.asarray(fp.green([x, -x], t, alpha, dim))
+    expected = scale**dim * _density(x * scale, alpha, dim)
+    most = scale**dim * gamma(dim / alpha) / alpha  # of the size of G(0)
+    return float(np.abs(found - expected).max()) / (1e-10 * most)
+
+
+def _rates(parts: tuple[float, float, float, int]) -> float:
+    """The rate is dG/dt, the slope dG/dr, and the flux r G / (alpha t): by differences of G, to 1e-6."""
+    r, t, alpha, dim = parts
+    x, step = abs(r) * t ** (1.0 / alpha), 1e-4
+    green = lambda x, t: float(np.asarray(fp.green(x, t, alpha, dim)))  # noqa: E731
+    most = green(0.0, t)
+
+    def slope(of: Callable[[float], float]) -> float:  # of fourth order, per relative step
+        return (8.0 * (of(step) - of(-step)) - of(2.0 * step) + of(-2.0 * step)) / (12.0 * step)
+
+    by_time = slope(lambda s: green(x, t * (1.0 + s)) / most)
+    width = t ** (1.0 / alpha)
+    by_place = slope(lambda s: green(x + width * s, t) / most)
+    found = (
+        float(fp.green_rate(x, t, alpha, dim)) * t / most - by_time,
+        float(fp.green_slope(x, t, alpha, dim)) * width / most - by_place,
+        float(fp.green_flux(x, t, alpha, dim)) / most * alpha * t / width
+        - x / width * green(x, t) / most,
+    )
+    return max(map(abs, found)) / 1e-6
+
+
+def _radius(alpha: float) -> float:
+    return abs(fp.mean_radius(alpha) * math.pi / (2.0 * gamma(1.0 - 1.0 / alpha)) - 1.0) / (
+        16.0 * _EPS / (alpha - 1.0)
+    )
+
+
+def _evolved(parts: tuple[float, int, float, float, int]) -> float:
+    """From the fundamental solution to the fundamental solution, to a thousandth, or a warning."""
+    alpha, half, start, span, terms = parts
+    h = 0.25
+    x = h * np.arange(-half, half + 1)
+    found = fp.evolve(np.asarray(fp.green(x, start, alpha)), h, alpha, span, terms=terms)
+    exact = np.asarray(fp.green(x, start + span, alpha))
+    return float(np.abs(found - exact).max() / exact.max()) / 2e-2
+
+
+def _periodic(parts: tuple[int, float, float, int]) -> float:
+    """Without terms it is a diagonal on the waves of the lattice: the transform as a dense matrix."""
+    points, alpha, time, seed = parts
+    u = np.random.default_rng(seed).standard_normal(points)
+    k = 2.0 * np.pi * np.arange(points) / points
+    waves = np.exp(1j * np.outer(np.arange(points), k))
+    decay = np.exp(-time * np.minimum(k, 2.0 * np.pi - k) ** alpha)
+    expected = (waves * decay @ waves.conj().T).real @ u / points
+    return float(np.abs(fp.evolve(u, 1.0, alpha, time, terms=0) - expected).max()) / (
+        1e-13 * points
+    )
+
+
+def _graded(parts: tuple[int, float, float, float, str]) -> float:
+    """The step against the sums one by one; the interpolated one mirrors and does not grow."""
+    half, reach, alpha, time, form = parts
+    count = 2 * half + 1
+    x, volumes = fp.graded_particles(count, reach, 1.0)
+    matrix = fp.green_step(x, volumes, alpha, time, form)
+    naive = np.zeros((count, count))
+    for i in range(count):
+        for j in range(count):
+            if i != j or form == "quadrature":
+                naive[i, j] = volumes[j] * fp.green(x[i] - x[j], time, alpha)
+        if form == "exchange":
+            naive[i, i] = 1.0 - naive[i].sum()
+    of_field = fp.green_step_of_field(count, reach, 1.0, alpha, time)
+    mirrored = np.abs(of_field - of_field[::-1, ::-1]).max()
+    size = max(1.0, float(np.abs(naive).max()))
+    return max(float(np.abs(matrix - naive).max()) / size, float(mirrored)) / (64.0 * _EPS * count)
+
+
+def _kernel(parts: tuple[str, float, float, int, int]) -> float:
+    """A kernel by quadrature of its transform, to 1e-8."""
+    name, r, alpha, dim, order = parts
+    from fracparticles.kernels.families import kernel_transform
+
+    odd = KERNELS[name].parity == "odd"
+    if dim != 1 or name == "kappa":
+        raise NotRun("no plain integral")
+    end = 42.0 ** (1.0 / alpha) if name == "E" else 30.0 + 2.0 * order
+    hat = lambda k: float(np.asarray(kernel_transform(name, k, alpha, 1, order)))  # noqa: E731
+    value = (
+        quad(hat, 0.0, end, weight="sin" if odd else "cos", wvar=r, epsabs=1e-12, limit=400)[0]
+        / math.pi
+    )
+    found = float(np.asarray(fp.kernel(name, r, alpha, 1, order)))
+    return abs(found - (-value if odd else value)) / 1e-8
+
+
+def _limit(parts: tuple[str, float, float]) -> float:
+    """2 / a is the spectral radius of the matrix of many particles, from below."""
+    from fracparticles.schemes import SCHEMES
+    from fracparticles.schemes.setting import Setting
+    from fracparticles.schemes.spectrum import dense_matrix
+
+    name, beta, overlap = parts
+    overlap = overlap if SCHEMES[name].has_kernel else 2.0
+    setting = Setting(alpha=1.0 + beta, overlap=overlap, n=24)
+    radius = float(np.abs(np.linalg.eigvals(dense_matrix(SCHEMES[name].operator(setting)))).max())
+    a = fp.stability_limit(name, beta, overlap=overlap)
+    low = 2.0 / a if a > 0.0 else math.inf
+    return 0.0 if 0.8 * low <= radius <= 1.02 * low or not a else 2.0
+
+
+_XS = st.one_of(st.just(0.0), between(0.0, 3.0), between(0.0, 30.0))
+_POINTS = st.tuples(_XS, numbers(1e-3, 1e3), _ALPHAS, st.integers(1, 3))
+
+PROPERTIES = (
+    Property("arguments of every name", "a result, or a line", "", _calls(), _called, 25),
+    Property(
+        "errors",
+        "one line, the same when unpickled",
+        "pickle",
+        st.tuples(
+            texts(), anything(), texts().map(lambda t: " ".join(t.split())), st.just("Mend it.")
+        ).map(lambda drawn: (" ".join(drawn[0].split()), *drawn[1:])),
+        _error,
+        5,
+    ),
+    Property(
+        "green", "the Fourier integral", "scipy, quadrature", _POINTS, _green, 5, Verdict.HELD
+    ),
+    Property("green_rate, _slope, _flux", "differences of G", "", _POINTS, _rates, 5, Verdict.HELD),
+    Property(
+        "mean_radius",
+        "(2 / pi) Gamma(1 - 1 / alpha)",
+        "closed form",
+        _ALPHAS,
+        _radius,
+        3,
+        Verdict.HELD,
+    ),
+    Property(
+        "evolve, fundamental",
+        "the fundamental solution, or a warning",
+        "closed form",
+        st.tuples(
+            _ALPHAS, st.integers(4, 200), between(0.1, 3.0), between(0.01, 5.0), st.integers(1, 6)
+        ),
+        _evolved,
+        3,
+    ),
+    Property(
+        "evolve, periodic",
+        "every wave decays",
+        "dense matrix",
+        st.tuples(st.integers(8, 60), _ALPHAS, numbers(1e-6, 1e6), st.integers(0, 10**6)),
+        _periodic,
+        3,
+        Verdict.HELD,
+    ),
+    Property(
+        "graded_particles, green_step",
+        "the sums one by one",
+        "naive sums",
+        st.tuples(
+            st.integers(1, 8),
+            between(0.5, 50.0),
+            _ALPHAS,
+            numbers(1e-2, 1e2),
+            st.sampled_from(FORMS),
+        ),
+        _graded,
+        2,
+        Verdict.HELD,
+    ),
+    Property(
+        "kernel",
+        "the integral of its transform",
+        "scipy, quadrature",
+        st.tuples(
+            st.sampled_from(tuple(KERNELS)),
+            between(0.05, 8.0),
+            _ALPHAS,
+            st.just(1),
+            st.sampled_from((2, 4, 8)),
+        ),
+        _kernel,
+        3,
+        Verdict.HELD,
+    ),
+    Property(
+        "stability_limit",
+        "the spectral radius",
+        "dense matrix",
+        st.tuples(
+            st.sampled_from(("DD", "KPSE", "FPSE", "FD")), between(0.05, 0.95), between(0.8, 3.0)
+        ),
+        _limit,
+        1,
+        Verdict.HELD,
+    ),
+)

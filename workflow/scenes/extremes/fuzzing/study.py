@@ -1,0 +1,31 @@
+"""Fuzzing: what holds of whatever is given, tried on cases that a seed draws."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from fracstudy.inputs import Inputs, Result
+from fracstudy.probe import frame
+from scenes.extremes.fuzzing import configuration, fields, flags, functions, runs
+from scenes.extremes.fuzzing.harness import row
+
+__all__ = ["PROPERTIES", "study"]
+
+PROPERTIES = (
+    *fields.PROPERTIES,
+    *runs.PROPERTIES,
+    *functions.PROPERTIES,
+    *flags.PROPERTIES,
+    *configuration.PROPERTIES,
+)
+
+
+def study(inputs: Inputs, *, cases: int) -> Result:
+    """One row a property: how many of its cases were right, warned of, refused, or bad.
+
+    Of some `cases` in all each property has its share, from seed 0 on.
+    """
+    shares = sum(one.share for one in PROPERTIES)
+    rows = [row(one, max(1, round(cases * one.share / shares))) for one in PROPERTIES]
+    counts = pd.DataFrame([counts for _, counts in rows])
+    return Result(pd.concat([frame(probe for probe, _ in rows), counts], axis=1))

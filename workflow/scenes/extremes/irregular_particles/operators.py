@@ -1,0 +1,82 @@
+"""The exchange forms on particles anywhere, each as a dense matrix written out from its equation.
+
+KPSE  (34)  (alpha D / eps^alpha) sum_j V_j (u_j - u_i) K_eps(x_j - x_i)
+GPSE  (41)  (D / eps^alpha) sum_j V_j (u_j - u_i) E_eps(x_j - x_i)
+FPSE  (19), (25)  -(D / eps) sum_j V_j (Q_j + Q_i) eta1_eps(x_i - x_j),  Q_i = -eps^-beta sum_j V_j u_j F_eps(x_i - x_j)
+DPSE  (13), (16)  (2 D / eps^2) sum_j V_j (v_j - v_i) Phi_eps(x_j - x_i),  v_i = eps^(1 - beta) sum_j V_j u_j kappa_eps
+DD    (10)  (D / eps^alpha) sum_j V_j u_j G_eps(x_i - x_j)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fracparticles.kernels.families import kernel
+from fracparticles.pse import cell_volumes
+from fracparticles.special import green
+from fracparticles.special.stable import green as fundamental
+
+__all__ = ["CONSERVATIVE", "FORMS", "arranged", "matrix", "rate_of_change", "weight"]
+
+FORMS = ("KPSE", "GPSE", "FPSE", "DPSE", "DD")
+CONSERVATIVE = ("KPSE", "GPSE", "FPSE", "DPSE")
+_STEP = 1e-4  # of a derivative in time, relative
+
+
+def arranged(kind: str, x: np.ndarray, jitter: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions, in order, and the volumes that belong to them: half the way to either neighbour.
+
+    `jittered`: each of the lattice moved by up to `jitter` h either way; `random`: anywhere; `clustered`: anywhere in
+    the middle half, every other one in the middle tenth.
+    """
+    dice = np.random.default_rng(seed)
+    h, half = float(x[1] - x[0]), float(x[-1])
+    if kind == "jittered":
+        places = x + jitter * h * dice.uniform(-1.0, 1.0, x.size)
+    else:
+        places = dice.uniform(-half, half, x.size)
+        if kind == "clustered":
+            places *= np.where(np.arange(x.size) % 2 == 0, 0.1, 0.5)
+    places = np.sort(places)
+    return places, cell_volumes(places)
+
+
+def weight(form: str, r: np.ndarray, alpha: float, epsilon: float) -> np.ndarray:
+    """Return what a form weighs u_j - u_i with, per volume: KPSE and GPSE."""
+    if form == "GPSE":
+        return np.asarray(green(r, epsilon**alpha, alpha)) / epsilon**alpha
+    return alpha * epsilon ** (-1.0 - alpha) * np.asarray(kernel("K", np.abs(r) / epsilon, alpha))
+
+
+def matrix(
+    form: str, x: np.ndarray, volumes: np.ndarray, alpha: float, epsilon: float
+) -> np.ndarray:
+    """Return A of du/dt = A u, D = 1, order II."""
+    r = x[:, None] - x
+
+    def summed(name: str) -> np.ndarray:
+        values = np.asarray(
+            kernel(name, r / epsilon if name in ("F", "eta1") else np.abs(r) / epsilon, alpha)
+        )
+        return volumes * values / epsilon
+
+    if form in ("KPSE", "GPSE"):
+        return _exchanged(volumes * weight(form, r, alpha, epsilon))
+    if form == "DD":
+        return epsilon**-alpha * summed("G")
+    if form == "FPSE":
+        flux, divergence = -(epsilon ** (1.0 - alpha)) * summed("F"), summed("eta1")
+        both = divergence @ flux + divergence.sum(axis=1)[:, None] * flux
+        return -both / epsilon
+    potential = epsilon ** (2.0 - alpha) * summed("kappa")
+    return 2.0 / epsilon**2 * _exchanged(summed("Phi")) @ potential
+
+
+def _exchanged(weights: np.ndarray) -> np.ndarray:
+    return weights - np.diag(weights.sum(axis=1))
+
+
+def rate_of_change(x: np.ndarray, t: float, alpha: float) -> np.ndarray:
+    """Return du/dt of the fundamental solution, -(-Laplacian)^(alpha/2) u, by a central difference in time."""
+    later, sooner = (fundamental(x, t * (1.0 + s * _STEP), alpha) for s in (1.0, -1.0))
+    return np.asarray((later - sooner) / (2.0 * _STEP * t))

@@ -1,0 +1,49 @@
+"""The self-similar profile over many decades of time, from the same kind of particles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fracstudy.style import axes_row, guide, legend_below, log_log, panel_title
+
+__all__ = ["figure"]
+
+_LOOKS = (("#0072B2", "o"), ("#D55E00", "s"), ("#009E73", "^"), ("#CC79A7", "D"))
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, betas: list[float]) -> Figure:
+    """(a) the profile, scaled; (b) the error relative to its peak."""
+    drawn, (profile, error) = axes_row(2, height=3.6)
+    alpha = 1.0 + (betas[0] if len(betas) == 1 else betas[1])
+    for (ratio, points), (colour, marker) in zip(
+        series[series["panel"] == "profile"].groupby("series"), _LOOKS, strict=False
+    ):
+        points = points[points["x"] > 1e-2]
+        profile.plot(points["x"], points["exact"], color="#000000", linewidth=0.8)
+        look: dict[str, Any] = {
+            "color": colour,
+            "marker": marker,
+            "markersize": 3.5,
+            "linestyle": "none",
+        }
+        profile.plot(
+            points["x"],
+            points["y"],
+            label=rf"$t_f / t_0 = 10^{{{np.log10(ratio):.0f}}}$",
+            markevery=4,
+            **look,
+        )
+        misses = series[(series["panel"] == "error") & (series["series"] == ratio)]
+        misses = misses[misses["x"] > 1e-2]
+        error.plot(misses["x"], misses["y"], color=colour, linewidth=0.9)
+    log_log(profile, xlabel=r"$|x|\, t^{-1/\alpha}$", ylabel=r"$t^{1/\alpha} u$", ylim=(1e-12, 1.0))
+    log_log(error, xlabel=r"$|x|\, t^{-1/\alpha}$", ylabel="error over the peak")
+    guide(profile, (30.0, 3000.0), (30.0, 30.0 ** (-1.0 - alpha)), -1.0 - alpha)
+    panel_title(profile, "a", rf"line: $\Phi$, markers: graded particles, $\alpha = {alpha:g}$")
+    panel_title(error, "b", "their error")
+    legend_below(drawn, profile)
+    return drawn

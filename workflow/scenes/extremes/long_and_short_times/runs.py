@@ -1,0 +1,303 @@
+"""Probes of runs over long times, t_f = 10^3 to 10^12 t_0, and over short ones, t_f - t_0 = 10^-6 to 10^-12 t_0."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache, partial
+from typing import Any
+
+import numpy as np
+
+import fracparticles as fp
+from fracparticles.run.solver import compute
+from fracparticles.schemes import ALL_SCHEMES
+from fracstudy.panels import Panels
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.long_and_short_times.profile import rate, solution, tail_constant
+
+__all__ = ["add_profiles", "long_probes", "short_probes"]
+
+EPS = float(np.finfo(float).eps)
+_WIDTH = 4.0  # half-width in units of t_f^(1/alpha): the second term of the tail is 4^-alpha of the first there
+_SPACING = {1: 0.5, 2: 0.5, 3: 0.6}  # in units of t_0^(1/alpha)
+_UNITS = (1.0, 1e-12, 1e12)  # t_0
+# The greatest lattice of a probe.
+_MOST = {1: 30_000, 2: 300, 3: 60}
+
+
+def _run(**fields: Any) -> Any:
+    return compute(fp.Case(store="metrics", **fields))
+
+
+# --- long times -------------------------------------------------------------------------------------------------------
+
+
+def _lattice(beta: float, ratio: float, n: int, start: float) -> dict[str, Any] | None:
+    """The lattice that resolves the initial data and holds the final ones; none if it is too large."""
+    length = start ** (1.0 / (1.0 + beta))
+    spacing, half = _SPACING[n] * length, _WIDTH * ratio ** (1.0 / (1.0 + beta)) * length
+    if half / spacing > _MOST[n]:
+        return None
+    fields = {"beta": beta, "dim": n, "spacing": spacing, "half_width": half}
+    return {**fields, "t_initial": start, "t_final": start * ratio}
+
+
+def _methods(n: int) -> dict[str, dict[str, Any]]:
+    """Runs with an open exterior: order 12 leaves the lattice and the far field."""
+    whole = {"integrator": "exponential", "evaluation": "convolution", "exterior": "open"}
+    methods = {
+        "DD, order 12, convolution": {"scheme": "DD", "order": 12, **whole},
+        "KPSE, order 12, convolution": {"scheme": "KPSE", "order": 12, **whole},
+    }
+    if n == 1:
+        series = {"integrator": "exponential", "exterior": "open", "order": 12}
+        methods |= {
+            f"{s}, order 12, series": {"scheme": s, **series} for s in ("DD", "FPSE", "KPSE")
+        }
+    return methods
+
+
+def _miss(u: np.ndarray, x: np.ndarray, t: float, alpha: float, n: int) -> float:
+    """The error relative to the peak, where |x| is below half the half-width: beyond is the far field."""
+    inner = x <= 0.5 * np.abs(x).max()
+    exact = solution(x[inner], t, alpha, n)
+    return float(np.abs(u[inner] - exact).max() / exact.max())
+
+
+def _solved(fields: dict[str, Any]) -> float:
+    run = _run(**fields)
+    return _miss(run.u, run.case.radius, run.case.t_final, run.case.alpha, run.case.dim)
+
+
+def _evolved(fields: dict[str, Any]) -> float:
+    case = fp.Case(scheme="KPSE", integrator="exponential", **fields)
+    data = solution(case.radius, case.t_initial, case.alpha, case.dim)
+    u = fp.evolve(data, case.particle_spacing, case.alpha, case.span)
+    return _miss(u, case.radius, case.t_final, case.alpha, case.dim)
+
+
+def long_probes(betas: list[float], ratios: list[float], dims: list[int]) -> Iterator[Probe]:
+    """Open lattices over long times, in three units of time; then graded particles and what is kept and refused.
+
+    The far field of a lattice of four widths leaves 4^(-1-2 alpha) of its edge, the second term of the tail, which
+    reaches half the half-width with half of it: 0.02 at alpha = 1.1, 0.002 at 1.9. What resolves the data is
+    exp(-pi / 0.5) of the peak at t_0, and decays at once.
+    """
+    for beta in betas:
+        for ratio in ratios:
+            for n in dims:
+                for start in _UNITS if n == 1 else _UNITS[:1]:
+                    yield from _on_lattices(beta, ratio, n, start)
+            yield from _on_graded(beta, ratio)
+
+
+def _on_lattices(beta: float, ratio: float, n: int, start: float) -> Iterator[Probe]:
+    fields = _lattice(beta, ratio, n, start)
+    if fields is None:
+        return
+    where = f"n = {n}, beta = {beta:g}, t_f / t_0 = {ratio:.0e}, t_0 = {start:.0e}"
+    bound = 0.5 * _WIDTH ** (-1.0 - 2.0 * (1.0 + beta)) * n
+    cheap = fields["half_width"] / fields["spacing"] < 1000.0
+    for name, method in _methods(n).items():
+        if cheap or method.get("evaluation") == "convolution":
+            yield probe(
+                "long time",
+                f"{name}, {where}",
+                "the profile for |x| < D / 2",
+                partial(_solved, {**fields, **method}),
+                bound,
+                source="quadrature, series",
+            )
+    yield probe(
+        "long time",
+        f"evolve, {where}",
+        "the profile for |x| < D / 2",
+        partial(_evolved, fields),
+        bound,
+        source="quadrature, series",
+    )
+
+
+@lru_cache(maxsize=4)
+def _graded(beta: float, ratio: float, form: str) -> Any:
+    """Particles to a tenth of t_0^(1/alpha), out to 10^4 t_f^(1/alpha)."""
+    reach = 1e4 * ratio ** (1.0 / (1.0 + beta))
+    return _run(
+        scheme="GPSE", beta=beta, half_width=reach, spacing=0.1, graded_scale=1.0, graded_form=form,
+        t_initial=1.0, t_final=ratio,
+    )  # fmt: skip
+
+
+def _graded_error(beta: float, ratio: float, form: str) -> float:
+    run = _graded(beta, ratio, form)
+    exact = solution(run.x, ratio, 1.0 + beta, 1)
+    return float(np.abs(run.u - exact).max() / exact.max())
+
+
+def _graded_tail(beta: float, ratio: float) -> float:
+    """The exponent of the tail, from 10 to 1000 widths, by a straight line through its logarithms."""
+    run = _graded(beta, ratio, "interpolated")
+    r = run.x / ratio ** (1.0 / (1.0 + beta))
+    part = (r > 30.0) & (r < 1000.0)
+    slope = np.polyfit(np.log(r[part]), np.log(np.maximum(run.u[part], 1e-300)), 1)[0]
+    return float(abs(slope + 2.0 + beta))
+
+
+def _graded_mass(beta: float, ratio: float) -> float:
+    """Sum V u is the mass inside: what lies beyond 10^4 widths is 2 c r^-alpha / alpha."""
+    run = _graded(beta, ratio, "interpolated")
+    alpha, reach = 1.0 + beta, run.case.reach / ratio ** (1.0 / (1.0 + beta))
+    inside = 1.0 - 2.0 * tail_constant(alpha, 1) * reach**-alpha / alpha
+    return abs(run.case.integral(run.u) - inside)
+
+
+def _graded_least(beta: float, ratio: float) -> float:
+    run = _graded(beta, ratio, "interpolated")
+    return float(max(0.0, -run.u.min() / run.u.max()))
+
+
+def _on_graded(beta: float, ratio: float) -> Iterator[Probe]:
+    """The field between graded particles over any time.
+
+    The sincs leave exp(-pi^2 / 2 ds) or so, ds = 0.1; the product with the matrix rounds the initial peak, which is
+    ratio^(1/alpha) times the final one. The outermost particles, where the field ends, keep a half of a 10^-4 (2+beta)
+    of the peak, their mass a tenth of what lies beyond.
+    """
+    where = f"beta = {beta:g}, t_f / t_0 = {ratio:.0e}"
+    alpha = 1.0 + beta
+    rounded = 1e3 * EPS * ratio ** (1.0 / alpha)
+    beyond = 2.0 * tail_constant(alpha, 1) * 1e4**-alpha / alpha
+    for form, bound in (("interpolated", 1e-6 + rounded), ("exchange", 0.05)):
+        yield probe(
+            "long time",
+            f"GPSE, graded, {form}, {where}",
+            "the profile",
+            partial(_graded_error, beta, ratio, form),
+            bound,
+            source="quadrature, series",
+        )
+    # At 1000 widths u is 10^-3 (2 + beta) of the peak: the line is straight where round-off is far below.
+    straight = rounded < 1e-2 * 1e3 ** -(2.0 + beta)
+    wanted = (
+        ("tail exponent, 30 to 1000 widths", "-1 - alpha", _graded_tail, 0.02, "series"),
+        ("mass", "1 less the tail beyond", _graded_mass, 0.5 * beyond + rounded, "series"),
+        ("positivity", "no strength below round-off", _graded_least, rounded, ""),
+    )
+    for name, expected, function, bound, source in wanted:
+        if straight or not name.startswith("tail"):
+            yield probe(
+                "long time",
+                f"GPSE, graded, {name}, {where}",
+                expected,
+                partial(function, beta, ratio),
+                bound,
+                source=source,
+            )
+
+
+# --- short times ------------------------------------------------------------------------------------------------------
+
+_SHORT = {1: (20.0, 0.2), 2: (8.0, 0.4), 3: (4.0, 0.5)}
+
+
+def _shift(fields: dict[str, Any], share: float) -> float:
+    """How far the change of u is from T dG/dt, over the greatest of it, where |x| is below half the half-width."""
+    run = _run(t_initial=1.0, t_final=1.0 + share, **fields)
+    case = run.case
+    inner = case.radius <= 0.5 * case.reach
+    exact = case.span * rate(case.radius[inner], case.alpha, case.dim)
+    return float(np.abs((run.u - run.u0)[inner] - exact).max() / np.abs(exact).max())
+
+
+def _whole_shift(beta: float, n: int, share: float) -> float:
+    half, h = _SHORT[n]
+    case = fp.Case(
+        scheme="KPSE", beta=beta, dim=n, half_width=half, spacing=h, integrator="exponential"
+    )
+    u0 = solution(case.radius, 1.0, case.alpha, n)
+    u = fp.evolve(u0, case.particle_spacing, case.alpha, share)
+    inner = case.radius <= 0.5 * half
+    exact = share * rate(case.radius[inner], case.alpha, n)
+    return float(np.abs((u - u0)[inner] - exact).max() / np.abs(exact).max())
+
+
+def short_probes(betas: list[float], shares: list[float], dims: list[int]) -> Iterator[Probe]:
+    """u - u_0 = T dG/dt, whose round-off is some eps / T of u. Not DVM, which gives the smoothed field, not a change.
+
+    Of order 2 the operator is wrong by (epsilon k / 2)^2 of each wave: a third of the rate on the line, where epsilon =
+    0.4 and the rate is made of k = 2 to 3, nearly all of it in space. The step itself leaves T.
+    """
+    for beta in betas:
+        for share in shares:
+            for n in dims:
+                half, h = _SHORT[n]
+                rounded = 40.0 * EPS / share
+                for scheme in ("DD", "DPSE", "FPSE", "KPSE"):
+                    kind = ALL_SCHEMES[scheme]
+                    if n not in kind.dims:
+                        continue
+                    for exterior in kind.exteriors:
+                        fields = {
+                            "scheme": scheme,
+                            "beta": beta,
+                            "dim": n,
+                            "half_width": half,
+                            "spacing": h,
+                        }
+                        yield probe(
+                            "short time",
+                            f"{scheme}, order 2, {exterior}, n = {n}, beta = {beta:g}, T / t_0 = {share:.0e}",
+                            "u - u_0 is T dG/dt",
+                            partial(
+                                _shift,
+                                {**fields, "exterior": exterior, "integrator": "exponential"},
+                                share,
+                            ),
+                            (0.35 if n == 1 else 0.9) + rounded,
+                            source="quadrature",
+                        )
+                yield probe(
+                    "short time",
+                    f"evolve, n = {n}, beta = {beta:g}, T / t_0 = {share:.0e}",
+                    "u - u_0 is T dG/dt",
+                    partial(_whole_shift, beta, n, share),
+                    0.05 + rounded,
+                    source="quadrature",
+                )
+    for share in shares:
+        yield probe(
+            "short time",
+            f"GPSE, T / t_0 = {share:.0e}, h = 0.2",
+            "refused: epsilon / h below 1/4",
+            partial(_gpse_is_taken, share),
+            0.0,
+            must=Verdict.REFUSED,
+        )
+
+
+def _gpse_is_taken(share: float) -> float:
+    _run(
+        scheme="GPSE",
+        beta=0.5,
+        half_width=20.0,
+        spacing=0.2,
+        dt=share,
+        t_initial=1.0,
+        t_final=1.0 + share,
+    )
+    return np.inf
+
+
+# --- the figure -------------------------------------------------------------------------------------------------------
+
+
+def add_profiles(panels: Panels, beta: float, ratios: list[float]) -> None:
+    """Add t^(1/alpha) u against |x| t^(-1/alpha) of the graded particles, and their relative error."""
+    alpha = 1.0 + beta
+    for ratio in ratios:
+        run = _graded(beta, ratio, "interpolated")
+        right = run.x > 0.0
+        exact = solution(run.x[right], ratio, alpha, 1)
+        r, scale = run.x[right] * ratio ** (-1.0 / alpha), ratio ** (1.0 / alpha)
+        panels.add("profile", ratio, r, scale * run.u[right], exact=scale * exact)
+        panels.add("error", ratio, r, np.abs(run.u[right] - exact) / exact.max() + 1e-18)

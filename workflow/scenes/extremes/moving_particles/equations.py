@@ -1,0 +1,230 @@
+"""Markers of other equations: nonlinear diffusion to its end, Burgers' shocks, solitons, sources; exact solutions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from itertools import product
+
+import mpmath
+import numpy as np
+
+from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, Square, run, uniform
+from fracparticles.markers.burgers import PointSource, burgers
+from fracparticles.markers.clusters import marker_spectrum
+from fracparticles.markers.kdv import Soliton, kdv
+from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
+from fracparticles.markers.source import GaussianSource, advance_weights
+from fracparticles.markers.stability import extremes
+from fracstudy.probe import Probe, Verdict, probe
+
+__all__ = ["probes"]
+
+_EPS = float(np.finfo(float).eps)
+_SPOKEN = 0.1  # error of a run that must be spoken of
+_ETA = extremes(SHAPES["S8"]).eta
+_WORD = "within 10 %, or a word"
+
+
+def probes(count: int, reynolds: Sequence[float]) -> Iterator[Probe]:
+    """All of them; `count` markers a run, Reynolds numbers of Burgers' shocks."""
+    yield from _exact()
+    yield from _burgers(count, reynolds)
+    yield from _kdv(count)
+    yield from _nonlinear(count)
+    yield from _sources(count)
+    yield from _nothing()
+
+
+def _exact() -> Iterator[Probe]:
+    """The point source of Burgers from R = 1e-100 to 1e8, and the square from t = 1e-30 to 1e10, with many digits."""
+    for reynolds in (1e-100, 1e-10, 1.0, 299.0, 301.0, 1e5, 1e8):
+        # The shock is R ulp wide.
+        run_, bound = partial(_source_off, reynolds), 1e-13 + 64.0 * _EPS * reynolds
+        yield probe(
+            "exact",
+            f"point source, R = {reynolds:g}",
+            "f and its integral",
+            run_,
+            bound,
+            source="mpmath",
+        )
+    for t in (1e-30, 1e-6, 1.0, 99.9, 100.1, 1e10):
+        run_ = partial(_square_off, t)
+        # The integral is known to some ulps of the total, over any stretch.
+        yield probe(
+            "exact", f"square, t = {t:g}", "f and its integral", run_, 64.0 * _EPS, source="mpmath"
+        )
+
+
+def _source_off(reynolds: float) -> float:
+    exact, worst = PointSource(1.0, 2.0 * reynolds), 0.0
+    edge = 2.0 * math.sqrt(reynolds)
+    with mpmath.workdps(260):
+        rest = mpmath.exp(-mpmath.mpf(reynolds))
+        share = 1 - rest
+        for x in (-3.0, -1e-3, 0.0, 0.5 * edge, 0.99 * edge, edge + 1.0 / max(edge, 1.0)):
+            z = mpmath.mpf(x) / 2
+            phi = mpmath.erfc(z) / 2 + rest * mpmath.erfc(-z) / 2
+            f = share * mpmath.exp(-z * z) / mpmath.sqrt(mpmath.pi) / phi
+            g = -2 * mpmath.log(phi)
+            off = float(exact.value(x, 1.0)) / f - 1, float(exact.cumulative(x, 1.0)) / g - 1
+            worst = max(worst, *(abs(float(one)) for one in off))
+    return worst
+
+
+def _square_off(t: float) -> float:
+    worst = 0.0
+    with mpmath.workdps(60):
+        s = 2 * mpmath.sqrt(mpmath.mpf(t))
+
+        def integral(u: mpmath.mpf) -> mpmath.mpf:
+            return mpmath.exp(-u * u) / mpmath.sqrt(mpmath.pi) - u * mpmath.erfc(u)
+
+        for x in (-3.0, -1.0, -0.5, 0.0):
+            near, far = -(mpmath.mpf(x) + 1) / s, -(mpmath.mpf(x) - 1) / s
+            f = (mpmath.erfc(near) - mpmath.erfc(far)) / 2
+            g = s / 2 * (integral(near) - integral(far))
+            off = Square().value(x, t) - float(f), 0.5 * (Square().cumulative(x, t) - float(g))
+            worst = max(worst, *(abs(float(one)) for one in off))
+    return worst
+
+
+def _burgers(count: int, numbers: Sequence[float]) -> Iterator[Probe]:
+    """A point source to its triangle: Reynolds numbers from a Gaussian to a shock narrower than epsilon, any step."""
+    for reynolds, factor in product(numbers, (0.5, 1.1, 3.0)):
+        run_ = partial(_shock_error, reynolds, factor, count)
+        case = f"Burgers, R = {reynolds:g}, dt = {factor:g} η ε²/μ"
+        yield probe("Burgers", case, _WORD, run_, _SPOKEN, source="Cole-Hopf")
+
+
+def _shock_error(reynolds: float, factor: float, count: int) -> float:
+    mu, total, time = 1.0 / reynolds, 2.0, 1.0
+    exact = PointSource(mu, total)
+    x = exact.quantile(total * (np.arange(count) + 0.5) / count, 1.0)
+    epsilon = 4.0 * float(np.median(np.diff(x)))
+    steps = max(4, math.ceil(time * mu / (factor * _ETA * epsilon**2)))
+    velocity = MarkerVelocity(SHAPES["S8"], epsilon, burgers(mu))
+    end = run(x, np.full(count, total / count), velocity, dt=time / steps, steps=steps)
+    z = exact.quantile(total * np.linspace(0.02, 0.98, 97), 1.0 + time)
+    f = exact.value(z, 1.0 + time)
+    return float(np.abs(end.field(z) - f).max() / f.max())
+
+
+def _kdv(count: int) -> Iterator[Probe]:
+    """Solitons, the shocks of this equation, from wide to narrower than epsilon; steps up to a hundredth."""
+    for c, background in ((1.0, 0.1), (4.0, 1.0), (16.0, 1.0), (100.0, 1.0)):
+        for dt in (1e-4, 1e-3, 1e-2):
+            run_ = partial(_soliton_error, c, background, dt, 0.3, count)
+            case = f"soliton c = {c:g} on {background:g}, dt = {dt:g}"
+            yield probe("KdV", case, _WORD, run_, _SPOKEN, source="soliton")
+    run_ = partial(_soliton_error, 16.0, 1.0, 1e-3, 1.5, count)
+    yield probe("KdV", "soliton narrower than ε", _WORD, run_, _SPOKEN, source="soliton")
+    run_ = partial(_soliton_error, 16.0, 0.0, 1e-3, 0.1, count)
+    yield probe("KdV", "a soliton on nothing", "refused", run_, 0.0, must=Verdict.REFUSED)
+
+
+def _soliton_error(c: float, background: float, dt: float, epsilon: float, count: int) -> float:
+    soliton, time = Soliton(c, background), 0.02
+    x, w = uniform(soliton.value, (-8.0, 8.0), 2 * count)
+    steps = math.ceil(time / dt)
+    end = run(x, w, MarkerVelocity(SHAPES["S8"], epsilon, kdv, 2), dt=dt, steps=steps)
+    z = soliton.speed * dt * steps + np.linspace(-1.0, 1.0, 81)
+    f = soliton.value(z, dt * steps)
+    return float(np.abs(end.field(z) - f).max() / f.max())
+
+
+def _nonlinear(count: int) -> Iterator[Probe]:
+    """The steady state of nonlinear diffusion at steps about the limit; beyond the time where f vanishes."""
+    problem = NonlinearDiffusion()
+    for factor in (0.5, 0.9, 1.2, 3.0):
+        run_ = partial(_steady_error, problem, factor, count)
+        yield probe(
+            "nonlinear",
+            f"steady state, dt = {factor:g} of the limit",
+            _WORD,
+            run_,
+            _SPOKEN,
+            source="closed form",
+        )
+    lines = Lines(problem, 6.0, 60, 2.5)
+    run_ = partial(_lines_at, lines, 1e3)
+    case = "lines beyond the time where f vanishes"
+    yield probe("nonlinear", case, "refused", run_, 0.0, must=Verdict.REFUSED)
+    for f in (-1e4, 1e300):
+        must = Verdict.REFUSED if f < 0.0 else Verdict.HELD
+        strong = NonlinearDiffusion(1e100, 1.0, 1.0)
+        run_ = partial(_diffusivity, strong, f)
+        yield probe(
+            "nonlinear",
+            f"D(f) of f = {f:g}, D₀ = 1e100",
+            "zero" if f > 0 else "refused",
+            run_,
+            0.0,
+            must=must,
+        )
+
+
+def _diffusivity(problem: NonlinearDiffusion, f: float) -> float:
+    return float(problem.diffusivity([f])[0])
+
+
+def _lines_at(lines: Lines, until: float) -> float:
+    return float(lines.solve(Gaussian().value(lines.x), [until])[0].max())
+
+
+def _steady_error(problem: NonlinearDiffusion, factor: float, count: int) -> float:
+    x, w = uniform(problem.steady, (-1.3, 1.3), count)
+    epsilon = 0.15
+    dt = factor * problem.step_limit(epsilon, _ETA)
+    velocity = MarkerVelocity(SHAPES["S8"], epsilon, problem.flux)
+    end = run(x, w, velocity, dt=dt, steps=max(3, math.ceil(0.05 / dt)))
+    z = np.linspace(-0.6, 0.6, 61)
+    f = problem.steady(z)
+    return float(np.abs(end.field(z) - f).max() / f.max())
+
+
+def _sources(count: int) -> Iterator[Probe]:
+    """Sources that feed, drain, or take more in a step than there is; strengths beyond the numbers."""
+    for q, dt in ((1.0, 0.005), (-0.5, 0.005), (1.0, 0.1)):
+        run_ = partial(_fed_error, q, dt, count)
+        yield probe("source", f"q = {q:g}, dt = {dt:g}", _WORD, run_, _SPOKEN, source="closed form")
+    run_ = partial(_fed_error, -30.0, 0.02, count)
+    yield probe("source", "a sink of 30 times f", "refused", run_, 0.0, must=Verdict.REFUSED)
+    strong: dict[str, tuple[Callable[[], float], Verdict]] = {
+        "q = 1e300 far out": (
+            lambda: float(abs(GaussianSource(1e300, 2).rate([1e100])[0])),
+            Verdict.HELD,
+        ),
+        "q = 1e300 for 1e100": (
+            lambda: float(GaussianSource(1e300).solution([0.0], 1e100)[0]),
+            Verdict.REFUSED,
+        ),
+    }
+    for case, (call, must) in strong.items():
+        yield probe(
+            "source", case, "zero" if must is Verdict.HELD else "refused", call, 0.0, must=must
+        )
+
+
+def _fed_error(q: float, dt: float, count: int) -> float:
+    x, w = uniform(Gaussian().value, (-2.5, 2.5), count)
+    source, steps = GaussianSource(q), max(1, math.ceil(0.1 / dt))
+    velocity = MarkerVelocity(SHAPES["S8"], 0.2)
+    x, w = advance_weights(x, w, velocity, source.rate, dt=dt, steps=steps)
+    z = np.linspace(-1.0, 1.0, 41)
+    f = source.solution(z, dt * steps)
+    return float(np.abs(velocity.fields(x, w, z)[0] - f).max() / f.max())
+
+
+def _nothing() -> Iterator[Probe]:
+    """What looks at markers needs some."""
+    run_ = partial(_spectrum, np.array([5.0]))
+    yield probe(
+        "marker tools", "a spectrum of no markers", "refused", run_, 0.0, must=Verdict.REFUSED
+    )
+
+
+def _spectrum(x: np.ndarray) -> float:
+    return float(marker_spectrum(x, [1.0], 1.0)[0])

@@ -1,0 +1,169 @@
+"""Sums over scattered particles and their remeshing, at the ends of the numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh
+from fracparticles.moving.scattered import (
+    NaiveScatteredSum,
+    NeighbourSum,
+    NonuniformFourierSum,
+    smooth_kernel,
+)
+from fracstudy.probe import Probe, Verdict, probe
+
+__all__ = ["probes"]
+
+_EPS = float(np.finfo(float).eps)
+_WIDTH, _EPSILON, _H = 5.0, 0.1, 0.1
+_REMESHED = 1000  # times
+_MOMENTS = {"M4'": 3, "Lambda3": 4}
+_REACH = 6.5  # of the neighbours, in epsilon
+
+
+def probes(particles: int) -> Iterator[Probe]:
+    """All of them."""
+    random = np.random.default_rng(1)
+    x, q = random.uniform(-_WIDTH, _WIDTH, particles), random.normal(size=particles)
+    yield from _sums(x, q)
+    yield from _far_tails()
+    yield from _refused_sums(x, q)
+    yield from _remeshing(x, q)
+    yield from _elimination(x, q)
+
+
+def _sums(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
+    """Transforms against the sum over pairs, to the accuracy they state: 1e-11 of the greatest, or ulps of the box."""
+    lattice = _H * np.arange(x.size)
+    clusters = np.concatenate([x, x + 1e4]), np.concatenate([q, -q])
+    cases: dict[str, tuple[Any, ...]] = {
+        "strengths 1e-300": (x, 1e-300 * q, _EPSILON),
+        "strengths 1e290": (x, 1e290 * q, _EPSILON),
+        "lengths 1e-90": (1e-90 * x, q, 1e-90 * _EPSILON),
+        "lengths 1e90": (1e90 * x, q, 1e90 * _EPSILON),
+        "1e6 from the origin": (1e6 + x, q, _EPSILON),
+        "1e12 from the origin": (1e12 + x, q, _EPSILON),
+        "a lattice at 1e6": (1e6 + lattice, q, _EPSILON),
+        "ε = 1e-3": (x, q, 1e-3),
+        "ε = 1e3": (x, q, 1e3),
+        "two clusters 1e4 apart": (*clusters, _EPSILON),
+        "α = 1 + 1e-12": (x, q, _EPSILON, 1.0 + 1e-12),
+        "α = 2 - 1e-12": (x, q, _EPSILON, 2.0 - 1e-12),
+    }
+    for case, how in cases.items():
+        yield probe(
+            "sums", case, "the sum over pairs", partial(_off, *how), 1.0, source="all pairs"
+        )
+
+
+def _off(x: np.ndarray, q: np.ndarray, epsilon: float, alpha: float = 1.5) -> float:
+    """The greatest difference of transforms and pairs, in units of the accuracy that the transforms state."""
+    kernels = [smooth_kernel(name, alpha) for name in ("eta", "F")]
+    fast, pairs = NonuniformFourierSum(kernels, epsilon), NaiveScatteredSum(kernels, epsilon)
+    ours, exact = fast(x, q), pairs(x, q)
+    return float(
+        (np.abs(ours - exact).max(axis=1) / np.abs(exact).max(axis=1)).max() / fast.accuracy
+    )
+
+
+def _far_tails() -> Iterator[Probe]:
+    """Neighbours where the sum is tiny: relative to its own terms, exp(-d^2), but for those beyond 6.5 epsilon."""
+    for distance in (1.0, 3.0, 5.0):
+        bound = 64.0 * _EPS + 21 * math.exp(distance**2 - _REACH**2)
+        case, run = f"{distance:g} ε beyond the particles", partial(_far_tail, distance)
+        yield probe("sums", case, "the sum of the terms", run, bound, source="mpmath")
+
+
+def _far_tail(z: float) -> float:
+    x = np.linspace(-2.0, 0.0, 21)
+    ours = NeighbourSum([smooth_kernel("eta", 1.5)], 1.0)(x, np.ones(21), np.array([z]))
+    terms = (mpmath.exp(-((mpmath.mpf(z) - mpmath.mpf(p)) ** 2)) for p in x)
+    return abs(float(ours[0, 0] * mpmath.sqrt(mpmath.pi) / sum(terms) - 1))
+
+
+def _refused_sums(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
+    """What has no sum, or none that memory holds."""
+    sums = NonuniformFourierSum([smooth_kernel("eta", 1.5)], _EPSILON)
+    cases = {
+        "strengths 1e308": (x, np.full(x.size, 1e308)),
+        "one particle at 1e9": (np.append(x, 1e9), np.append(q, 1.0)),
+        "one particle at nan": (np.append(x, np.nan), np.append(q, 1.0)),
+        "a strength too many": (x, np.append(q, 1.0)),
+    }
+    for case, arrays in cases.items():
+        run = partial(_greatest, sums, *arrays)
+        yield probe("sums", case, "refused", run, 0.0, must=Verdict.REFUSED)
+
+
+def _greatest(function: Any, *arguments: Any) -> float:
+    return float(np.abs(function(*arguments)).max())
+
+
+def _remeshing(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
+    """Moments of the strengths are kept to the ulps of the positions; a lattice stays as it is."""
+    for name in REMESHINGS:
+        for offset in (0.0, 1e6, 1e8):
+            # A position is rounded to an ulp of it, some 50 spacings from where moments are taken.
+            bound = 16.0 * _EPS * (1.0 + (offset + _WIDTH) / _H)
+            case, expected = f"{name}, particles at {offset:g}", f"{_MOMENTS[name]} moments kept"
+            run = partial(_moments_lost, x, q, name, offset)
+            yield probe("remeshing", case, expected, run, bound, source="exact sums")
+        run, case = partial(_moved, x, q, name), f"{name}, {_REMESHED} times"
+        yield probe("remeshing", case, "no bit changes", run, 0.0, must=Verdict.HELD)
+        far = partial(_remeshed, np.append(x, 1e12), np.append(q, 1.0), name)
+        case = f"{name}, a particle at 1e12"
+        yield probe("remeshing", case, "refused", far, 0.0, must=Verdict.REFUSED)
+
+
+def _remeshed(x: np.ndarray, q: np.ndarray, name: str) -> float:
+    return float(remesh(x, q, _H, name)[0].size)
+
+
+def _moments_lost(x: np.ndarray, q: np.ndarray, name: str, offset: float) -> float:
+    places, strengths = remesh(offset + x, q, _H, name)
+    lost = (
+        abs(math.fsum(q * x**m) - math.fsum(strengths * (places - offset) ** m))
+        / math.fsum(np.abs(q * x**m))
+        for m in range(_MOMENTS[name])
+    )
+    return max(lost)
+
+
+def _moved(x: np.ndarray, q: np.ndarray, name: str) -> float:
+    once = again = _strong(*remesh(x, q, _H, name))
+    for _ in range(_REMESHED):
+        again = _strong(*remesh(*again, _H, name))
+    return float(np.abs(np.array(again) - np.array(once)).max())
+
+
+def _strong(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Without the points at the ends that a remeshing adds, of no strength."""
+    return x[q != 0.0], q[q != 0.0]
+
+
+def _elimination(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
+    """What is kept and what is left out make the whole, whatever the threshold."""
+    for threshold in (0.0, 1e-300, 0.5, float(np.nextafter(1.0, 0.0))):
+        run, bound = partial(_unaccounted, x, q, threshold), _EPS * float(np.abs(q).sum())
+        case = f"threshold {threshold:.3g}"
+        yield probe("threshold", case, "every strength is found", run, bound, source="exact sums")
+    cases = {
+        "threshold 1": (q, 1.0),
+        "strengths of zero": (0.0 * q, 0.0),
+        "a total beyond 1e308": (np.append(1.7e308, np.full(q.size - 1, 1e308)), 0.6),
+    }
+    for case, how in cases.items():
+        run = partial(_unaccounted, x, *how)
+        yield probe("threshold", case, "refused", run, 0.0, must=Verdict.REFUSED)
+
+
+def _unaccounted(x: np.ndarray, q: np.ndarray, threshold: float) -> float:
+    kept = eliminate(x, q, threshold)
+    return abs(math.fsum(kept.strength) + kept.eliminated - math.fsum(q))

@@ -1,0 +1,164 @@
+"""The random walk at the ends of the order and of the numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+from scipy.special import ndtr
+from scipy.stats import binom
+
+from fracparticles.moving.random_walk import (
+    cell_counts,
+    cell_masses,
+    expected_deviation,
+    stable_variates,
+    walk,
+)
+from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
+from fracstudy.probe import Probe, Verdict, probe
+
+__all__ = ["probes"]
+
+_EPS = float(np.finfo(float).eps)
+_SURE = (
+    2.3  # sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov)
+)
+_SEED = 7
+Law = Callable[[np.ndarray], np.ndarray]
+
+
+def probes(walkers: int) -> Iterator[Probe]:
+    """All of them."""
+    yield from _laws(walkers)
+    yield from _units()
+    yield from _cells()
+    yield from _numbers()
+
+
+def _laws(walkers: int) -> Iterator[Probe]:
+    """Increments next to alpha = 1 and 2: Cauchy's law and the normal one of variance 2; in many steps as in one."""
+    for alpha, law in (
+        (float(np.nextafter(1.0, 2.0)), _cauchy),
+        (1.0 + 1e-6, _cauchy),
+        (2.0 - 1e-6, _normal),
+        (float(np.nextafter(2.0, 1.0)), _normal),
+    ):
+        for steps in (1, 10):
+            run = partial(_distance, alpha, law, walkers, steps)
+            case = f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}"
+            expected = f"the law of α = {round(alpha)}"
+            yield probe("walk", case, expected, run, _SURE, source="closed form", must=Verdict.HELD)
+
+
+def _near(alpha: float) -> str:
+    return f"1 + {alpha - 1.0:.0e}" if alpha < 1.5 else f"2 - {2.0 - alpha:.0e}"
+
+
+def _cauchy(x: np.ndarray) -> np.ndarray:
+    return 0.5 + np.arctan(x) / math.pi
+
+
+def _normal(x: np.ndarray) -> np.ndarray:
+    return np.asarray(ndtr(x / math.sqrt(2.0)))
+
+
+def _distance(alpha: float, law: Law, walkers: int, steps: int) -> float:
+    """Kolmogorov's sqrt(n) max |F_n - F|."""
+    x = np.sort(walk(np.zeros(walkers), alpha, 1.0, np.random.default_rng(_SEED), steps=steps))
+    edges, f = np.arange(walkers + 1) / walkers, law(x)
+    return math.sqrt(walkers) * float(max((edges[1:] - f).max(), (f - edges[:-1]).max()))
+
+
+def _units() -> Iterator[Probe]:
+    """The same numbers in other units, to the end of what is a length; beyond, the walk says so."""
+    for alpha, unit in ((1.5, 1e-60), (1.5, 1e60), (1.001, 1e95)):
+        run = partial(_other_units, alpha, unit)
+        case = f"α = {alpha:g}, lengths times {unit:g}"
+        yield probe("walk", case, "the same walk", run, 64.0 * _EPS, source="scaling")
+    for case, time in (("(D dt)^(1/α) = 1e-120", 1e-100), ("(D dt)^(1/α) = 1e120", 1e100)):
+        run = partial(_walked, time)
+        yield probe("walk", case, "refused", run, 0.0, must=Verdict.REFUSED)
+
+
+def _other_units(alpha: float, unit: float) -> float:
+    plain, other = (
+        walk(np.zeros(100), alpha, t, np.random.default_rng(_SEED), diffusivity=d)
+        for t, d in ((1.0, 1.0), (unit ** (0.5 * alpha), unit ** (0.5 * alpha)))
+    )
+    # Exponents of 1e60 are logarithms of 138, of which an ulp is lost.
+    return float(np.abs(other / unit / plain - 1.0).max()) / math.log(max(unit, 1.0 / unit))
+
+
+def _walked(time: float) -> float:
+    return float(walk([0.0], 1.2, time, np.random.default_rng(_SEED), diffusivity=time**0.44)[0])
+
+
+def _cells() -> Iterator[Probe]:
+    """Every walker inside is counted, also next to the end; masses of cells near and far are those of Cauchy's law."""
+    ends = np.array([-1.0, np.nextafter(-1.0, -2.0), np.nextafter(1.0, 0.0), 1.0])
+    for cells in (3, 7, 10, 1000):
+        run = partial(_miscounted, ends, cells)
+        case = f"walkers at the ends of {cells} cells"
+        yield probe("cells", case, "two are inside", run, 0.0, must=Verdict.HELD)
+    edges = np.array([-np.inf, -1e100, -1e8, -1.0, 0.0, 1e-8, 1.0, 1e8, 1e100, np.inf])
+    for k, (low, high) in enumerate(pairwise(edges)):
+        run = partial(_mass_off, edges, k)
+        case = f"cell from {low:g} to {high:g}, α = 1 + 1e-12"
+        # Of a tail x^-alpha the small part of alpha is seen as its logarithm.
+        nearest = min(max(abs(low), 1.0), max(abs(high), 1.0))
+        bound = 2e-12 * (1.0 + math.log(nearest))
+        yield probe("cells", case, "its mass, relative", run, bound, source="closed form")
+    run = partial(_mass_off, edges[::-1], 4)
+    yield probe("cells", "cells that fall", "refused", run, 0.0, must=Verdict.REFUSED)
+
+
+def _miscounted(ends: np.ndarray, cells: int) -> float:
+    counts = cell_counts(ends, 1.0, cells)[0]
+    return float(abs(counts[0] - 1) + abs(counts[-1] - 1) + abs(counts.sum() - 2))
+
+
+def _mass_off(edges: np.ndarray, k: int) -> float:
+    with mpmath.workdps(250):
+        low, high = (mpmath.atan(mpmath.mpf(float(e))) for e in edges[k : k + 2])
+        exact = (high - low) / mpmath.pi
+        return abs(float(cell_masses(edges, 1.0, 1.0 + 1e-12)[k] / exact - 1))
+
+
+def _numbers() -> Iterator[Probe]:
+    """Deviations of counts and numbers of walkers for masses from 1e-300 to one."""
+    for p, n in ((1e-300, 10), (1e-9, 1000), (0.5, 1), (0.3, 1000), (1.0 - 1e-12, 1000)):
+        run = partial(_deviation_off, p, n)
+        case = f"{n} walkers, p = {p:.3g}"
+        # Logarithms of up to 1000 log 1000 are rounded.
+        yield probe("cells", case, "E |N/n - p|", run, 1e-11, source="scipy")
+    for count in (1, 10**4, 10**12):
+        run = partial(_few_off, count)
+        yield probe(
+            "cells", f"{count:.0e} walkers, α = 1 + 1e-12", "where few are left", run, 1e-10, source="closed form"
+        )  # fmt: skip
+    refused: dict[str, Callable[[], float]] = {
+        "no mass to equal": lambda: walkers_to_equal([0.0, 0.0], 0.1),
+        "masses of 1e-320": lambda: walkers_to_equal([1e-320], 0.1),
+        "10^400 walkers": lambda: few_walkers_beyond(10**400, 1.0, 1.0, 1.5),
+        "2.5 walkers": lambda: float(stable_variates(1.5, 2.5, np.random.default_rng())[0]),  # type: ignore[arg-type]
+    }
+    for case, call in refused.items():
+        yield probe("cells", case, "refused", call, 0.0, must=Verdict.REFUSED)
+
+
+def _deviation_off(p: float, n: int) -> float:
+    m = np.arange(n + 1)
+    exact = float(binom.pmf(m, n, p) @ np.abs(m / n - p)) if p > 1e-200 else 2.0 * p
+    return abs(float(expected_deviation(p, n)) / exact - 1.0)
+
+
+def _few_off(count: int) -> float:
+    """n w G(x, 1) = 10 for Cauchy's G and w = 1: x = sqrt(n / (10 pi) - 1)."""
+    exact = math.sqrt(max(count / (10.0 * math.pi) - 1.0, 0.0))
+    found = few_walkers_beyond(count, 1.0, 1.0, 1.0 + 1e-12)
+    return abs(found - exact) / max(exact, 1.0)

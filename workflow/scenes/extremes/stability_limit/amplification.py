@@ -1,0 +1,110 @@
+"""Amplification per step, measured from random strengths, against the spectral radius of the step polynomial."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.stability import stability_limit
+from fracparticles.time import STEP_POLYNOMIALS, step
+from fracstudy.probe import Probe, Verdict, probe
+
+__all__ = ["measured", "probes"]
+
+_STEPS, _LAST = 600, 50  # 1.5^600 does not overflow yet
+# Modes next to the greatest decay like 1 / n in the norm: 50 of 600 steps tell the factor to some 1e-3.
+_BOUND = 5e-3
+_BETA = 0.5
+
+
+def measured(
+    half: int, overlaps: list[float], orders: list[int], factors: list[float]
+) -> pd.DataFrame:
+    """Return the growth per step of each setting and step, and the spectral radius of p(A dt), from the matrix."""
+    rows: list[dict[str, Any]] = []
+    for scheme, integrator, setting in _settings(half, overlaps, orders):
+        # The table moves the eigenvalues, not the limit of the exact kernels: that is what a user compares dt with.
+        limit = stability_limit(
+            scheme, _BETA, setting.order, setting.overlap, setting.dim, setting.family
+        )
+        if limit == 0.0:
+            continue
+        p = STEP_POLYNOMIALS[integrator]
+        operator = SCHEMES[scheme].operator(setting)
+        eigenvalues = np.linalg.eigvals(dense_matrix(operator))
+        start = np.random.default_rng(0).standard_normal(operator.size)
+        for factor in factors:
+            dt = factor * limit * 0.5 * p.stability_interval
+            u = step(operator, p, dt, _STEPS - _LAST, start)
+            v = step(operator, p, dt, _LAST, u)
+            rows.append(
+                {
+                    "scheme": scheme,
+                    "integrator": integrator,
+                    "setting": setting,
+                    "factor": factor,
+                    "measured": (np.linalg.norm(v) / np.linalg.norm(u)) ** (1.0 / _LAST),
+                    "predicted": _radius(integrator, eigenvalues * dt),
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def _settings(
+    half: int, overlaps: list[float], orders: list[int]
+) -> Iterator[tuple[str, str, Setting]]:
+    """Orders and overlaps, exteriors, integrators, dimensions, tables: each changed from the one of the paper."""
+    line: dict[str, Any] = {"alpha": 1.0 + _BETA, "n": half}
+    for scheme in ("DD", "FPSE", "KPSE"):
+        for exterior in ("truncated", "open"):
+            for order in orders:
+                yield scheme, "rk2", Setting(**line, order=order, exterior=exterior)
+            for overlap in overlaps:
+                yield scheme, "rk2", Setting(**line, overlap=overlap, exterior=exterior)
+            yield scheme, "rk2", Setting(**line, kernel_table=0.1, exterior=exterior)
+        for integrator in ("euler", "rk4"):
+            yield scheme, integrator, Setting(**line)
+        if half >= 20:
+            yield scheme, "rk2", Setting(alpha=1.0 + _BETA, n=half // 8, dim=2)
+            yield scheme, "rk2", Setting(alpha=1.0 + _BETA, n=half // 20, dim=3)
+    for scheme in ("DPSE", "FD"):
+        yield scheme, "rk2", Setting(**line)
+
+
+def _radius(integrator: str, z: np.ndarray) -> float:
+    """max |p(z)|, in complex numbers: of open operators the eigenvalues may be a pair."""
+    stages = STEP_POLYNOMIALS[integrator].stages
+    value = np.ones_like(z)
+    for k in range(stages, 0, -1):
+        value = 1.0 + z / k * value
+    return float(np.abs(value).max())
+
+
+def probes(measured: pd.DataFrame) -> Iterator[Probe]:
+    """One probe a setting and step: |v| / |u| over fifty steps, v = p(A dt)^50 u, is the radius to the power of 50."""
+    for row in measured.itertuples():
+        yield probe(
+            "growth per step",
+            f"{_named(row.scheme, row.setting)}, {row.integrator}, dt = {row.factor:g} a",
+            f"{row.predicted:.2f}",
+            lambda row=row: (abs(row.measured - row.predicted), f"{row.measured:.2f}"),
+            _BOUND,
+            source="dense matrix",
+            must=Verdict.HELD,
+        )
+
+
+def _named(scheme: str, setting: Setting) -> str:
+    words = [f"{scheme}, order {setting.order}, s = {setting.overlap:g}"]
+    if setting.dim > 1:
+        words.append(f"n = {setting.dim}")
+    if setting.is_open:
+        words.append("open")
+    if setting.kernel_table is not None:
+        words.append("table")
+    return ", ".join(words)

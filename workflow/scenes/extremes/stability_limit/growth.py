@@ -1,0 +1,171 @@
+"""Runs that grow: whether they say so, at the predicted rate and, where they overflow, at the predicted step."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from scipy.linalg import expm
+
+from fracparticles.errors import NonFiniteSolution, StabilityWarning
+from fracparticles.run.case import Case
+from fracparticles.run.solver import initial_strengths, prepare
+from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.spectrum import dense_matrix
+from fracstudy.probe import Probe, Verdict, probe
+
+__all__ = ["hidden", "overflow", "words"]
+
+_EPS = np.finfo(float).eps
+
+
+def words(half: int, factors: list[float]) -> Iterator[Probe]:
+    """A hundred steps at factors of the limit: above it a warning, below it none, and the power of the dense matrix."""
+    for scheme in ("DD", "FPSE", "KPSE"):
+        for integrator in ("euler", "rk2", "rk4"):
+            fields = _line(scheme, half, integrator=integrator)
+            limit = Case(**fields, dt=1.0).largest_stable_step
+            for factor in factors:
+                dt = factor * limit
+                for evaluation in ("stepping", "series"):
+                    case = Case(**fields, dt=dt, t_final=100.0 * dt, evaluation=evaluation)
+                    yield probe(
+                        "a word",
+                        f"{scheme}, {integrator}, {evaluation}, dt = {factor:g} a",
+                        "p(A dt)^100 u, " + ("a warning" if factor > 1.0 else "no word"),
+                        lambda case=case, above=factor > 1.0: _against_powers(case, above),
+                        # The round-off of 100 steps, on what is amplified by cond(modes), some 1e3, at most; a series
+                        # keeps 1e-10 of its sum.
+                        1e-8,
+                        source="dense matrix",
+                        must=Verdict.WARNED if factor > 1.0 else Verdict.HELD,
+                    )
+
+
+def hidden(half: int) -> Iterator[Probe]:
+    """Growth that the symbol of the exact kernels does not show: of the ends, of a table, of what is not conservative.
+
+    FPSE of order 10: the ends make a positive eigenvalue. KPSE of order 12: negative weights push the lowest below the
+    symbol, so that dt = a is unstable. FPSE with a coarse table: its symbol is positive. Scheme (29): the ends.
+    """
+    few = {"half_width": float(half), "spacing": 1.0, "t_initial": 0.0}
+    exact: dict[str, Any] = {"integrator": "exponential"}
+    wide = {**few, "half_width": 2.5 * half}
+    steep = Case(scheme="KPSE", order=12, beta=0.98, overlap=8.0, dt=1.0, **wide)
+    a = steep.largest_stable_step
+    for name, case in {
+        "FPSE, order 10, s = 3, the ends": Case(
+            scheme="FPSE", order=10, beta=0.98, overlap=3.0, t_final=3e5, **few, **exact
+        ),
+        "KPSE, order 12, s = 8, dt = a": Case(
+            scheme="KPSE", order=12, beta=0.98, overlap=8.0, dt=a, t_final=300.0 * a, **wide
+        ),
+        "FPSE, order 4, table of step 1": Case(
+            scheme="FPSE", order=4, beta=0.5, kernel_table=1.0, t_final=300.0, **few, **exact
+        ),
+        "scheme (29)": Case(scheme="PSE29", beta=0.5, t_final=300.0, **few, **exact),
+        "KPSE, order 12, s = 1, positive symbol": Case(
+            scheme="KPSE", order=12, beta=0.999, overlap=1.0, t_final=3.0, **few, **exact
+        ),
+    }.items():
+        yield probe(
+            "hidden growth",
+            name,
+            "the function of the dense matrix, a warning",
+            lambda case=case: _against_the_matrix(case),
+            1e-6,  # T |lambda| eps is below 1e-9, times the condition of the modes of FPSE, some hundred
+            source="dense matrix",
+            must=Verdict.WARNED,
+        )
+
+
+def overflow() -> Iterator[Probe]:
+    """At 1.2 a the strengths overflow where the modes of A say: log(max float / |c_k v_k|) / log |p(lambda_k dt)|.
+
+    Stepping looks at the strengths every 16 steps; the series knows the growth of the shortest wave, not how much of it
+    there is, so that it names an earlier step, never a later one.
+    """
+    for scheme in ("DD", "FPSE", "KPSE"):
+        fields = {"scheme": scheme, "beta": 0.5, "half_width": 5.0, "spacing": 0.2}
+        dt = 1.2 * Case(**fields, dt=1e-6).largest_stable_step
+        for evaluation in ("stepping", "series"):
+            case = Case(**fields, dt=dt, t_final=0.5 + 4000.0 * dt, evaluation=evaluation)
+            expected = _step_of_overflow(case)
+            yield probe(
+                "overflow",
+                f"{scheme}, rk2, {evaluation}, dt = 1.2 a",
+                f"an error at step {expected:.1g}",
+                lambda case=case, expected=expected: _overflow(case, expected),
+                0.08,  # the 16 steps between two looks, of some 500
+                source="dense matrix",
+            )
+
+
+def _line(scheme: str, half: int, **more: Any) -> dict[str, Any]:
+    return {
+        "scheme": scheme,
+        "beta": 0.5,
+        "half_width": float(half),
+        "spacing": 1.0,
+        "t_initial": 0.0,
+    } | more
+
+
+def _against_powers(case: Case, above: bool) -> tuple[float, str]:
+    deviation, found = _against_the_matrix(case)
+    if not above:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", StabilityWarning)  # a false alarm is an error
+            prepare(case)
+    return deviation, found
+
+
+def _against_the_matrix(case: Case) -> tuple[float, str]:
+    """The run from rough data, against exp(A T) or p(A dt)^n of the dense matrix."""
+    u0 = np.random.default_rng(1).standard_normal(case.particles)
+    matrix = dense_matrix(SCHEMES[case.scheme].operator(case.setting))
+    if case.steps:
+        exact = np.linalg.matrix_power(_polynomial(case, matrix), case.steps) @ u0
+    else:
+        exact = expm(case.span * matrix) @ u0
+    u = prepare(case).solve(u0)
+    size = float(np.abs(exact).max())
+    return float(np.abs(u - exact).max()) / size, f"|u| grows {size / np.abs(u0).max():.0e} times"
+
+
+def _polynomial(case: Case, matrix: np.ndarray) -> np.ndarray:
+    stages = {"euler": 1, "rk2": 2, "rk4": 4}[case.resolved_integrator]
+    identity = np.eye(len(matrix))
+    p = identity
+    for k in range(stages, 0, -1):
+        p = identity + case.time_step / k * matrix @ p
+    return p
+
+
+def _step_of_overflow(case: Case) -> float:
+    values, modes = np.linalg.eig(dense_matrix(SCHEMES[case.scheme].operator(case.setting)))
+    z = values * case.time_step
+    coefficients = np.linalg.solve(modes, initial_strengths(case)[0])
+    amplitude = np.maximum(np.abs(coefficients) * np.abs(modes).max(axis=0), _EPS * 1e-3)
+    factor = np.log(np.abs(1.0 + z + 0.5 * z * z))
+    growing = factor > 1e-6
+    return float(
+        ((np.log(np.finfo(float).max) - np.log(amplitude))[growing] / factor[growing]).min()
+    )
+
+
+def _overflow(case: Case, expected: float) -> tuple[float, str]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StabilityWarning)
+        try:
+            prepare(case).solve(initial_strengths(case)[0])
+        except NonFiniteSolution as error:
+            found = int(re.findall(r"step (\d+)", str(error))[0])
+        else:
+            return np.inf, "no error"
+    early = max(0.0, found / expected - 1.0)
+    deviation = early if case.evaluation == "series" else abs(found / expected - 1.0)
+    return deviation, f"an error at step {found:.1g}"

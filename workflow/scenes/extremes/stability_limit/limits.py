@@ -1,0 +1,160 @@
+"""The limit a itself: against symbols from scipy, in boxes, where it is zero, and what it refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.stability import stability_limit
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.stability_limit.independent import symbol
+
+__all__ = ["against_an_independent_symbol", "in_boxes", "refused"]
+
+_POINTS = 4001
+
+
+def against_an_independent_symbol(orders: list[int], overlaps: list[float]) -> Iterator[Probe]:
+    """a = 2 / -min A(theta), and zero where A(theta) > 0 somewhere; by scipy's minimiser on scipy's functions."""
+    for scheme, order, s in product(("DD", "FPSE", "KPSE"), orders, overlaps):
+        for beta in (0.1, 0.9):
+            expected = _limit(scheme, beta, order, s)
+            yield probe(
+                "limit a",
+                f"{scheme}, order {order}, beta = {beta:g}, s = {s:g}",
+                f"{expected:.3g}" if expected else "zero: the symbol is positive",
+                lambda e=expected, a=(scheme, beta, order, s): _deviation(stability_limit(*a), e),
+                # The minimiser: the root of eps in theta, whose square counts; at a small overlap the digits that an
+                # exchange loses to K^(0), s^-alpha over the range.
+                1e-9,
+                source="scipy",
+                must=Verdict.HELD,
+            )
+    for scheme, beta in product(("DD", "FPSE", "KPSE"), (1e-6, 0.5, 1.0 - 1e-6)):
+        expected = SCHEMES[scheme].closed_form_limit(beta, 1000.0)
+        yield probe(
+            "limit a",
+            f"{scheme}, order 2, beta = {beta:g}, s = 1000",
+            f"{expected:.3g}",
+            lambda e=expected, a=(scheme, beta, 2, 1000.0): _deviation(stability_limit(*a), e),
+            1e-9,  # the aliases that the closed form leaves out are zero here
+            source="closed form",
+            must=Verdict.HELD,
+        )
+    for order, s in product((2, 4), (0.6, 1.25, 2.0)):
+        yield probe(
+            "limit a",
+            f"DPSE, order {order}, beta = 0.1, s = {s:g}",
+            "positive: no wave grows",
+            lambda a=("DPSE", 0.1, order, s): (
+                float(stability_limit(*a) <= 0.0),
+                f"{stability_limit(*a):.2g}",
+            ),
+            0.0,
+        )
+
+
+def in_boxes(overlaps: list[float]) -> Iterator[Probe]:
+    """The same in the plane and in space, on grids of wave vectors: the limit is no higher there, nor much lower."""
+    for (scheme, order), dim, s in product((("DD", 2), ("DD", 12), ("KPSE", 4)), (2, 3), overlaps):
+        if s < {2: 0.75, 3: 1.5}[dim]:
+            continue  # so many aliases take scipy too long
+        count = {2: 61, 3: 17}[dim]
+        axis = np.linspace(0.0, np.pi, count)
+        near = np.linspace(0.0, min(np.pi, 4.0 / s), count)
+        theta = np.stack(np.meshgrid(*[np.union1d(axis, near)] * dim, indexing="ij"), axis=-1)
+        theta = theta.reshape(-1, dim)
+        theta = theta[(np.diff(theta, axis=1) >= 0.0).all(axis=1)]
+        yield probe(
+            "limit a",
+            f"{scheme}, order {order}, beta = 0.5, s = {s:g}, n = {dim}",
+            "that of scipy's symbol",
+            lambda t=theta, a=(scheme, 0.5, order, s, dim): _below(
+                stability_limit(*a), symbol(a[0], t, 1.5, a[2], a[3])
+            ),
+            # The points are 0.05 (0.2) apart or closer: a quadratic minimum is missed by the square of it.
+            {2: 0.01, 3: 0.05}[dim],
+            source="scipy",
+            must=Verdict.HELD,
+        )
+
+
+def refused() -> Iterator[Probe]:
+    """Arguments that mean nothing."""
+    cases: dict[str, tuple[Any, ...]] = {
+        "overlap 0.2": ("KPSE", 0.5, 2, 0.2),
+        "overlap 1001": ("KPSE", 0.5, 2, 1001.0),
+        "overlap nan": ("KPSE", 0.5, 2, float("nan")),
+        "beta = 0": ("KPSE", 0.0),
+        "beta = 1": ("KPSE", 1.0),
+        "1 + beta = 1": ("KPSE", 1e-17),
+        "order 3": ("KPSE", 0.5, 3),
+        "order 4 of GPSE": ("GPSE", 0.5, 4),
+        "FD in the plane": ("FD", 0.5, 2, 2.0, 2),
+        "no scheme": ("XPSE", 0.5),
+    }
+    for name, arguments in cases.items():
+        yield probe(
+            "refused",
+            name,
+            "an error of ours",
+            lambda a=arguments: stability_limit(*a),
+            0.0,
+            must=Verdict.REFUSED,
+        )
+
+
+def _limit(scheme: str, beta: float, order: int, s: float) -> float:
+    alpha = 1.0 + beta
+
+    def values(theta: np.ndarray) -> np.ndarray:
+        return symbol(scheme, np.atleast_1d(theta)[:, None], alpha, order, s)
+
+    # Where theta is smaller than 1e-3, A ~ -theta^alpha of an exchange is lost in the round-off of its parts.
+    first = 1e-3 if scheme == "KPSE" else 0.0
+    theta = np.union1d(
+        np.linspace(first, np.pi, _POINTS), np.linspace(first, min(np.pi, 16.0 / s), _POINTS)
+    )
+    if scheme == "FPSE":  # whose factors may change sign next to zero
+        theta = np.union1d(theta, np.geomspace(1e-6, 1e-2, 200))
+    found = values(theta)
+    # Next to a greatest value the symbol may rise above zero between two samples.
+    peaks = np.flatnonzero((found[1:-1] > found[:-2]) & (found[1:-1] >= found[2:])) + 1
+    peaks = peaks[np.argsort(-found[peaks])[:12]]
+    highest = max([found.max(), *(-_least(lambda t: -values(t), theta, int(k)) for k in peaks)])
+    if highest > 1e-12 * s**-alpha:
+        return 0.0
+    k = int(found.argmin())
+    return -2.0 / min(_least(values, theta, k), float(found[k]))
+
+
+def _least(f: Callable[[np.ndarray], np.ndarray], theta: np.ndarray, k: int) -> float:
+    """The least value near theta_k by scipy's minimiser."""
+    around = theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)]
+    options = {"xatol": 1e-10}
+    return float(
+        minimize_scalar(
+            lambda t: float(f(t)[0]), bounds=around, method="bounded", options=options
+        ).fun
+    )
+
+
+def _deviation(found: float, expected: float) -> tuple[float, str]:
+    if expected == 0.0 or found == 0.0:
+        return abs(found - expected), f"{found:.3g}"
+    return abs(found / expected - 1.0), f"{found:.3g}"
+
+
+def _below(found: float, values: np.ndarray) -> tuple[float, str]:
+    if values.max() > 1e-9 * -values.min():
+        return found, f"{found:.3g}"
+    expected = -2.0 / values.min()
+    high = (
+        max(0.0, found / expected - 1.0 - 1e-9) * 1e9
+    )  # a limit above the samples' is wrong in any case
+    return max(high, 1.0 - found / expected), f"{found:.3g}"

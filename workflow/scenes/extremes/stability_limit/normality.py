@@ -1,0 +1,115 @@
+"""Eigenvalues, numerical range and transient growth of operators that are not normal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+from scipy.linalg import eigh, expm
+
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes.spectrum import dense_matrix, eigenvalue_bounds
+from fracparticles.schemes.stability import stability_limit
+from fracstudy.probe import Probe, Verdict, probe
+
+__all__ = ["eigenvalues", "transient_growth"]
+
+_TIMES = np.geomspace(1e-2, 1e6, 17)
+_STEPS = 2 ** np.arange(15)
+
+
+def eigenvalues(half: int, orders: list[int], overlaps: list[float]) -> Iterator[Probe]:
+    """The bounds that stepping and series stand on hold all eigenvalues, of all orders, exteriors, tables.
+
+    A defective eigenvalue of A is split by the root of the round-off: that much is allowed.
+    """
+    bound = 10.0 * float(np.sqrt(np.finfo(float).eps))
+    for scheme, exterior, order in product(("DD", "FPSE", "KPSE"), ("truncated", "open"), orders):
+        for s, table in [*((s, None) for s in overlaps), (3.3, 0.3)]:
+            setting = Setting(
+                alpha=1.98, n=half, order=order, overlap=s, exterior=exterior, kernel_table=table
+            )
+            open_too_narrow = exterior == "open" and half < 4.0 * s
+            if open_too_narrow:
+                continue
+            words = "" if table is None else ", table"
+            yield probe(
+                "eigenvalues",
+                f"{scheme}, order {order}, s = {s:g}, {exterior}{words}",
+                "within the bounds",
+                lambda scheme=scheme, setting=setting: _beyond(scheme, setting),
+                bound,
+                source="dense matrix",
+                must=Verdict.HELD,
+            )
+
+
+def transient_growth(half: int) -> Iterator[Probe]:
+    """|exp(A t)| and |p(A dt)^n| in the Euclidean norm: at most one if A is normal, else the condition of the modes.
+
+    The numerical range reaches to the greatest eigenvalue w of (A + A^T) / 2: for short times |exp(A t)| ~ exp(w t).
+    """
+    for scheme, exterior, order in product(("DD", "FPSE", "KPSE"), ("truncated", "open"), (2, 4)):
+        setting = Setting(alpha=1.5, n=half, order=order, exterior=exterior)
+        name = f"{scheme}, order {order}, {exterior}"
+        matrix = dense_matrix(SCHEMES[scheme].operator(setting))
+        reach = float(eigh(0.5 * (matrix + matrix.T), eigvals_only=True)[-1])
+        normal = exterior == "truncated" and scheme != "FPSE"
+        condition = 1.0 if normal else float(np.linalg.cond(np.linalg.eig(matrix)[1]))
+        shown = "at most 1" if normal else "at most the condition of the modes"
+        yield probe(
+            "transient growth",
+            f"{name}, exp(A t)",
+            shown,
+            lambda m=matrix, c=condition, w=reach: _worst([expm(t * m) for t in _TIMES], c, w),
+            # Of the zero eigenvalue round-off makes eps |A|, over t up to 1e6.
+            1e-8,
+            source="scipy",
+            must=Verdict.HELD,
+        )
+        dt = 0.99 * stability_limit(scheme, 0.5, order)
+        one = np.eye(len(matrix)) + dt * matrix @ (np.eye(len(matrix)) + 0.5 * dt * matrix)
+        yield probe(
+            "transient growth",
+            f"{name}, p(A dt)^n, rk2, dt = 0.99 a",
+            shown,
+            lambda p=one, c=condition, w=reach: _worst(
+                [np.linalg.matrix_power(p, int(n)) for n in _STEPS], c, w
+            ),
+            1e-8,
+            source="dense matrix",
+            must=Verdict.HELD,
+        )
+        short = 1e-3 / np.abs(matrix).sum(axis=1).max()
+        yield probe(
+            "numerical range",
+            f"{name}, t -> 0",
+            f"log |exp(A t)| / t = {reach:.0e}",
+            lambda m=matrix, w=reach, t=short: _rate(m, w, t),
+            # The next term of the exponential, t |A|^2 / 2, against |A|.
+            1e-3,
+            source="scipy",
+            must=Verdict.HELD,
+        )
+
+
+def _beyond(scheme: str, setting: Setting) -> tuple[float, str]:
+    operator = SCHEMES[scheme].operator(setting)
+    low, high = eigenvalue_bounds(scheme, setting, operator)
+    values = np.linalg.eigvals(dense_matrix(operator)).real
+    over = max(low - values.min(), values.max() - high) / (high - low)
+    return max(
+        0.0, float(over)
+    ), "within" if over <= 0.0 else "at the bound" if over < 1e-6 else f"{over:.0e} beyond"
+
+
+def _worst(matrices: list[np.ndarray], condition: float, reach: float) -> tuple[float, str]:
+    most = max(float(np.linalg.norm(one, 2)) for one in matrices)
+    return max(0.0, most / condition - 1.0), f"at most {most:.1f}, w = {reach:.0e}"
+
+
+def _rate(matrix: np.ndarray, reach: float, t: float) -> tuple[float, str]:
+    size = float(np.abs(matrix).sum(axis=1).max())
+    rate = float(np.log(np.linalg.norm(expm(t * matrix), 2)) / t)
+    return abs(rate - reach) / size, f"{rate:.0e}"

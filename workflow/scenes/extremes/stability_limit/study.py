@@ -1,0 +1,55 @@
+"""The limit of Eqs. (54)-(56): what grows beyond it, what does not below it, and who says so."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.schemes.stability import stability_limit
+from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import Panels
+from fracstudy.probe import Probe, frame
+from scenes.extremes.stability_limit import amplification, growth, limits, normality
+
+__all__ = ["SHOWN", "study"]
+
+SHOWN = tuple(product(("DD", "FPSE", "KPSE"), (2, 4, 8)))
+
+
+def study(
+    inputs: Inputs,
+    *,
+    half: int,
+    overlaps: list[float],
+    orders: list[int],
+    factors: list[float],
+    map_betas: list[float],
+    map_overlaps: list[float],
+) -> Result:
+    """One row a probe; lattices have 2 `half` + 1 particles, steps are `factors` times the limit.
+
+    For the figure, the limit on a grid of `map_betas` and `map_overlaps`, and the growth per step, measured and
+    predicted.
+    """
+    probes: list[Probe] = []
+    measured = amplification.measured(half, overlaps, orders, factors)
+    probes += amplification.probes(measured)
+    probes += growth.words(half, factors)
+    probes += growth.hidden(half)
+    probes += growth.overflow()
+    probes += limits.against_an_independent_symbol(orders, overlaps)
+    probes += limits.in_boxes(overlaps)
+    probes += limits.refused()
+    probes += normality.eigenvalues(half, orders, overlaps)
+    probes += normality.transient_growth(min(half, 40))
+    panels = Panels()
+    for scheme, order in SHOWN:
+        for beta in map_betas:
+            a = [stability_limit(scheme, beta, order, s) for s in map_overlaps]
+            panels.add("map", f"{scheme} {order}", map_overlaps, np.array(a), beta=beta)
+    for (factor, integrator), part in measured.groupby(["factor", "integrator"]):
+        more = {"factor": factor, "beta": np.nan}
+        panels.add("growth", integrator, part["predicted"], part["measured"].to_numpy(), **more)
+    return Result(frame(probes), (), pd.DataFrame(panels.frame))

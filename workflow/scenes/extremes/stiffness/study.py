@@ -1,0 +1,28 @@
+"""Stiff problems, T |lambda| up to 1e10: what each way of the time integration does, and whether it is right."""
+
+from __future__ import annotations
+
+from fracstudy.inputs import Inputs, Result
+from fracstudy.probe import Probe, frame
+from scenes.extremes.stiffness import ends, ways
+
+__all__ = ["study"]
+
+
+def study(
+    inputs: Inputs, *, schemes: list[str], half: int, stiffness: list[float], most: float
+) -> Result:
+    """One row a probe, of `schemes` on 2 `half` + 1 particles, for each T |lambda| of `stiffness`.
+
+    Ways that need more than `most` applications of the operator are counted, not run. For the figure, applications and
+    error of each way.
+    """
+    probes: list[Probe] = []
+    found, series = ways.probes(schemes, half, stiffness, most)
+    probes += found
+    probes += ends.conservation(half, stiffness, most)
+    probes += ends.decay(schemes, half, stiffness)
+    probes += ends.at_the_limit(half, stiffness)
+    probes += ends.spoken_of(half, stiffness)
+    probes += ends.refused(half)
+    return Result(frame(probes), (), series)
