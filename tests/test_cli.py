@@ -101,7 +101,7 @@ def test_every_flag_reaches_the_case(cli):
         "kernel_table": 0.01,
         "store": "profile",
     }
-    of_others = {"half_width", "graded_scale", "graded_form"}
+    of_others = {"times", "half_width", "graded_scale", "graded_form"}
     of_others |= {"remeshing", "remesh_above", "threshold"}
     assert {*everything, *of_others} == set(Case.model_fields)
     flags = [f"--{name.replace('_', '-')}={value}" for name, value in everything.items()]

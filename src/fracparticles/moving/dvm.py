@@ -19,7 +19,9 @@ solution, and what is left to remesh for is that all spacings grow.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -164,6 +166,19 @@ def run(
     alpha: float,
     dt: float,
     steps: int,
+    **parameters: Any,
+) -> ParticleRun:
+    """Advance the field u by `steps` midpoint steps: `run_to_outputs` with a single leg."""
+    return run_to_outputs(x, u, spacing=spacing, alpha=alpha, legs=[(dt, steps)], **parameters)[-1]
+
+
+def run_to_outputs(
+    x: np.ndarray,
+    u: np.ndarray,
+    *,
+    spacing: float,
+    alpha: float,
+    legs: Sequence[tuple[float, int]],
     order: int = 2,
     overlap: float = 2.0,
     diffusivity: float = 1.0,
@@ -175,8 +190,8 @@ def run(
     summation: str = "fft",
     exterior: str = "truncated",
     observe: Observer | None = None,
-) -> ParticleRun:
-    """Advance the field u, given at particles of volume h, by `steps` midpoint steps.
+) -> list[ParticleRun]:
+    """Advance the field u, given at particles of volume h, by midpoint steps; return the particles after each leg.
 
     Parameters
     ----------
@@ -184,6 +199,8 @@ def run(
         Positions, and the field there: the strengths are U_i = h u_i.
     spacing : float
         h.
+    legs : sequence of (float, int)
+        A time step, and how many of them.
     overlap : float
         epsilon / h.
     remeshing : {"M4'", "Lambda3", "none"}
@@ -217,15 +234,20 @@ def run(
         continued = None if velocity.tail is None else velocity.tail.continued
         above = largest_gap(exterior) if remesh_above is None else remesh_above
         redistribution = Remeshing(remeshing, spacing, above, ends, continued)
-    x, strength, history = advance(
-        x,
-        spacing * real_array("u", u),
-        velocity,
-        dt=dt,
-        steps=steps,
-        start=start,
-        remeshing=redistribution,
-        threshold=threshold,
-        observe=observe,
-    )
-    return ParticleRun(x, strength, history, velocity)
+    strength, history, runs = spacing * real_array("u", u), None, []
+    for dt, steps in legs:
+        x, strength, own = advance(
+            x,
+            strength,
+            velocity,
+            dt=dt,
+            steps=steps,
+            start=start,
+            remeshing=redistribution,
+            threshold=threshold,
+            observe=observe,
+        )
+        history = own if history is None else history.followed_by(own)
+        runs.append(ParticleRun(x, strength, history, velocity))
+        start += dt * steps
+    return runs

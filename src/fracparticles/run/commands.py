@@ -14,7 +14,7 @@ from fracparticles.arguments import positive_real
 from fracparticles.errors import InvalidInput, spelled
 from fracparticles.files import replaceable
 from fracparticles.run.case import Case
-from fracparticles.run.complaints import choices_of, takes_numbers
+from fracparticles.run.complaints import choices_of, takes_lists, takes_numbers
 from fracparticles.schemes import scheme as find_scheme
 from fracparticles.schemes.stability import stability_limit
 
@@ -24,6 +24,7 @@ _ALIASES = {"dt": "--time-step"}
 _NEEDED = ("scheme", "beta")  # by `limit`; `Case` says itself what it needs
 _OF_A_LIMIT = (*_NEEDED, "order", "overlap", "dim", "kernel_family", "spacing", "diffusivity")
 _NUMBERS = {name for name, field in Case.model_fields.items() if takes_numbers(field.annotation)}
+_LISTS = {name for name, field in Case.model_fields.items() if takes_lists(field.annotation)}
 
 
 def _flag(name: str, kind: Any = str) -> Any:
@@ -37,7 +38,7 @@ def _flag(name: str, kind: Any = str) -> Any:
         kind,
         Parameter(
             alias=_ALIASES.get(name),
-            metavar="NUMBER" if name in _NUMBERS else "TEXT",
+            metavar="NUMBER" if name in _NUMBERS else "NUMBERS" if name in _LISTS else "TEXT",
             help=" ".join(filter(None, [field.description, *notes])),
         ),
     ]
@@ -113,9 +114,13 @@ def number_or_text(text: str) -> Any:
 
 def _values(flags: Mapping[str, str]) -> dict[str, Any]:
     """Numbers of the flags, read as text: text where one belongs is then refused in the same words as in Python."""
-    return {
-        name: number_or_text(text) if name in _NUMBERS else text for name, text in flags.items()
-    }
+    return {name: _value(name, text) for name, text in flags.items()}
+
+
+def _value(name: str, text: str) -> Any:
+    if name in _LISTS:  # "0.6,1,1.5"
+        return [number_or_text(part) for part in text.split(",")]
+    return number_or_text(text) if name in _NUMBERS else text
 
 
 def _note(text: str) -> None:

@@ -18,6 +18,7 @@ __all__ = [
     "field_table",
     "first_complaint",
     "label_of",
+    "takes_lists",
     "takes_numbers",
 ]
 
@@ -45,6 +46,8 @@ def allowed(field: FieldInfo) -> str:
         return f"one of {spelled(choices, ', ')}"
     if field.annotation is str:
         return "text"
+    if takes_lists(field.annotation):
+        return "a list of numbers"
     bounds = {
         name: getattr(bound, name)
         for bound in field.metadata
@@ -66,6 +69,11 @@ def takes_numbers(annotation: Any) -> bool:
     """Say whether a field with this annotation takes numbers."""
     kinds = {annotation, *get_args(annotation), *map(type, choices_of(annotation))}
     return not kinds.isdisjoint((int, float))
+
+
+def takes_lists(annotation: Any) -> bool:
+    """Say whether a field with this annotation takes several numbers."""
+    return tuple in (get_origin(annotation), *map(get_origin, get_args(annotation)))
 
 
 def closest(value: object, choices: Iterable[object]) -> str | None:

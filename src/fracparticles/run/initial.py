@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from fracparticles.arguments import real_array
-from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, spelled
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.special.stable import green
@@ -191,6 +191,7 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
     if data is None:
         return np.array(bare_strengths(given, case.shape)), False
     name = what.removeprefix("file ") if what.startswith("file ") else type(given).__name__
+    data = _at_its_time(data, case.t_initial, name)
     told = _told(data)
     _check_equation(case, told, name)
     axes = _AXES[: case.dim]
@@ -213,6 +214,20 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
     for axis, label in enumerate(axes):
         strengths = np.take(strengths, _order(case, data[label].values, label, name), axis)
     return np.array(bare_strengths(strengths, case.shape)), "t_final" in told
+
+
+def _at_its_time(data: xr.Dataset, t: float, name: str) -> xr.Dataset:
+    """Of data with several output times those at time t."""
+    if "t" not in data.dims or "t" not in data.variables or data.sizes["t"] == 1:
+        return data
+    times = data["t"].values.tolist()
+    here = [k for k, time in enumerate(times) if math.isclose(time, t, rel_tol=1e-9)]
+    if not here:
+        held = (
+            f"data at t_initial = {t:.9g}, and these are at {spelled(map('{:.9g}'.format, times))}"
+        )
+        raise InvalidInput("initial", name, held, "Set t_initial to one of these.")
+    return data.isel(t=here[0])
 
 
 def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
@@ -269,6 +284,8 @@ def _told(data: xr.Dataset) -> dict[str, float]:
     for name in _SAYS:
         if name in data.variables and data.variables[name].size == 1:
             told[name] = data.variables[name].values.item()
+    if "t" in data.variables and data.variables["t"].size == 1 and "t_final" in told:
+        told["t_final"] = data.variables["t"].values.item()  # one of the output times of that run
     return {
         name: float(value)
         for name, value in told.items()
@@ -298,7 +315,7 @@ def _labels(given: Any) -> xr.Dataset | None:
 
 
 def _read(path: Path) -> xr.Dataset:
-    return load_netcdf(path, ("u", *_AXES, *_SAYS))
+    return load_netcdf(path, ("u", *_AXES, "t", *_SAYS))
 
 
 def _real(values: Any) -> np.ndarray:
