@@ -345,7 +345,7 @@ def test_a_limit_of_zero_says_that_no_step_is_stable(cli, flags):
         ("--scheme KPSE --beta 0.5 --spacing x", ("spacing = 'x'", "positive")),
         ("--scheme KPSE --beta 0.5 --diffusivity -1", ("diffusivity = -1", "positive")),
         ("--scheme FD --beta 0.5 --overlap 2", ("overlap", "nothing for FD")),
-        ("--scheme KPSE", ("--beta", "requires an argument")),
+        ("--scheme KPSE", ("beta", "Give --beta, or --alpha")),
         ("--scheme KPSE --beta 0.5 --overlp 2", ("--overlp", "Did you mean --overlap?")),
     ],
 )

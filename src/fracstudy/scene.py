@@ -57,6 +57,7 @@ _FIELDS: dict[str, Any] = {
     )
     for name, field in Case.model_fields.items()
 }
+_FIELDS["alpha"] = (_value_or_list(float), Field(default=None))  # instead of beta
 RunBlock: type[BaseModel] = create_model(
     "RunBlock",
     __config__=ConfigDict(extra="forbid", strict=True, frozen=True),

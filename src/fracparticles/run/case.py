@@ -13,6 +13,7 @@ from pydantic import ValidationError, model_validator
 from fracparticles.errors import InvalidInput
 from fracparticles.run.checks import check
 from fracparticles.run.complaints import allowed, first_complaint
+from fracparticles.run.fractional_order import with_beta
 from fracparticles.run.parameters import FUNDAMENTAL, Parameters, fastest_evaluation
 from fracparticles.run.times import parts, with_times
 
@@ -27,7 +28,8 @@ class Case(Parameters):
     `spacing` and `dt` are what is asked for; the lattice ends at the half-width exactly and the last step at
     `t_final` exactly, so that the realised `particle_spacing` and `time_step` may differ slightly.
 
-    The fields are the parameters, keyword only. NumPy scalars are taken for what they hold.
+    The fields are the parameters, keyword only. NumPy scalars are taken for what they hold. `alpha` may be given
+    instead of `beta`.
 
     Raises
     ------
@@ -50,7 +52,7 @@ class Case(Parameters):
         plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
         if plain.get("evaluation") == "auto":
             plain["evaluation"] = fastest_evaluation(plain)
-        return with_times(plain)
+        return with_times(with_beta(plain))
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
@@ -123,7 +125,7 @@ class Case(Parameters):
             self.resolved_integrator,
             _said("dt", self.dt),
             f"t{_digits(self.t_initial)}-{_digits(self.t_final)}",
-            self.times and f"at{','.join(map(_digits, self.times))}",
+            f"at{','.join(map(_digits, self.times))}" if self.times else "",
             _said("diffusivity", self.diffusivity, default=1.0),
             "" if self.initial == FUNDAMENTAL else f"from-{_encoded(self.initial)}",
             None if self._series_by_default else self.evaluation,

@@ -15,14 +15,24 @@ from fracparticles.errors import InvalidInput, spelled
 from fracparticles.files import replaceable
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import choices_of, takes_lists, takes_numbers
+from fracparticles.run.fractional_order import ALPHA, with_beta
 from fracparticles.schemes import scheme as find_scheme
 from fracparticles.schemes.stability import stability_limit
 
 __all__ = ["limit", "number_or_text", "solve"]
 
 _ALIASES = {"dt": "--time-step"}
-_NEEDED = ("scheme", "beta")  # by `limit`; `Case` says itself what it needs
-_OF_A_LIMIT = (*_NEEDED, "order", "overlap", "dim", "kernel_family", "spacing", "diffusivity")
+_NEEDED = ("scheme",)  # by `limit`; `Case` says itself what it needs
+_OF_A_LIMIT = (
+    *_NEEDED,
+    "beta",
+    "order",
+    "overlap",
+    "dim",
+    "kernel_family",
+    "spacing",
+    "diffusivity",
+)
 _NUMBERS = {name for name, field in Case.model_fields.items() if takes_numbers(field.annotation)}
 _LISTS = {name for name, field in Case.model_fields.items() if takes_lists(field.annotation)}
 
@@ -48,8 +58,10 @@ if TYPE_CHECKING:
     Flags = dict[str, Any]
     LimitFlags = dict[str, Any]
 else:
-    Flags = TypedDict("Flags", {name: _flag(name) for name in Case.model_fields}, total=False)
-    _LIMIT = {name: _flag(name) for name in _OF_A_LIMIT}
+    _ALPHA = {"alpha": Annotated[str, Parameter(metavar="NUMBER", help=ALPHA)]}
+    _CASE = {name: _flag(name) for name in Case.model_fields}
+    Flags = TypedDict("Flags", _ALPHA | _CASE, total=False)
+    _LIMIT = _ALPHA | {name: _flag(name) for name in _OF_A_LIMIT}
     _LIMIT |= {name: _flag(name, Required[str]) for name in _NEEDED}
     LimitFlags = TypedDict("LimitFlags", _LIMIT, total=False)
 
@@ -82,7 +94,9 @@ def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
     Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a, Eq. (56). A single step of GPSE, over the
     whole time, has no limit.
     """
-    given = _values(flags)
+    given = with_beta(_values(flags))
+    if "beta" not in given:
+        raise InvalidInput("beta", None, "a number between 0 and 1", "Give --beta, or --alpha.")
     scheme = find_scheme(given["scheme"])
     if "overlap" in given and not scheme.has_kernel:
         without = f"nothing for {scheme.name}, which has no kernel"
@@ -120,7 +134,7 @@ def _values(flags: Mapping[str, str]) -> dict[str, Any]:
 def _value(name: str, text: str) -> Any:
     if name in _LISTS:  # "0.6,1,1.5"
         return [number_or_text(part) for part in text.split(",")]
-    return number_or_text(text) if name in _NUMBERS else text
+    return number_or_text(text) if name in _NUMBERS or name == "alpha" else text
 
 
 def _note(text: str) -> None:

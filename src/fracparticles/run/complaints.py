@@ -34,9 +34,16 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
     if first["type"] == "extra_forbidden":
         return one_of(name, value, fields, remedy=closest(name, fields) or "Leave it out.")
     if first["type"] == "missing":
-        return InvalidInput(name, None, allowed(fields[name]), f"Give {name}.")
-    remedy = closest(value, choices_of(fields[name].annotation)) or "Give such a value."
-    return InvalidInput(name, value, allowed(fields[name]), remedy)
+        remedy = _remedy(fields[name]) or f"Give {name}."
+        return InvalidInput(name, None, allowed(fields[name]), remedy)
+    remedy = closest(value, choices_of(fields[name].annotation)) or _remedy(fields[name])
+    return InvalidInput(name, value, allowed(fields[name]), remedy or "Give such a value.")
+
+
+def _remedy(field: FieldInfo) -> str:
+    """What a field itself says is to be done."""
+    extra = field.json_schema_extra
+    return str(extra.get("remedy", "")) if isinstance(extra, dict) else ""
 
 
 def allowed(field: FieldInfo) -> str:

@@ -79,7 +79,8 @@ class Parameters(BaseModel):
     beta: float = Field(
         gt=0.0,
         lt=1.0,
-        description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive).",
+        description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive). alpha may be given instead.",
+        json_schema_extra={"remedy": "Give beta = alpha - 1, or alpha itself."},
     )
     dim: Literal[1, 2, 3] = Field(
         default=1,

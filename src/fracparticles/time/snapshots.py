@@ -90,6 +90,10 @@ class Snapshots:
             return self._flow_of(stop).operator_applications
         return max(self._degree(start, j) for j in range(start + 1, stop + 1))
 
+    def __call__(self, u: np.ndarray) -> np.ndarray:
+        """Return the strengths at each output time, shape (m, N); raises as `run`."""
+        return self.run(u)[0]
+
     def run(self, u: np.ndarray) -> tuple[np.ndarray, int]:
         """Return the strengths at each output time, shape (m, N), and how often A was applied.
 
