@@ -32,6 +32,7 @@ _HOME = {
     "green_step_of_field": "graded.field",
     "kernel": "kernels.families",
     "mean_radius": "special.stable",
+    "measured": "run.measured",
     "prepare": "run.solver",
     "read_run": "run.dataset",
     "solve": "run.solver",

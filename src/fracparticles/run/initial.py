@@ -23,6 +23,7 @@ from fracparticles.arguments import real_array
 from fracparticles.errors import AccuracyWarning, InvalidInput, spelled
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.measured import MEASURED, Measured, is_table, measured
 from fracparticles.special.stable import green
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ __all__ = [
     "case_of_run",
     "initial_strengths",
     "refuse_non_finite",
+    "resolved",
 ]
 
 Initial: TypeAlias = "str | os.PathLike[str] | np.ndarray | xr.DataArray | xr.Dataset | pd.Series | Callable[..., Any]"
@@ -55,7 +57,8 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     initial : array, DataArray, Dataset, Series, callable or path, optional
         An array of shape `case.shape`; labelled data with u on the coordinates x (y, z) of the case, in any order; a
         function of `case.positions`, of arrays or of single numbers, a constant included; a NetCDF file with u on
-        these coordinates. Without it, what `case.initial` says.
+        these coordinates; `Measured` data, a table or "measured:PATH", which are interpolated. Without it, what
+        `case.initial` says.
 
     Raises
     ------
@@ -68,7 +71,7 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     AccuracyWarning
         If the data have no time of their own and `t_initial` was not given.
     """
-    source = case.initial if initial is None else initial
+    source = resolved(case, initial)
     if isinstance(source, str) and source == FUNDAMENTAL:
         case.refuse_point_mass()
         u0 = np.asarray(green(case.radius, case.diffusivity * case.t_initial, case.alpha, case.dim))
@@ -81,6 +84,9 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
         given, what = _read(Path(source)), f"file {os.fspath(source)}"
     elif callable(source):
         given, what = _evaluated(source, case), "callable"
+        if isinstance(source, Measured):
+            source.check_lattice(given, case.volumes)
+            what = f"file {source.source}" if source.is_file else "measured data"
     else:
         given, what = source, "array"
     u0, has_time = _on_lattice(case, given, what)
@@ -102,6 +108,13 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
             stacklevel=4,
         )
     return u0, f"{what}, sha256 {digest}"
+
+
+def resolved(case: Case, initial: Initial | None = None) -> Initial:
+    """Return the initial data of a run: what comes with the call, or what the case says; a table as `Measured`."""
+    source = case.initial if initial is None else initial
+    path = os.fspath(source) if isinstance(source, str | os.PathLike) else ""
+    return measured(path) if path.startswith(MEASURED) or is_table(path) else source
 
 
 def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:
@@ -237,7 +250,10 @@ def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
         f"u on the {case.particles} points of case.positions, {lattice.size} along {label}, h = {h:.9g} and "
         f"|{label}| <= {case.reach:.9g}"
     )
-    remedy = "Set half_width and spacing to match, or interpolate the data onto case.positions."
+    remedy = (
+        "Set half_width and spacing to match, or have the data interpolated: fp.measured(data), "
+        "--initial measured:FILE."
+    )
     if x.dtype.kind not in "iuf" or x.ndim != 1 or not np.isfinite(x).all():
         raise InvalidInput("initial", name, f"finite real numbers as {label}", "Store numbers.")
     if x.size != lattice.size:

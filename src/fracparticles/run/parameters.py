@@ -131,8 +131,9 @@ class Parameters(BaseModel):
     )
     initial: str = Field(
         default=FUNDAMENTAL,
-        description='Initial data. "fundamental" for the fundamental solution at t_initial, or the '
-        "path of a NetCDF file that holds u on the same particles.",
+        description='Initial data. "fundamental" for the fundamental solution at t_initial; the path of a '
+        "NetCDF file that holds u on the same particles; that of a table, x and u in columns (csv, tsv, txt, dat), or "
+        "measured:PATH for a NetCDF file with other points, which are interpolated.",
     )
     integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = Field(
         default=None,

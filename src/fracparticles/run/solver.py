@@ -21,7 +21,14 @@ from fracparticles.lattice.operators import LatticeOperator, MatrixOperator
 from fracparticles.moving import dvm
 from fracparticles.moving.lagrangian import Observer
 from fracparticles.run.case import Case
-from fracparticles.run.initial import Initial, bare_strengths, initial_strengths, refuse_non_finite
+from fracparticles.run.initial import (
+    Initial,
+    bare_strengths,
+    initial_strengths,
+    refuse_non_finite,
+    resolved,
+)
+from fracparticles.run.measured import Measured
 from fracparticles.run.reliability import estimates, warn_if_doubtful
 from fracparticles.run.solution import Solution
 from fracparticles.run.times import Outputs, parts
@@ -72,8 +79,9 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
         The run.
     initial : array, labelled data, callable or path, optional
         Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
-        function of `case.positions` (of x; of x and y; of x, y and z); or a NetCDF file that holds u. Without it the
-        run starts from what `case.initial` says, by default the fundamental solution at `case.t_initial`.
+        function of `case.positions` (of x; of x and y; of x, y and z); a NetCDF file that holds u; a table or other
+        `measured` data. Without it the run starts from what `case.initial` says, by default the fundamental solution
+        at `case.t_initial`.
 
     Returns
     -------
@@ -102,7 +110,8 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:
     """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
-    u0, origin = initial_strengths(case, initial)
+    source = resolved(case, initial)
+    u0, origin = initial_strengths(case, source)
     particles = outputs = None
     if case.kind.moving:
         warn_if_unstable(case)
@@ -118,7 +127,7 @@ def compute(case: Case, initial: Initial | None = None) -> Solution:
         if case.times is not None:
             outputs = Outputs(case.times, u, np.array([case.integral(one) for one in u]))
             u = u[-1]
-    found = estimates(case, u0, u)
+    found = estimates(case, u0, u) | (source.estimates if isinstance(source, Measured) else {})
     warn_if_doubtful(case, u0, u, found)
     return Solution(case, case.x, u0, u, applications, origin, particles, found, outputs)
 
