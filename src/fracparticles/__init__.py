@@ -22,6 +22,8 @@ _HOME = {
     "NonFiniteSolution": "errors",
     "StabilityWarning": "errors",
     "WholeSpace": "time.whole_space",
+    "ErrorEstimate": "run.estimate",
+    "estimate_error": "run.estimate",
     "evolve": "time.whole_space",
     "graded_particles": "graded.particles",
     "green": "special.stable",

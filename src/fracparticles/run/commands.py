@@ -70,6 +70,7 @@ def solve(
     *,
     flags: Annotated[Flags | None, Parameter(name="*")] = None,
     output: Annotated[str | None, Parameter(alias="-o")] = None,
+    estimate: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Run a case, write its file and print its path.
 
@@ -77,6 +78,8 @@ def solve(
     ----------
     output : str
         The NetCDF file to write.
+    estimate : bool
+        Estimate the error against the whole space, store it with its parts, and say it.
     """
     target = _writable(output)
     case = Case(**_values(flags or {}))
@@ -84,8 +87,13 @@ def solve(
     from fracparticles.run.dataset import write
     from fracparticles.run.solver import solve as run
 
-    write(run(case), target)
+    result = run(case, estimate=estimate)
+    write(result, target)
     print(target)
+    if estimate:
+        errors = result.estimated_error.values.reshape(-1)
+        at = f" at t = {spelled((f'{t:g}' for t in case.times), ', ')}" if case.times else ""
+        _note(f"estimated relative error {spelled((f'{e:.1e}' for e in errors), ', ')}{at}")
 
 
 def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fracparticles.moving.dvm import ParticleRun
+    from fracparticles.run.estimate import ErrorEstimate
 
 __all__ = ["read_benchmark", "read_run", "source", "to_dataset", "write"]
 
@@ -45,8 +47,8 @@ _REALISED = {
 Variables = dict[str, tuple]
 
 
-def to_dataset(solution: Solution) -> xr.Dataset:
-    """Return the data set of a run.
+def to_dataset(solution: Solution, estimates: Sequence[ErrorEstimate] = ()) -> xr.Dataset:
+    """Return the data set of a run, with an estimate of its error at each output time if there is one.
 
     Dimensions `x`, `y`, `z` as there are; `u` unless the case stores metrics only (for dim > 1 the profiles `u_axis`
     and `u_diagonal` if it stores these); scalar coordinates for every parameter; the scalars `mass_initial`,
@@ -72,6 +74,7 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         data["mass"] = _along("t", solution.outputs.mass, "total mass, the sum of V u")
     for name, (value, meaning) in solution.estimates.items():
         data[name] = _scalar(float(value), meaning)
+    data |= _estimated(solution, estimates)
     coordinates = {name: _scalar(value, _label(name)) for name, value in _parameters(case).items()}
     fields, axes = _fields(solution)
     data |= fields
@@ -138,6 +141,27 @@ def _errors(solution: Solution) -> tuple:
     pairs = zip(outputs.times, outputs.u, strict=True)
     errors = [relative_l1_error(solution.case.until(time), u) for time, u in pairs]
     return _along("t", errors, meaning)
+
+
+def _estimated(solution: Solution, estimates: Sequence[ErrorEstimate]) -> Variables:
+    """The estimated error and its parts, at each output time."""
+    if not estimates:
+        return {}
+    within = f"within |x| <= {estimates[-1].within:.6g}"
+    meanings = {
+        "total": ("estimated_error", f"estimated relative error in the 1-norm, {within}"),
+        "spacing": ("estimated_error_spacing", "what spacing, order and overlap leave of it"),
+        "domain": ("estimated_error_domain", "what the ends of the lattice leave of it"),
+        "time": ("estimated_error_time", "what the time steps leave of it"),
+        "data": ("estimated_error_data", "what measured data leave of it"),
+        "reference": ("estimated_error_reference", "by how much the estimate may be off"),
+    }
+    found: Variables = {}
+    for part, (name, meaning) in meanings.items():
+        values = [float(getattr(one, part)) for one in estimates]
+        along = solution.outputs is not None
+        found[name] = _along("t", values, meaning) if along else _scalar(values[0], meaning)
+    return found
 
 
 def _particle_variables(run: ParticleRun, store: str) -> Variables:

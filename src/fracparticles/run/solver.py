@@ -70,7 +70,7 @@ _NO_GROWTH = 1e-3  # over the run, as an exponent
 Advance = Callable[[np.ndarray], np.ndarray]
 
 
-def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
+def solve(case: Case, initial: Initial | None = None, *, estimate: bool = False) -> xr.Dataset:
     """Run a case.
 
     Parameters
@@ -82,6 +82,8 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
         function of `case.positions` (of x; of x and y; of x, y and z); a NetCDF file that holds u; a table or other
         `measured` data. Without it the run starts from what `case.initial` says, by default the fundamental solution
         at `case.t_initial`.
+    estimate : bool
+        Estimate the error, too, as `estimate_error` does: `estimated_error` and its parts are variables of the result.
 
     Returns
     -------
@@ -105,7 +107,13 @@ def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
     """
     from fracparticles.run.dataset import to_dataset
 
-    return to_dataset(compute(case, initial))
+    source = resolved(case, initial)
+    solution = compute(case, source)
+    if not estimate:
+        return to_dataset(solution)
+    from fracparticles.run.estimate import estimates_of
+
+    return to_dataset(solution, estimates_of(solution, source))
 
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:
@@ -386,20 +394,12 @@ def _all_outputs(case: Case, ready: list[Prepared]) -> Prepared:
 def _on_the_whole_space(case: Case) -> Advance:
     """Return the run on the infinite lattice, exp(A t) or the steps of GPSE, by one pair of transforms."""
     setting = case.setting
-    scaled_time = case.span * setting.rate
-
-    def amplification(theta: np.ndarray) -> np.ndarray:
-        symbol = SCHEMES[case.scheme].symbol(theta, setting)
-        if case.resolved_integrator == "exponential":
-            return np.exp(scaled_time * symbol)
-        return (1.0 + scaled_time / case.steps * symbol) ** case.steps
-
     run = WholeSpace(
         setting.size,
         case.dim,
         case.alpha,
-        scaled_time,
-        amplification=amplification,
+        case.span * setting.rate,
+        amplification=scheme_amplification(case),
         terms=setting.far_terms,
     )
 
@@ -411,6 +411,23 @@ def _on_the_whole_space(case: Case) -> Advance:
         return u
 
     return advance
+
+
+def scheme_amplification(case: Case, exact: bool = False) -> Callable[[np.ndarray], np.ndarray]:
+    """Return by what the run multiplies the waves of the infinite lattice, as a function of theta; see `WholeSpace`.
+
+    With `exact` the integration in time is: exp(A t) for any integrator, but for GPSE, whose steps are its own.
+    """
+    setting = case.setting
+    scaled_time = case.span * setting.rate
+
+    def amplification(theta: np.ndarray) -> np.ndarray:
+        symbol = SCHEMES[case.scheme].symbol(theta, setting)
+        if case.kind.self_timed or not (exact or case.resolved_integrator == "exponential"):
+            return (1.0 + scaled_time / case.steps * symbol) ** case.steps
+        return np.exp(scaled_time * symbol)
+
+    return amplification
 
 
 def _graded_step(case: Case) -> LatticeOperator:
