@@ -39,6 +39,7 @@ _HOME = {
     "read_run": "run.dataset",
     "solve": "run.solver",
     "stability_limit": "schemes.stability",
+    "suggest": "run.suggest",
     "write": "run.dataset",
 }
 

@@ -1,8 +1,8 @@
 """How accurate a run is when no exact solution is known.
 
 The equation has a solution that no scheme of particles is needed for: the exact symbol, by one pair of transforms on
-the whole space (`time.whole_space`). With its spacing halved and its lattice widened until neither changes it by more
-than a tenth of what is to be estimated, it stands for the truth. From it to the run in steps, each with one
+the whole space (`time.whole_space`). With its spacing halved and its lattice widened until both together change it
+by less than a third of what is to be estimated, it stands for the truth. From it to the run in steps, each with one
 assumption more:
 
     spacing   the scheme's symbol on the infinite lattice of the run for the exact one: spacing, order, overlap
@@ -19,6 +19,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -36,10 +37,12 @@ __all__ = ["ErrorEstimate", "estimate_error", "estimate_of", "estimates_of"]
 
 Data = Callable[..., np.ndarray]
 
-_CLEAR = 0.1  # of the total: the last change of the reference
+_CLEAR = 0.3  # of the total: the last change of the reference
 _MOST_POINTS = 5_000_000
-_UNSETTLED = 0.3  # of the total
-_TERMS = {1: 4, 2: 2, 3: 2}  # that continue the reference
+_UNSETTLED = 0.5  # of the total
+_TERMS = {1: 4, 2: 4, 3: 2}  # that continue the reference
+_ROOM = {1: 4.0, 2: 1.0, 3: 1.0}  # of the narrow lattice: points are cheap on the line
+_EIGHTHS = 8  # of the half-width, where tails meet the data: the same places at any spacing
 _FAR = 1e4  # in units of the lattice: where the power is read by which data fall
 _FALLEN = 1e-13  # of the greatest: data that have ended
 _ROUND_OFF = 1e-11
@@ -178,6 +181,7 @@ class _Distance:
                 "within", within, "a radius that holds particles", "Take a larger one."
             )
         self._volumes = np.broadcast_to(case.volumes, case.shape)[self._inside]
+        self.radius = float(case.radius[self._inside].max())
 
     def __call__(self, u: np.ndarray, v: np.ndarray) -> float:
         size = float((self._volumes * np.abs(v[self._inside])).sum())
@@ -186,82 +190,91 @@ class _Distance:
 
 
 class _Truth:
-    """The exact symbol on a lattice that holds that of the case, with a fraction of its spacing and wider."""
+    """The exact symbol on lattices that hold that of the case: finer ones and wider ones.
+
+    Spacing and width have errors of their own, so that no lattice need be both: with R(f, w) of the spacing h / f and
+    the half-width w h, what stands for the truth is R(1, w) + R(f, w0) - R(1, w0).
+    """
 
     def __init__(self, case: Case, data: Data, distance: _Distance) -> None:
         self._case, self._data, self._distance = case, data, distance
         spread = (case.diffusivity * case.span) ** (1.0 / case.alpha)
-        self._radius = float(distance._inside.size and case.radius[distance._inside].max())
-        half = max(self._radius if case.is_graded else case.reach, 2.0 * self._radius, 4.0 * spread)
+        half = max(0.0 if case.is_graded else case.reach, 2.0 * distance.radius, 4.0 * spread)
         self._h = case.particle_spacing
-        self._half = int(np.ceil(2.0 * half / self._h))  # in spacings of the case
+        eighth = np.ceil(_ROOM[case.dim] * half / self._h / _EIGHTHS)
+        self._least = _EIGHTHS * int(eighth)  # w0
+        self._fine, self._wide = 2, 2 * self._least
         self._most = max(_MOST_POINTS, 8 * case.particles)
         self._tail = _tail(data, case)
-        self._fine = 1 if self._points(2, self._half) > self._most else 2
-
-    def _points(self, fine: int, half: int) -> int:
-        return int((2 * fine * half + 1) ** self._case.dim)
+        self._reached = lru_cache(maxsize=4)(self._at_particles)
 
     def beside(self, u: np.ndarray) -> tuple[np.ndarray, float]:
         """Return the solution at the particles, and its last change, small beside its distance from u if it can be."""
-        best = self._at_particles(self._fine, self._half)
+        best = self._combined(self._fine, self._wide)
         changes: dict[str, float] = {}
-        growing = {"half", "fine"}
+        growing = {"width", "fineness"}
         while growing:
-            clear = 0.5 * _CLEAR * self._distance(u, best)
+            clear = 0.5 * _CLEAR * min(1.0, self._distance(u, best))
             # What has not been tried goes first, then what changed more.
             name = max(growing, key=lambda name: (changes.get(name, np.inf), name))
             if changes.get(name, np.inf) <= clear:
                 break
-            grown = self._scaled(name, 2)
+            grown = self._scaled(name, 2.0)
             if self._points(*grown) > self._most:
                 growing.remove(name)
                 if name not in changes:  # then its last doubling says what there is to say, or more
-                    changes[name] = self._distance(
-                        self._at_particles(*self._scaled(name, 0.5)), best
-                    )
+                    changes[name] = self._distance(self._combined(*self._scaled(name, 0.5)), best)
                 continue
-            better = self._at_particles(*grown)
+            better = self._combined(*grown)
             changes[name] = self._distance(best, better)
-            if changes[name] > clear:  # else what it has is enough, and leaves room for the other
-                (self._fine, self._half), best = grown, better
+            (self._fine, self._wide), best = grown, better
         return best, sum(changes.values())
 
-    def _scaled(self, name: str, factor: float) -> tuple[int, int]:
-        if name == "fine":
-            return max(1, int(self._fine * factor)), self._half
-        return self._fine, int(np.ceil(self._half * factor))
+    def of_the_scheme(self) -> np.ndarray:
+        """Return what the scheme makes of the data on its infinite lattice, exact in time."""
+        case = self._case
+        _, u = self._solution(1, self._wide, scheme_amplification(case, exact=True))
+        along = slice(self._wide - case.n, self._wide + case.n + 1)
+        return u[(along,) * case.dim]
 
-    def _at_particles(self, fine: int, half: int) -> np.ndarray:
-        x, u = self._solution(fine, half, None)
+    def _scaled(self, name: str, factor: float) -> tuple[int, int]:
+        if name == "fineness":
+            return int(self._fine * factor), self._wide
+        return self._fine, int(self._wide * factor)
+
+    def _points(self, fine: int, wide: int) -> int:
+        return int((2 * max(fine * self._least, wide) + 1) ** self._case.dim)
+
+    def _combined(self, fine: int, wide: int) -> np.ndarray:
+        least = self._least
+        return self._reached(1, wide) + self._reached(fine, least) - self._reached(1, least)
+
+    def _at_particles(self, fine: int, wide: int) -> np.ndarray:
+        x, u = self._solution(fine, wide, None)
         if self._case.is_graded:
             from scipy.interpolate import make_interp_spline
 
             inside = np.clip(self._case.x, x[0], x[-1])
             return np.asarray(make_interp_spline(x, u, k=_DEGREE)(inside))
-        middle, n = half * fine, min(self._case.n, half)
-        along = slice(middle - n * fine, middle + n * fine + 1, fine)
-        found = u[(along,) * self._case.dim]
-        return np.pad(found, self._case.n - n)
-
-    def of_the_scheme(self) -> np.ndarray:
-        """Return what the scheme makes of the data on its infinite lattice, exact in time."""
-        case = self._case
-        _, u = self._solution(1, self._half, scheme_amplification(case, exact=True))
-        along = slice(self._half - case.n, self._half + case.n + 1)
-        return u[(along,) * case.dim]
+        along = slice((wide - self._case.n) * fine, (wide + self._case.n) * fine + 1, fine)
+        return np.ascontiguousarray(u[(along,) * self._case.dim])
 
     def _solution(
-        self, fine: int, half: int, amplification: Callable[[np.ndarray], np.ndarray] | None
+        self, fine: int, wide: int, amplification: Callable[[np.ndarray], np.ndarray] | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        case, m = self._case, fine * half
+        case, m = self._case, fine * wide
         x = np.arange(-m, m + 1) * (self._h / fine)
         u = self._data(*np.meshgrid(*(x,) * case.dim, indexing="ij", sparse=True))
-        scaled = case.diffusivity * case.span * (self._h / fine) ** -case.alpha
         run = WholeSpace(
-            x.size, case.dim, case.alpha, scaled, amplification=amplification,
-            terms=_TERMS[case.dim], tail=self._tail, stretch=1.0,
-        )  # fmt: skip
+            x.size,
+            case.dim,
+            case.alpha,
+            case.diffusivity * case.span * (self._h / fine) ** -case.alpha,
+            amplification=amplification,
+            terms=_TERMS[case.dim],
+            tail=self._tail,
+            stretch=1.0,
+        )
         return x, run.solve(np.broadcast_to(u, (x.size,) * case.dim))
 
 
