@@ -25,6 +25,7 @@ _HOME = {
     "ErrorEstimate": "run.estimate",
     "estimate_error": "run.estimate",
     "evolve": "time.whole_space",
+    "evolve_long": "time.widening",
     "graded_particles": "graded.particles",
     "green": "special.stable",
     "green_flux": "special.stable",

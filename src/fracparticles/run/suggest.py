@@ -203,6 +203,7 @@ def _radius_of(initial: Initial, problem: Case, dim: int) -> float:
         return float((problem.diffusivity * problem.t_initial) ** (1.0 / problem.alpha))
     if isinstance(initial, Measured):
         return max(float(np.abs(axis[[0, -1]]).max()) for axis in initial.axes)
+    assert callable(initial)
     function: Callable[..., Any] = np.vectorize(initial)
     r = np.concatenate([[0.0], np.geomspace(1e-6, 1e6, 1201)])
     rays = [axis * sign for axis in np.eye(dim) for sign in (1.0, -1.0)]

@@ -39,7 +39,7 @@ from fracparticles.special.images import (
     square_basis,
 )
 
-__all__ = ["WholeSpace", "evolve", "tail_exponents"]
+__all__ = ["WholeSpace", "evolve", "later_powers", "tail_exponents"]
 
 Amplification = Callable[[np.ndarray], np.ndarray]
 
@@ -157,6 +157,8 @@ class WholeSpace:
         exp(-tau |theta|^alpha).
     terms, tail, stretch
         See `evolve`.
+    shown : int, optional
+        How many points an axis the result has, about the same middle; those of the data if left out.
 
     Raises
     ------
@@ -176,6 +178,7 @@ class WholeSpace:
         terms: int = 2,
         tail: Sequence[float] | None = None,
         stretch: float | None = None,
+        shown: int | None = None,
     ) -> None:
         fractional_order(alpha)
         positive_real("scaled_time", scaled_time)
@@ -201,6 +204,10 @@ class WholeSpace:
         self._axes = tuple(range(-dim, 0))
         self._start = start
         self._inside: tuple[Any, ...] = (..., *(slice(start, start + points),) * dim)
+        self._shown = self._inside
+        if shown is not None:
+            first = circle // 2 - shown // 2
+            self._shown = (..., *(slice(first, first + shown),) * dim)
         self._amplification = _on_circle(circle, dim, alpha, scaled_time, amplification)
         self._tails = None
         if terms:
@@ -250,7 +257,7 @@ class WholeSpace:
         if self._tails is None:
             return self._periodic(longer)[self._inside], np.zeros(0)
         images, numbers = self._tails.complete(longer.reshape(-1, *self._circle))
-        return (self._periodic(longer) - images.reshape(longer.shape))[self._inside], numbers
+        return (self._periodic(longer) - images.reshape(longer.shape))[self._shown], numbers
 
     def _periodic(self, u: np.ndarray) -> np.ndarray:
         if len(self._axes) == 1:
@@ -397,6 +404,13 @@ def _powers(tail: Sequence[float], dim: int) -> np.ndarray:
         remedy = "Leave it out, or take a wide lattice with terms=0."
         raise InvalidInput("tail", tuple(tail), allowed, remedy)
     return exponents
+
+
+def later_powers(tail: Sequence[float], dim: int, alpha: float, terms: int) -> tuple[float, ...]:
+    """Return the first powers by which a solution falls whose data fell like these, see `evolve`."""
+    own = _powers(tail, dim)
+    every = _sums([0.0, 2.0, *own], alpha, max([*tail_exponents(alpha, terms), *own]))
+    return tuple((dim + every[:_MOST_TERMS]).tolist())
 
 
 def _sums(starts: Sequence[float], alpha: float, greatest: float) -> np.ndarray:
