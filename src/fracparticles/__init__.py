@@ -21,6 +21,7 @@ _HOME = {
     "InvalidInput": "errors",
     "NonFiniteSolution": "errors",
     "StabilityWarning": "errors",
+    "Units": "run.units",
     "WholeSpace": "time.whole_space",
     "ErrorEstimate": "run.estimate",
     "estimate_error": "run.estimate",

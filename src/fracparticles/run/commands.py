@@ -71,6 +71,7 @@ def solve(
     flags: Annotated[Flags | None, Parameter(name="*")] = None,
     output: Annotated[str | None, Parameter(alias="-o")] = None,
     estimate: Annotated[bool, Parameter(negative="")] = False,
+    units: str | None = None,
 ) -> None:
     """Run a case, write its file and print its path.
 
@@ -80,14 +81,18 @@ def solve(
         The NetCDF file to write.
     estimate : bool
         Estimate the error against the whole space, store it with its parts, and say it.
+    units : str
+        Names of the units of length, time and concentration, for the file and the axes of plots: m,d,mg/L.
     """
     target = _writable(output)
     case = Case(**_values(flags or {}))
 
     from fracparticles.run.dataset import write
     from fracparticles.run.solver import solve as run
+    from fracparticles.run.units import Units
 
-    result = run(case, estimate=estimate)
+    named = None if units is None else Units.read(units)
+    result = run(case, estimate=estimate, units=named)
     write(result, target)
     print(target)
     if estimate:

@@ -32,6 +32,7 @@ from fracparticles.run.measured import Measured
 from fracparticles.run.reliability import estimates, warn_if_doubtful
 from fracparticles.run.solution import Solution
 from fracparticles.run.times import Outputs, parts
+from fracparticles.run.units import Units, units_of, with_units
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import largest_degree, spectral_interval
 from fracparticles.schemes.stability import grows
@@ -70,7 +71,13 @@ _NO_GROWTH = 1e-3  # over the run, as an exponent
 Advance = Callable[[np.ndarray], np.ndarray]
 
 
-def solve(case: Case, initial: Initial | None = None, *, estimate: bool = False) -> xr.Dataset:
+def solve(
+    case: Case,
+    initial: Initial | None = None,
+    *,
+    estimate: bool = False,
+    units: Units | None = None,
+) -> xr.Dataset:
     """Run a case.
 
     Parameters
@@ -84,6 +91,8 @@ def solve(case: Case, initial: Initial | None = None, *, estimate: bool = False)
         at `case.t_initial`.
     estimate : bool
         Estimate the error, too, as `estimate_error` does: `estimated_error` and its parts are variables of the result.
+    units : Units, optional
+        Names of the units that the numbers are in, for the attributes of the result. Left out: what the data name.
 
     Returns
     -------
@@ -108,12 +117,15 @@ def solve(case: Case, initial: Initial | None = None, *, estimate: bool = False)
     from fracparticles.run.dataset import to_dataset
 
     source = resolved(case, initial)
+    units = units_of(source, units)
     solution = compute(case, source)
-    if not estimate:
-        return to_dataset(solution)
-    from fracparticles.run.estimate import estimates_of
+    if estimate:
+        from fracparticles.run.estimate import estimates_of
 
-    return to_dataset(solution, estimates_of(solution, source))
+        result = to_dataset(solution, estimates_of(solution, source))
+    else:
+        result = to_dataset(solution)
+    return result if units is None else with_units(result, case, units)
 
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:
