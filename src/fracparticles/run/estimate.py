@@ -86,7 +86,7 @@ class ErrorEstimate:
         """What would lower the largest part."""
         return {
             "spacing": "a smaller spacing, or a higher order",
-            "domain": "a wider lattice, or exterior='open'",
+            "domain": "a wider lattice",
             "time": "a smaller dt, or integrator='exponential'",
             "data": "more points, or farther out",
         }[next(iter(self.parts))]

@@ -21,6 +21,8 @@ from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.estimate import estimate_error
 from fracparticles.run.initial import Initial
 from fracparticles.run.measured import Measured
+from fracparticles.run.solver import compute
+from fracparticles.special.stable import central_mass
 
 __all__ = ["suggest"]
 
@@ -32,7 +34,8 @@ _FINER, _WIDER = 0.7, 1.4
 _FAR = 10.0  # from the error that is asked for: two steps at once
 _BACK = 1.2  # by which spacing and half-width are taken back at a time
 _SAFE = 0.7  # of the error that is asked for
-_MOST_TRIALS = 60
+_MOST_TRIALS, _MOST_WIDENINGS = 60, 8
+_HELD = 0.97  # of the mass of a point, where no radius is given
 _SMALLEST = 1e-11
 _START = 6.0  # intervals within the radius of interest,
 _FEWEST = 8.0  # and on either side of the lattice
@@ -64,7 +67,8 @@ def suggest(
     t_initial, t_final, times, diffusivity, dim
         As for `Case`. Of several times the first and the last must meet the error: the others lie between.
     within : float, optional
-        The radius of interest. Left out: that which holds nine tenths of the data, and (D T)^(1/alpha) twice more.
+        The radius of interest. Left out: that which holds nine tenths of the data, and (D T)^(1/alpha) twice more; and
+        then the lattice holds nearly all of the solution.
 
     Raises
     ------
@@ -95,8 +99,13 @@ def suggest(
     problem = Case(scheme="FD", integrator="exponential", half_width=1.0, spacing=0.1,
                    **(fields | {"dim": 1}))  # fmt: skip
     spread = (problem.diffusivity * problem.span) ** (1.0 / problem.alpha)
+    least = 0.0
     if within is None:
-        within = _radius_of(initial, problem, dim) + 2.0 * spread
+        radius = _radius_of(initial, problem, dim)
+        within = radius + 2.0 * spread
+        least = radius + spread  # and more, until the lattice holds the solution
+        while central_mass(least, spread**problem.alpha, problem.alpha, dim) < _HELD:
+            least *= 1.1
     within = positive_real("within", within)
     if isinstance(initial, Measured) and initial.error > error:
         warnings.warn(
@@ -107,9 +116,9 @@ def suggest(
     more = {"far_terms": 3} if dim == 1 else {}
     reached = [np.inf]
     for way in _WAYS:
-        case = _search(way | fields | more, initial, within, spread, error, reached)
+        case = _search(way | fields | more, initial, within, least, spread, error, reached)
         if case is not None:
-            return case
+            return case if least == 0.0 else _widened(case, initial, way | fields | more, spread)
     best = f"an error that can be reached: the best found is {min(reached):.2g}"
     raise InvalidInput("error", error, best, "Ask for less, or for less of the space.")
 
@@ -118,12 +127,13 @@ def _search(
     fields: dict[str, Any],
     initial: Initial,
     within: float,
+    least: float,
     spread: float,
     error: float,
     reached: list[float],
 ) -> Case | None:
     """Refine and widen until the error is met, and take back what is not needed; None where it cannot be met."""
-    half = max(1.2 * within, 1.5 * spread)
+    half = max(1.2 * within, 1.5 * spread, least)
     h = min(within / _START, half / _FEWEST)
     best: Case | None = None
     for _ in range(_MOST_TRIALS):
@@ -154,13 +164,28 @@ def _search(
         while True:
             h, half = (h, half / _BACK) if narrower else (h * _BACK, half)
             trial = _trial(fields, h, half, spread)
-            if half < within or isinstance(trial, InvalidInput):
+            if half < max(within, least) or isinstance(trial, InvalidInput):
                 break
             if _errors(trial, initial, within)[0] > _SAFE * error:
                 break
             best = trial
         h, half = best.spacing, best.reach
     return best
+
+
+def _widened(case: Case, initial: Initial, fields: dict[str, Any], spread: float) -> Case:
+    """Return the case on a lattice wide enough for a run that warns of nothing, if there is one within reach."""
+    for _ in range(_MOST_WIDENINGS):
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            compute(case, initial)
+        wider = _trial(fields, case.spacing, _WIDER * case.reach, spread)
+        if not any(issubclass(one.category, AccuracyWarning) for one in said) or isinstance(
+            wider, InvalidInput
+        ):
+            break
+        case = wider
+    return case
 
 
 def _trial(fields: dict[str, Any], h: float, half: float, spread: float) -> Case | InvalidInput:
