@@ -195,7 +195,7 @@ def test_missing_flags(cli):
 
 
 def test_outputs_that_cannot_be_written_are_refused_before_any_work(cli, tmp_path, monkeypatch):
-    monkeypatch.setattr("fracparticles.run.solver.compute", lambda *_: pytest.fail("work was done"))
+    monkeypatch.setattr("fracparticles.run.solve.compute", lambda *_: pytest.fail("work was done"))
     given = (*SMALL, "--dt", 0.05, "-o")
     assert refused(cli("solve", *given, "none/run.nc"), "none/run.nc", "a directory that exists")
     assert refused(cli("solve", *given, tmp_path), "this is a directory")
@@ -389,7 +389,7 @@ def test_failures_in_one_line(cli, monkeypatch, error, status, line):
     def fail(*_):
         raise error
 
-    monkeypatch.setattr("fracparticles.run.solver.compute", fail)
+    monkeypatch.setattr("fracparticles.run.solve.compute", fail)
     assert cli("solve", *SMALL, "--dt", 0.05, "-o", "run.nc") == (status, "", line)
 
 

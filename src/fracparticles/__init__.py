@@ -39,7 +39,7 @@ _HOME = {
     "measured": "run.measured",
     "prepare": "run.solver",
     "read_run": "run.dataset",
-    "solve": "run.solver",
+    "solve": "run.solve",
     "stability_limit": "schemes.stability",
     "suggest": "run.suggest",
     "write": "run.dataset",

@@ -88,7 +88,7 @@ def solve(
     case = Case(**_values(flags or {}))
 
     from fracparticles.run.dataset import write
-    from fracparticles.run.solver import solve as run
+    from fracparticles.run.solve import solve as run
     from fracparticles.run.units import Units
 
     named = None if units is None else Units.read(units)

@@ -1,4 +1,4 @@
-"""Run a case: `prepare` and then `solve` on bare arrays, or `solve` to a data set at once."""
+"""Run a case on arrays: `compute` it from its data, or `prepare` it for many."""
 
 from __future__ import annotations
 
@@ -32,7 +32,6 @@ from fracparticles.run.measured import Measured
 from fracparticles.run.reliability import estimates, warn_if_doubtful
 from fracparticles.run.solution import Solution
 from fracparticles.run.times import Outputs, parts
-from fracparticles.run.units import Units, units_of, with_units
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import largest_degree, spectral_interval
 from fracparticles.schemes.stability import grows
@@ -52,8 +51,6 @@ from fracparticles.time.stepping import all_finite
 from fracparticles.time.whole_space import WholeSpace
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from fracparticles.moving.dvm import ParticleRun
 
 __all__ = [
@@ -63,69 +60,11 @@ __all__ = [
     "initial_strengths",
     "matrix_of",
     "prepare",
-    "solve",
 ]
 
 _LARGEST_MATRIX = 16384  # particles
 _NO_GROWTH = 1e-3  # over the run, as an exponent
 Advance = Callable[[np.ndarray], np.ndarray]
-
-
-def solve(
-    case: Case,
-    initial: Initial | None = None,
-    *,
-    estimate: bool = False,
-    units: Units | None = None,
-) -> xr.Dataset:
-    """Run a case.
-
-    Parameters
-    ----------
-    case : Case
-        The run.
-    initial : array, labelled data, callable or path, optional
-        Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
-        function of `case.positions` (of x; of x and y; of x, y and z); a NetCDF file that holds u; a table or other
-        `measured` data. Without it the run starts from what `case.initial` says, by default the fundamental solution
-        at `case.t_initial`.
-    estimate : bool
-        Estimate the error, too, as `estimate_error` does: `estimated_error` and its parts are variables of the result.
-    units : Units, optional
-        Names of the units that the numbers are in, for the attributes of the result. Left out: what the data name.
-
-    Returns
-    -------
-    xarray.Dataset
-        See `dataset.to_dataset`.
-
-    Raises
-    ------
-    InvalidInput
-        If the initial data do not fit the case.
-    NonFiniteSolution
-        If the run blows up.
-
-    Warns
-    -----
-    StabilityWarning
-        If some wave grows.
-    AccuracyWarning
-        If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
-        have no time, and t_initial was not given.
-    """
-    from fracparticles.run.dataset import to_dataset
-
-    source = resolved(case, initial)
-    units = units_of(source, units)
-    solution = compute(case, source)
-    if estimate:
-        from fracparticles.run.estimate import estimates_of
-
-        result = to_dataset(solution, estimates_of(solution, source))
-    else:
-        result = to_dataset(solution)
-    return result if units is None else with_units(result, case, units)
 
 
 def compute(case: Case, initial: Initial | None = None) -> Solution:

@@ -22,14 +22,21 @@ from fracparticles.run.estimate import estimate_error
 from fracparticles.run.initial import Initial
 from fracparticles.run.measured import Measured
 from fracparticles.run.solver import compute
+from fracparticles.schemes import ALL_SCHEMES
 from fracparticles.special.stable import central_mass
 
 __all__ = ["suggest"]
 
+_SELF_TIMED = next(name for name, one in ALL_SCHEMES.items() if one.self_timed)
+_ORDER = 12
+_EXCHANGE = next(
+    name for name, one in ALL_SCHEMES.items() if _ORDER in one.box_orders and one.conservative
+)
+_OPEN = {"exterior": "open", "evaluation": "auto"}
 _WAYS: tuple[dict[str, Any], ...] = (
-    {"scheme": "GPSE", "exterior": "open", "evaluation": "auto"},
-    {"scheme": "KPSE", "order": 12, "integrator": "exponential", "exterior": "open", "evaluation": "auto"},
-)  # fmt: skip
+    {"scheme": _SELF_TIMED, **_OPEN},
+    {"scheme": _EXCHANGE, "order": _ORDER, "integrator": "exponential", **_OPEN},
+)
 _FINER, _WIDER = 0.7, 1.4
 _FAR = 10.0  # from the error that is asked for: two steps at once
 _BACK = 1.2  # by which spacing and half-width are taken back at a time
@@ -96,7 +103,7 @@ def suggest(
     fields = {name: value for name, value in given.items() if value is not None}
     if t_final is None and times is None:
         raise InvalidInput("t_final", None, "a number > t_initial", "Give it, or times.")
-    problem = Case(scheme="FD", integrator="exponential", half_width=1.0, spacing=0.1,
+    problem = Case(scheme=_EXCHANGE, integrator="exponential", half_width=1.0, spacing=0.1,
                    **(fields | {"dim": 1}))  # fmt: skip
     spread = (problem.diffusivity * problem.span) ** (1.0 / problem.alpha)
     least = 0.0
@@ -192,7 +199,7 @@ def _trial(fields: dict[str, Any], h: float, half: float, spread: float) -> Case
     """Return the case on this lattice, or why there is none."""
     own = (
         {"dt": spread ** _alpha(fields) / fields.get("diffusivity", 1.0)}
-        if fields["scheme"] == "GPSE"
+        if fields["scheme"] == _SELF_TIMED
         else {}
     )
     try:

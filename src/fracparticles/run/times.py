@@ -2,7 +2,8 @@
 
 The steps of a run meet each output time: from one to the next they are equal, at most dt, and one Chebyshev series,
 or one march, serves all. Where a step is part of the scheme (GPSE, whose kernel is that of its step) or the run is a
-single pair of transforms, each output is a run of its own from t_initial on; those of one step share it.
+single pair of transforms, each output is a run of its own from t_initial on; those of one step share it. What is called
+`case` here is a `Case`, which is made with these functions.
 """
 
 from __future__ import annotations
@@ -11,15 +12,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fracparticles.errors import InvalidInput
-
-if TYPE_CHECKING:
-    from fracparticles.run.case import Case
-    from fracparticles.run.parameters import Parameters
 
 __all__ = ["Outputs", "legs", "parts", "steps_in", "with_times"]
 
@@ -78,7 +75,7 @@ def steps_in(span: float, dt: float) -> int:
     return max(1, ceil(span / dt * (1 - _STEP_SLACK)))
 
 
-def legs(case: Parameters) -> list[tuple[float, int]]:
+def legs(case: Any) -> list[tuple[float, int]]:
     """Return the step from each output time to the next, and how many of them; none for the exponential.
 
     A scheme whose step is part of it has one step for all: then the times must be whole numbers of it, see `parts`.
@@ -94,7 +91,7 @@ def legs(case: Parameters) -> list[tuple[float, int]]:
     return [(span / n, n) for span, n in zip(spans, counts, strict=True)]
 
 
-def parts(case: Case) -> list[Case]:
+def parts(case: Any) -> list[Any]:
     """Return the runs that a run with several output times is made of, each on the same lattice; itself if it is one.
 
     Raises
@@ -107,7 +104,7 @@ def parts(case: Case) -> list[Case]:
     each = [case.until(time) for time in case.times]
     if case.evaluation == "convolution" or case.is_graded:
         return each
-    groups: list[list[Case]] = []
+    groups: list[list[Any]] = []
     for one in each:
         for group in groups:
             if abs(one.time_step - group[0].time_step) <= _SAME * one.time_step:
