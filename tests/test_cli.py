@@ -101,7 +101,7 @@ def test_every_flag_reaches_the_case(cli):
         "kernel_table": 0.01,
         "store": "profile",
     }
-    of_others = {"half_width", "graded_scale", "graded_form"}
+    of_others = {"times", "half_width", "graded_scale", "graded_form"}
     of_others |= {"remeshing", "remesh_above", "threshold"}
     assert {*everything, *of_others} == set(Case.model_fields)
     flags = [f"--{name.replace('_', '-')}={value}" for name, value in everything.items()]
@@ -195,7 +195,7 @@ def test_missing_flags(cli):
 
 
 def test_outputs_that_cannot_be_written_are_refused_before_any_work(cli, tmp_path, monkeypatch):
-    monkeypatch.setattr("fracparticles.run.solver.compute", lambda *_: pytest.fail("work was done"))
+    monkeypatch.setattr("fracparticles.run.solve.compute", lambda *_: pytest.fail("work was done"))
     given = (*SMALL, "--dt", 0.05, "-o")
     assert refused(cli("solve", *given, "none/run.nc"), "none/run.nc", "a directory that exists")
     assert refused(cli("solve", *given, tmp_path), "this is a directory")
@@ -345,7 +345,7 @@ def test_a_limit_of_zero_says_that_no_step_is_stable(cli, flags):
         ("--scheme KPSE --beta 0.5 --spacing x", ("spacing = 'x'", "positive")),
         ("--scheme KPSE --beta 0.5 --diffusivity -1", ("diffusivity = -1", "positive")),
         ("--scheme FD --beta 0.5 --overlap 2", ("overlap", "nothing for FD")),
-        ("--scheme KPSE", ("--beta", "requires an argument")),
+        ("--scheme KPSE", ("beta", "Give --beta, or --alpha")),
         ("--scheme KPSE --beta 0.5 --overlp 2", ("--overlp", "Did you mean --overlap?")),
     ],
 )
@@ -389,7 +389,7 @@ def test_failures_in_one_line(cli, monkeypatch, error, status, line):
     def fail(*_):
         raise error
 
-    monkeypatch.setattr("fracparticles.run.solver.compute", fail)
+    monkeypatch.setattr("fracparticles.run.solve.compute", fail)
     assert cli("solve", *SMALL, "--dt", 0.05, "-o", "run.nc") == (status, "", line)
 
 

@@ -12,7 +12,8 @@ from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import family_of, kernel, kernel_transform
 from fracparticles.run.case import Case
 from fracparticles.run.solution import relative_l1_error
-from fracparticles.run.solver import compute, prepare, solve
+from fracparticles.run.solve import solve
+from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
 from fracparticles.schemes.stability import stability_limit, symbol_range

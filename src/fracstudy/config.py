@@ -125,7 +125,9 @@ def _check_runs(scene: Scene) -> None:
     """Refuse parameters that say what the runs say, and runs that lack what the study compares."""
     where = f"{scene.folder / 'scene.yaml'}"
     cases, _ = scene.cases, scene.heading
-    for name in Case.model_fields.keys() & scene.parameters.keys() if cases else ():
+    for name in Case.model_fields.keys() & scene.parameters.keys():
+        if all(getattr(case, name) is None for case in cases):
+            continue
         raise InvalidInput(
             f"{where}: parameters.{name}",
             scene.parameters[name],

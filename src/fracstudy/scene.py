@@ -28,7 +28,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
-from fracparticles.run.complaints import closest
+from fracparticles.run.complaints import closest, takes_lists
 
 __all__ = [
     "RunBlock",
@@ -49,10 +49,15 @@ def _value_or_list(annotation: Any) -> Any:
     return Union[annotation, list[annotation], None]  # noqa: UP007  (an annotation known at run time only)
 
 
+# Output times are a list themselves, taken whole.
 _FIELDS: dict[str, Any] = {
-    name: (_value_or_list(field.annotation), Field(default=None))
+    name: (
+        list[float] | None if takes_lists(field.annotation) else _value_or_list(field.annotation),
+        Field(default=None),
+    )
     for name, field in Case.model_fields.items()
 }
+_FIELDS["alpha"] = (_value_or_list(float), Field(default=None))  # instead of beta
 RunBlock: type[BaseModel] = create_model(
     "RunBlock",
     __config__=ConfigDict(extra="forbid", strict=True, frozen=True),
@@ -191,7 +196,10 @@ def expand(blocks: Iterable[BaseModel | Mapping[str, Any]]) -> list[Case]:
     cases: dict[str, Case] = {}
     for block in blocks:
         fields = block.model_dump(exclude_none=True) if isinstance(block, BaseModel) else block
-        choices = [value if isinstance(value, list) else [value] for value in fields.values()]
+        choices = [
+            value if isinstance(value, list) and name != "times" else [value]
+            for name, value in fields.items()
+        ]
         for combination in product(*choices):
             case = Case(**dict(zip(fields, combination, strict=True)))
             case.refuse_point_mass()

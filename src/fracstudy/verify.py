@@ -3,8 +3,8 @@
     python -m fracstudy.verify [--seed N] [--scenes N]
 
 The sample is drawn with a seed, at least one scene of each document. Run times are left out, since they differ, and
-scenes that read others. A file must agree byte for byte. Where another machine rounds otherwise a table may differ in its
-numbers, by 1e-6 of each or, for what is round-off itself, by 1e-9; its figure is then another drawing.
+scenes that read others. A file must agree byte for byte. Where another machine rounds otherwise a table may differ in
+its numbers, by 1e-6 of each or, for what is round-off itself, by 1e-9; its figure is then another drawing.
 """
 
 from __future__ import annotations

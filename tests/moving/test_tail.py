@@ -12,7 +12,8 @@ from fracparticles.kernels.families import kernel
 from fracparticles.moving import dvm
 from fracparticles.moving.tail import FITTED, REACH, TailModel
 from fracparticles.run.case import Case
-from fracparticles.run.solver import compute, solve
+from fracparticles.run.solve import solve
+from fracparticles.run.solver import compute
 from fracparticles.run.strengths import lattice_strengths
 from fracparticles.special.stable import green, mean_radius
 from fracparticles.special.tails import tail_constant

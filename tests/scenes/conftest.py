@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from fracparticles.run.dataset import write
-from fracparticles.run.solver import solve
+from fracparticles.run.solve import solve
 from fracstudy.scene import expand
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import write
-from fracparticles.run.solver import solve
+from fracparticles.run.solve import solve
 from fracstudy.collect import collect
 
 CASES = [

@@ -36,7 +36,7 @@ LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
 TIMED = [name for name, scene in SCENES.items() if scene.benchmark is not None]
 FROM_TIMES = [name for name, scene in SCENES.items() if scene.all_benchmarks]
 # What a run depends on, and nothing else: editing a plot reruns no solver.
-SOLVER = Path("src/fracparticles/run/solver.py")
+SOLVER = Path("src/fracparticles/run/solve.py")
 READER = Path("src/fracparticles/run/dataset.py")
 FUNCTIONS = ("study.py", "figure.py")
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from fracparticles.kernels.families import PAPER_ORDERS
 from fracparticles.run.case import Case
-from fracparticles.run.solver import solve
+from fracparticles.run.solve import solve
 from fracparticles.schemes import ALL_SCHEMES
 from fracparticles.special import green_slope, tail_mass
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import write
-from fracparticles.run.solver import solve
+from fracparticles.run.solve import solve
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

@@ -24,7 +24,9 @@ solution, and what is left to remesh for is that all spacings grow.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -193,6 +195,19 @@ def run(
     alpha: float,
     dt: float,
     steps: int,
+    **parameters: Any,
+) -> ParticleRun:
+    """Advance the field u by `steps` midpoint steps: `run_to_outputs` with a single leg."""
+    return run_to_outputs(x, u, spacing=spacing, alpha=alpha, legs=[(dt, steps)], **parameters)[-1]
+
+
+def run_to_outputs(
+    x: np.ndarray,
+    u: np.ndarray,
+    *,
+    spacing: float,
+    alpha: float,
+    legs: Sequence[tuple[float, int]],
     order: int = 2,
     overlap: float = 2.0,
     diffusivity: float = 1.0,
@@ -204,8 +219,8 @@ def run(
     summation: str = "fft",
     exterior: str = "truncated",
     observe: Observer | None = None,
-) -> ParticleRun:
-    """Advance the field u, given at particles of volume h, by `steps` midpoint steps.
+) -> list[ParticleRun]:
+    """Advance the field u, given at particles of volume h, by midpoint steps; return the particles after each leg.
 
     Parameters
     ----------
@@ -213,6 +228,8 @@ def run(
         Positions, and the field there: the strengths are U_i = h u_i.
     spacing : float
         h.
+    legs : sequence of (float, int)
+        A time step, and how many of them.
     overlap : float
         epsilon / h.
     remeshing : {"M4'", "Lambda3", "none"}
@@ -256,28 +273,32 @@ def run(
         redistribution = Remeshing(remeshing, spacing, above, ends, continued)
     with np.errstate(over="ignore"):
         given = finite_result("u", spacing * finite_array("u", u))
-    _warn_of_step(velocity, dt)
-    initial = x
-    x, strength, history = advance(
-        x,
-        given,
-        velocity,
-        dt=dt,
-        steps=steps,
-        start=start,
-        remeshing=redistribution,
-        threshold=threshold,
-        observe=observe,
-    )
+    _warn_of_step(velocity, max(dt for dt, _ in legs))
+    initial, strength, history, runs = x, given, None, []
+    for dt, steps in legs:
+        x, strength, own = advance(
+            x,
+            strength,
+            velocity,
+            dt=dt,
+            steps=steps,
+            start=start,
+            remeshing=redistribution,
+            threshold=threshold,
+            observe=observe,
+        )
+        history = own if history is None else history.followed_by(own)
+        runs.append(ParticleRun(x, strength, history, velocity))
+        start += dt * steps
     states = ((initial, given), (x, strength))
     found = max(ripple(p, q, velocity.epsilon, velocity.transform) for p, q in states)
     warn_of_ripple(
-        found, velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=2
+        found, velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=3
     )
     _warn_of_loss(history, exterior)
     if velocity.tail is not None:
         _warn_of_misfit(velocity.tail.misfit(x, strength))
-    return ParticleRun(x, strength, history, velocity)
+    return runs
 
 
 def _warn_of_step(velocity: DiffusionVelocity, dt: float) -> None:
@@ -287,7 +308,7 @@ def _warn_of_step(velocity: DiffusionVelocity, dt: float) -> None:
             f"dt = {dt:.6g} lies outside the stability interval of DVM: at most {limit:.6g} is stable. Beyond, waves "
             "of the particles' places grow. The run is computed as it is. Take a smaller dt.",
             StabilityWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 
@@ -300,14 +321,14 @@ def _warn_of_loss(history: History, exterior: str) -> None:
         warnings.warn(
             f"the particles left out for their small strengths held {weak:.2g} of the total. Take a smaller threshold.",
             AccuracyWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
     if lost > _GONE and exterior == "truncated":
         warnings.warn(
             f"remeshing onto the initial lattice has left out {lost:.2g} of the total strength, which now lies beyond "
             "its ends. Take a wider lattice, exterior='open' or lattice='extended'.",
             AccuracyWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 
@@ -317,5 +338,5 @@ def _warn_of_misfit(found: float) -> None:
             f"the far field that continues u beyond the particles does not meet the field inside: "
             f"{min(found, 1.0):.2g} of the total may be wrong. Take a wider lattice, or data about the origin.",
             AccuracyWarning,
-            stacklevel=3,
+            stacklevel=4,
         )

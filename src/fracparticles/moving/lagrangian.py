@@ -20,7 +20,7 @@ Rules
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any
 
@@ -131,6 +131,21 @@ class History:
     def remeshings(self) -> int:
         """How often the particles were redistributed."""
         return len(self.remeshing_times)
+
+    def followed_by(self, later: History) -> History:
+        """Return what happened in a run that went on: the later part starts from the particles of this one."""
+        joined = {
+            one.name: getattr(self, one.name) + getattr(later, one.name) for one in fields(self)
+        }
+        return History(
+            **{
+                **joined,
+                "particles": self.particles + later.particles[1:],
+                "total_initial": self.total_initial,
+                "total_final": later.total_final,
+                "largest_spacing": max(self.largest_spacing, later.largest_spacing),
+            }
+        )
 
 
 def quotient_velocity(flux: Any, u: Any, x: Any, accuracy: float = 0.0) -> np.ndarray:

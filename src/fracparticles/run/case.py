@@ -13,7 +13,9 @@ from pydantic import ValidationError, model_validator
 from fracparticles.errors import InvalidInput
 from fracparticles.run.checks import check
 from fracparticles.run.complaints import allowed, first_complaint
+from fracparticles.run.fractional_order import with_beta
 from fracparticles.run.parameters import FUNDAMENTAL, Parameters, fastest_evaluation
+from fracparticles.run.times import parts, with_times
 
 __all__ = ["FUNDAMENTAL", "Case"]
 
@@ -26,7 +28,8 @@ class Case(Parameters):
     `spacing` and `dt` are what is asked for; the lattice ends at the half-width exactly and the last step at
     `t_final` exactly, so that the realised `particle_spacing` and `time_step` may differ slightly.
 
-    The fields are the parameters, keyword only. NumPy scalars are taken for what they hold.
+    The fields are the parameters, keyword only. NumPy scalars are taken for what they hold. `alpha` may be given
+    instead of `beta`.
 
     Raises
     ------
@@ -49,11 +52,13 @@ class Case(Parameters):
         plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
         if isinstance(plain.get("evaluation"), str) and plain["evaluation"] == "auto":
             plain["evaluation"] = fastest_evaluation(plain)
-        return plain
+        return with_times(with_beta(plain))
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
         check(self)
+        if self.times is not None:
+            parts(self)  # each of them is checked
         return self
 
     def refuse_point_mass(self) -> None:
@@ -73,6 +78,15 @@ class Case(Parameters):
                 "a number > 0 when the run starts from the fundamental solution, a point mass at t = 0",
                 "Give a positive time, or initial data of your own.",
             )
+
+    def until(self, *times: float) -> Case:
+        """Return the run on the same lattice that ends at one time, or has several output times."""
+        fields = self.model_dump(exclude_none=True) | {"half_width": self.reach}
+        for name in ("truncation", "times", "t_final"):
+            fields.pop(name, None)
+        return type(self)(
+            **fields, **({"t_final": times[0]} if len(times) == 1 else {"times": times})
+        )
 
     # --- identity -------------------------------------------------------------------------------------------
 
@@ -111,6 +125,7 @@ class Case(Parameters):
             self.resolved_integrator,
             _said("dt", self.dt),
             f"t{_digits(self.t_initial)}-{_digits(self.t_final)}",
+            f"at{','.join(map(_digits, self.times))}" if self.times else "",
             _said("diffusivity", self.diffusivity, default=1.0),
             "" if self.initial == FUNDAMENTAL else f"from-{_encoded(self.initial)}",
             None if self._series_by_default else self.evaluation,

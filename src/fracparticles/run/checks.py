@@ -136,6 +136,9 @@ def _check_time(case: Parameters) -> None:
     if case.t_final <= case.t_initial:
         later = f"a number > t_initial = {case.t_initial:g}"
         raise InvalidInput("t_final", case.t_final, later, "Give a later final time.")
+    if case.times is not None and case.times[0] <= case.t_initial:
+        later = f"numbers > t_initial = {case.t_initial:g}"
+        raise InvalidInput("times", case.times, later, "Leave out the others: there are the data.")
 
 
 def _check_width(case: Parameters) -> None:

@@ -57,6 +57,11 @@ def show(file: str) -> None:
         for scalar in scalars
         if scalar.ndim == 0
     ]
+    rows += [
+        (str(along.name), " ".join(map(_shown, along.values)), along.attrs.get("long_name", ""))
+        for along in scalars
+        if along.dims == ("t",)
+    ]
     rows += [(name, str(run.attrs.get(name, "")), "") for name in ("initial_data", "source")]
     for name in ("u", "u_axis", "u_diagonal"):
         if name in run:

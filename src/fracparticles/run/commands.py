@@ -14,16 +14,27 @@ from fracparticles.arguments import positive_real
 from fracparticles.errors import InvalidInput, spelled
 from fracparticles.files import replaceable
 from fracparticles.run.case import Case
-from fracparticles.run.complaints import choices_of, takes_numbers
+from fracparticles.run.complaints import choices_of, takes_lists, takes_numbers
+from fracparticles.run.fractional_order import ALPHA, with_beta
 from fracparticles.schemes import scheme as find_scheme
 from fracparticles.schemes.stability import stability_limit
 
 __all__ = ["limit", "number_or_text", "solve"]
 
 _ALIASES = {"dt": "--time-step"}
-_NEEDED = ("scheme", "beta")  # by `limit`; `Case` says itself what it needs
-_OF_A_LIMIT = (*_NEEDED, "order", "overlap", "dim", "kernel_family", "spacing", "diffusivity")
+_NEEDED = ("scheme",)  # by `limit`; `Case` says itself what it needs
+_OF_A_LIMIT = (
+    *_NEEDED,
+    "beta",
+    "order",
+    "overlap",
+    "dim",
+    "kernel_family",
+    "spacing",
+    "diffusivity",
+)
 _NUMBERS = {name for name, field in Case.model_fields.items() if takes_numbers(field.annotation)}
+_LISTS = {name for name, field in Case.model_fields.items() if takes_lists(field.annotation)}
 
 
 def _flag(name: str, kind: Any = str) -> Any:
@@ -37,7 +48,7 @@ def _flag(name: str, kind: Any = str) -> Any:
         kind,
         Parameter(
             alias=_ALIASES.get(name),
-            metavar="NUMBER" if name in _NUMBERS else "TEXT",
+            metavar="NUMBER" if name in _NUMBERS else "NUMBERS" if name in _LISTS else "TEXT",
             help=" ".join(filter(None, [field.description, *notes])),
         ),
     ]
@@ -47,8 +58,10 @@ if TYPE_CHECKING:
     Flags = dict[str, Any]
     LimitFlags = dict[str, Any]
 else:
-    Flags = TypedDict("Flags", {name: _flag(name) for name in Case.model_fields}, total=False)
-    _LIMIT = {name: _flag(name) for name in _OF_A_LIMIT}
+    _ALPHA = {"alpha": Annotated[str, Parameter(metavar="NUMBER", help=ALPHA)]}
+    _CASE = {name: _flag(name) for name in Case.model_fields}
+    Flags = TypedDict("Flags", _ALPHA | _CASE, total=False)
+    _LIMIT = _ALPHA | {name: _flag(name) for name in _OF_A_LIMIT}
     _LIMIT |= {name: _flag(name, Required[str]) for name in _NEEDED}
     LimitFlags = TypedDict("LimitFlags", _LIMIT, total=False)
 
@@ -57,6 +70,8 @@ def solve(
     *,
     flags: Annotated[Flags | None, Parameter(name="*")] = None,
     output: Annotated[str | None, Parameter(alias="-o")] = None,
+    estimate: Annotated[bool, Parameter(negative="")] = False,
+    units: str | None = None,
 ) -> None:
     """Run a case, write its file and print its path.
 
@@ -64,15 +79,26 @@ def solve(
     ----------
     output : str
         The NetCDF file to write.
+    estimate : bool
+        Estimate the error against the whole space, store it with its parts, and say it.
+    units : str
+        Names of the units of length, time and concentration, for the file and the axes of plots: m,d,mg/L.
     """
     target = _writable(output)
     case = Case(**_values(flags or {}))
 
     from fracparticles.run.dataset import write
-    from fracparticles.run.solver import solve as run
+    from fracparticles.run.solve import solve as run
+    from fracparticles.run.units import Units
 
-    write(run(case), target)
+    named = None if units is None else Units.read(units)
+    result = run(case, estimate=estimate, units=named)
+    write(result, target)
     print(target)
+    if estimate:
+        errors = result.estimated_error.values.reshape(-1)
+        at = f" at t = {spelled((f'{t:g}' for t in case.times), ', ')}" if case.times else ""
+        _note(f"estimated relative error {spelled((f'{e:.1e}' for e in errors), ', ')}{at}")
 
 
 def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
@@ -81,7 +107,9 @@ def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
     Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a, Eq. (56). A single step of GPSE, over the
     whole time, has no limit.
     """
-    given = _values(flags)
+    given = with_beta(_values(flags))
+    if "beta" not in given:
+        raise InvalidInput("beta", None, "a number between 0 and 1", "Give --beta, or --alpha.")
     scheme = find_scheme(given["scheme"])
     if "overlap" in given and not scheme.has_kernel:
         without = f"nothing for {scheme.name}, which has no kernel"
@@ -113,9 +141,13 @@ def number_or_text(text: str) -> Any:
 
 def _values(flags: Mapping[str, str]) -> dict[str, Any]:
     """Numbers of the flags, read as text: text where one belongs is then refused in the same words as in Python."""
-    return {
-        name: number_or_text(text) if name in _NUMBERS else text for name, text in flags.items()
-    }
+    return {name: _value(name, text) for name, text in flags.items()}
+
+
+def _value(name: str, text: str) -> Any:
+    if name in _LISTS:  # "0.6,1,1.5"
+        return [number_or_text(part) for part in text.split(",")]
+    return number_or_text(text) if name in _NUMBERS or name == "alpha" else text
 
 
 def _note(text: str) -> None:

@@ -18,6 +18,7 @@ __all__ = [
     "field_table",
     "first_complaint",
     "label_of",
+    "takes_lists",
     "takes_numbers",
 ]
 
@@ -33,9 +34,16 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
     if first["type"] in ("extra_forbidden", "string_unicode") and name not in fields:
         return one_of(name, value, fields, remedy=closest(name, fields) or "Leave it out.")
     if first["type"] == "missing":
-        return InvalidInput(name, None, allowed(fields[name]), f"Give {name}.")
-    remedy = closest(value, choices_of(fields[name].annotation)) or "Give such a value."
-    return InvalidInput(name, value, allowed(fields[name]), remedy)
+        remedy = _remedy(fields[name]) or f"Give {name}."
+        return InvalidInput(name, None, allowed(fields[name]), remedy)
+    remedy = closest(value, choices_of(fields[name].annotation)) or _remedy(fields[name])
+    return InvalidInput(name, value, allowed(fields[name]), remedy or "Give such a value.")
+
+
+def _remedy(field: FieldInfo) -> str:
+    """What a field itself says is to be done."""
+    extra = field.json_schema_extra
+    return str(extra.get("remedy", "")) if isinstance(extra, dict) else ""
 
 
 def allowed(field: FieldInfo) -> str:
@@ -45,6 +53,8 @@ def allowed(field: FieldInfo) -> str:
         return f"one of {spelled(choices, ', ')}"
     if field.annotation is str:
         return "text"
+    if takes_lists(field.annotation):
+        return "a list of numbers"
     bounds = {
         name: getattr(bound, name)
         for bound in field.metadata
@@ -66,6 +76,11 @@ def takes_numbers(annotation: Any) -> bool:
     """Say whether a field with this annotation takes numbers."""
     kinds = {annotation, *get_args(annotation), *map(type, choices_of(annotation))}
     return not kinds.isdisjoint((int, float))
+
+
+def takes_lists(annotation: Any) -> bool:
+    """Say whether a field with this annotation takes several numbers."""
+    return tuple in (get_origin(annotation), *map(get_origin, get_args(annotation)))
 
 
 def closest(value: object, choices: Iterable[object]) -> str | None:

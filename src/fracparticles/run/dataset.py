@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fracparticles.moving.dvm import ParticleRun
+    from fracparticles.run.estimate import ErrorEstimate
 
 __all__ = ["read_benchmark", "read_run", "source", "to_dataset", "write"]
 
@@ -46,13 +48,14 @@ _REALISED = {
 Variables = dict[str, tuple]
 
 
-def to_dataset(solution: Solution) -> xr.Dataset:
-    """Return the data set of a run.
+def to_dataset(solution: Solution, estimates: Sequence[ErrorEstimate] = ()) -> xr.Dataset:
+    """Return the data set of a run, with an estimate of its error at each output time if there is one.
 
     Dimensions `x`, `y`, `z` as there are; `u` unless the case stores metrics only (for dim > 1 the profiles `u_axis`
     and `u_diagonal` if it stores these); scalar coordinates for every parameter; the scalars `mass_initial`,
     `mass_final`, `operator_applications` and, for a run from the fundamental solution, `relative_l1_error` of
-    Eqs. (48), (59). For DVM also the particles and their history; for graded particles their volumes.
+    Eqs. (48), (59). A case with `times` has the dimension `t`: of u, of the error, and of `mass`. For DVM also the
+    particles and their history; for graded particles their volumes.
     """
     import xarray as xr
 
@@ -67,14 +70,18 @@ def to_dataset(solution: Solution) -> xr.Dataset:
         "operator_applications": _scalar(applications, "number of operator applications"),
     }
     if solution.initial.startswith(FUNDAMENTAL):
-        error = relative_l1_error(case, solution.u)
-        data["relative_l1_error"] = _scalar(error, "relative L1 error, Eqs. (48), (59)")
+        data["relative_l1_error"] = _errors(solution)
+    if solution.outputs is not None:
+        data["mass"] = _along("t", solution.outputs.mass, "total mass, the sum of V u")
     for name, (value, meaning) in solution.estimates.items():
         data[name] = _scalar(float(value), meaning)
+    data |= _estimated(solution, estimates)
     coordinates = {name: _scalar(value, _label(name)) for name, value in _parameters(case).items()}
     fields, axes = _fields(solution)
     data |= fields
     coordinates |= axes
+    if solution.outputs is not None:
+        coordinates["t"] = _along("t", solution.outputs.times, "output time")
     if particles is not None:
         data |= _particle_variables(particles, case.store)
     return xr.Dataset(
@@ -84,7 +91,8 @@ def to_dataset(solution: Solution) -> xr.Dataset:
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": f"{case.scheme} of order {case.order} for u_t = -D (-Laplacian)^(alpha/2) u, "
             f"alpha = {case.alpha:g}, D = {case.diffusivity:g}",
-            "summary": "Final particle strengths of one run and its parameters.",
+            "summary": f"{'Final particle' if case.times is None else 'Particle'} strengths of one run and its "
+            "parameters.",
             "keywords": "fractional diffusion, particle method, particle strength exchange",
             "source": source(),
             "history": "fracparticles.solve(case)",
@@ -98,27 +106,63 @@ def to_dataset(solution: Solution) -> xr.Dataset:
 def _fields(solution: Solution) -> tuple[Variables, Variables]:
     """The strengths that the case stores, and their coordinates."""
     case, u, x, kept = solution.case, solution.u, solution.case.x, slice(None)
+    first: tuple[str, ...] = ()
     if case.store == "metrics":
         return {}, {}
-    strength, place = "particle strength u at t_final", "particle position"
+    when, place = " at t_final", "particle position"
+    if solution.outputs is not None:
+        u, first, when = solution.outputs.u, ("t",), ""
+    strength = f"particle strength u{when}"
     if case.store == "profile" and case.dim > 1:
-        middle: tuple[Any, ...] = (slice(None), *(case.n,) * (case.dim - 1))
-        diagonal = np.einsum("i" * case.dim + "->i", u)
+        middle: tuple[Any, ...] = (..., slice(None), *(case.n,) * (case.dim - 1))
+        diagonal = np.einsum("..." + "i" * case.dim + "->...i", u)
         profiles = {
-            "u_axis": _along("x", u[middle], f"{strength} for y = 0"),
-            "u_diagonal": _along("x", diagonal, f"{strength} for y = x"),
+            "u_axis": ((*first, "x"), u[middle], _describe(f"{strength} for y = 0")),
+            "u_diagonal": ((*first, "x"), diagonal, _describe(f"{strength} for y = x")),
         }
         return profiles, {"x": _along("x", x, place)}
     if case.store == "profile":
         kept = np.abs(x) <= 5.0 * mean_radius(case.alpha) * (1.0 + 1e-12)
-        x, u = x[kept], u[kept]
+        x, u = x[kept], u[..., kept]
     axes = ("x", "y", "z")[: case.dim]
     coordinates = {axis: _along(axis, x, place) for axis in axes}
     # DVM's particles leave the lattice; there is the field that they make.
-    fields = {"u": (axes, u, _describe("field u at t_final" if case.kind.moving else strength))}
+    what = f"field u{when}" if case.kind.moving else strength
+    fields = {"u": ((*first, *axes), u, _describe(what))}
     if case.is_graded:
         fields["volume"] = _along("x", np.asarray(case.volumes)[kept], "particle volume V")
     return fields, coordinates
+
+
+def _errors(solution: Solution) -> tuple:
+    """The error against the fundamental solution, at each output time."""
+    meaning, outputs = "relative L1 error, Eqs. (48), (59)", solution.outputs
+    if outputs is None:
+        return _scalar(relative_l1_error(solution.case, solution.u), meaning)
+    pairs = zip(outputs.times, outputs.u, strict=True)
+    errors = [relative_l1_error(solution.case.until(time), u) for time, u in pairs]
+    return _along("t", errors, meaning)
+
+
+def _estimated(solution: Solution, estimates: Sequence[ErrorEstimate]) -> Variables:
+    """The estimated error and its parts, at each output time."""
+    if not estimates:
+        return {}
+    within = f"within |x| <= {estimates[-1].within:.6g}"
+    meanings = {
+        "total": ("estimated_error", f"estimated relative error in the 1-norm, {within}"),
+        "spacing": ("estimated_error_spacing", "what spacing, order and overlap leave of it"),
+        "domain": ("estimated_error_domain", "what the ends of the lattice leave of it"),
+        "time": ("estimated_error_time", "what the time steps leave of it"),
+        "data": ("estimated_error_data", "what measured data leave of it"),
+        "reference": ("estimated_error_reference", "by how much the estimate may be off"),
+    }
+    found: Variables = {}
+    for part, (name, meaning) in meanings.items():
+        values = [float(getattr(one, part)) for one in estimates]
+        along = solution.outputs is not None
+        found[name] = _along("t", values, meaning) if along else _scalar(values[0], meaning)
+    return found
 
 
 def _particle_variables(run: ParticleRun, store: str) -> Variables:

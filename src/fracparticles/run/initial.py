@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from fracparticles.arguments import real_array
-from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, spelled
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.measured import MEASURED, Measured, is_table, measured
 from fracparticles.special.stable import green
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ __all__ = [
     "case_of_run",
     "initial_strengths",
     "refuse_non_finite",
+    "resolved",
 ]
 
 Initial: TypeAlias = "str | os.PathLike[str] | np.ndarray | xr.DataArray | xr.Dataset | pd.Series | Callable[..., Any]"
@@ -55,7 +57,8 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     initial : array, DataArray, Dataset, Series, callable or path, optional
         An array of shape `case.shape`; labelled data with u on the coordinates x (y, z) of the case, in any order; a
         function of `case.positions`, of arrays or of single numbers, a constant included; a NetCDF file with u on
-        these coordinates. Without it, what `case.initial` says.
+        these coordinates; `Measured` data, a table or "measured:PATH", which are interpolated. Without it, what
+        `case.initial` says.
 
     Raises
     ------
@@ -68,7 +71,7 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     AccuracyWarning
         If the data have no time of their own and `t_initial` was not given.
     """
-    source = case.initial if initial is None else initial
+    source = resolved(case, initial)
     if isinstance(source, str) and source == FUNDAMENTAL:
         case.refuse_point_mass()
         u0 = np.asarray(green(case.radius, case.diffusivity * case.t_initial, case.alpha, case.dim))
@@ -81,6 +84,9 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
         given, what = _read(Path(source)), f"file {os.fspath(source)}"
     elif callable(source):
         given, what = _evaluated(source, case), "callable"
+        if isinstance(source, Measured):
+            source.check_lattice(given, case.volumes)
+            what = f"file {source.source}" if source.is_file else "measured data"
     else:
         given, what = source, "array"
     u0, has_time = _on_lattice(case, given, what)
@@ -106,6 +112,13 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
             stacklevel=4,
         )
     return u0, f"{what}, sha256 {digest}"
+
+
+def resolved(case: Case, initial: Initial | None = None) -> Initial:
+    """Return the initial data of a run: what comes with the call, or what the case says; a table as `Measured`."""
+    source = case.initial if initial is None else initial
+    path = os.fspath(source) if isinstance(source, str | os.PathLike) else ""
+    return measured(path) if path.startswith(MEASURED) or is_table(path) else source
 
 
 def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:
@@ -195,6 +208,7 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
     if data is None:
         return np.array(bare_strengths(given, case.shape)), False
     name = what.removeprefix("file ") if what.startswith("file ") else type(given).__name__
+    data = _at_its_time(data, case.t_initial, name)
     told = _told(data)
     _check_equation(case, told, name)
     axes = _AXES[: case.dim]
@@ -219,6 +233,20 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
     return np.array(bare_strengths(strengths, case.shape)), "t_final" in told
 
 
+def _at_its_time(data: xr.Dataset, t: float, name: str) -> xr.Dataset:
+    """Of data with several output times those at time t."""
+    if "t" not in data.dims or "t" not in data.variables or data.sizes["t"] == 1:
+        return data
+    times = data["t"].values.tolist()
+    here = [k for k, time in enumerate(times) if math.isclose(time, t, rel_tol=1e-9)]
+    if not here:
+        held = (
+            f"data at t_initial = {t:.9g}, and these are at {spelled(map('{:.9g}'.format, times))}"
+        )
+        raise InvalidInput("initial", name, held, "Set t_initial to one of these.")
+    return data.isel(t=here[0])
+
+
 def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
     """The indices that sort the points of an axis, which must be those of the case to the precision of their type."""
     lattice, h = case.x, case.particle_spacing
@@ -226,7 +254,10 @@ def _order(case: Case, x: np.ndarray, label: str, name: str) -> np.ndarray:
         f"u on the {case.particles} points of case.positions, {lattice.size} along {label}, h = {h:.9g} and "
         f"|{label}| <= {case.reach:.9g}"
     )
-    remedy = "Set half_width and spacing to match, or interpolate the data onto case.positions."
+    remedy = (
+        "Set half_width and spacing to match, or have the data interpolated: fp.measured(data), "
+        "--initial measured:FILE."
+    )
     if x.dtype.kind not in "iuf" or x.ndim != 1 or not np.isfinite(x).all():
         raise InvalidInput("initial", name, f"finite real numbers as {label}", "Store numbers.")
     if x.size != lattice.size:
@@ -273,6 +304,8 @@ def _told(data: xr.Dataset) -> dict[str, float]:
     for name in _SAYS:
         if name in data.variables and data.variables[name].size == 1:
             told[name] = data.variables[name].values.item()
+    if "t" in data.variables and data.variables["t"].size == 1 and "t_final" in told:
+        told["t_final"] = data.variables["t"].values.item()  # one of the output times of that run
     return {
         name: float(value)
         for name, value in told.items()
@@ -302,7 +335,7 @@ def _labels(given: Any) -> xr.Dataset | None:
 
 
 def _read(path: Path) -> xr.Dataset:
-    return load_netcdf(path, ("u", *_AXES, *_SAYS))
+    return load_netcdf(path, ("u", *_AXES, "t", *_SAYS))
 
 
 def _real(values: Any) -> np.ndarray:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from math import ceil
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,6 +13,7 @@ from fracparticles.errors import spelled
 from fracparticles.graded.particles import graded_particles
 from fracparticles.moving.dvm import largest_gap
 from fracparticles.moving.lagrangian import REMESHING, THRESHOLD
+from fracparticles.run.times import legs, steps_in
 from fracparticles.schemes import ALL_SCHEMES, Scheme, Setting
 from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.special.stable import mean_radius
@@ -24,7 +24,6 @@ __all__ = ["FUNDAMENTAL", "OVERLAPS", "SIZES", "Parameters"]
 FUNDAMENTAL = "fundamental"
 SIZES = 1e-100, 1e100  # lengths and times; nothing made of them overflows
 OVERLAPS = 0.25, 1000.0
-_STEP_SLACK = 1e-9  # a time span of n (1 + 1e-9) steps still takes n steps
 
 if TYPE_CHECKING:
     SchemeName = str
@@ -81,7 +80,8 @@ class Parameters(BaseModel):
     beta: float = Field(
         gt=0.0,
         lt=1.0,
-        description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive).",
+        description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive). alpha may be given instead.",
+        json_schema_extra={"remedy": "Give beta = alpha - 1, or alpha itself."},
     )
     dim: Literal[1, 2, 3] = Field(
         default=1,
@@ -125,10 +125,16 @@ class Parameters(BaseModel):
     )
     t_initial: float = Field(default=0.5, ge=0.0, le=SIZES[1], description="Initial time.")
     t_final: float = Field(default=1.5, ge=SIZES[0], le=SIZES[1], description="Final time.")
+    times: tuple[float, ...] | None = Field(
+        default=None,
+        description="Output times. Several in one run, in ascending order; the last is the final time, so that "
+        "t_final may be left out. The steps meet each. A list is taken whole.",
+    )
     initial: str = Field(
         default=FUNDAMENTAL,
-        description='Initial data. "fundamental" for the fundamental solution at t_initial, or the '
-        "path of a NetCDF file that holds u on the same particles.",
+        description='Initial data. "fundamental" for the fundamental solution at t_initial; the path of a '
+        "NetCDF file that holds u on the same particles; that of a table, x and u in columns (csv, tsv, txt, dat), or "
+        "measured:PATH for a NetCDF file with other points, which are interpolated.",
     )
     integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = Field(
         default=None,
@@ -312,12 +318,21 @@ class Parameters(BaseModel):
         """The number of time steps; 0 for the exponential."""
         if self.resolved_integrator == "exponential":
             return 0
-        return max(1, ceil(self.span / self.resolved_dt * (1 - _STEP_SLACK)))
+        if self.times is None or self.kind.self_timed:
+            return steps_in(self.span, self.resolved_dt)
+        return sum(steps for _, steps in self.legs)
 
     @property
     def time_step(self) -> float:
-        """The realised step (t_final - t_initial) / steps; 0 for the exponential."""
-        return self.span / self.steps if self.steps else 0.0
+        """The realised step, (t_final - t_initial) / steps or the longest between `times`; 0 for the exponential."""
+        if self.times is None or self.kind.self_timed or not self.steps:
+            return self.span / self.steps if self.steps else 0.0
+        return max(dt for dt, _ in self.legs)
+
+    @property
+    def legs(self) -> list[tuple[float, int]]:
+        """The step from each output time to the next, and how many of them."""
+        return legs(self)
 
     @property
     def resolved_dt(self) -> float:

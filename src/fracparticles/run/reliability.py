@@ -118,7 +118,9 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
     found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
     if case.exterior == "open":
         misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
-        error = misfit * outside * _beyond(case, 0.5 * case.reach)
+        # Data that vanish at the ends miss their powers by all of nothing.
+        worst = max(tail_misfit(case, one) * outside_share(case, one) for one in (u0, u))
+        error = worst * _beyond(case, 0.5 * case.reach)
         found["tail_misfit"] = (misfit, "relative misfit of the powers that continue u")
         found["far_field_error"] = (error, "estimated relative error of the far field")
     return found

@@ -10,6 +10,7 @@ import numpy as np
 from fracparticles.moving.dvm import ParticleRun
 from fracparticles.run.case import Case
 from fracparticles.run.reliability import Estimates
+from fracparticles.run.times import Outputs
 from fracparticles.special.stable import central_mass, green
 
 __all__ = ["Solution", "relative_l1_deviation", "relative_l1_error"]
@@ -34,6 +35,8 @@ class Solution:
         For DVM, the particles themselves and what happened to them.
     estimates : dict
         What the strengths say of the accuracy, see `reliability`.
+    outputs : Outputs, optional
+        For a case with `times`, the strengths at each.
     """
 
     case: Case
@@ -44,6 +47,7 @@ class Solution:
     initial: str
     particles: ParticleRun | None = None
     estimates: Estimates = field(default_factory=dict)
+    outputs: Outputs | None = None
 
 
 def relative_l1_error(case: Case, u: np.ndarray) -> float:

@@ -1,4 +1,4 @@
-"""Run a case: `prepare` and then `solve` on bare arrays, or `solve` to a data set at once."""
+"""Run a case on arrays: `compute` it from its data, or `prepare` it for many."""
 
 from __future__ import annotations
 
@@ -22,9 +22,17 @@ from fracparticles.lattice.operators import LatticeOperator, MatrixOperator
 from fracparticles.moving import dvm
 from fracparticles.moving.lagrangian import Observer
 from fracparticles.run.case import Case
-from fracparticles.run.initial import Initial, bare_strengths, initial_strengths, refuse_non_finite
+from fracparticles.run.initial import (
+    Initial,
+    bare_strengths,
+    initial_strengths,
+    refuse_non_finite,
+    resolved,
+)
+from fracparticles.run.measured import Measured
 from fracparticles.run.reliability import estimates, warn_if_doubtful
 from fracparticles.run.solution import Solution
+from fracparticles.run.times import Outputs, parts
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import (
     eigenvalue_bounds,
@@ -35,8 +43,12 @@ from fracparticles.schemes.stability import grows, range_in
 from fracparticles.time import (
     STEP_POLYNOMIALS,
     Flow,
+    Snapshots,
     exponential_flow,
+    exponential_snapshots,
+    march,
     power_flow,
+    power_snapshots,
     single_pass,
     step,
 )
@@ -44,8 +56,6 @@ from fracparticles.time.stepping import all_finite
 from fracparticles.time.whole_space import WholeSpace
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from fracparticles.moving.dvm import ParticleRun
 
 __all__ = [
@@ -55,7 +65,6 @@ __all__ = [
     "initial_strengths",
     "matrix_of",
     "prepare",
-    "solve",
 ]
 
 _LARGEST_MATRIX = 16384  # particles
@@ -65,56 +74,30 @@ _RATES = 1e-8, 1e8  # D / h^alpha
 Advance = Callable[[np.ndarray], np.ndarray]
 
 
-def solve(case: Case, initial: Initial | None = None) -> xr.Dataset:
-    """Run a case.
-
-    Parameters
-    ----------
-    case : Case
-        The run.
-    initial : array, labelled data, callable or path, optional
-        Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
-        function of `case.positions` (of x; of x and y; of x, y and z); or a NetCDF file that holds u. Without it the
-        run starts from what `case.initial` says, by default the fundamental solution at `case.t_initial`.
-
-    Returns
-    -------
-    xarray.Dataset
-        See `dataset.to_dataset`.
-
-    Raises
-    ------
-    InvalidInput
-        If the initial data do not fit the case.
-    NonFiniteSolution
-        If the run blows up.
-
-    Warns
-    -----
-    StabilityWarning
-        If some wave grows.
-    AccuracyWarning
-        If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
-        have no time, and t_initial was not given.
-    """
-    from fracparticles.run.dataset import to_dataset
-
-    return to_dataset(compute(case, initial))
-
-
 def compute(case: Case, initial: Initial | None = None) -> Solution:
     """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
     check.instance("case", case, Case)
-    u0, origin = initial_strengths(case, initial)
-    particles = None
+    source = resolved(case, initial)
+    u0, origin = initial_strengths(case, source)
+    particles = outputs = None
     if case.kind.moving:
-        particles = advect(case, u0)
-        u, applications = particles.field(case.x), particles.history.velocity_evaluations
+        every = advect_to_outputs(case, u0)
+        particles, applications = every[-1], every[-1].history.velocity_evaluations
+        u = particles.field(case.x)
+        if case.times is not None:
+            fields = np.array([one.field(case.x) for one in every[:-1]] + [u])
+            totals = np.array([float(one.strength.sum()) for one in every])
+            outputs = Outputs(case.times, fields, totals)
     else:
         u, applications = _in_range(prepare(case).run, u0)
-    found = estimates(case, u0, u, initial)
+        if case.times is not None:
+            outputs = Outputs(case.times, u, np.array([case.integral(one) for one in u]))
+            u = u[-1]
+    found = estimates(case, u0, u, source)
+    if isinstance(source, Measured):
+        found |= source.estimates
     warn_if_doubtful(case, u0, u, found)
-    return Solution(case, case.x, u0, u, applications, origin, particles, found)
+    return Solution(case, case.x, u0, u, applications, origin, particles, found, outputs)
 
 
 def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> ParticleRun:
@@ -134,8 +117,15 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
     NonFiniteSolution
         If the run blows up; `FieldNotPositive` if that is for the field.
     """
+    return advect_to_outputs(case, u0, observe)[-1]
+
+
+def advect_to_outputs(
+    case: Case, u0: np.ndarray, observe: Observer | None = None
+) -> list[ParticleRun]:
+    """Return what `advect` does for each output time."""
     try:
-        return dvm.run(
+        return dvm.run_to_outputs(
             case.x,
             u0,
             spacing=case.particle_spacing,
@@ -144,8 +134,7 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
             overlap=case.resolved_overlap,
             diffusivity=case.diffusivity,
             start=case.t_initial,
-            dt=case.time_step,
-            steps=case.steps,
+            legs=case.legs,
             summation=case.summation,
             exterior=case.exterior,
             observe=observe,
@@ -216,7 +205,7 @@ class Prepared:
     operator_applications : int
         How often a solve applies it, unless the data ask for more pieces (`integrators.pieces`).
     advance : callable
-        From the strengths at `t_initial`, shape (N^dim,), to those at `t_final`.
+        From the strengths at `t_initial`, shape (N^dim,), to those at `t_final`, or at each of the `times`.
     """
 
     case: Case
@@ -231,6 +220,8 @@ class Prepared:
 
     def solve(self, u0: np.ndarray) -> np.ndarray:
         """Return the strengths at `t_final` from those at `t_initial`, both of the shape of the lattice.
+
+        Of a case with `times` there is a first axis more, one entry for each of them.
 
         Raises
         ------
@@ -255,21 +246,30 @@ class Prepared:
         applications = self.operator_applications
         flat = u0 if u0.ndim == 1 else u0.reshape(-1)
         try:
-            if isinstance(self.advance, Flow):
+            if isinstance(self.advance, Flow | Snapshots):
                 u, applications = self.advance.run(flat)
             else:
                 u = self.advance(flat)
         except NonFiniteSolution as error:
             refuse_non_finite(u0, self.case.x)  # looked at only when it may have been the data
             raise _named(self.case, error) from None
-        return u.reshape(u0.shape), applications
+        shape = u0.shape if self.case.times is None else (len(self.case.times), *u0.shape)
+        return u.reshape(shape), applications
 
     def as_matrix(self) -> np.ndarray:
         """Return the whole run as one matrix, shape (N^dim, N^dim): u(t_final) = M u(t_initial).
 
         For many initial data on few particles: up to some hundred a product with M is faster than any sum by FFT. It
         takes N^dim solves.
+
+        Raises
+        ------
+        InvalidInput
+            If it would take more than 2 GiB, or the case has several output times.
         """
+        if self.case.times is not None:
+            one = "nothing for one matrix: each output time has its own"
+            raise InvalidInput("times", self.case.times, one, "Give t_final.")
         return matrix_of(self.solve, self.shape)
 
 
@@ -329,6 +329,9 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         resting = "a scheme whose particles stay on the lattice"
         remedy = f"Use solve: the operator of {case.scheme} depends on the solution."
         raise InvalidInput("scheme", case.scheme, resting, remedy)
+    runs = parts(case)
+    if len(runs) > 1 or runs[0] is not case:
+        return _all_outputs(case, [prepare(one) for one in runs])
     if case.is_graded:
         whole = _graded_step(case)
         return Prepared(case, whole, 1, partial(single_pass, whole, 1.0, 0.0))
@@ -344,6 +347,9 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
         polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
         dt, steps = case.time_step, case.steps
         applications = steps * polynomial.stages
+        if case.times is not None:
+            through = partial(march, operator, polynomial, case.legs)
+            return Prepared(case, operator, applications, through)
         if applications == 1:
             return Prepared(case, operator, 1, partial(single_pass, operator, dt, 1.0))
         return Prepared(
@@ -352,11 +358,7 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     low, high = spectral_interval(case.scheme, case.setting, operator, case.steps)
     most = largest_degree(case.scheme, case.setting, operator)
     try:
-        if case.resolved_integrator == "exponential":
-            flow = exponential_flow(operator, case.span, low, high, most)
-        else:
-            polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
-            flow = power_flow(operator, polynomial, case.time_step, case.steps, low, high, most)
+        flow = _flow(case, operator, low, high, most)
     except NonFiniteSolution as error:
         raise _named(case, error) from None
     except FracparticlesError as error:
@@ -366,23 +368,43 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     return Prepared(case, operator, flow.operator_applications, flow)
 
 
+def _flow(
+    case: Case, operator: LatticeOperator, low: float, high: float, most: int | None
+) -> Flow | Snapshots:
+    """Return the run as a function of the operator, or one for each output time."""
+    if case.resolved_integrator == "exponential":
+        if case.times is None:
+            return exponential_flow(operator, case.span, low, high, most)
+        spans = [time - case.t_initial for time in case.times]
+        return exponential_snapshots(operator, spans, low, high, most)
+    polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
+    if case.times is None:
+        return power_flow(operator, polynomial, case.time_step, case.steps, low, high, most)
+    return power_snapshots(operator, polynomial, case.legs, low, high, most)
+
+
+def _all_outputs(case: Case, ready: list[Prepared]) -> Prepared:
+    """Return the run whose output times are those of several, from the same strengths."""
+    applications = sum(one.operator_applications for one in ready)
+    reached = [time for one in ready for time in one.case.times or (one.case.t_final,)]
+    order = np.argsort(reached, kind="stable")
+
+    def advance(u0: np.ndarray) -> np.ndarray:
+        outputs = [one.solve(u0.reshape(case.shape)).reshape(-1, u0.size) for one in ready]
+        return np.concatenate(outputs)[order]
+
+    return Prepared(case, ready[-1].operator, applications, advance)
+
+
 def _on_the_whole_space(case: Case) -> Advance:
     """Return the run on the infinite lattice, exp(A t) or the steps of GPSE, by one pair of transforms."""
     setting = case.setting
-    scaled_time = case.span * setting.rate
-
-    def amplification(theta: np.ndarray) -> np.ndarray:
-        symbol = SCHEMES[case.scheme].symbol(theta, setting)
-        if case.resolved_integrator == "exponential":
-            return np.exp(scaled_time * symbol)
-        return (1.0 + scaled_time / case.steps * symbol) ** case.steps
-
     run = WholeSpace(
         setting.size,
         case.dim,
         case.alpha,
-        scaled_time,
-        amplification=amplification,
+        case.span * setting.rate,
+        amplification=scheme_amplification(case),
         terms=setting.far_terms,
     )
 
@@ -394,6 +416,23 @@ def _on_the_whole_space(case: Case) -> Advance:
         return u
 
     return advance
+
+
+def scheme_amplification(case: Case, exact: bool = False) -> Callable[[np.ndarray], np.ndarray]:
+    """Return by what the run multiplies the waves of the infinite lattice, as a function of theta; see `WholeSpace`.
+
+    With `exact` the integration in time is: exp(A t) for any integrator, but for GPSE, whose steps are its own.
+    """
+    setting = case.setting
+    scaled_time = case.span * setting.rate
+
+    def amplification(theta: np.ndarray) -> np.ndarray:
+        symbol = SCHEMES[case.scheme].symbol(theta, setting)
+        if case.kind.self_timed or not (exact or case.resolved_integrator == "exponential"):
+            return (1.0 + scaled_time / case.steps * symbol) ** case.steps
+        return np.exp(scaled_time * symbol)
+
+    return amplification
 
 
 def _graded_step(case: Case) -> LatticeOperator:

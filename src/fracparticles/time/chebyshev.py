@@ -17,7 +17,7 @@ raises `LostDigits`; `pieces` takes it from there.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,12 +29,12 @@ from fracparticles.lattice.operators import Operator
 from fracparticles.time.polynomial import StepPolynomial
 from fracparticles.time.stepping import all_finite
 
-__all__ = ["ChebyshevSeries", "LostDigits", "exponential", "power"]
+__all__ = ["ChebyshevSeries", "LostDigits", "evaluate", "exponential", "power"]
 
 _ROUND_OFF = 2.0**-54
 _MET = 1e-6  # of the largest value: how close the series is to f at the ends
 _MOST_POINTS = 2**25
-_LARGEST_EXPONENT = np.log(np.finfo(float).max)
+LARGEST_EXPONENT = np.log(np.finfo(float).max)
 
 _LOOK_EVERY = 32  # terms between two looks at their size
 _DIGITS_KEPT = 1e-10  # the share of the sum that the round-off of its terms may reach
@@ -127,42 +127,59 @@ class ChebyshevSeries:
         NonFiniteSolution
             If a sum of no more than 65 terms is not finite.
         """
-        c = self.coefficients
-        scale = 2.0 / (self.high - self.low)
-        shift = -(self.high + self.low) / (self.high - self.low)
-        even, odd = np.array(u, dtype=float), np.zeros(np.shape(u))  # T_k(B) u, k even and odd
-        if self.degree == 0:
-            return c[0] * even
-        largest = abs(c[0]) * _size(even)
-        operator.combine(even, odd, scale, shift)
-        total = np.zeros_like(even)
-        _add_terms(total, c[0], even, c[1], odd)
-        for k in range(2, self.degree, 2):
-            operator.combine(odd, even, 2.0 * scale, 2.0 * shift, -1.0)
-            operator.combine(even, odd, 2.0 * scale, 2.0 * shift, -1.0)
-            _add_terms(total, c[k], even, c[k + 1], odd)
-            if k % _LOOK_EVERY == 0:
-                largest = max(largest, abs(c[k]) * _size(even))
-        if self.degree % 2 == 0:
-            operator.combine(odd, even, 2.0 * scale, 2.0 * shift, -1.0)
-            _add_terms(total, c[self.degree], even, 0.0, odd)
-        self._look_at(largest, total)
-        return total
+        return evaluate((self,), operator, u)[0]
 
-    def _look_at(self, largest: float, total: np.ndarray) -> None:
-        if self.degree <= _SHORT:
-            if not all_finite(total):
-                raise NonFiniteSolution(
-                    "the particle strengths overflow: the time step lies far outside the stability interval. "
-                    "Take a smaller dt or integrator='exponential'."
-                )
-            return
-        size = _size(total) if all_finite(total) else np.inf
-        lost = _ROUND_OFF * np.sqrt(self.degree) * largest
-        if not lost <= _DIGITS_KEPT * size < np.inf:
-            raise LostDigits(
-                f"terms of {largest:.3g} in a Chebyshev series whose sum is {size:.3g}"
+
+def evaluate(series: Sequence[ChebyshevSeries], operator: Operator, u: np.ndarray) -> np.ndarray:
+    """Return f_j(A) u of several series on one interval by one recurrence, shape (series, N).
+
+    The vectors T_k(B) u are the same for all: as many applications as the longest takes alone.
+
+    Raises
+    ------
+    LostDigits
+        If the round-off of the terms of one is more than 1e-10 of its sum, in the maximum norm, or they overflow.
+    NonFiniteSolution
+        If a sum of no more than 65 terms is not finite.
+    """
+    degree, low, high = max(one.degree for one in series), series[0].low, series[0].high
+    c = np.zeros((len(series), degree + 2))
+    for row, one in zip(c, series, strict=True):
+        row[: one.degree + 1] = one.coefficients
+    scale, shift = 2.0 / (high - low), -(high + low) / (high - low)
+    even, odd = np.array(u, dtype=float), np.zeros(np.shape(u))  # T_k(B) u, k even and odd
+    if degree == 0:
+        return c[:, :1] * even
+    largest = np.abs(c[:, 0]) * _size(even)
+    operator.combine(even, odd, scale, shift)
+    totals = np.zeros((len(series), even.size))
+    _add_terms(totals, c, 0, even, odd)
+    for k in range(2, degree, 2):
+        operator.combine(odd, even, 2.0 * scale, 2.0 * shift, -1.0)
+        operator.combine(even, odd, 2.0 * scale, 2.0 * shift, -1.0)
+        _add_terms(totals, c, k, even, odd)
+        if k % _LOOK_EVERY == 0:
+            largest = np.maximum(largest, np.abs(c[:, k]) * _size(even))
+    if degree % 2 == 0:
+        operator.combine(odd, even, 2.0 * scale, 2.0 * shift, -1.0)
+        _add_terms(totals, c, degree, even, odd)
+    for one, size, total in zip(series, largest, totals, strict=True):
+        _look_at(one.degree, float(size), total)
+    return totals
+
+
+def _look_at(degree: int, largest: float, total: np.ndarray) -> None:
+    if degree <= _SHORT:
+        if not all_finite(total):
+            raise NonFiniteSolution(
+                "the particle strengths overflow: the time step lies far outside the stability interval. "
+                "Take a smaller dt or integrator='exponential'."
             )
+        return
+    size = _size(total) if all_finite(total) else np.inf
+    lost = _ROUND_OFF * np.sqrt(degree) * largest
+    if not lost <= _DIGITS_KEPT * size < np.inf:
+        raise LostDigits(f"terms of {largest:.3g} in a Chebyshev series whose sum is {size:.3g}")
 
 
 def power(
@@ -179,8 +196,8 @@ def power(
     def amplification(z: np.ndarray) -> np.ndarray:
         sign, exponent = polynomial.log_power(z * dt, steps)
         growth = exponent.max() / steps
-        if growth * steps > _LARGEST_EXPONENT:
-            overflow = int(np.ceil(_LARGEST_EXPONENT / growth))
+        if growth * steps > LARGEST_EXPONENT:
+            overflow = int(np.ceil(LARGEST_EXPONENT / growth))
             raise NonFiniteSolution(
                 f"{polynomial.name} with dt = {dt:.6g} amplifies the shortest wave by {np.exp(growth):.6g} a "
                 f"step and overflows near step {overflow} of {steps}, {overflow * dt:.6g} after the start: "
@@ -208,7 +225,7 @@ def exponential(time: float, low: float, high: float) -> ChebyshevSeries:
         If exp(z time) overflows on the interval.
     """
     growth = high * time
-    if growth > _LARGEST_EXPONENT:
+    if growth > LARGEST_EXPONENT:
         raise NonFiniteSolution(
             f"the operator has the eigenvalue {high:.6g} and amplifies its mode by exp({growth:.6g}) over the "
             f"time {time:.6g}: the particle strengths overflow. Take a larger overlap, or a shorter time."
@@ -232,7 +249,11 @@ def _size(u: np.ndarray) -> float:
 
 
 @njit()
-def _add_terms(total, c_even, even, c_odd, odd):
-    # Two at a time: half the traffic of the sum.
-    for i in range(total.size):
-        total[i] += c_even * even[i] + c_odd * odd[i]
+def _add_terms(totals, c, k, even, odd):
+    # Two at a time: half the traffic of the sums.
+    for j in range(totals.shape[0]):
+        a, b = c[j, k], c[j, k + 1]
+        if a != 0.0 or b != 0.0:  # else that series has ended
+            total = totals[j]
+            for i in range(total.size):
+                total[i] += a * even[i] + b * odd[i]

@@ -33,7 +33,7 @@ from fracparticles.special.images import (
     square_basis,
 )
 
-__all__ = ["MOST_TERMS", "Tails", "powers", "tail_exponents"]
+__all__ = ["MOST_TERMS", "Tails", "later_powers", "powers", "tail_exponents"]
 
 MOST_TERMS = 6
 _SAME = 1e-9  # exponents nearer than this are one
@@ -209,6 +209,13 @@ class Tails:
         for basis in bases:  # each axis moves to the end in its turn
             series = np.tensordot(series, basis, axes=(1, 0))
         return series
+
+
+def later_powers(tail: Sequence[float], dim: int, alpha: float, terms: int) -> tuple[float, ...]:
+    """Return the first powers by which a solution falls whose data fell like these, see `whole_space.evolve`."""
+    own = powers(tail, dim)
+    every = _sums([0.0, 2.0, *own], alpha, max([*tail_exponents(alpha, terms), *own]))
+    return tuple((dim + every[:MOST_TERMS]).tolist())
 
 
 def _sums(starts: Sequence[float], alpha: float, greatest: float) -> np.ndarray:

@@ -159,6 +159,8 @@ class WholeSpace:
         exp(-tau |theta|^alpha).
     terms, tail, stretch
         See `evolve`.
+    shown : int, optional
+        How many points an axis the result has, about the same middle; those of the data if left out.
 
     Raises
     ------
@@ -178,6 +180,7 @@ class WholeSpace:
         terms: int = 2,
         tail: Sequence[float] | None = None,
         stretch: float | None = None,
+        shown: int | None = None,
     ) -> None:
         points, dim = check.whole_number("points", points, _FEWEST), check.dimension(dim)
         alpha = check.fractional_order(alpha)
@@ -196,6 +199,10 @@ class WholeSpace:
         self._axes = tuple(range(-dim, 0))
         self._start = start
         self._inside: tuple[Any, ...] = (..., *(slice(start, start + points),) * dim)
+        self._shown = self._inside
+        if shown is not None:
+            first = circle // 2 - shown // 2
+            self._shown = (..., *(slice(first, first + shown),) * dim)
         self._amplification = _on_circle(circle, dim, alpha, scaled_time, amplification)
         self._tails = None
         if terms:
@@ -246,7 +253,7 @@ class WholeSpace:
         if self._tails is None:
             return self._periodic(longer)[self._inside], np.zeros(0)
         images, numbers = self._tails.complete(longer.reshape(_count(u, dim), *self._circle))
-        return (self._periodic(longer) - images.reshape(longer.shape))[self._inside], numbers
+        return (self._periodic(longer) - images.reshape(longer.shape))[self._shown], numbers
 
     def _periodic(self, u: np.ndarray) -> np.ndarray:
         if len(self._axes) == 1:

@@ -70,7 +70,10 @@ def _deviations(ax: Axes, series: pd.DataFrame) -> None:
         ax.plot(part["x"], 100.0 * part["y"], label=label, **{**_look(name, kind), **looks[kind]})
     ax.set_yscale("symlog", linthresh=0.1, linscale=0.6)
     name_ticks(ax, (-10.0, -1.0, -0.1, 0.0, 0.1, 1.0, 10.0), "y")
-    ax.set(xlabel="position $x$", ylabel="deviation from the exact solution, %\n(linear between -0.1 and 0.1)")
+    ax.set(
+        xlabel="position $x$",
+        ylabel="deviation from the exact solution, %\n(linear between -0.1 and 0.1)",
+    )
     ax.legend(**_BELOW)
 
 

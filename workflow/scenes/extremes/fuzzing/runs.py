@@ -14,7 +14,8 @@ from scipy.linalg import expm
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import read_run, write
 from fracparticles.run.solution import relative_l1_error
-from fracparticles.run.solver import compute, prepare, solve
+from fracparticles.run.solve import solve
+from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.dpse import laplacian_weights, potential_weights
 from fracparticles.schemes.spectrum import dense_matrix

@@ -28,5 +28,10 @@ def study(inputs: Inputs, *, families: dict[str, dict[str, str]]) -> Result:
     table = pd.DataFrame(rows)
     if rows:
         numbers = table.select_dtypes("number").sum()
-        table.loc[len(table)] = {"family": "all", "what may go wrong": "", "what tells you": "", **numbers}
+        table.loc[len(table)] = {
+            "family": "all",
+            "what may go wrong": "",
+            "what tells you": "",
+            **numbers,
+        }
     return Result(table)

@@ -1,0 +1,71 @@
+"""Run a case to a data set: the one call that does all."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fracparticles.run.case import Case
+from fracparticles.run.dataset import to_dataset
+from fracparticles.run.initial import Initial, resolved
+from fracparticles.run.solver import compute
+from fracparticles.run.units import Units, units_of, with_units
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["solve"]
+
+
+def solve(
+    case: Case,
+    initial: Initial | None = None,
+    *,
+    estimate: bool = False,
+    units: Units | None = None,
+) -> xr.Dataset:
+    """Run a case.
+
+    Parameters
+    ----------
+    case : Case
+        The run.
+    initial : array, labelled data, callable or path, optional
+        Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
+        function of `case.positions` (of x; of x and y; of x, y and z); a NetCDF file that holds u; a table or other
+        `measured` data. Without it the run starts from what `case.initial` says, by default the fundamental solution
+        at `case.t_initial`.
+    estimate : bool
+        Estimate the error, too, as `estimate_error` does: `estimated_error` and its parts are variables of the result.
+    units : Units, optional
+        Names of the units that the numbers are in, for the attributes of the result. Left out: what the data name.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `dataset.to_dataset`.
+
+    Raises
+    ------
+    InvalidInput
+        If the initial data do not fit the case.
+    NonFiniteSolution
+        If the run blows up.
+
+    Warns
+    -----
+    StabilityWarning
+        If some wave grows.
+    AccuracyWarning
+        If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
+        have no time, and t_initial was not given.
+    """
+    source = resolved(case, initial)
+    units = units_of(source, units)
+    solution = compute(case, source)
+    if estimate:
+        from fracparticles.run.estimate import estimates_of  # loads what a run does not need
+
+        result = to_dataset(solution, estimates_of(solution, source))
+    else:
+        result = to_dataset(solution)
+    return result if units is None else with_units(result, case, units)

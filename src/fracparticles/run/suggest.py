@@ -1,0 +1,246 @@
+"""From a problem and an accuracy to a run: scheme, order, spacing, half-width, evaluation.
+
+The fastest of the schemes is GPSE in one step over the whole time, on an open lattice, by one pair of transforms
+(`results/tables/time_to_accuracy`). Where its kernel would be wider than a lattice can sum, a thousand spacings, KPSE
+of order 12, exact in time, takes its place. The search starts on a coarse and narrow lattice. The estimate of the
+error says which of the two, spacing or half-width, leaves more, and that is mended until the error is what was asked
+for; then both are taken back as far as it allows.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from fracparticles.arguments import dimension, positive_real, real_between
+from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
+from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.estimate import estimate_error
+from fracparticles.run.initial import Initial
+from fracparticles.run.measured import Measured
+from fracparticles.run.solver import compute
+from fracparticles.schemes import ALL_SCHEMES
+from fracparticles.special.stable import central_mass
+
+__all__ = ["suggest"]
+
+_SELF_TIMED = next(name for name, one in ALL_SCHEMES.items() if one.self_timed)
+_ORDER = 12
+_EXCHANGE = next(
+    name for name, one in ALL_SCHEMES.items() if _ORDER in one.box_orders and one.conservative
+)
+_OPEN = {"exterior": "open", "evaluation": "auto"}
+_WAYS: tuple[dict[str, Any], ...] = (
+    {"scheme": _SELF_TIMED, **_OPEN},
+    {"scheme": _EXCHANGE, "order": _ORDER, "integrator": "exponential", **_OPEN},
+)
+_FINER, _WIDER = 0.7, 1.4
+_FAR = 10.0  # from the error that is asked for: two steps at once
+_BACK = 1.2  # by which spacing and half-width are taken back at a time
+_SAFE = 0.7  # of the error that is asked for
+_MOST_TRIALS, _MOST_WIDENINGS = 60, 8
+_HELD = 0.97  # of the mass of a point, where no radius is given
+_SMALLEST = 1e-11
+_START = 6.0  # intervals within the radius of interest,
+_FEWEST = 8.0  # and on either side of the lattice
+
+
+def suggest(
+    initial: Initial = FUNDAMENTAL,
+    *,
+    error: float,
+    alpha: float | None = None,
+    beta: float | None = None,
+    t_initial: float = 0.0,
+    t_final: float | None = None,
+    times: Sequence[float] | None = None,
+    diffusivity: float = 1.0,
+    dim: int = 1,
+    within: float | None = None,
+) -> Case:
+    """Return a case whose relative error, as `estimate_error` has it, is at most `error`.
+
+    Parameters
+    ----------
+    initial : callable, measured data, or "fundamental"
+        What is known everywhere: a bare array has a lattice already.
+    error : float
+        In the 1-norm over |x| <= within, from 1e-11 to 0.5.
+    alpha, beta : float
+        The fractional order, one of them.
+    t_initial, t_final, times, diffusivity, dim
+        As for `Case`. Of several times the first and the last must meet the error: the others lie between.
+    within : float, optional
+        The radius of interest. Left out: that which holds nine tenths of the data, and (D T)^(1/alpha) twice more; and
+        then the lattice holds nearly all of the solution.
+
+    Raises
+    ------
+    InvalidInput
+        If the problem is not one, or the error cannot be reached on this machine.
+
+    Warns
+    -----
+    AccuracyWarning
+        If measured data leave more than the error open.
+
+    Examples
+    --------
+    >>> case = suggest(lambda x: np.exp(-x * x), error=1e-6, alpha=1.5, t_final=1.0)
+    """
+    error = real_between("error", error, _SMALLEST, 0.5)
+    dim = dimension(dim)
+    if not (callable(initial) or (isinstance(initial, str) and initial == FUNDAMENTAL)):
+        known = "a function, measured data (fp.measured) or 'fundamental': what is known everywhere"
+        raise InvalidInput("initial", type(initial).__name__, known, "Give one of these.")
+    given: dict[str, Any] = {
+        "alpha": alpha, "beta": beta, "t_initial": t_initial, "t_final": t_final, "times": times,
+        "diffusivity": diffusivity, "dim": dim,
+    }  # fmt: skip
+    fields = {name: value for name, value in given.items() if value is not None}
+    if t_final is None and times is None:
+        raise InvalidInput("t_final", None, "a number > t_initial", "Give it, or times.")
+    problem = Case(scheme=_EXCHANGE, integrator="exponential", half_width=1.0, spacing=0.1,
+                   **(fields | {"dim": 1}))  # fmt: skip
+    spread = (problem.diffusivity * problem.span) ** (1.0 / problem.alpha)
+    least = 0.0
+    if within is None:
+        radius = _radius_of(initial, problem, dim)
+        within = radius + 2.0 * spread
+        least = radius + spread  # and more, until the lattice holds the solution
+        while central_mass(least, spread**problem.alpha, problem.alpha, dim) < _HELD:
+            least *= 1.1
+    within = positive_real("within", within)
+    if isinstance(initial, Measured) and initial.error > error:
+        warnings.warn(
+            f"the data leave a relative error of {initial.error:.2g} open, more than {error:.2g}: no run mends that",
+            AccuracyWarning,
+            stacklevel=2,
+        )
+    more = {"far_terms": 3} if dim == 1 else {}
+    reached = [np.inf]
+    for way in _WAYS:
+        case = _search(way | fields | more, initial, within, least, spread, error, reached)
+        if case is not None:
+            return case if least == 0.0 else _widened(case, initial, way | fields | more, spread)
+    best = f"an error that can be reached: the best found is {min(reached):.2g}"
+    raise InvalidInput("error", error, best, "Ask for less, or for less of the space.")
+
+
+def _search(
+    fields: dict[str, Any],
+    initial: Initial,
+    within: float,
+    least: float,
+    spread: float,
+    error: float,
+    reached: list[float],
+) -> Case | None:
+    """Refine and widen until the error is met, and take back what is not needed; None where it cannot be met."""
+    half = max(1.2 * within, 1.5 * spread, least)
+    h = min(within / _START, half / _FEWEST)
+    best: Case | None = None
+    for _ in range(_MOST_TRIALS):
+        trial = _trial(fields, h, half, spread)
+        if isinstance(trial, InvalidInput):
+            if trial.field in ("half_width", "truncation", "lattice"):
+                half *= _WIDER
+            elif (
+                trial.field == "overlap" and h > spread
+            ):  # a kernel narrower than the lattice resolves
+                h *= _FINER
+            else:  # too many particles, or a kernel wider than can be summed
+                return None
+            continue
+        total, spacing, domain = _errors(trial, initial, within)
+        reached.append(total)
+        if total <= _SAFE * error:
+            best = trial
+            break
+        far = total > _FAR * error
+        if domain > spacing:
+            half *= _WIDER**2 if far else _WIDER
+        else:
+            h *= _FINER**2 if far else _FINER
+    if best is None:
+        return None
+    for narrower in (True, False):
+        while True:
+            h, half = (h, half / _BACK) if narrower else (h * _BACK, half)
+            trial = _trial(fields, h, half, spread)
+            if half < max(within, least) or isinstance(trial, InvalidInput):
+                break
+            if _errors(trial, initial, within)[0] > _SAFE * error:
+                break
+            best = trial
+        h, half = best.spacing, best.reach
+    return best
+
+
+def _widened(case: Case, initial: Initial, fields: dict[str, Any], spread: float) -> Case:
+    """Return the case on a lattice wide enough for a run that warns of nothing, if there is one within reach."""
+    for _ in range(_MOST_WIDENINGS):
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            compute(case, initial)
+        wider = _trial(fields, case.spacing, _WIDER * case.reach, spread)
+        if not any(issubclass(one.category, AccuracyWarning) for one in said) or isinstance(
+            wider, InvalidInput
+        ):
+            break
+        case = wider
+    return case
+
+
+def _trial(fields: dict[str, Any], h: float, half: float, spread: float) -> Case | InvalidInput:
+    """Return the case on this lattice, or why there is none."""
+    own = (
+        {"dt": spread ** _alpha(fields) / fields.get("diffusivity", 1.0)}
+        if fields["scheme"] == _SELF_TIMED
+        else {}
+    )
+    try:
+        return Case(**fields, **own, half_width=half, spacing=h)
+    except InvalidInput as refused:
+        return refused if refused.field != "dt" else InvalidInput("overlap", *refused.args[1:])
+
+
+def _alpha(fields: dict[str, Any]) -> float:
+    return float(fields["alpha"] if "alpha" in fields else 1.0 + fields["beta"])
+
+
+def _errors(case: Case, initial: Initial, within: float) -> tuple[float, float, float]:
+    """Return the error and what spacing and half-width leave of it, at the worst of the first and the last time."""
+    times = {case.t_final} if case.times is None else {case.times[0], case.times[-1]}
+    found = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FracparticlesWarning)
+        for time in times:
+            try:
+                one = estimate_error(case.until(time), initial, within=within)
+            except InvalidInput as refused:
+                if refused.field != "initial":
+                    raise
+                return np.inf, 1.0, 0.0  # a lattice too coarse for the data
+            found.append((one.total - one.data, one.spacing, one.domain))
+    return max(found)
+
+
+def _radius_of(initial: Initial, problem: Case, dim: int) -> float:
+    """Return the radius that holds nine tenths of the data, of those within 1e6 of the unit that they are of."""
+    if isinstance(initial, str):
+        return float((problem.diffusivity * problem.t_initial) ** (1.0 / problem.alpha))
+    if isinstance(initial, Measured):
+        return max(float(np.abs(axis[[0, -1]]).max()) for axis in initial.axes)
+    assert callable(initial)
+    function: Callable[..., Any] = np.vectorize(initial)
+    r = np.concatenate([[0.0], np.geomspace(1e-6, 1e6, 1201)])
+    rays = [axis * sign for axis in np.eye(dim) for sign in (1.0, -1.0)]
+    density = r ** (dim - 1) * sum(np.abs(function(*(r * part for part in ray))) for ray in rays)
+    mass = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(r))])
+    if not mass[-1] > 0.0:
+        raise InvalidInput("initial", initial, "data that are not zero", "Give within.")
+    return float(np.interp(0.9 * mass[-1], mass, r))

@@ -1,0 +1,145 @@
+"""Names of units: what the numbers of a run are in. They travel into the data set, and onto the axes of its plots.
+
+The equation has no scale of its own: a run in metres and days is a run in any units, and nothing is converted. The
+diffusivity is then in length^alpha / time, and the mass in concentration times length^dim.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fracparticles.errors import InvalidInput
+from fracparticles.files import load_netcdf
+from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.measured import Measured
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Units", "units_of", "with_units"]
+
+_LONGEST = 40
+_NONE = "1"
+# The powers of length, time and concentration; "alpha" and "dim" are those of the case.
+_DIMENSIONS: dict[str, tuple[float | str, float, float]] = {
+    **dict.fromkeys(("x", "y", "z", "half_width", "spacing", "particle_spacing"), (1, 0, 0)),
+    **dict.fromkeys(("graded_scale", "volume", "particle_position"), (1, 0, 0)),
+    **dict.fromkeys(("largest_spacing", "spacing_before", "spacing_where"), (1, 0, 0)),
+    **dict.fromkeys(("t", "t_initial", "t_final", "dt", "remeshing_time"), (0, 1, 0)),
+    **dict.fromkeys(("u", "u_axis", "u_diagonal"), (0, 0, 1)),
+    **dict.fromkeys(("mass", "mass_initial", "mass_final", "particle_strength"), ("dim", 0, 1)),
+    **dict.fromkeys(("eliminated_strength", "lost_strength"), ("dim", 0, 1)),
+    "diffusivity": ("alpha", -1, 0),
+}
+
+
+@dataclass(frozen=True)
+class Units:
+    """Names of units, each a text as it is to stand on an axis; "1" for none.
+
+    Attributes
+    ----------
+    length, time, concentration : str
+        "m", "d", "mg/L".
+
+    Raises
+    ------
+    InvalidInput
+        If one is no short text of one line.
+    """
+
+    length: str = _NONE
+    time: str = _NONE
+    concentration: str = _NONE
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            good = isinstance(value, str) and value.strip() and value.isprintable()
+            if not good or len(value) > _LONGEST:
+                short = f"the name of a unit, of at most {_LONGEST} characters"
+                raise InvalidInput(name, value, short, "Give it as text, or leave it out.")
+
+    @classmethod
+    def read(cls, text: str) -> Units:
+        """Return the units of a flag, "m,d,mg/L": length, time and concentration.
+
+        Raises
+        ------
+        InvalidInput
+            If there are not three.
+        """
+        names = [name.strip() for name in text.split(",")]
+        if len(names) != 3:
+            three = "three names, of length, time and concentration: m,d,mg/L"
+            raise InvalidInput("units", text, three, "Write 1 where there is none.")
+        return cls(*names)
+
+    def of(self, name: str, case: Case) -> str | None:
+        """Return the unit of a variable of a data set; None for what has no dimension."""
+        powers = _DIMENSIONS.get(name)
+        if powers is None:
+            return None
+        numbers = [float(getattr(case, p)) if isinstance(p, str) else float(p) for p in powers]
+        length, time, concentration = numbers
+        pairs = zip(
+            (self.concentration, self.length, self.time), (concentration, length, time), strict=True
+        )
+        parts = [unit if power == 1.0 else f"{unit}^{power:g}" for unit, power in pairs
+                 if power != 0.0 and unit != _NONE]  # fmt: skip
+        return " ".join(parts) or _NONE
+
+
+def units_of(source: Any, given: Units | None = None) -> Units | None:
+    """Return the units that were given, or those that the initial data name; None without either.
+
+    Raises
+    ------
+    InvalidInput
+        If the data name others than were given.
+    """
+    if given is not None and not isinstance(given, Units):
+        named = "fp.Units(length=..., time=..., concentration=...)"
+        raise InvalidInput("units", given, named, "Give these.")
+    told = _told(source)
+    if given is None:
+        return told
+    for name, value in vars(told or Units()).items():
+        if value not in (_NONE, getattr(given, name)):
+            allowed = f"the {name} of the data, {value!r}"
+            raise InvalidInput("units", getattr(given, name), allowed, "Convert the data first.")
+    return given
+
+
+def _told(source: Any) -> Units | None:
+    """What the data name: the units of x, of t_final and of u."""
+    if isinstance(source, Measured):
+        length, concentration = (name or _NONE for name in source.units)
+        found = Units(length, _NONE, concentration)
+        return None if found == Units() else found
+    if isinstance(source, str | os.PathLike):
+        path = Path(os.fspath(source))
+        if source == FUNDAMENTAL or not path.is_file():  # whoever reads it says so
+            return None
+        source = load_netcdf(path, ("u", "x", "t_final"))
+    xarray = sys.modules.get("xarray")
+    if xarray is None or not isinstance(source, xarray.DataArray | xarray.Dataset):
+        return None
+    values = source if isinstance(source, xarray.DataArray) else source.get("u")
+    variables = [source.coords.get("x"), source.coords.get("t_final"), values]
+    names = ["" if one is None else str(one.attrs.get("units", "")) for one in variables]
+    found = Units(*(name or _NONE for name in names))
+    return None if found == Units() else found
+
+
+def with_units(data: xr.Dataset, case: Case, units: Units) -> xr.Dataset:
+    """Name the units of each variable of a run's data set, in place, and return it."""
+    for name, variable in data.variables.items():
+        unit = units.of(str(name), case)
+        if unit is not None:
+            data[name].attrs["units"] = unit
+            variable.attrs["units"] = unit
+    return data

@@ -1,0 +1,242 @@
+"""Measured data: tables and files with any points and names, interpolated with an error that is stated."""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import suppress
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import fracparticles as fp
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.run.cli import main
+from fracparticles.run.measured import Measured
+
+GIVEN = {"scheme": "KPSE", "order": 4, "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "t_initial": 0.0,
+         "integrator": "exponential", "exterior": "open"}  # fmt: skip
+X = np.sort(np.concatenate([np.linspace(-8.0, 9.0, 41), [0.3, 1.1, 2.7]]))
+PROFILES = {
+    "Gaussian": lambda x: np.exp(-0.25 * x * x),
+    "algebraic": lambda x: 1.0 / (1.0 + x * x) ** 2,
+    "two blobs": lambda x: np.exp(-0.25 * x * x) + 0.3 * np.exp(-((x - 4.0) ** 2)),
+}
+
+
+def profile(x):
+    return np.exp(-0.25 * (x - 1.0) ** 2)
+
+
+def table(path, x=X, head="x [m], c (mg/L)\n", mark=","):
+    lines = [f"{a!r}{mark}{b!r}" for a, b in zip(x.tolist(), profile(x).tolist(), strict=True)]
+    path.write_text(head + "\n".join(lines) + "\n", "utf-8")
+    return path
+
+
+# --- the stated error -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", PROFILES)
+@pytest.mark.parametrize("points", [25, 50, 100, 200])
+@pytest.mark.parametrize("uneven", [False, True])
+def test_the_stated_error_is_that_of_the_interpolation(name, points, uneven):
+    """Never below half of the true error, nor above it by more than twenty: coarse points are taken at their worst."""
+    x = np.linspace(-3.0, 3.0, points)
+    x = np.sinh(x) if uneven else 10.0 * x / 3.0
+    data = fp.measured((x, PROFILES[name](x)))
+    z = np.linspace(-10.0, 10.0, 20001)
+    true = np.abs(data(z) - PROFILES[name](z)).sum() / np.abs(PROFILES[name](z)).sum()
+    assert 0.5 * true <= data.interpolation_error <= 20.0 * true + 1e-12
+
+
+def test_noise_is_stated_and_not_taken_for_a_smooth_profile():
+    x, noise = np.linspace(-10.0, 10.0, 101), np.random.default_rng(3).standard_normal(101)
+    data = fp.measured((x, profile(x) + 0.02 * noise))
+    assert 0.02 < data.interpolation_error < 0.5
+
+
+def test_a_step_is_not_overshot():
+    x = np.linspace(-5.0, 5.0, 41)
+    data = fp.measured((x, np.where(np.abs(x) < 2.0, 1.0, 0.0)))
+    assert data.method == "monotone cubic"
+    z = np.linspace(-6.0, 6.0, 1001)
+    assert data(z).min() >= 0.0
+    assert data(z).max() <= 1.0
+
+
+def test_beyond_the_data_is_zero_and_what_may_be_there_is_stated():
+    x = np.linspace(-10.0, 10.0, 201)
+    data = fp.measured((x, fp.green(x, 1.0, 1.5)))
+    assert data(10.1) == data(-11.0) == 0.0
+    outside = 1.0 - float(np.trapezoid(fp.green(x, 1.0, 1.5), x))
+    assert outside <= data.beyond <= 2.5 * outside
+    assert data.error == data.interpolation_error + data.beyond
+
+
+def test_in_the_plane():
+    x, y = np.linspace(-4.0, 4.5, 41), np.sinh(np.linspace(-2.0, 2.0, 45))
+    values = np.exp(-(x[:, None] ** 2) - (y - 0.5) ** 2)
+    data = fp.measured(xr.DataArray(values.T, {"y": y, "x": x}, ("y", "x")))
+    assert data(0.1, 0.2) == pytest.approx(np.exp(-0.1), abs=3e-4)
+    assert data(np.array([0.0, 9.0]), np.array([0.0, 0.0]))[1] == 0.0
+    assert data.integral == pytest.approx(np.pi, rel=1e-3)
+    case = fp.Case(**{**GIVEN, "half_width": 8.0, "spacing": 0.25, "t_final": 1.0}, dim=2)
+    run = fp.solve(case, data)
+    right = fp.solve(case, lambda x, y: np.exp(-(x**2) - (y - 0.5) ** 2))
+    assert np.abs(run.u - right.u).sum() <= 5.0 * data.interpolation_error * np.abs(right.u).sum()
+    grid = np.meshgrid(x, y, indexing="ij")
+    again = fp.measured((*grid, values))
+    assert np.array_equal(again.values, data.values)
+
+
+# --- where they come from -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("head", "mark", "units"),
+    [
+        ("x [m], c (mg/L)\n", ",", ("m", "mg/L")),
+        ("position\tconcentration\n", "\t", ("", "")),
+        ("# by hand\nx;u\n", ";", ("", "")),
+        ("", " ", ("", "")),
+        ("\ufeffx,u\n\n", ",", ("", "")),
+        ("days since the start of it all in a long line\n", ",", ("", "")),
+    ],
+)
+def test_tables(tmp_path, head, mark, units):
+    data = fp.measured(table(tmp_path / "p.csv", head=head, mark=mark))
+    assert np.array_equal(data.axes[0], X)
+    assert np.array_equal(data.values, profile(X))
+    assert data.units == units
+
+
+def test_a_decimal_comma(tmp_path):
+    path = table(tmp_path / "p.csv", head="x;u\n", mark=";")
+    path.write_text(path.read_text().replace(".", ","))
+    assert np.array_equal(fp.measured(path).values, profile(X))
+
+
+def test_order_does_not_matter_and_names_may_be_any(tmp_path):
+    order = np.random.default_rng(1).permutation(X.size)
+    right = fp.measured((X, profile(X)))
+    frame = pd.DataFrame({"t": np.arange(X.size), "where": X[order], "what": profile(X)[order]})
+    several = [
+        fp.measured((X[order], profile(X)[order])),
+        fp.measured(pd.Series(profile(X)[order], X[order])),
+        fp.measured(frame, x="where", u="what"),
+        fp.measured(xr.DataArray(profile(X)[order], {"depth": X[order]}, "depth")),
+        fp.measured(xr.Dataset({"salt": ("depth", profile(X)[order])}, {"depth": X[order]})),
+    ]
+    path = tmp_path / "any.nc"
+    array = xr.DataArray(profile(X), {"depth": X}, "depth", name="salt", attrs={"units": "g/kg"})
+    array.depth.attrs["units"] = "m"
+    array.to_netcdf(path)
+    several.append(fp.measured(path))
+    assert several[-1].units == ("m", "g/kg")
+    for data in several:
+        assert isinstance(data, Measured)
+        assert np.array_equal(data.axes[0], X)
+        assert np.array_equal(data.values, right.values)
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        ((X[:3], profile(X[:3])), "at least 4 points"),
+        ((np.append(X, X[3]), profile(np.append(X, X[3]))), "is there twice"),
+        ((X, np.where(X > 8.0, np.nan, profile(X))), "finite"),
+        (([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 1.0, 2.0], [1.0] * 4), "a rectangular grid"),
+        (pd.DataFrame({"a": X, "b": X, "c": X, "d": X, "e": X}), "Say which"),
+        (xr.Dataset({"a": ("x", X), "b": ("x", X)}, {"x": X}), "one variable of values"),
+        (xr.Dataset({"a": ("x", X)}), "coordinates of a along x"),
+        (3.0, "a file, a table"),
+        ("missing.csv", "an existing file"),
+        ("missing.nc", "an existing file"),
+    ],
+    ids=str,
+)
+def test_what_is_refused(data, words):
+    with pytest.raises(InvalidInput, match=words) as refused:
+        fp.measured(data)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "It is empty"),
+        ("x,u\n1,2\n2,three\n3,4\n4,5\n", "row 2 of the numbers"),
+        ("x,u\n1,2\n2\n3,4\n4,5\n", "row 2 of the numbers"),
+        ("u,u\n1,2\n2,3\n3,4\n4,5\n", "columns of different names"),
+    ],
+)
+def test_tables_that_are_refused(tmp_path, text, words):
+    path = tmp_path / "p.csv"
+    path.write_text(text)
+    with pytest.raises(InvalidInput, match=words):
+        fp.measured(path)
+
+
+@settings(max_examples=100)
+@given(st.text(alphabet="0123456789.,;eE+- \t\n#xu[]\"'", max_size=60))
+def test_any_text_is_refused_or_a_table(tmp_path_factory, text):
+    path = tmp_path_factory.mktemp("t") / "p.csv"
+    path.write_text(text)
+    with suppress(InvalidInput):
+        assert fp.measured(path).values.size >= 4
+
+
+# --- runs -----------------------------------------------------------------------------------------
+
+
+def test_a_run_states_the_error_of_its_data(tmp_path):
+    path = table(tmp_path / "p.csv")
+    run = fp.solve(fp.Case(**GIVEN), path)
+    right = fp.solve(fp.Case(**GIVEN), profile)
+    error = float(np.abs(run.u - right.u).sum() / np.abs(right.u).sum())
+    assert error <= 2.0 * float(run.interpolation_error) + float(run.beyond_data)
+    assert "cubic" in run.interpolation_error.attrs["long_name"]
+    assert run.attrs["initial_data"].startswith(f"file {path}, sha256")
+    again = fp.Case.from_json(run.attrs["case"])
+    assert again.initial == str(path)
+    assert np.array_equal(fp.solve(again).u, run.u)
+
+
+def test_the_command_line(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    table(tmp_path / "p.csv")
+    xr.DataArray(profile(X), {"depth": X}, "depth", name="salt").to_netcdf("p.nc")
+    flags = [f"--{name.replace('_', '-')}={value}" for name, value in GIVEN.items()]
+    for name in ("p.csv", "measured:p.nc"):
+        assert main(["solve", *flags, "--initial", name, "-o", "run.nc"]) == 0
+        assert fp.read_run("run.nc").interpolation_error < 0.01
+    assert np.array_equal(fp.read_run("run.nc").u, fp.solve(fp.Case(**GIVEN), "p.csv").u)
+    capsys.readouterr()
+    assert main(["solve", *flags, "--initial", "p.nc", "-o", "run.nc"]) == 2
+    assert "u(x)" in capsys.readouterr().err
+
+
+def test_a_lattice_that_does_not_hold_the_data_is_refused():
+    data = fp.measured((X, profile(X)))
+    for changes in ({"half_width": 2.0}, {"spacing": 2.5}):
+        case = fp.Case(**{**GIVEN, **changes, "t_final": 0.1})
+        with pytest.raises(InvalidInput, match="of their mass"):
+            fp.solve(
+                case, fp.measured((X, fp.green(X, 0.01, 1.5))) if "spacing" in changes else data
+            )
+
+
+def test_data_that_end_too_early_are_warned_of():
+    x = np.linspace(-3.0, 3.0, 61)
+    with pytest.warns(AccuracyWarning, match="that may lie beyond them"):
+        fp.solve(fp.Case(**GIVEN), fp.measured((x, fp.green(x, 1.0, 1.5))))
+
+
+def test_good_data_are_not_warned_of():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        fp.solve(fp.Case(**GIVEN), fp.measured((X, profile(X))))

@@ -1,0 +1,123 @@
+"""A run for an accuracy that is asked for: it meets it, and not by much."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fracparticles as fp
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.run.solver import compute
+from fracstudy.race.problems import PROBLEMS
+
+
+def asked_and_met(problem, error, **more):
+    def data(*x):
+        return problem.initial(x)
+
+    case = fp.suggest(data, error=error, beta=problem.beta, t_final=1.0, dim=problem.dim,
+                      within=problem.error_radius, **more)  # fmt: skip
+    u = compute(case, data).u
+    return case, problem.error(tuple(case.positions), case.volumes, u)
+
+
+@pytest.mark.parametrize("error", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("name", ["fundamental", "mixture", "other tail"])
+def test_met_on_the_line(name, beta, error):
+    _, true = asked_and_met(PROBLEMS[name](beta), error)
+    assert true <= error
+
+
+@pytest.mark.parametrize(
+    ("name", "beta", "error"),
+    [("compact", 0.5, 1e-3), ("compact", 0.9, 1e-6), ("two scales", 0.9, 1e-6), ("two scales", 0.5, 1e-3)],
+)  # fmt: skip
+def test_met_where_the_data_are_rough(name, beta, error):
+    _, true = asked_and_met(PROBLEMS[name](beta), error)
+    assert true <= error
+
+
+@pytest.mark.parametrize("error", [1e-3, 1e-6])
+@pytest.mark.parametrize("name", ["fundamental", "mixture", "other tail"])
+def test_met_in_the_plane(name, error):
+    _, true = asked_and_met(PROBLEMS[name](0.5, 2), error)
+    assert true <= error
+
+
+@pytest.mark.parametrize("error", [1e-3, 1e-6])
+def test_at_most_three_times_the_particles_of_the_best_found_by_hand(error):
+    """Of GPSE in one step on a grid of spacings and half-widths; its time grows with the particles."""
+    problem = PROBLEMS["mixture"](0.5)
+    case, _ = asked_and_met(problem, error)
+    fewest = np.inf
+    for half_width in np.geomspace(5.0, 40.0, 10):
+        for spacing in np.geomspace(0.2, 1.2, 12):
+            if spacing <= half_width / 8.0 and half_width >= problem.error_radius:
+                by_hand = fp.Case(scheme="GPSE", beta=0.5, half_width=half_width, spacing=spacing, dt=1.0,
+                                  t_initial=0.0, t_final=1.0, exterior="open", far_terms=3,
+                                  evaluation="auto")  # fmt: skip
+                u = compute(by_hand, lambda x: problem.initial((x,))).u
+                if problem.error((by_hand.x,), by_hand.volumes, u) <= error:
+                    fewest = min(fewest, by_hand.particles)
+    assert case.particles <= 3.0 * fewest
+
+
+def test_a_kernel_too_wide_to_sum_gives_way_to_another_scheme():
+    def sharp(x):
+        return np.exp(-((x / 0.01) ** 2))
+
+    case = fp.suggest(sharp, error=1e-3, alpha=1.5, t_final=30.0, within=15.0)
+    assert case.scheme == "KPSE"
+    assert fp.estimate_error(case, sharp, within=15.0).total <= 1e-3
+
+
+def test_of_several_times_the_hardest_counts():
+    def data(x):
+        return np.exp(-(x**2))
+
+    case = fp.suggest(data, error=1e-4, alpha=1.4, times=[0.01, 1.0, 10.0])
+    assert case.times == (0.01, 1.0, 10.0)
+    for time in case.times:
+        assert fp.estimate_error(case.until(time), data).total <= 3e-4
+
+
+def test_the_fundamental_solution_and_other_units():
+    case = fp.suggest(error=1e-6, alpha=1.5, t_initial=3600.0, t_final=7200.0, diffusivity=1e-5)
+    assert float(fp.solve(case).relative_l1_error) <= 3e-6
+
+
+def test_measured_data_that_leave_more_open_are_warned_of():
+    x = np.linspace(-3.0, 3.0, 12)
+    data = fp.measured((x, np.exp(-(x**2))))
+    with pytest.warns(AccuracyWarning, match="no run mends that"):
+        fp.suggest(data, error=1e-4, alpha=1.5, t_final=1.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"error": 0.0}, "error"),
+        ({"error": 1e-14}, "error"),
+        ({"initial": np.ones(9)}, "initial"),
+        ({"initial": "a.nc"}, "initial"),
+        ({"initial": np.zeros_like}, "initial"),
+        ({"alpha": 2.5}, "alpha"),
+        ({"alpha": None}, "beta"),
+        ({"t_final": None}, "t_final"),
+        ({"dim": 4}, "dim"),
+        ({"within": -1.0}, "within"),
+    ],
+    ids=str,
+)
+def test_what_is_refused(changes, field):
+    given = {
+        "initial": lambda x: np.exp(-x * x),
+        "error": 1e-3,
+        "alpha": 1.5,
+        "t_final": 1.0,
+        **changes,
+    }
+    with pytest.raises(InvalidInput) as refused:
+        fp.suggest(given.pop("initial"), **given)
+    assert refused.value.field == field
