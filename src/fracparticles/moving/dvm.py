@@ -295,7 +295,7 @@ def run_to_outputs(
     warn_of_ripple(
         found, velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=3
     )
-    _warn_of_loss(history, exterior)
+    _warn_of_loss(runs[-1].history, exterior)
     if velocity.tail is not None:
         _warn_of_misfit(velocity.tail.misfit(x, strength))
     return runs

@@ -144,7 +144,9 @@ def refused(half: int) -> Iterator[Probe]:
         "rates of another shape": lambda: one.advance(
             lambda y: y[:-1], np.ones(3), dt=1.0, steps=1
         ),
-        "data that are nan": lambda: one.advance(lambda y: -y, [1.0, np.nan], dt=1.0, steps=1),
+        "data that are nan": lambda: one.advance(
+            lambda y: -y, np.array([1.0, np.nan]), dt=1.0, steps=1
+        ),
     }
     for name, run in tries.items():
         yield probe(

@@ -22,7 +22,7 @@ def study(inputs: Inputs, *, families: dict[str, dict[str, str]]) -> Result:
                 **words,
                 "probes": len(probes),
                 **{str(verdict): int(verdicts.get(str(verdict), 0)) for verdict in Verdict},
-                "against independent values": int(probes["source"].notna().sum()),
+                "against independent values": int((probes["source"].fillna("") != "").sum()),
             }
         )
     table = pd.DataFrame(rows)
