@@ -108,7 +108,7 @@ def test_measured_data_that_leave_more_open_are_warned_of():
         ({"dim": 4}, "dim"),
         ({"within": -1.0}, "within"),
     ],
-    ids=str,
+    ids=lambda value: value if isinstance(value, str) else "_".join(value),
 )
 def test_what_is_refused(changes, field):
     given = {
