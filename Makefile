@@ -25,7 +25,7 @@ PYTEST    = OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
 SHELL         := bash
 .SHELLFLAGS   := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup study test smoke bench verify test-slurm lint report lock clean
+.PHONY: help setup study test smoke bench verify test-slurm mutants lint report lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -53,6 +53,9 @@ verify: $(INSTALLED) ## recompute a sample of the tracked results and compare; A
 
 test-slurm: $(INSTALLED) ## the smoke workflow through a Slurm of this machine (root, Debian), compared with a local run
 	tools/slurm.sh $(ARGS)
+
+mutants: $(INSTALLED) ## change the code in small ways and see whether a test fails; some 30 minutes
+	$(BIN)/python tools/mutants.py --jobs $(JOBS) $(ARGS)
 
 lint: $(INSTALLED) ## check style, types and layers
 	$(BIN)/ruff check .

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.errors import FracparticlesError
-from fracparticles.files import write_text
+from fracparticles.files import intact, write_text
 from fracstudy.findings import Finding
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Inputs:
 
         rows = []
         for path in self.runs:
-            with netCDF4.Dataset(path) as file:
+            with netCDF4.Dataset(intact(Path(path))) as file:
                 row = {
                     name: _plain(variable[...])
                     for name, variable in file.variables.items()

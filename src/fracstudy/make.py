@@ -44,7 +44,7 @@ def make(scene: Scene, results: Path, runs: Sequence[str], printed: Path | None)
         items=scene.items,
         printed={claim.id: claim.printed for claim in claims if isinstance(claim, Value)},
         runs=runs,
-        tables={other: pd.read_csv(results / f"tables/{other}.csv") for other in scene.tables},
+        tables={other: _read(results / f"tables/{other}.csv") for other in scene.tables},
         benchmarks={
             other: read_benchmark(results / f"benchmarks/{other}.nc")
             for other in scene.all_benchmarks
@@ -57,7 +57,10 @@ def make(scene: Scene, results: Path, runs: Sequence[str], printed: Path | None)
     if figures:
         from fracstudy.style import save
 
-        drawn = call(
-            scene.function("figure"), pd.read_csv(series), pd.read_csv(csv), **scene.parameters
-        )
+        drawn = call(scene.function("figure"), _read(series), _read(csv), **scene.parameters)
         save(drawn, figures[0].with_suffix(""))
+
+
+def _read(table: Path) -> pd.DataFrame:
+    """Read a table, each number as it was written."""
+    return pd.read_csv(table, float_precision="round_trip")

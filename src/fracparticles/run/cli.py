@@ -2,7 +2,7 @@
 
 Results go to standard output, everything else to standard error, one line each. Exit status: 0 done, 1 the
 machine failed (a full disk, no memory), 2 the input cannot be worked with, 3 the solution blew up, 130 interrupted.
-What is heavy is imported by the command that needs it.
+Nothing that takes long is imported before `main` runs: it says so if it is interrupted.
 """
 
 from __future__ import annotations
@@ -11,10 +11,8 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from io import TextIOWrapper
 
-from cyclopts import App, CycloptsError
-
-from fracparticles import __version__
 from fracparticles.errors import (
     FracparticlesError,
     FracparticlesWarning,
@@ -22,61 +20,23 @@ from fracparticles.errors import (
     NonFiniteSolution,
 )
 
-__all__ = ["app", "main"]
-
-app = App(
-    name="fracparticles",
-    help="Particle methods for space-fractional diffusion.",
-    version=__version__,
-    suppress_keyboard_interrupt=False,  # `main` reports it
-)
-# By their addresses: the flags are fields of Case, which takes the whole core to import.
-_COMMANDS = {
-    "solve": "Run a case and write its file.",
-    "limit": "Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.",
-}
-for _name, _help in _COMMANDS.items():
-    app.command(f"fracparticles.run.commands:{_name}", name=_name, help=_help)
-
-
-@app.command
-def show(file: str) -> None:
-    """Print a summary of a run: parameters, error, masses, operator applications.
-
-    Parameters
-    ----------
-    file : str
-        A file that `fracparticles solve` or `fp.write` wrote.
-    """
-    from fracparticles.run.dataset import read_run
-
-    run = read_run(file)
-    scalars = [*run.coords.values(), *run.data_vars.values()]
-    rows = [
-        (str(scalar.name), _shown(scalar.item()), scalar.attrs.get("long_name", ""))
-        for scalar in scalars
-        if scalar.ndim == 0
-    ]
-    rows += [
-        (str(along.name), " ".join(map(_shown, along.values)), along.attrs.get("long_name", ""))
-        for along in scalars
-        if along.dims == ("t",)
-    ]
-    rows += [(name, str(run.attrs.get(name, "")), "") for name in ("initial_data", "source")]
-    for name in ("u", "u_axis", "u_diagonal"):
-        if name in run:
-            size = " x ".join(map(str, run[name].shape))
-            extent = f"{size} values, x = {run.x.values[0]:.9g} .. {run.x.values[-1]:.9g}"
-            rows.append((name, extent, run[name].attrs.get("long_name", "")))
-    first = max(len(name) for name, _, _ in rows)
-    second = max(len(value) for _, value, meaning in rows if meaning)
-    print(run.attrs.get("title", file))
-    for name, value, meaning in rows:
-        print(f"  {name:{first}}  {value:{second}}  {meaning}".rstrip())
+__all__ = ["main"]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status."""
+    try:
+        _open_streams()
+        return _run(arguments)
+    except KeyboardInterrupt:
+        return _fail("interrupted", 130)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    from cyclopts import CycloptsError
+
+    from fracparticles.run.program import app
+
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning
         warnings.simplefilter("always", FracparticlesWarning)
@@ -100,13 +60,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return 141  # 128 + SIGPIPE
         except (FracparticlesError, OSError, MemoryError) as error:
             return _fail(error, 1)
-        except KeyboardInterrupt:
-            return _fail("interrupted", 130)
     return 0
 
 
-def _shown(value: object) -> str:
-    return f"{value:.9g}" if isinstance(value, float) else str(value)
+def _open_streams() -> None:
+    """Give the streams that were closed to nobody, or the first file opened would take their place and their text.
+
+    A name that the terminal cannot show is shown by its codes.
+    """
+    for name, number, mode in (("stdin", 0, "r"), ("stdout", 1, "w"), ("stderr", 2, "w")):
+        if getattr(sys, name) is None:
+            descriptor = os.open(os.devnull, os.O_RDWR)
+            if descriptor != number:
+                os.dup2(descriptor, number)
+                os.close(descriptor)
+            setattr(sys, name, open(number, mode, encoding="utf-8"))  # noqa: SIM115
+    if isinstance(sys.stdout, TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _fail(error: object, status: int) -> int:

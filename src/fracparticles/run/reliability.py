@@ -7,12 +7,12 @@ resolution
     |delta u| / (2 |u|), delta the difference of neighbours, |.| the 2-norm. A kernel of order r damps a wave like
     (s theta / 2)^r. A peak in the middle between two particles, of which they see the tails |x|^-2, has theta = 0.92.
 between_particles
-    Of data that are a function: half the relative difference of int |u| by the trapezoidal rule, from the values at the
-    particles, and by the midpoint rule, from those half-way between. What lies between the particles no other estimate
-    can see.
+    int |I - u| / int (|I| + |u|) of initial data that are a function u, by its values half-way between the particles,
+    where I interpolates those at the particles. What lies between them no other estimate can see.
 wave_error
     The greatest |p(A dt)^n - exp(-T D |k|^alpha)|, from the symbol of A, over some waves that the data hold: of their
-    wavenumber, a half, and a quarter of it, and the one that decays to 1/e. It sees an overlap too small, a first
+    wavenumber, a half, and a quarter of it, and the one that decays to 1/e; over the part of int |u| that is left,
+    which data of both signs may lose, but not beyond the lattice. It sees an overlap too small, a first
     order, a coarse time step. Of DVM it is what the field (7) lacks of these waves.
 growth
     max |u(t_f)| / max |u(t_i)|, or int |u(t_f)| / int |u(t_i)| on the lattice less the share of u(t_i) that lies beyond
@@ -59,12 +59,12 @@ from fracparticles.time import STEP_POLYNOMIALS
 if TYPE_CHECKING:
     from fracparticles.run.case import Case
 
-__all__ = ["Estimates", "estimates", "warn_if_doubtful"]
+__all__ = ["LIMITS", "Estimates", "estimates", "warn_if_doubtful"]
 
 Estimates = dict[str, tuple[float, str]]
 
 # Above these a warning is given.
-_LIMITS = {
+LIMITS = {
     "resolution": 1.0,  # an error of a quarter in the operator, at order II
     "between_particles": 0.05,  # of the mass
     "growth": 1.1,
@@ -94,18 +94,21 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
     greatest, hidden = _growth(u0, u), between_particles(case, u0, initial)
     u0, u = _unit(u0), _unit(u)  # sums of them do not overflow
     outside = outside_share(case, u0)
-    total = greatest * _ratio(_inside(case, u), _inside(case, u0)) * (1.0 - outside)
+    left = greatest * _ratio(_inside(case, u), _inside(case, u0))  # of int |u|, on the lattice
     smooths = case.kind.has_kernel and not case.kind.self_timed
     smoothing = max(_LEAST_SMOOTHING, case.resolved_overlap if smooths else 0.0)
     resolution = smoothing * wavenumber(u0)
     found = {
         "resolution": (resolution, "epsilon times the wavenumber of the initial data"),
-        "growth": (max(greatest, total), "greatest |u|, or sum |u|, over that at t_initial"),
+        "growth": (
+            max(greatest, left * (1.0 - outside)),
+            "greatest |u|, or int |u|, over that at t_initial",
+        ),
     }
     if callable(initial):
-        found["between_particles"] = (hidden, "error of int |u(t_initial)| from the particles")
+        found["between_particles"] = (hidden, "misfit of initial data between the particles")
     if not case.is_graded:  # whose operator has no symbol
-        error = wave_error(case, u0)
+        error = _ratio(wave_error(case, u0), min(1.0, left))
         found["wave_error"] = (error, "error in the amplitude of waves that the data hold")
     if case.kind.moving:  # its particles spread with the solution
         found["outside_share"] = (outside, "estimated share of |u| beyond the lattice at t_initial")
@@ -158,7 +161,7 @@ def _complaints(
 ) -> Iterator[str]:
     """What to say of each estimate that is too large."""
     h = case.particle_spacing
-    large = {name for name, limit in _LIMITS.items() if value.get(name, 0.0) > limit}
+    large = {name for name, limit in LIMITS.items() if value.get(name, 0.0) > limit}
     if not np.any(u0):
         yield (
             f"the initial strengths are zero at all particles, |x| <= {case.reach:.6g}. "
@@ -174,8 +177,9 @@ def _complaints(
         )
     if "between_particles" in large:
         yield (
-            f"the initial data vary between the particles, of spacing h = {h:.3g}: their integral is wrong by about "
-            f"{value['between_particles']:.2g} of itself. Take a smaller spacing, or wider data."
+            f"the initial data half-way between the particles, of spacing h = {h:.3g}, differ by "
+            f"{value['between_particles']:.2g} from what those at the particles say. Take a smaller spacing, or wider "
+            "data."
         )
     if "wave_error" in large:
         yield (
@@ -254,36 +258,38 @@ def table_error(case: Case, *strengths: np.ndarray) -> float:
 
 
 def between_particles(case: Case, u0: np.ndarray, initial: Any) -> float:
-    """Return |T - M| / (T + M) of the two rules for int |u|; 0 if the data cannot be asked for at other points."""
+    """Return int |I - u| / int (|I| + |u|), see the module; 0 if the data cannot be asked for at other points."""
     if not callable(initial):
         return 0.0
     x, volumes = _half_way(case)
-    middles = np.meshgrid(*(x,) * case.dim, indexing="ij", sparse=True)
     try:
         with np.errstate(all="ignore"):
-            values = np.asarray(initial(*middles), dtype=float)
-        between = np.abs(np.broadcast_to(values, (x.size,) * case.dim))
+            values = initial(*np.meshgrid(*(x,) * case.dim, indexing="ij", sparse=True))
+        u = np.broadcast_to(np.asarray(values, dtype=float), (x.size,) * case.dim)
     except Exception:  # whatever it may raise: at the particles it has given numbers
         return 0.0
-    greatest = max(np.abs(u0).max(), between.max())
+    greatest = max(np.abs(u0).max(), np.abs(u).max())
     if not 0.0 < greatest < np.inf:
         return 0.0
-    corners = case.volumes / case.reach**case.dim * np.abs(u0 / greatest)
-    for axis in range(case.dim):  # the mean of those of each cell
-        corners = 0.5 * (
-            corners.take(range(1, x.size + 1), axis) + corners.take(range(x.size), axis)
-        )
-    trapezoidal = corners.sum()
-    midpoint = (volumes / case.reach**case.dim * (between / greatest)).sum()
-    return _ratio(abs(trapezoidal - midpoint), trapezoidal + midpoint)
+    interpolated, u = u0 / greatest, u / greatest
+    for axis in range(case.dim):
+        interpolated = _between_four(interpolated, axis)
+    difference, size = np.abs(interpolated - u), np.abs(interpolated) + np.abs(u)
+    return _ratio((volumes * difference).sum(), (volumes * size).sum())
 
 
 def _half_way(case: Case) -> tuple[np.ndarray, np.ndarray | float]:
-    """The points half-way between neighbours along an axis, in s for graded particles, and what they stand for."""
+    """The points half-way between neighbours, in s for graded particles, and what they stand for; not the outermost."""
     if case.graded_scale is None:
-        return case.x[:-1] + 0.5 * case.particle_spacing, case.volumes
+        return case.x[1:-2] + 0.5 * case.particle_spacing, 1.0
     x, volumes = graded_particles(2 * case.particles - 1, case.reach, case.graded_scale)
-    return x[1::2], 2.0 * volumes[1::2]
+    return x[3:-3:2], volumes[3:-3:2] / case.reach
+
+
+def _between_four(u: np.ndarray, axis: int) -> np.ndarray:
+    """The values half-way between neighbours along an axis of a cubic through four."""
+    first, second, third, fourth = (u.take(range(k, u.shape[axis] - 3 + k), axis) for k in range(4))
+    return np.asarray((9.0 * (second + third) - (first + fourth)) / 16.0)
 
 
 def outside_share(case: Case, u: np.ndarray) -> float:

@@ -201,7 +201,9 @@ def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     value = green(x, t, alpha, dim)
     x = check.real_array("x", x)
     with np.errstate(over="ignore"):
-        flux = _product(x, value) / (alpha * t)
+        flux = _product(x, value) / (
+            float(alpha) * float(t)
+        )  # of float32 they would have its digits
     return check.like(x, _finite(t, flux))
 
 
@@ -217,7 +219,7 @@ def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     r = _scaled(x, scale)
     growth = 2.0 * math.pi * _product(r, _product(r, _reduced(r, float(alpha), n + 2)))
     with np.errstate(over="ignore"):
-        rate = (growth - n * _reduced(r, float(alpha), n)) / (alpha * t)
+        rate = (growth - n * _reduced(r, float(alpha), n)) / (float(alpha) * float(t))
     return check.like(r, _finite(t, _times_power(scale, n, rate)))
 
 

@@ -1,0 +1,33 @@
+"""Faults: nothing silent, nothing failed, every one of the counts complete."""
+
+from __future__ import annotations
+
+import pytest
+
+from fracstudy.inputs import Inputs
+from fracstudy.probe import BAD
+from scene_functions import study
+
+PARAMETERS = {"kills": 5, "interrupts": 3, "flips": 10, "parts": 3, "seed": 7, "workflow": False}
+
+
+@pytest.fixture(scope="module")
+def table():
+    return study("faults")(Inputs("faults"), **PARAMETERS).table
+
+
+def test_no_probe_is_bad(table):
+    bad = table[table["verdict"].isin(BAD)]
+    assert bad.empty, bad[["kind", "case", "found"]].to_string()
+
+
+def test_all_of_a_count_went_well(table):
+    counts = table[table["verdict"] == "held"]["found"].str.fullmatch(r"(\d+) of \1")
+    assert counts.all()
+    assert len(counts) > 15
+
+
+def test_what_holds_no_run_is_refused(table):
+    cases = table[table["verdict"] == "refused"]["case"].tolist()
+    for damage in ("empty", "text", "zeros", "half of it zero"):
+        assert {f"{damage}, read", f"{damage}, as initial data"} <= set(cases)

@@ -1,0 +1,137 @@
+"""A workflow of two runs: killed, interrupted, begun twice, with another configuration meanwhile."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.faults.processes import counted
+
+__all__ = ["Project", "probes"]
+
+_SCENE = """\
+title: "Two runs"
+runs:
+  - {{scheme: [DD, KPSE], beta: {beta}, half_width: 10.0, spacing: 0.5, integrator: exponential, store: metrics}}
+"""
+_CONFIG = """\
+results_dir: results
+report_dir: report
+documents:
+  own: {title: "Of our own"}
+"""
+_LONGEST = 300  # seconds
+
+
+class Project:
+    """A copy of the workflow with one scene of two runs."""
+
+    def __init__(self, folder: Path, root: Path) -> None:
+        self.folder = folder
+        shutil.copytree(root / "workflow/rules", folder / "workflow/rules")
+        shutil.copytree(root / "workflow/scripts", folder / "workflow/scripts")
+        shutil.copy2(root / "Snakefile", folder)
+        for part in ("src", "profiles"):
+            (folder / part).symlink_to(root / part)
+        (folder / "config").mkdir()
+        (folder / "config/study.yaml").write_text(_CONFIG)
+        self.configure(0.5)
+        (folder / "results/runs").mkdir(parents=True)
+        (folder / "results/runs/.compiled").touch()  # what runs this has compiled it all
+
+    def configure(self, beta: float) -> None:
+        """Write the scene."""
+        scene = self.folder / "workflow/scenes/own/two/scene.yaml"
+        scene.parent.mkdir(parents=True, exist_ok=True)
+        scene.write_text(_SCENE.format(beta=beta))
+
+    def begin(self, jobs: int = 1) -> subprocess.Popen[str]:
+        """Start the workflow, in a session of its own."""
+        words = ["-m", "snakemake", f"-j{jobs}", "two", "--directory", str(self.folder)]
+        words += ["--snakefile", str(self.folder / "Snakefile")]
+        paths = [str(self.folder / "src"), os.environ.get("PYTHONPATH", "")]
+        return subprocess.Popen(
+            [sys.executable, *words],
+            cwd=self.folder,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+
+    def end(self, jobs: int = 1) -> dict[str, bytes]:
+        """Run the workflow and return its files."""
+        process = self.begin(jobs)
+        text, _ = process.communicate(timeout=_LONGEST)
+        if process.returncode:
+            raise RuntimeError(text[-500:])
+        return self.files
+
+    def clear(self) -> None:
+        """Remove what it has made."""
+        for path in self.folder.glob("results/*/*"):
+            if path.name != ".compiled":
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """Runs, tables, findings and series."""
+        folder = self.folder / "results"
+        kept = (p for p in folder.rglob("*") if p.is_file() and "logs" not in p.parts)
+        return {str(p.relative_to(folder)): p.read_bytes() for p in kept}
+
+    def disturbed(self, by: int) -> None:
+        """Begin anew, and end it by a signal to all of its processes as soon as a job works."""
+        self.clear()
+        process = self.begin()
+        log = self.folder / "results/logs/solve_two_1.log"
+        until = time.monotonic() + _LONGEST
+        while not log.exists() and process.poll() is None and time.monotonic() < until:
+            time.sleep(0.01)
+        os.killpg(process.pid, by)
+        process.communicate(timeout=_LONGEST)
+
+
+def probes(folder: Path, root: Path) -> Iterator[Probe]:
+    """Each fault once, on a workflow of two runs; then the next call."""
+    project = Project(folder, root)
+    right = project.end()
+
+    def row(case: str, expected: str, good: bool) -> Probe:
+        return probe("workflow", case, expected, lambda: counted([good]), 0.0, must=Verdict.HELD)
+
+    same = "then the files of an undisturbed run"
+    for name, by in (("SIGKILL", signal.SIGKILL), ("SIGINT", signal.SIGINT)):
+        project.disturbed(by)
+        yield row(f"{name} while a job solves", same, project.end() == right)
+    project.configure(0.25)
+    other = project.end()
+    project.configure(0.5)
+    back = project.end()
+    table = "tables/two.csv"
+    changed = other[table] != right[table] and all(back[name] == right[name] for name in right)
+    yield row("another beta, and back", f"another table, {same}", changed)
+    project.clear()
+    for path in project.folder.glob("results/runs/scheme*"):
+        shutil.rmtree(path)
+    first, second = project.begin(), project.begin()
+    texts = [process.communicate(timeout=_LONGEST)[0] for process in (first, second)]
+    refused = [process.returncode != 0 for process in (first, second)]
+    told = [
+        refusal and "runs in this folder already" in text
+        for refusal, text in zip(refused, texts, strict=True)
+    ]
+    # Or one after the other, where the machine is slow.
+    yield row(
+        "two in one folder",
+        f"one is refused in a line; {same}",
+        told == refused and not all(refused) and project.end() == right,
+    )

@@ -1,0 +1,257 @@
+"""Faults while a run is solved and written: killed, interrupted, without room, without a folder, two at once."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from fracparticles.files import replacing
+from fracparticles.run.case import Case
+from fracparticles.run.cli import main
+from fracparticles.run.dataset import to_dataset, write
+from fracparticles.run.program import app
+from fracparticles.run.solver import compute
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.faults.processes import begun, counted, ended, forked, moments
+
+__all__ = ["FLAGS", "Setup", "probes"]
+
+FIELDS = {"scheme": "KPSE", "order": 4, "beta": 0.5, "half_width": 10.0, "spacing": 0.25}
+FLAGS = ["solve", *(w for k, v in FIELDS.items() for w in (f"--{k.replace('_', '-')}", str(v)))]
+FLAGS += ["--dt", "0.05", "-o"]
+_OLD = b"what was there before"
+
+
+class Setup:
+    """A case, its file from an undisturbed run, and a folder to spoil."""
+
+    def __init__(self, folder: Path) -> None:
+        self.case = Case(**FIELDS, dt=0.05)
+        self.folder, self.path = folder / "runs", folder / "runs/run.nc"
+        start = time.perf_counter()
+        self.run()
+        self.took = time.perf_counter() - start
+        self.right = self.path.read_bytes()
+        app.parse_args([*FLAGS, "x"])  # the command line has imported all it needs, too
+
+    def run(self) -> int:
+        """Solve and write."""
+        write(to_dataset(compute(self.case)), self.path)
+        return 0
+
+    def afresh(self) -> None:
+        """Empty the folder but for an old file."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
+        self.path.write_bytes(_OLD)
+
+    @property
+    def whole(self) -> bool:
+        """Whether the file is the old one or that of an undisturbed run."""
+        return self.path.read_bytes() in (_OLD, self.right)
+
+    @property
+    def mended(self) -> bool:
+        """Whether the next call gives the file of an undisturbed run, and nothing else."""
+        done = forked(self.run) == (0, "")
+        return (
+            done and self.path.read_bytes() == self.right and os.listdir(self.folder) == ["run.nc"]
+        )
+
+
+def one_line(text: str) -> bool:
+    """Whether this is one line that says what is wrong."""
+    return text.count("\n") == 1 and text.startswith("error: ")
+
+
+def probes(setup: Setup, kills: int, interrupts: int, parts: int, seed: int) -> Iterator[Probe]:
+    """Each fault some times; afterwards the next call, in the same folder."""
+    again = "the old file or the new one; then as undisturbed"
+
+    def many(
+        kind: str, case: str, fault: Callable[..., bool], over: list, expected: str = again
+    ) -> Probe:
+        def run() -> tuple[float, str]:
+            return counted(fault(setup, one) for one in over)
+
+        return probe(kind, case, expected, run, 0.0, must=Verdict.HELD)
+
+    killed, stopped = list(moments(kills, seed)), list(moments(interrupts, seed + 1))
+    yield many("killed", f"SIGKILL at {kills} moments of a run", _killed, killed)
+    yield many("killed", "SIGTERM at as many as interrupts", _terminated, stopped)
+    line = "status 130 and a line, or done; then as undisturbed"
+    yield many(
+        "interrupted", f"SIGINT at {interrupts} moments, command line", _interrupted, stopped, line
+    )
+    refused = "a line, the old file kept; then as undisturbed"
+    sizes = [round(len(setup.right) * share / parts) for share in range(parts)]
+    yield many(
+        "no room",
+        f"a disk full after 0, 1, .. of {parts} parts of the file",
+        _no_room,
+        sizes,
+        refused,
+    )
+    yield many("no room", "the same, command line", _no_room_for_the_command, sizes[::4], refused)
+    yield many("no room", "standard output on a full disk", _full_output, [None], refused)
+    yield many("folder", "read-only", _read_only, [None], refused)
+    yield many(
+        "folder",
+        "gone while the case is solved",
+        _folder_gone,
+        [None],
+        "made again; as undisturbed",
+    )
+    yield many(
+        "folder",
+        "gone while the file is written",
+        _gone_meanwhile,
+        [None],
+        "a line; then as undisturbed",
+    )
+    yield many(
+        "folder", "the working directory is gone", _nowhere, [None], "a line; then as undisturbed"
+    )
+    yield many("two at once", f"the same file, {parts} times", _two_at_once, [None] * parts)
+
+
+def _killed(setup: Setup, moment: float, by: int = signal.SIGKILL) -> bool:
+    setup.afresh()
+    ended(begun(setup.run), moment * setup.took, by)
+    return setup.whole and setup.mended
+
+
+def _terminated(setup: Setup, moment: float) -> bool:
+    return _killed(setup, moment, signal.SIGTERM)
+
+
+def _interrupted(setup: Setup, moment: float) -> bool:
+    setup.afresh()
+    status, text = ended(begun(lambda: _command(setup)), moment * setup.took, signal.SIGINT)
+    said = (status, text) in [(0, f"{setup.path}\n"), (130, "error: interrupted\n")]
+    late = status == 130 and text == f"{setup.path}\nerror: interrupted\n"
+    return (said or late) and setup.whole and setup.mended
+
+
+def _command(setup: Setup) -> int:
+    try:
+        status = main([*FLAGS, str(setup.path)])
+        sys.stdout.flush()
+    except KeyboardInterrupt as error:
+        # Before it began, or when it had ended.
+        if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+            raise
+        print("error: interrupted", file=sys.stderr)
+        return 130
+    return status
+
+
+def _limited(size: int) -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+
+
+def _no_room(setup: Setup, size: int) -> bool:
+    def work() -> int:
+        _limited(size)
+        with suppress(OSError):
+            setup.run()
+            return 1
+        if os.listdir(setup.folder) != ["run.nc"] or setup.path.read_bytes() != _OLD:
+            return 2
+        resource.setrlimit(
+            resource.RLIMIT_FSIZE, (resource.getrlimit(resource.RLIMIT_FSIZE)[1],) * 2
+        )
+        return setup.run()  # in the same process
+
+    setup.afresh()
+    return forked(work)[0] == 0 and setup.mended
+
+
+def _refused(setup: Setup, prepare: Callable[[], object], status: int | None = None) -> bool:
+    """Whether the command line ends with an error in one line, and the old file is as it was."""
+
+    def work() -> int:
+        prepare()
+        return main([*FLAGS, str(setup.path)])
+
+    found, text = forked(work)
+    kept = not setup.path.exists() or setup.path.read_bytes() in (_OLD, setup.right)
+    return found in ((1, 2) if status is None else (status,)) and one_line(text) and kept
+
+
+def _no_room_for_the_command(setup: Setup, size: int) -> bool:
+    setup.afresh()
+    return _refused(setup, lambda: _limited(size), 1) and setup.mended
+
+
+def _full_output(setup: Setup, _: None) -> bool:
+    setup.afresh()
+    return (
+        _refused(setup, lambda: os.dup2(os.open("/dev/full", os.O_WRONLY), 1), 1) and setup.mended
+    )
+
+
+def _read_only(setup: Setup, _: None) -> bool:
+    def dropped() -> None:
+        if os.geteuid() == 0:  # whom permissions do not stop
+            os.seteuid(65534)
+
+    setup.afresh()
+    setup.folder.parent.chmod(0o755)
+    setup.folder.chmod(0o555)
+    refused = _refused(setup, dropped) and setup.path.read_bytes() == _OLD
+    setup.folder.chmod(0o755)
+    return refused and setup.mended
+
+
+def _folder_gone(setup: Setup, _: None) -> bool:
+    def work() -> int:
+        run = to_dataset(compute(setup.case))
+        shutil.rmtree(setup.folder)
+        write(run, setup.path)
+        return 0
+
+    setup.afresh()
+    return forked(work) == (0, "") and setup.path.read_bytes() == setup.right and setup.mended
+
+
+def _gone_meanwhile(setup: Setup, _: None) -> bool:
+    def work() -> int:
+        with replacing(setup.path) as temporary:
+            temporary.write_bytes(setup.right)
+            shutil.rmtree(setup.folder)
+        return 0
+
+    setup.afresh()
+    status, text = forked(work)
+    return status == 99 and text.startswith("FileNotFoundError") and setup.mended
+
+
+def _nowhere(setup: Setup, _: None) -> bool:
+    def gone() -> None:
+        place = setup.folder / "gone"
+        place.mkdir()
+        os.chdir(place)
+        place.rmdir()
+
+    def work() -> int:
+        gone()
+        return main([*FLAGS, "run.nc"])
+
+    setup.afresh()
+    status, text = forked(work)
+    return status in (1, 2) and one_line(text) and setup.mended
+
+
+def _two_at_once(setup: Setup, _: None) -> bool:
+    setup.afresh()
+    first, second = begun(setup.run), begun(setup.run)
+    both = ended(first) == ended(second) == (0, "")
+    return both and setup.path.read_bytes() == setup.right and setup.mended
