@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 
-from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.errors import AccuracyWarning, FracparticlesError, InvalidInput
 from fracstudy.probe import Verdict, frame, probe
 
 
@@ -16,7 +16,7 @@ def refuses():
 
 
 def refuses_at_length():
-    raise InvalidInput("x", -1, "at least 0", "Take\nmore.")
+    raise FracparticlesError("one line\nand another")
 
 
 def divides():

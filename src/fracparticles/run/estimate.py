@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.initial import Initial, resolved
@@ -123,7 +124,7 @@ def estimate_error(
     InvalidInput
         As `solve`.
     """
-    source = resolved(case, initial)
+    source = resolved(check.instance("case", case, Case), initial)
     return estimate_of(compute(case, source), source, within)
 
 

@@ -186,7 +186,9 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
         If there are fewer than four points along an axis, two in one place, a value that is no finite number, points
         that make no grid; or it is not clear which are the values.
     """
-    names = None if x is None else (x,) if isinstance(x, str) else tuple(x)
+    names = _names(x)
+    if not isinstance(u, str | None):
+        raise InvalidInput("u", u, "the name of the values", "Give one, or leave it out.")
     if isinstance(data, str | os.PathLike):
         source = str(os.fspath(data))
         path = Path(source.removeprefix(MEASURED))
@@ -212,6 +214,15 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
         )
     allowed = "a file, a table, labelled data, or a tuple of arrays (x, u)"
     raise InvalidInput(_FIELD, kind, allowed, "Give one of these.")
+
+
+def _names(x: Any) -> tuple[str, ...] | None:
+    """The names of the axes, one or several."""
+    names = (x,) if isinstance(x, str) else x
+    listed = isinstance(names, Sequence) and all(isinstance(name, str) for name in names)
+    if not (names is None or listed):
+        raise InvalidInput("x", x, "a name, or a list of names", "Give these, or leave it out.")
+    return None if names is None else tuple(names)
 
 
 def is_table(path: str | os.PathLike[str]) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fracparticles import arguments as check
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import to_dataset
 from fracparticles.run.initial import Initial, resolved
@@ -59,7 +60,7 @@ def solve(
         If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
         have no time, and t_initial was not given.
     """
-    source = resolved(case, initial)
+    source = resolved(check.instance("case", case, Case), initial)
     units = units_of(source, units)
     solution = compute(case, source)
     if estimate:

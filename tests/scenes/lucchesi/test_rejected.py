@@ -56,6 +56,7 @@ def test_dpse(computed):
     assert draw_dpse(result.series, result.table).axes
 
 
+@pytest.mark.filterwarnings("ignore::fracparticles.errors.StabilityWarning")  # it grows
 def test_scheme_29(computed):
     blocks = [
         {"scheme": ["PSE29", "DD"], "beta": 0.5, "truncation": 5.0, "spacing": [0.3575667, 0.03],

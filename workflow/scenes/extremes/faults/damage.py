@@ -89,7 +89,7 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
         "damaged run",
         "none",
         "refused",
-        lambda: read_run(copy) and np.nan,
+        lambda: _opened(copy),
         0.0,
         must=Verdict.REFUSED,
     )
@@ -97,10 +97,16 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
         "damaged run",
         "a directory",
         "refused",
-        lambda: read_run(setup.folder) and np.nan,
+        lambda: _opened(setup.folder),
         0.0,
         must=Verdict.REFUSED,
     )
+
+
+def _opened(path: Path) -> float:
+    """Open what is no run: it must be refused."""
+    read_run(path)
+    return np.nan
 
 
 def _places(size: int, count: int, seed: int) -> list[tuple[int, int]]:

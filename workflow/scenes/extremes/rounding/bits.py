@@ -40,7 +40,7 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA
 def digests() -> dict[str, str]:
     """The digest of the strengths of each case."""
     return {
-        name: hashlib.sha256(compute(Case(**fields)).u.tobytes()).hexdigest()[:16]  # type: ignore[arg-type]
+        name: hashlib.sha256(compute(Case(**fields)).u.tobytes()).hexdigest()[:16]
         for name, fields in CASES.items()
     }
 

@@ -92,7 +92,8 @@ def _by_matrix(
     matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type, mass: float
 ) -> list[float]:
     """The drift where all numbers are of a kind; by powers of ten of the matrix times the strengths, step by step."""
-    a, u = matrix.astype(kind), u0.astype(kind)
+    a: np.ndarray = matrix.astype(kind)
+    u: np.ndarray = u0.astype(kind)
     start, done, found = fsum(map(float, u)), 0, []
     for n in counts:
         for _ in range(n - done):

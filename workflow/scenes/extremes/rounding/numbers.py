@@ -66,12 +66,13 @@ def _kinds() -> Iterator[Probe]:
         def run(given: np.ndarray = given, right: np.ndarray = right) -> float:
             before = given.copy()
             ready = prepare(case)
-            bits = [fp.solve(case, given).u.values, ready.solve(given), ready.operator.apply(given)]  # type: ignore[union-attr]
+            assert ready.operator is not None
+            bits = [fp.solve(case, given).u.values, ready.solve(given), ready.operator.apply(given)]
             wanted = [
                 fp.solve(case, right).u.values,
                 ready.solve(right),
                 ready.operator.apply(right),
-            ]  # type: ignore[union-attr]
+            ]
             same = all(a.tobytes() == b.tobytes() for a, b in zip(bits, wanted, strict=True))
             return float(not (same and given.tobytes() == before.tobytes()))
 
@@ -119,7 +120,8 @@ def _functions() -> Iterator[Probe]:
             "a third as float32",
             "its own value, 0.3333333433",
             lambda c=check: abs(
-                float(np.asarray(c("x", np.float32([1 / 3, 1 / 3])))[0]) - 0.3333333432674408
+                float(np.asarray(c("x", np.array([1 / 3, 1 / 3], dtype=np.float32)))[0])
+                - 0.3333333432674408
             ),
             0.0,
             source="IEEE 754",
@@ -186,7 +188,8 @@ def _series() -> Iterator[Probe]:
 
             def run(case: Case = case, u0: np.ndarray = u0) -> float:
                 ready = prepare(case)
-                matrix = np.array([ready.operator.apply(unit) for unit in np.eye(17)]).T  # type: ignore[union-attr]
+                assert ready.operator is not None
+                matrix = np.array([ready.operator.apply(unit) for unit in np.eye(17)]).T
                 with mpmath.workdps(50):
                     exact = mpmath.expm(
                         mpmath.matrix(matrix.tolist()) * mpmath.mpf(case.span)
