@@ -157,7 +157,9 @@ def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray
     powers = 1.0 + alpha * np.arange(1, terms + 1)
     depth = np.array([round(n * share) for share in _DEPTHS[:terms]])
     if n < 1 or np.unique(depth).size < terms:
-        least = f"a lattice that has {terms} particles from its middle to either end, for as many terms"
+        least = (
+            f"a lattice that has {terms} particles from its middle to either end, for as many terms"
+        )
         raise InvalidInput("n", n, least, "Take more particles, or exterior='truncated'.")
     return depth, powers, np.linalg.inv((n / (n - depth)[:, None]) ** powers)
 
