@@ -14,6 +14,7 @@ from scipy.special import j0, j1
 
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import KERNELS, PAPER_ORDERS, kernel, kernel_transform
+from fracparticles.kernels.printed import PRINTED
 from fracparticles.special import reduced_green
 
 ALPHAS = (1.01, 1.1, 1.5, 1.9, 1.99)
@@ -302,3 +303,10 @@ def test_the_kernels_of_the_paper_stay_what_they_are():
     with pytest.raises(FrozenInstanceError):
         KERNELS["G"].orders = ()  # type: ignore[misc]
     assert kernel("G", 0.5, 1.5) == before
+
+
+def test_a_family_has_order_two_on_the_line_unless_it_is_told_otherwise():
+    for name in KERNELS:
+        assert PRINTED.kernel(name, 0.5, 1.5) == kernel(name, 0.5, 1.5, dim=1, order=2)
+        of_two = kernel_transform(name, 0.5, 1.5, dim=1, order=2)
+        assert PRINTED.kernel_transform(name, 0.5, 1.5) == of_two

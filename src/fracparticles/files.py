@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import os
 import re
+import signal
+import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from hashlib import file_digest, sha256
@@ -19,7 +21,15 @@ from fracparticles.errors import InvalidInput, reason_of
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["intact", "load_netcdf", "replaceable", "replacing", "seal", "write_text"]
+__all__ = [
+    "intact",
+    "load_netcdf",
+    "replaceable",
+    "replacing",
+    "seal",
+    "uninterrupted",
+    "write_text",
+]
 
 _SEAL = b"\nsha256 "
 _LENGTH = len(_SEAL) + 64 + 1  # with the digest and the end of the line
@@ -107,6 +117,23 @@ def _in_use(folder: Path, left: re.Pattern[str]) -> Iterator[None]:
             os.close(handle)
 
 
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Put off an interrupt, Ctrl-C, to the end of a block: of what holds locks, which it could leave closed for ever."""
+    before = signal.getsignal(signal.SIGINT)
+    if before is None or threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread is interrupted, and only by what Python knows of
+        return
+    came: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
 def write_text(path: Any, text: str) -> None:
     """Write a text file, as UTF-8 with lines that end in a line feed.
 
@@ -158,7 +185,8 @@ def load_netcdf(path: Path, names: Sequence[str] | None = None) -> xr.Dataset:
     try:
         if path.exists() and not path.is_file() and not path.is_dir():
             raise InvalidInput("file", str(path), "a regular file", "Copy the data into one.")
-        with xr.open_dataset(intact(path), engine="netcdf4", decode_cf=False) as raw:
+        whole = intact(path)
+        with uninterrupted(), xr.open_dataset(whole, engine="netcdf4", decode_cf=False) as raw:
             wanted = raw
             if names is not None:
                 wanted = raw[[name for name in names if name in raw.variables]]

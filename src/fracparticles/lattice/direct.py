@@ -8,7 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from fracparticles._compiled import njit
 
-__all__ = ["MatrixConvolution", "NaiveConvolution"]
+__all__ = ["MatrixConvolution", "NaiveConvolution", "matrix_product"]
 
 
 class MatrixConvolution:
@@ -23,7 +23,7 @@ class MatrixConvolution:
 
     def __call__(self, u: np.ndarray) -> np.ndarray:
         """Return y, shape (N + 2 pad,): a buffer that the next call overwrites."""
-        _product(self._columns, u, self._sums)
+        matrix_product(self._columns, u, self._sums)
         return self._sums
 
 
@@ -45,7 +45,8 @@ class NaiveConvolution:
 # Four columns at a time: for so few particles as fast as BLAS, which takes 40 ms to load. Compiled, since numpy's own
 # call would warn of overflows, which the solver reports itself.
 @njit()
-def _product(columns, u, y):
+def matrix_product(columns, u, y):
+    """y = sum_j u_j columns_j, in one order."""
     y[:] = 0.0
     fours = u.size - u.size % 4
     for j in range(0, fours, 4):

@@ -31,7 +31,7 @@ from functools import cache, reduce
 from itertools import permutations
 
 import numpy as np
-from scipy.special import gamma, gammaincc, j0, j1, spherical_jn
+from scipy.special import gamma, gammaincc, j0, j1, spherical_jn, zeta
 
 from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
@@ -50,6 +50,7 @@ _PERIOD = {2: 8.0, 3: 4.0}
 # Below this share of the integrand it is round-off. Not more, since psi_k is some thousand times larger in the
 # middle than at the faces, and the sums are the difference of what is large there.
 _ROUND_OFF = 1e-13
+_SMALL = 0.1  # p, below which the recurrence of E_p would lose digits
 
 Symbol = Callable[[np.ndarray], np.ndarray]
 Sums = Callable[[np.ndarray], np.ndarray]
@@ -226,7 +227,7 @@ def _transforms(k: np.ndarray, alpha: float, dim: int, sharpness: float) -> np.n
     """The transforms of psi_1 and psi_2, shape (2, ..): pi^(dim/2) c^q E_{1+q}(k^2 / 4 c) / Gamma(dim/2 + q).
 
     q = alpha / 2 and alpha. The exponential integral E_p is a gamma function for p < 1, and from there
-    p E_{p+1}(z) = e^-z - z E_p(z).
+    p E_{p+1}(z) = e^-z - z E_p(z), where p is not so small that this cancels.
     """
     z = k * k / (4.0 * sharpness)
     decay = np.exp(-z)
@@ -234,10 +235,29 @@ def _transforms(k: np.ndarray, alpha: float, dim: int, sharpness: float) -> np.n
     for q in (0.5 * alpha, alpha):
         p = q % 1.0
         integral = z ** (p - 1.0) * gammaincc(1.0 - p, z) * gamma(1.0 - p)
-        for order in (p, p + 1.0)[: 1 + int(q)]:
-            integral = (decay - z * integral) / order
+        integral = _next_integral(p, z) if p < _SMALL else (decay - z * integral) / p
+        if q > 1.0:
+            integral = (decay - z * integral) / (p + 1.0)
         found.append(np.pi ** (0.5 * dim) * sharpness**q / gamma(0.5 * dim + q) * integral)
     return np.array(found)
+
+
+def _next_integral(p: float, z: np.ndarray) -> np.ndarray:
+    """E_{1+p}(z), 0 < p < 0.1: by its series up to z = 1, from there by a continued fraction (DLMF 8.19.10, 17).
+
+    Gamma(-p) z^p and the first term of the series have the pole 1 / p each, which is taken off both.
+    """
+    k = np.arange(1.0, 20.0)
+    small = np.minimum(z, 1.0)
+    terms = (-small[..., None]) ** k / (gamma(k + 1.0) * (k - p))
+    log_gamma = (
+        np.euler_gamma * p + (zeta(k + 1.0) * p ** (k + 1.0) / (k + 1.0)).sum()
+    )  # of Gamma(1 - p)
+    near = -np.expm1(log_gamma + p * np.log(small)) / p - terms.sum(axis=-1)
+    large, far = np.maximum(z, 1.0), np.zeros_like(z)
+    for j in range(80, 0, -1):
+        far = j * (p + j) / (large + 1.0 + p + 2.0 * j - far)
+    return np.where(z < 1.0, near, np.exp(-z) / (large + 1.0 + p - far))
 
 
 def _periodic(symbol: Symbol, theta: np.ndarray) -> np.ndarray:

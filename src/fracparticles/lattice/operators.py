@@ -17,6 +17,7 @@ import numpy as np
 
 from fracparticles._compiled import njit
 from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.direct import matrix_product
 
 __all__ = [
     "ConvolutionOperator",
@@ -127,17 +128,18 @@ class ConvolutionOperator(LatticeOperator):
 
 
 class MatrixOperator(LatticeOperator):
-    """A dense matrix, shape (N, N)."""
+    """A dense matrix, shape (N, N). Its products sum in one order, which those of BLAS do not on many threads."""
 
     def __init__(self, matrix: np.ndarray) -> None:
         super().__init__()
-        self.size, self._matrix = len(matrix), matrix
+        self.size, self._columns = len(matrix), np.ascontiguousarray(matrix.T)
+        self._product = np.empty(self.size)
 
     def _combine(
         self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
     ) -> None:
-        with np.errstate(over="ignore", invalid="ignore"):  # whoever steps looks at the result
-            out[:] = scale * (self._matrix @ u) + shift * u + keep * out
+        matrix_product(self._columns, u, self._product)
+        _combine(self._product, u, out, scale, shift, keep)
 
 
 class TwoPassOperator(LatticeOperator):

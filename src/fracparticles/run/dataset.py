@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from fracparticles import __version__
 from fracparticles.errors import InvalidInput, reason_of
-from fracparticles.files import load_netcdf, replacing, seal
+from fracparticles.files import load_netcdf, replacing, seal, uninterrupted
 from fracparticles.graded.field import INTERPOLATED
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.complaints import label_of
@@ -225,7 +225,8 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
 
 def _to_netcdf(dataset: xr.Dataset, path: Path) -> None:
     encoding = {name: {"_FillValue": None} for name in dataset.variables}
-    dataset.to_netcdf(path, engine="netcdf4", encoding=encoding)
+    with uninterrupted():
+        dataset.to_netcdf(path, engine="netcdf4", encoding=encoding)
 
 
 def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:

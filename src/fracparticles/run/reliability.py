@@ -22,6 +22,9 @@ table_error
 outside_share
     The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles; on a
     truncated lattice at least what of a point mass leaves it during the run: ends that absorb leave nothing there.
+kept
+    int_{|x| > L} of the fundamental solution for the time of the run, times max |u(t_i)| / max |u(t_f)|: of a run in
+    one exchange on a truncated lattice.
 tail_misfit
     How far the powers that continue u in an open exterior are from strengths that they were not made to meet.
 far_field_error
@@ -71,6 +74,7 @@ LIMITS = {
     "wave_error": 0.05,
     "table_error": 0.05,
     "outside_share": 0.05,  # of the mass
+    "kept": 0.05,  # of the peak
     "far_field_error": 5e-5,
     "round_off": 1e-6,
     "decay": 0.01,
@@ -119,6 +123,9 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
     if case.exterior == "truncated":
         outside = max(outside, _beyond(case, case.reach))
     found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
+    if _keeps(case):
+        kept = _ratio(_beyond(case, case.reach), greatest)
+        found["kept"] = (kept, "what each particle keeps for places beyond the lattice")
     if case.exterior == "open":
         misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
         # Data that vanish at the ends miss their powers by all of nothing.
@@ -127,6 +134,13 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
         found["tail_misfit"] = (misfit, "relative misfit of the powers that continue u")
         found["far_field_error"] = (error, "estimated relative error of the far field")
     return found
+
+
+def _keeps(case: Case) -> bool:
+    """Whether the run is one exchange, in which a particle keeps what it would give beyond the ends."""
+    form = "exchange" if not case.is_graded else case.graded_form
+    one_step = case.kind.self_timed and case.is_one_step
+    return one_step and case.exterior == "truncated" and form == "exchange"
 
 
 def _of_the_operator(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
@@ -210,6 +224,12 @@ def _complaints(
         yield (
             f"the solution does not fit on |x| <= {case.reach:.4g}: about {value['outside_share']:.2g} of it lies "
             f"beyond, or has left. To solve on the whole space, {remedy}."
+        )
+    if "kept" in large:
+        remedy = "the graded form 'interpolated'" if case.is_graded else "exterior='open'"
+        yield (
+            f"each particle keeps what it would have given to places beyond |x| = {case.reach:.4g}: of the first peak "
+            f"that is {value['kept']:.2g} of the last one. Take a wider lattice, or {remedy}."
         )
     if "far_field_error" in large:
         yield (

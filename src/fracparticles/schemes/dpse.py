@@ -67,6 +67,7 @@ class DirectExchange(LatticeScheme):
         b = potential(np.arange(setting.size, dtype=float), setting)
         b -= b[setting.n]
         c = laplacian_weights(np.arange(_reach(setting) + 1, dtype=float), setting)
+        c[0] = 0.0  # it cancels from v_j - v_i, but for the roundings
         return TwoPassOperator(
             SUMMATIONS[setting.summation](setting.rate * b, setting.size),
             BandedConvolution(c, parity=1),

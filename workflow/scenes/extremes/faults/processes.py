@@ -35,16 +35,17 @@ def begun(work: Callable[[], int]) -> tuple[int, int]:
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
             os.dup2(write, 1)
             os.dup2(write, 2)
-            sys.stdout, sys.stderr = os.fdopen(1, "w"), os.fdopen(2, "w")
+            sys.stdout, sys.stderr = os.fdopen(1, "w"), os.fdopen(2, "w", buffering=1)
+            os.write(write, b"!")
             status = work()
         except BaseException as error:
             print(f"{type(error).__name__}: {error}", file=sys.stderr)
         finally:
             with suppress(OSError):
                 sys.stdout.flush()
-                sys.stderr.flush()
             os._exit(status)
     os.close(write)
+    os.read(read, 1)  # it works
     return process, read
 
 
