@@ -97,7 +97,7 @@ def _wrong(bump: np.ndarray) -> dict[str, Callable[[], Any]]:
         "a number": lambda: 1.0,
         "an integer of 400 digits": lambda: [10**400] + [0] * (bump.size - 1),
         "longdouble beyond float64": lambda: np.full(bump.size, np.longdouble("1e400")),
-        "function that gives nan": lambda: lambda x: x / x,
+        "function that gives nan": lambda: lambda x: np.where(x == 0.0, np.nan, x),
         "function that gives one value less": lambda: lambda x: x[1:],
         "function that gives complex numbers": lambda: lambda x: x + 0j,
     }

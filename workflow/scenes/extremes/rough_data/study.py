@@ -21,6 +21,7 @@ def study(
         *principles.signs(beta),
         *principles.bounds(beta, dims),
         *principles.point_masses(beta, half_width),
+        *principles.functions(beta, schemes),
         *kinds.probes(beta),
     ]
     return Result(frame(probes))
