@@ -69,3 +69,11 @@ def test_sums_along_an_axis(parity, axis, extra):
     expected = np.apply_along_axis(lambda line: np.convolve(line, whole)[5:-5], axis, v)
     kept = np.moveaxis(expected, axis, 0)[extra // 2 : extra // 2 + count]
     assert np.abs(np.moveaxis(ours, axis, 0) - kept).max() <= 50.0 * EPS * np.abs(w).sum()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("odd", [None, 0, 1])
+def test_a_box_of_one_particle(dim, odd):
+    w = np.full((1,) * dim, 0.0 if odd is not None else 2.0)
+    (found,) = BoxConvolution([w], [odd], 1, 1)(np.full((1,) * dim, 3.0))
+    assert found.flat[0] == pytest.approx(0.0 if odd is not None else 6.0, abs=1e-15)

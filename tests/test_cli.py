@@ -413,3 +413,34 @@ def test_a_reader_that_goes_away_is_no_error():
     os.close(write)
     assert done.returncode == 141
     assert done.stderr == b""
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
+def test_streams_that_are_closed_spoil_no_file(tmp_path, closed):
+    """The first file that is opened would take the place of the stream, and its text."""
+    words = [*PROGRAM, "solve", *SMALL, "--dt", "0.5", "-o", str(tmp_path / "run.nc")]
+    done = subprocess.run(["sh", "-c", f'"$@" {closed}', "sh", *words], capture_output=True)
+    assert done.returncode == 0
+    with pytest.warns(fp.StabilityWarning):
+        run = fp.solve(CASE.model_copy(update={"dt": 0.5}))
+    assert fp.read_run(tmp_path / "run.nc").identical(run)
+    assert b"Traceback" not in done.stdout + done.stderr
+
+
+def test_a_name_that_cannot_be_printed(tmp_path):
+    words = [*PROGRAM, "solve", *SMALL, "--dt", "0.05", "-o", "ü.nc"]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii:strict"}
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"\\xfc.nc\n", b"")
+
+
+def test_an_interrupt_while_it_starts(cli, monkeypatch):
+    monkeypatch.delitem(sys.modules, "fracparticles.run.program")
+
+    class Interrupting:
+        def find_spec(self, name, *_):
+            if name == "fracparticles.run.program":
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(sys, "meta_path", [Interrupting(), *sys.meta_path])
+    assert cli("limit", "--scheme", "KPSE", "--beta", 0.5) == (130, "", "error: interrupted\n")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import socket
 import stat
 import subprocess
@@ -16,7 +17,7 @@ import xarray as xr
 
 import fracparticles as fp
 from fracparticles.errors import InvalidInput
-from fracparticles.files import replaceable
+from fracparticles.files import replaceable, replacing, uninterrupted
 from fracparticles.run.case import Case
 from fracparticles.run.initial import initial_strengths
 from fracparticles.run.solver import compute
@@ -534,3 +535,65 @@ def test_strengths_of_another_kind(tmp_path, kind):
 def test_what_is_no_path_is_refused(junk):
     with pytest.raises(fp.InvalidInput, match=r"^file = .* the path of a file"):
         fp.read_run(junk)
+
+
+# --- faults ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("share", [0.02, 0.25, 0.3, 0.5, 0.75, 0.9, 0.9999])
+def test_a_changed_bit_is_refused(run_file, share):
+    data = bytearray(run_file.read_bytes())
+    data[int(share * len(data))] ^= 4
+    run_file.write_bytes(data)
+    with pytest.raises(InvalidInput, match="it has changed since it was written") as refused:
+        fp.read_run(run_file)
+    assert "\n" not in str(refused.value)
+
+
+def test_another_program_may_change_a_file(run_file):
+    """It removes the digest, a last line that the NetCDF libraries do not know."""
+    import netCDF4
+
+    assert run_file.read_bytes()[-73:].startswith(b"\nsha256 ")
+    with netCDF4.Dataset(run_file, "a") as file:
+        file["u"][3] = 1.0
+    assert b"sha256 " not in run_file.read_bytes()[-73:]
+    assert fp.read_run(run_file).u.values[3] == 1.0
+
+
+def test_what_a_killed_call_left_is_removed_by_the_next(run_file):
+    left = run_file.with_name(".run-0123456789abcdef.nc")
+    others = [run_file.with_name(name) for name in (".other-0123456789abcdef.nc", ".run-ab.nc")]
+    for path in (left, *others):
+        path.write_text("half")
+    with replacing(run_file.with_name("other.txt")):  # somebody writes here
+        fp.write(fp.solve(case()), run_file)
+        assert left.exists()
+    fp.write(fp.solve(case()), run_file)
+    assert not left.exists()
+    assert all(path.exists() for path in others)
+
+
+def test_an_interrupt_waits_for_the_end_of_a_write():
+    """In the middle it may leave the lock of the NetCDF library closed: the next call would wait for ever."""
+    handler, done = signal.getsignal(signal.SIGINT), []
+
+    def work() -> None:
+        with uninterrupted():
+            signal.raise_signal(signal.SIGINT)
+            done.append(True)
+        done.append(False)
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert done == [True]
+    assert signal.getsignal(signal.SIGINT) is handler
+
+
+def test_a_run_needs_no_git(monkeypatch):
+    from fracparticles.run.dataset import source
+
+    source.cache_clear()
+    monkeypatch.setenv("PATH", "")
+    assert source() == f"fracparticles {fp.__version__}"
+    source.cache_clear()

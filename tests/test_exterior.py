@@ -166,3 +166,9 @@ def test_terms_are_for_an_open_exterior_on_the_line():
         with pytest.raises(InvalidInput, match=r"far_terms.*exterior='open' and dim=1"):
             Case(**given, **wrong, far_terms=2)
     assert "_open3_" in Case(**given, exterior="open", far_terms=3).path
+
+
+@pytest.mark.parametrize(("n", "terms"), [(0, 1), (1, 2), (2, 3)])
+def test_a_lattice_of_too_few_particles_has_no_far_field(n, terms):
+    with pytest.raises(InvalidInput, match=f"{terms} particles from its middle"):
+        far_field(lambda m: np.abs(m) ** -2.5, 2.5, 1.5, n, terms=terms)

@@ -212,6 +212,32 @@ def test_a_damaged_cache_is_made_again(module, damage, kind):
         assert hits(function) == cached
 
 
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7, 0.9])
+def test_code_with_a_changed_bit_is_not_run(module, share):
+    (file,) = module.parent.rglob("*.nbc")
+    data = bytearray(file.read_bytes())
+    data[int(share * len(data))] ^= 1
+    file.write_bytes(data)
+    for cached in (0, 1):
+        function = load(module)
+        assert function(np.arange(5.0)) == 10.0
+        assert hits(function) == cached
+
+
+def test_code_of_another_version_is_not_run(module):
+    """A process that was killed between the two files leaves a new index and old code."""
+    (code,) = module.parent.rglob("*.nbc")
+    old = code.read_bytes()
+    module.write_text(MODULE.replace("+= value", "+= 3.0 * value"))
+    os.utime(module, (1.0, 1.0))
+    assert load(module)(np.arange(5.0)) == 30.0
+    code.write_bytes(old)
+    for cached in (0, 1):
+        function = load(module)
+        assert function(np.arange(5.0)) == 30.0
+        assert hits(function) == cached
+
+
 def test_a_damaged_cache_that_cannot_be_mended_is_left_alone(module, monkeypatch):
     (file,) = module.parent.rglob("*.nbi")
     file.write_bytes(b"")

@@ -352,3 +352,14 @@ def test_a_setting_is_in_units_of_the_spacing_and_of_the_diffusivity_unless_it_s
     plain = Setting(alpha=1.5)
     assert plain.rate == 1.0
     assert plain == Setting(alpha=1.5, spacing=1.0, diffusivity=1.0)
+
+
+def test_a_particle_s_own_weight_costs_dpse_no_digits():
+    """c_1 / c_0 = exp(-16) at overlap 1/4: A of three particles by hand, b_m - b_0 times c_1."""
+    setting = Setting(n=1, alpha=1.5, overlap=0.25)
+    b = dpse.potential_weights(np.arange(3.0), setting)
+    c = dpse.laplacian_weights(np.array([1.0]), setting)[0]
+    corner = c * (
+        b[1] - b[0]
+    )  # what particle 1 adds to the row of particle 0; particle 2 adds e^-64
+    assert dense_matrix(SCHEMES["DPSE"].operator(setting))[0, 0] == pytest.approx(corner, rel=1e-13)

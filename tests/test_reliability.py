@@ -281,3 +281,108 @@ def test_the_error_of_a_wave_is_that_of_the_run(order):
     error = abs(middle - np.exp(-2.0 * k**1.5))
     # The waves looked at are this one and longer ones, which come out better.
     assert wave_error(case, np.cos(k * case.x)) == pytest.approx(error, rel=0.02, abs=1e-4)
+
+
+# --- what hides, what decays, and units ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"scheme": "FPSE", "order": 4, "beta": 0.02, "half_width": 56.0, "spacing": 7.0, "overlap": 0.29},
+        {"scheme": "KPSE", "beta": 0.3, "half_width": 73.0, "spacing": 8.1, "overlap": 0.36},
+    ],
+)  # fmt: skip
+def test_an_overlap_below_one_does_not_hide_that_the_lattice_is_too_coarse(given):
+    with pytest.warns(AccuracyWarning, match="do not resolve"):
+        compute(case_of(t_initial=0.1, t_final=0.2, **given))
+
+
+@pytest.mark.parametrize("dim", [1, 2])
+def test_a_function_is_asked_between_the_particles(dim):
+    case = case_of(dim=dim, half_width=8.0, spacing=0.5, t_final=0.5)
+
+    def spike(*x):
+        return bump(*x) + 50.0 * bump(*(20.0 * (part - 2.25) for part in x))
+
+    with pytest.warns(AccuracyWarning, match="half-way between the particles"):
+        run = compute(case, spike)
+    assert run.estimates["between_particles"][0] > 0.5
+    assert "between_particles" not in compute(case, bump(*case.positions)).estimates
+
+
+def test_a_function_that_knows_the_particles_only_is_not_asked_elsewhere():
+    case = case_of(half_width=8.0, spacing=0.25, t_final=0.5)
+    known = dict(zip(case.x.tolist(), bump(case.x).tolist(), strict=True))
+    run = compute(case, lambda x: np.array([known[place] for place in x.tolist()]))
+    assert run.estimates["between_particles"][0] == 0.0
+
+
+def test_a_graded_peak_that_hides_is_named():
+    case = fp.Case(
+        scheme="GPSE", beta=0.5, half_width=1e4, spacing=0.5, graded_scale=1.0, t_initial=1.0, t_final=2.0
+    )  # fmt: skip
+    with pytest.warns(AccuracyWarning, match="half-way between the particles"):
+        compute(case, lambda x: green(x - 1.28e3, 1.0, 1.5))
+
+
+def test_waves_that_nearly_vanish_are_wrong_by_what_is_left():
+    case = case_of(scheme="FD", beta=0.7, half_width=40.0, spacing=0.222, t_final=4.0)
+    with pytest.warns(AccuracyWarning, match="come out wrong by"):
+        compute(case, lambda x: np.exp(-x * x / 16.0) * np.cos(2.0 * x))
+
+
+def test_the_integral_must_not_grow_either():
+    """DVM, open: a box has no tail, but the exterior continues it by one."""
+    case = fp.Case(
+        scheme="DVM", order=4, beta=0.3, half_width=21.0, spacing=0.21, overlap=1.66, exterior="open", dt=0.032,
+        t_initial=0.0, t_final=0.032,
+    )  # fmt: skip
+    with pytest.warns(AccuracyWarning, match=r"integral of \|u\| has grown by the factor"):
+        run = compute(case, lambda x: np.where(np.abs(x) < 2.0, 1.0, 0.0))
+    assert run.estimates["growth"][0] == pytest.approx(1.5, abs=0.1)
+
+
+def test_data_of_dvm_beyond_the_lattice_or_narrower_than_the_kernel_are_named():
+    given = {
+        "scheme": "DVM",
+        "beta": 0.5,
+        "half_width": 8.0,
+        "dt": 0.05,
+        "t_initial": 1.0,
+        "t_final": 1.5,
+    }
+    with pytest.warns(AccuracyWarning, match="does not fit on"):
+        compute(fp.Case(spacing=0.25, **given), lambda x: green(x - 8.0, 1.0, 1.5))
+    with pytest.warns(AccuracyWarning, match="come out wrong by"):
+        compute(fp.Case(spacing=0.25, overlap=8.0, **given), lambda x: green(x, 1.0, 1.5))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"half_width": 152.0, "spacing": 0.25, "dt": 999.0, "beta": 0.9, "t_final": 1000.0},
+        {"half_width": 1e12, "spacing": 0.1, "graded_scale": 1.0, "graded_form": "exchange", "beta": 0.5,
+         "t_final": 1e12},
+    ],
+)  # fmt: skip
+def test_what_an_exchange_keeps_is_named(given):
+    with pytest.warns(AccuracyWarning, match="each particle keeps"):
+        compute(fp.Case(scheme="GPSE", t_initial=1.0, **given))
+
+
+@pytest.mark.parametrize(("length", "size"), [(1e-30, 1e-300), (1e28, 1e270), (1e60, 1.0)])
+def test_the_estimates_have_no_units(length, size):
+    def found(length, size):
+        time = length**1.5
+        case = case_of(
+            scheme="FD", half_width=10.0 * length, spacing=length, t_initial=0.5 * time, t_final=1.5 * time
+        )  # fmt: skip
+        u = 1.0 / (1.0 + (case.x / length) ** 2)
+        return {
+            name: value for name, (value, _) in estimates(case, size * u, 0.5 * size * u).items()
+        }
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        assert found(length, size) == pytest.approx(found(1.0, 1.0), rel=1e-6)

@@ -119,7 +119,7 @@ def _in_use(folder: Path, left: re.Pattern[str]) -> Iterator[None]:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Put off an interrupt, Ctrl-C, to the end of a block: of what holds locks, which it could leave closed for ever."""
+    """Put off an interrupt, Ctrl-C, to the end of a block that holds locks: it could leave them closed for ever."""
     before = signal.getsignal(signal.SIGINT)
     if before is None or threading.current_thread() is not threading.main_thread():
         yield  # only the main thread is interrupted, and only by what Python knows of

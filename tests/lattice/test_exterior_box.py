@@ -9,8 +9,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+import fracparticles as fp
+from fracparticles.errors import InvalidInput
 from fracparticles.lattice.exterior_box import (
     BoxFarField,
+    _next_integral,
     _transforms,
     box_continuation,
     box_far_field,
@@ -157,3 +160,26 @@ def test_the_continuation_of_the_modes_is_the_modes(dim, n):
     places, values = box_continuation(u.reshape((2 * n + 1,) * dim), n, ALPHA)
     assert np.array_equal(np.abs(j[:, places]).max(axis=0), np.full(places.size, round(0.75 * n)))
     assert values == pytest.approx(u[places], rel=1e-11)
+
+
+@pytest.mark.parametrize("p", [1e-16, 1e-12, 1e-3, 0.0999])
+def test_the_exponential_integral_of_a_small_order_keeps_its_digits(p):
+    z = np.array([1e-10, 0.01, 0.999, 1.001, 3.0, 36.0])
+    exact = np.array([float(mp.expint(1 + mp.mpf(p), float(one))) for one in z])
+    assert np.allclose(_next_integral(p, z), exact, rtol=2e-14, atol=0.0)
+
+
+def test_a_run_as_beta_goes_to_zero():
+    def greatest(beta):
+        case = fp.Case(
+            scheme="DD", dim=3, beta=beta, half_width=4.0, spacing=0.5, exterior="open", integrator="exponential",
+            t_initial=0.5, t_final=1.0,
+        )  # fmt: skip
+        return float(fp.solve(case).u.max())
+
+    assert greatest(2.3e-16) == pytest.approx(greatest(1e-6), rel=1e-5)
+
+
+def test_a_single_particle_has_no_exterior():
+    with pytest.raises(InvalidInput, match="at least 1"):
+        box_far_field(lambda theta: theta[..., 0], lambda u: u, 1.5, 0, 2)

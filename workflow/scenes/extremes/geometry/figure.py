@@ -1,0 +1,43 @@
+"""The true error of each run over the estimate that is the worst for its limit."""
+
+from __future__ import annotations
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fracparticles.run.reliability import LIMITS
+from fracstudy.style import axes_row, entry, legend_below, log_log, note
+
+__all__ = ["figure"]
+
+_SAID = {"warned": "#D55E00", "silent": "#0072B2"}
+_KINDS = {
+    "overlap": "o",
+    "too coarse": "s",
+    "too narrow": "^",
+    "off centre": "D",
+    "hidden": "P",
+    "graded": "v",
+}
+
+
+def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+    """One point a run: silent where no estimate is above its limit, and then right."""
+    drawn, (ax,) = axes_row(1, height=4.0, width=6.0)
+    for (kind, said), points in series.groupby(["panel", "series"]):
+        look = {"color": _SAID[said], "marker": _KINDS[kind], "markersize": 4.5}
+        ax.plot(points["x"], points["y"], linestyle="none", markerfacecolor="none", **look)
+    allowed = 2.0 * sum(
+        LIMITS[name] for name in ("wave_error", "outside_share", "between_particles")
+    )
+    ax.axvline(1.0, color="0.5", linewidth=0.8, linestyle=":")
+    ax.axhline(allowed, color="0.5", linewidth=0.8, linestyle=":")
+    log_log(ax, xlabel="greatest estimate over its limit", ylabel="true relative error, 1-norm")
+    place = {"xycoords": "axes fraction", "va": "top", "fontsize": 9}
+    note(ax, "wrong without a word: empty", (0.02, 0.98), (0, 0), **place)
+    entries = [entry(said, color=colour, linewidth=2.0) for said, colour in _SAID.items()]
+    shown = [kind for kind in _KINDS if kind in set(series["panel"])]
+    look = {"color": "0.3", "linestyle": "none", "markerfacecolor": "none", "markersize": 4.5}
+    entries += [entry(kind, marker=_KINDS[kind], **look) for kind in shown]
+    legend_below(drawn, entries, 4)
+    return drawn

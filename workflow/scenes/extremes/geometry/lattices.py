@@ -1,0 +1,310 @@
+"""Runs on lattices that do not suit the solution, against the exact one: what is right, spoken of, refused."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+import fracparticles as fp
+from fracparticles.run.reliability import LIMITS
+from fracparticles.run.solver import compute
+from fracparticles.schemes import ALL_SCHEMES
+from fracstudy.panels import Panels
+from fracstudy.probe import Probe, Verdict, probe
+
+__all__ = ["Errors", "counts", "evolved", "graded", "lattices"]
+
+_START, _SPAN = 0.5, 1.0
+# A share d of the strength that is where it must not be is missed elsewhere: 2 d in the 1-norm. Nothing is said of
+# waves wrong by 0.05, of 0.05 beyond the lattice, nor, of data that are a function, of 0.05 between the particles.
+_ALLOWED = 2.0 * (LIMITS["wave_error"] + LIMITS["outside_share"])
+_OF_A_FUNCTION = _ALLOWED + 2.0 * LIMITS["between_particles"]
+_TAIL = 1e-3  # of the maximum: what `evolve` does not speak of
+
+
+@dataclass
+class Errors:
+    """Collects the points of the figure: the true error of each run over the estimate that is worst for its limit."""
+
+    panels: Panels = field(default_factory=Panels)
+
+    def of_run(self, kind: str, case: fp.Case, centre: float | None) -> float:
+        """Run a case, and return sum V |u - exact| / sum V |exact|."""
+        data = None if centre is None else _solution(case, centre, case.t_initial)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            run = compute(case, data)
+        for one in caught:  # for the probe
+            warnings.warn(one.message, one.category, stacklevel=2)
+        exact = _solution(case, centre or 0.0, case.t_final)(*case.positions)
+        error = case.integral(np.abs(run.u - exact)) / case.integral(exact)
+        worst = max(_over(name, value) for name, (value, _) in run.estimates.items())
+        said = "warned" if caught else "silent"
+        self.panels.add(kind, said, min(max(worst, 1e-3), 1e3), min(max(error, 1e-4), 1e2))
+        return float(error)
+
+
+def _over(name: str, value: float) -> float:
+    """An estimate over its limit; of growth, which is one for what does not grow, the part above one."""
+    if name == "growth":
+        return max(0.0, value - 1.0) / (LIMITS[name] - 1.0)
+    return value / LIMITS[name] if name in LIMITS else 0.0
+
+
+def _solution(case: fp.Case, centre: float, time: float) -> Any:
+    """The fundamental solution about (centre, 0, ..) at a time, as a function of the coordinates."""
+
+    def u(*x: np.ndarray) -> np.ndarray:
+        square = sum(
+            np.square(part - (centre if axis == 0 else 0.0)) for axis, part in enumerate(x)
+        )
+        return np.asarray(fp.green(np.sqrt(square), case.diffusivity * time, case.alpha, case.dim))
+
+    return u
+
+
+def _case(scheme: str, beta: float, **given: Any) -> fp.Case:
+    kind, fields = ALL_SCHEMES[scheme], {"t_initial": _START, "t_final": _START + _SPAN, **given}
+    if kind.moving:
+        fields |= {"dt": _SPAN / 50.0, "threshold": 1e-5}
+    elif not kind.self_timed:
+        fields["integrator"] = "exponential"
+    if "overlap" not in fields and not (kind.self_timed or not kind.has_kernel):
+        fields["overlap"] = 2.0
+    if kind.self_timed and "overlap" not in fields:
+        fields["dt"] = _SPAN
+    return fp.Case(scheme=scheme, beta=beta, store="metrics", **fields)
+
+
+def lattices(
+    errors: Errors, beta: float, schemes: dict[int, list[str]], half_widths: dict[int, float]
+) -> Iterator[Probe]:
+    """One parameter of the lattice at a time goes to its ends; the rest is that of a run that is right.
+
+    The data are the fundamental solution; off centre, and between the particles, it is given as a function.
+    """
+    for dim, names in schemes.items():
+        wide, h = half_widths[dim], {1: 0.1, 2: 0.25, 3: 0.5}[dim]
+        for scheme in names:
+            for kind, words, given, centre in _unsuitable(scheme, dim, wide, h):
+                function = centre is not None
+                yield probe(
+                    kind,
+                    f"{scheme}, n = {dim}, {words}",
+                    "the exact solution",
+                    lambda a=(kind, scheme, given, centre): errors.of_run(
+                        a[0], _case(a[1], beta, **a[2]), a[3]
+                    ),
+                    _OF_A_FUNCTION if function else _ALLOWED,
+                    source="closed form",
+                )
+
+
+_Unsuitable = tuple[str, str, dict[str, Any], float | None]
+
+
+def _unsuitable(scheme: str, dim: int, wide: float, h: float) -> Iterator[_Unsuitable]:
+    """Kind, words, fields, and where the data lie, None for the middle."""
+    one = ALL_SCHEMES[scheme]
+    base = {"dim": dim, "half_width": wide, "spacing": h}
+    if one.has_kernel and not one.self_timed:
+        for overlap in (0.25, 0.5, 0.8, 8.0, 20.0) if dim < 3 else (0.5, 4.0):
+            yield "overlap", f"overlap {overlap:g}", {**base, "overlap": overlap}, None
+    if dim == 1 and len(one.orders) > 2:
+        for order in (4, one.orders[-1]):
+            for overlap in (0.4, 8.0):
+                fields = {**base, "overlap": overlap, "order": order}
+                yield "overlap", f"order {order}, overlap {overlap:g}", fields, None
+    for coarse in (0.5, 1.0, 2.0, wide / 8.0):
+        if h < coarse <= wide / 8.0:
+            yield "too coarse", f"h = {coarse:g}", {**base, "spacing": coarse}, None
+    for exterior in one.exteriors:
+        for narrow in (0.5, 1.0, 4.0):
+            fields = {
+                **base,
+                "half_width": narrow,
+                "spacing": min(h, narrow / 8.0),
+                "exterior": exterior,
+            }
+            yield "too narrow", f"half-width {narrow:g}, {exterior}", fields, None
+        for share in (0.5, 0.9, 1.0, 3.0):
+            fields = {**base, "exterior": exterior}
+            yield (
+                "off centre",
+                f"data at {share:g} of the half-width, {exterior}",
+                fields,
+                share * wide,
+            )
+        if dim == 1:
+            fields = {
+                **base,
+                "half_width": 40.0,
+                "spacing": 4.0,
+                "exterior": exterior,
+                "t_initial": 0.01,
+                "t_final": 0.02,
+            }
+            yield "hidden", f"a peak half-way between particles, {exterior}", fields, 6.0
+
+
+def counts(beta: float) -> Iterator[Probe]:
+    """Spacings that do not divide the width; the fewest particles; odd and prime numbers of them; refused ones.
+
+    The lattice ends at the half-width D exactly, h = D / round(D / h). A point of the same lattice is right whatever
+    their number is: the runs are held against the exact solution, within twice the error at h = 1/8, D = 30.
+    """
+    good = _case("KPSE", beta, half_width=30.0, spacing=0.125)
+    usual = Errors().of_run("", good, None)
+    for half, h in (
+        (30.0, 0.1249),
+        (30.0, 0.13),
+        (29.9, 0.125),
+        (math.pi * 10.0, 1.0 / 8.0),
+        (31.375, 0.125),
+    ):
+        case = _case("KPSE", beta, half_width=half, spacing=h)
+        yield probe(
+            "spacing",
+            f"D = {half:.4g}, h = {h:g}: N = {case.particles}, ends at D",
+            "as with h = 1/8, D = 30",
+            lambda case=case: max(
+                Errors().of_run("", case, None) / (2.0 * usual),
+                abs(case.x[-1] / case.reach - 1.0) / 1e-15,
+            ),
+            1.0,
+            source="closed form",
+            must=Verdict.HELD,
+        )
+    for name, given in {
+        "N = 15": {"spacing": 30.0 / 7.0},
+        "N = 3": {"spacing": 30.0},
+        "N = 1": {"spacing": 100.0},
+        "h = 0": {"spacing": 0.0},
+        "h = nan": {"spacing": math.nan},
+        "h < 0": {"spacing": -0.1},
+        "D = 0": {"half_width": 0.0},
+        "D = inf": {"half_width": math.inf},
+        "overlap 0.2": {"overlap": 0.2},
+        "overlap 1001": {"overlap": 1001.0},
+        "1e12 particles": {"spacing": 1e-11},
+        "half-width 1e-101": {"half_width": 1e-101, "spacing": 1e-103},
+    }.items():
+        yield probe(
+            "refused",
+            name,
+            "refused",
+            lambda given=given: Errors().of_run(
+                "", _case("KPSE", beta, **{"half_width": 30.0, "spacing": 0.1, **given}), None
+            ),
+            0.0,
+            must=Verdict.REFUSED,
+        )
+
+
+def evolved(beta: float, sizes: dict[int, list[int]]) -> Iterator[Probe]:
+    """`evolve` on lattices of any number of points, with data in the middle, off it, and at the edge.
+
+    It warns where the tail misses the solution at the ends by a thousandth of the maximum, or where the data are not
+    resolved: the greatest error is to be within some thousandths, where it is silent.
+    """
+    alpha, half = 1.0 + beta, {1: 20.0, 2: 10.0, 3: 6.0}
+    for dim, some in sizes.items():
+        for count in some:
+            yield probe(
+                "evolve",
+                f"n = {dim}, {count} points an axis",
+                "the exact solution",
+                lambda a=(alpha, dim, half[dim], count, 0.0): _of_evolve(*a),
+                5.0 * _TAIL,
+                source="closed form",
+                must=Verdict.REFUSED if count < 8 else None,
+            )
+    for dim, count in ((1, 401), (2, 41)):
+        for share in (0.3, 0.5, 0.9, 1.0, 1.1, 3.0, 1e6) if dim in sizes else ():
+            yield probe(
+                "evolve",
+                f"n = {dim}, data at {share:g} of the half-width",
+                "the exact solution",
+                lambda a=(alpha, dim, half[dim], count, share * half[dim]): _of_evolve(*a),
+                5.0 * _TAIL,
+                source="closed form",
+            )
+
+
+def _of_evolve(alpha: float, dim: int, half: float, count: int, centre: float) -> float:
+    x = np.linspace(-half, half, count) if count > 1 else np.zeros(count)
+    axes = np.meshgrid(*(x,) * dim, indexing="ij", sparse=True)
+    r = np.sqrt(sum(np.square(a - (centre if k == 0 else 0.0)) for k, a in enumerate(axes)))
+    h = 2.0 * half / max(count - 1, 1)
+    u = fp.evolve(np.asarray(fp.green(r, 1.0, alpha, dim)), h, alpha, 1.0)
+    exact = np.asarray(fp.green(r, 2.0, alpha, dim))
+    return float(np.abs(u - exact).max() / exact.max())
+
+
+def graded(errors: Errors, beta: float) -> Iterator[Probe]:
+    """Particles x_j = L sinh(s_j), few or many, narrow or wide, with data in the middle and where gaps are wide."""
+    for form in ("exchange", "quadrature", "interpolated"):
+        base = {"half_width": 1e3, "graded_scale": 1.0, "spacing": 0.25, "graded_form": form}
+        for words, given, centre in (
+            ("fitting", {}, None),
+            ("17 particles", {"spacing": 0.95}, None),
+            ("L = 100", {"graded_scale": 100.0, "spacing": 20.0}, None),
+            ("L = 1e-3", {"graded_scale": 1e-3, "spacing": 2.5e-4}, None),
+            ("D = 2", {"half_width": 2.0, "spacing": 0.1}, None),
+            ("D = 1e12", {"half_width": 1e12}, None),
+            ("data at 0.01 D", {}, 10.0),
+            ("data at 0.5 D", {}, 500.0),
+            ("data at D", {}, 1e3),
+            ("data at 10 D", {}, 1e4),
+        ):
+            yield probe(
+                "graded",
+                f"{form}, {words}",
+                "the exact solution",
+                lambda given={**base, **given}, centre=centre: errors.of_run(
+                    "graded",
+                    fp.Case(
+                        scheme="GPSE", beta=beta, t_initial=_START, t_final=_START + _SPAN, **given
+                    ),
+                    centre,
+                ),
+                _ALLOWED if centre is None else _OF_A_FUNCTION,
+                source="closed form",
+            )
+    for words, count, reach, scale in (
+        ("2 particles", 2, 1.0, 1.0),
+        ("1 particle", 1, 1.0, 1.0),
+        ("4 particles", 4, 1.0, 1.0),
+        ("reach 0", 3, 0.0, 1.0),
+        ("scale nan", 3, 1.0, math.nan),
+    ):
+        yield probe(
+            "refused",
+            f"graded, {words}",
+            "refused",
+            lambda a=(count, reach, scale): fp.graded_particles(*a) and np.inf,
+            0.0,
+            must=Verdict.REFUSED,
+        )
+    yield probe(
+        "graded",
+        "3 particles, exchange: sum V u is kept",
+        "the sum before",
+        lambda: _of_three(1.0 + beta),
+        # N roundings of the greatest term, that of the outer particles: V u to some ulp each.
+        16.0 * float(np.finfo(float).eps),
+        source="closed form",
+        must=Verdict.HELD,
+    )
+
+
+def _of_three(alpha: float) -> float:
+    x, volumes = fp.graded_particles(3, 10.0, 1.0)
+    u = np.array([1.0, 2.0, 4.0])
+    after = fp.green_step(x, volumes, alpha, 1.0) @ u
+    return float(abs(volumes @ after / (volumes @ u) - 1.0))

@@ -1,0 +1,39 @@
+"""Lattices that do not suit: of odd numbers of particles, too coarse, too narrow, beside the data."""
+
+from __future__ import annotations
+
+from fracstudy.inputs import Inputs, Result
+from fracstudy.probe import frame
+from scenes.extremes.geometry import lattices, sums
+
+__all__ = ["study"]
+
+
+def study(
+    inputs: Inputs,
+    *,
+    beta: float,
+    sizes: dict[str, list[int]],
+    orders: list[int],
+    overlaps: list[float],
+    half: dict[int, list[int]],
+    points: dict[int, list[int]],
+    schemes: dict[int, list[str]],
+    half_widths: dict[int, float],
+) -> Result:
+    """One row a probe; the series are true errors of runs over the estimate that is the worst for its limit.
+
+    `sizes` are those of the sums, by what they are; `half` the intervals on either side, by dimension, of the matrices;
+    `points` an axis those of `evolve`; `schemes`, by dimension, those whose lattices are made unsuitable.
+    """
+    errors = lattices.Errors()
+    probes = [
+        *sums.lattice_sums(sizes, list(half)),
+        *sums.matrices(beta, orders, overlaps, half),
+        *sums.exteriors(beta, overlaps),
+        *lattices.counts(beta),
+        *lattices.lattices(errors, beta, schemes, half_widths),
+        *lattices.graded(errors, beta),
+        *lattices.evolved(beta, points),
+    ]
+    return Result(frame(probes), (), errors.panels.frame)

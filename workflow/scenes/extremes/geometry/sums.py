@@ -1,0 +1,218 @@
+"""Sums over lattices of any size, and the matrices of the schemes, against sums term by term."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from fracparticles.lattice.banded import BandedConvolution
+from fracparticles.lattice.box import BoxConvolution, NaiveBoxConvolution
+from fracparticles.lattice.direct import MatrixConvolution, NaiveConvolution
+from fracparticles.lattice.exterior import far_field
+from fracparticles.lattice.fourier import FourierConvolution
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes.base import LatticeScheme
+from fracparticles.schemes.spectrum import dense_matrix
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.geometry.printed import Kernels, matrix, places, power_sum
+
+__all__ = ["exteriors", "lattice_sums", "matrices"]
+
+_EPS = float(np.finfo(float).eps)
+_KERNELS = 1e-11  # the accuracy that `kernels.kernel` promises
+_LINE = {"fft": FourierConvolution, "naive": NaiveConvolution, "matrix": MatrixConvolution}
+_BOX = {"fft": BoxConvolution, "naive": NaiveBoxConvolution}
+
+
+def _rounding(terms: int) -> float:
+    """Of a sum over so many terms, against sum |w| max |u|: one rounding a term, and those of three transforms.
+
+    A transform of length L leaves some log2 L roundings (Higham 2002, Sec. 24.1), of at most 4 N here.
+    """
+    return _EPS * (terms + 8.0 * np.log2(4.0 * terms))
+
+
+def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe]:
+    """y_i = sum_j w_{i-j} u_j of random numbers, by each summation, on lattices of every kind of size.
+
+    Also beyond the ends of the lattice, up to seven points; w even and odd.
+    """
+    expected = "the sum term by term"
+    for kind, some in sizes.items():
+        for name, convolution in _LINE.items():
+            yield probe(
+                "sums",
+                f"line, {name}, N {kind}: {', '.join(map(str, some))}",
+                expected,
+                lambda c=convolution, some=some: max(_of_line(c, size) for size in some),
+                _rounding(max(some)),
+                source="numpy, dense",
+                must=Verdict.HELD,
+            )
+        yield probe(
+            "sums",
+            f"line, banded, N {kind}: {', '.join(map(str, some))}, bands up to N",
+            expected,
+            lambda some=some: max(_of_band(size) for size in some),
+            _rounding(2 * max(some)),
+            source="numpy, dense",
+            must=Verdict.HELD,
+        )
+    for dim in [d for d in dims if d > 1]:
+        sides = (
+            [(1, 1), (3, 3), (7, 7), (3, 9), (9, 5)]
+            if dim == 3
+            else [(1, 1), (3, 3), (13, 13), (5, 19), (17, 11)]
+        )
+        for name, box in _BOX.items():
+            yield probe(
+                "sums",
+                f"n = {dim}, {name}, from S^n to T^n: {', '.join(f'{a}-{b}' for a, b in sides)}",
+                expected,
+                lambda c=box, sides=sides, dim=dim: max(_of_box(c, *pair, dim) for pair in sides),
+                _rounding(19**dim),
+                source="numpy, dense",
+                must=Verdict.HELD,
+            )
+
+
+def _of_line(convolution: Callable[..., Callable[[np.ndarray], np.ndarray]], size: int) -> float:
+    rng, worst = np.random.default_rng(size), 0.0
+    for pad, parity in ((0, 1), (0, -1), (1, 1), (7, -1)):
+        w, u = rng.standard_normal(size + pad), rng.standard_normal(size)
+        w[0] *= parity > 0
+        apart = np.arange(-pad, size + pad)[:, None] - np.arange(size)
+        exact = (np.where(apart < 0, parity, 1) * w[np.abs(apart)]) @ u
+        found = convolution(w, size, parity, pad)(u)
+        worst = max(worst, float(np.abs(found - exact).max() / _size(w, u)))
+    return worst
+
+
+def _of_band(size: int) -> float:
+    rng, worst = np.random.default_rng(size), 0.0
+    for band, parity in ((0, 1), (1, -1), (4, 1), (size, -1), (2 * size, 1)):
+        w, v = rng.standard_normal(band + 1), rng.standard_normal(size)
+        w[0] *= parity > 0
+        apart = np.arange(size)[:, None] - np.arange(size)
+        every = np.append(w, np.zeros(size))
+        exact = (np.where(apart < 0, parity, 1) * every[np.abs(apart)]) @ v
+        found = BandedConvolution(w, parity)(v, np.empty(size))
+        worst = max(worst, float(np.abs(found - exact).max() / _size(w, v)))
+    return worst
+
+
+def _of_box(
+    convolution: Callable[..., Callable[[np.ndarray], np.ndarray]],
+    sources: int,
+    targets: int,
+    dim: int,
+) -> float:
+    rng, worst = np.random.default_rng(sources + targets), 0.0
+    for odd in (None, *range(dim)):
+        w, u = (
+            rng.standard_normal(((sources + targets) // 2,) * dim),
+            rng.standard_normal((sources,) * dim),
+        )
+        if odd is not None:
+            w[(slice(None),) * odd + (0,)] = 0.0
+        apart = places(targets // 2, dim)[:, None] - places(sources // 2, dim)
+        signs = 1.0 if odd is None else np.where(apart[..., odd] < 0, -1.0, 1.0)
+        exact = (signs * w[tuple(np.moveaxis(np.abs(apart), -1, 0))]) @ u.reshape(-1)
+        found = convolution([w], [odd], sources, targets)(u)[0].reshape(-1)
+        worst = max(worst, float(np.abs(found - exact).max() / _size(w, u)))
+    return worst
+
+
+def _size(w: np.ndarray, u: np.ndarray) -> float:
+    return float(np.abs(w).sum() * np.abs(u).max()) or 1.0
+
+
+def matrices(
+    beta: float, orders: list[int], overlaps: list[float], half: dict[int, list[int]]
+) -> Iterator[Probe]:
+    """A of each scheme against the printed formula, entry by entry; lattices of one particle a side and more.
+
+    `half` has, by dimension, half the intervals of the lattices. The deviation is that of the greatest sum of a row.
+    """
+    for name, one in SCHEMES.items():
+        for dim in [d for d in one.dims if d in half]:
+            for overlap in overlaps:
+                counts = [(2 * n + 1) ** dim for n in half[dim]]
+                yield probe(
+                    "matrix",
+                    f"{name}, n = {dim}, overlap {overlap:g}, N = {', '.join(map(str, counts))}",
+                    "the printed formula, entry by entry",
+                    lambda a=(one, beta, dim, orders, overlap, half[dim]): _of_matrices(*a),
+                    # An entry is the sum of N others in FPSE and DPSE, whose kernels cancel by some ten.
+                    _KERNELS,
+                    source="mpmath, dense" if name != "GPSE" else "QUADPACK, dense",
+                    must=Verdict.HELD,
+                )
+
+
+def _of_matrices(
+    one: LatticeScheme, beta: float, dim: int, orders: list[int], overlap: float, half: list[int]
+) -> float:
+    worst = 0.0
+    for order in [r for r in orders if r in (one.orders if dim == 1 else one.box_orders)]:
+        family = "gamma" if order > 4 else "printed"
+        kernels = Kernels(1.0 + beta, dim, order, family)
+        for n in half:
+            exact = matrix(one.name, kernels, n, overlap)
+            setting = {"alpha": 1.0 + beta, "order": order, "overlap": overlap, "dim": dim, "n": n}
+            for summation in ("fft", "naive"):
+                found = dense_matrix(one.operator(Setting(**setting, summation=summation)))
+                difference, size = (np.abs(a).sum(axis=1).max() for a in (found - exact, exact))
+                worst = max(worst, float(difference / size) if size else float(difference))
+    return worst
+
+
+def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
+    """The sums beyond the ends of the line, S_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j}, term by term and an integral.
+
+    The library sums f = j^-(1+alpha) w_{i-j} to 4 n, and from there by the formula of Euler and Maclaurin, whose next
+    term is 7 f''' / 5760: for f ~ y^-5 and y >= 3 n that is (3 n)^-4 of the sum.
+    """
+    alpha = 1.0 + beta
+    for n in (1, 2, 8, 53):
+        for overlap in overlaps:
+            yield probe(
+                "exterior",
+                f"KPSE's kernel, n = {n}, overlap {overlap:g}",
+                "the sum to infinity",
+                lambda n=n, s=overlap: _of_exterior(alpha, n, s),
+                (3.0 * n) ** -4.0,
+                source="mpmath, QUADPACK",
+            )
+    for n, terms in ((0, 1), (1, 2), (2, 3)):
+        yield probe(
+            "exterior",
+            f"N = {2 * n + 1}, terms: {terms}",
+            "refused: too few particles to fit",
+            lambda n=n, terms=terms: _of_few(alpha, n, terms),
+            0.0,
+            must=Verdict.REFUSED,
+        )
+
+
+def _of_few(alpha: float, n: int, terms: int) -> float:
+    far_field(lambda m: np.abs(m) ** -(1.0 + alpha), 1.0 + alpha, alpha, n, terms=terms)
+    return np.inf
+
+
+def _of_exterior(alpha: float, n: int, overlap: float) -> float:
+    kernels = Kernels(alpha)
+
+    def weight(m: float) -> float:
+        return kernels.values("K", abs(m) / overlap)
+
+    def weights(m: np.ndarray) -> np.ndarray:
+        return np.vectorize(weight)(m)
+
+    found = far_field(weights, 1.0 + alpha, alpha, n).right[0]
+    size, worst = float(np.abs(found).max()), 0.0
+    for i in (-n, 0, n):
+        exact = power_sum(weight, 1.0 + alpha, n, i, far=max(200, 10 * n))
+        worst = max(worst, abs(float(found[i + n]) - exact) / size)
+    return worst

@@ -1,0 +1,53 @@
+"""What the probes of rough data have in common: a case of each scheme, and its matrix."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import fracparticles as fp
+from fracparticles.run.solver import compute
+from fracparticles.schemes import ALL_SCHEMES, SCHEMES
+from fracparticles.schemes.spectrum import dense_matrix
+
+__all__ = ["EPS", "case_of", "deviation", "matrix_of", "point", "run"]
+
+EPS = float(np.finfo(float).eps)
+
+
+def case_of(scheme: str, beta: float, **given: Any) -> fp.Case:
+    """Return a case of half-width 10, h = 1/4 and T = 1/2, if nothing else is given; GPSE takes it in one step."""
+    kind = ALL_SCHEMES[scheme]
+    fields: dict[str, Any] = {"half_width": 10.0, "spacing": 0.25, "t_initial": 0.0, "t_final": 0.5}
+    fields |= given
+    if kind.moving:
+        fields.setdefault("dt", (fields["t_final"] - fields["t_initial"]) / 20.0)
+    elif kind.self_timed:
+        fields.setdefault("dt", fields["t_final"] - fields["t_initial"])
+    else:
+        fields.setdefault("integrator", "exponential")
+    return fp.Case(scheme=scheme, beta=beta, store="metrics", **fields)
+
+
+def run(case: fp.Case, u0: Any) -> np.ndarray:
+    """Return the final strengths."""
+    return compute(case, u0).u
+
+
+def matrix_of(case: fp.Case) -> np.ndarray:
+    """Return the matrix A of a case, dense."""
+    return dense_matrix(SCHEMES[case.scheme].operator(case.setting))
+
+
+def deviation(u: np.ndarray, exact: np.ndarray) -> float:
+    """Return max |u - exact| / max |exact|, without squares or sums that overflow."""
+    size = np.abs(exact).max()
+    return float(np.abs(u / size - exact / size).max())
+
+
+def point(case: fp.Case, place: int | None = None) -> np.ndarray:
+    """All strength on one particle, the middle one if none is named: 1 / h^n there."""
+    u = np.zeros(case.shape)
+    u.flat[u.size // 2 if place is None else place] = 1.0 / case.particle_spacing**case.dim
+    return u

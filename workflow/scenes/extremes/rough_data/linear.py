@@ -1,0 +1,216 @@
+"""What a linear equation does to any data: strengths of any size, sums, mirrors, shifts, other units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from scipy.linalg import expm
+
+from fracparticles.run.case import Case
+from fracparticles.run.solver import prepare
+from fracparticles.schemes import ALL_SCHEMES
+from fracstudy.probe import Probe, Verdict, probe
+from scenes.extremes.rough_data.cases import EPS, case_of, deviation, matrix_of, run
+
+__all__ = ["exact", "sizes", "symmetries", "units"]
+
+# A run is some hundred roundings of the largest strength: of each particle the sum of N, of a series a term a degree.
+_SAME = 1e-12
+_DENSE = 500  # particles, up to which the run is done as one matrix, too
+
+
+def _shapes(x: np.ndarray) -> dict[str, np.ndarray]:
+    """Data of every roughness on the particles of the line."""
+    rng, middle = np.random.default_rng(3), x.size // 2
+    smooth, pulse = np.exp(-x * x), np.zeros(x.size)
+    pulse[middle] = 1.0
+    return {
+        "point": pulse,
+        "pulse at the end": np.roll(pulse, middle),
+        "step": np.where(x > 0.0, 1.0, 0.0),
+        "both signs": x * smooth,
+        "noise": rng.standard_normal(x.size),
+        "smooth on a background": 1.0 + 1e-8 * smooth,
+        "spike beside smooth": smooth + 1e8 * np.roll(pulse, 20),
+        "alternating": (-1.0) ** np.arange(x.size),
+        "600 decades": np.where(pulse > 0.0, 1e300, 1e-300 * smooth),
+    }
+
+
+def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
+    """exp(A T) u0, of GPSE (1 + A T) u0, by scipy from the dense matrix; whatever the data are, if they are finite.
+
+    The estimates may warn of the data, but that excuses nothing: the discrete problem is solved.
+    """
+    for scheme in schemes:
+        for exterior in ALL_SCHEMES[scheme].exteriors:
+            case = case_of(scheme, beta, exterior=exterior)
+            whole = _whole(case)
+            # The series rounds T |lambda| 2^-52 of its terms some 64 times, which an open exterior may make larger
+            # than their sum.
+            stiffness = case.span * float(np.abs(matrix_of(case)).sum(axis=1).max())
+            bound = max(_SAME, 64.0 * EPS * stiffness)
+            for words, u0 in _shapes(case.x).items():
+                yield probe(
+                    "exact",
+                    f"{scheme}, {exterior}, {words}",
+                    "exp(A T) u0",
+                    lambda case=case, u0=u0, whole=whole: deviation(run(case, u0), whole @ u0),
+                    bound,
+                    source="scipy, dense",
+                )
+
+
+def _whole(case: Case) -> np.ndarray:
+    """exp(A T), of GPSE 1 + A T."""
+    a = matrix_of(case) * case.span
+    return np.eye(len(a)) + a if case.kind.self_timed else expm(a)
+
+
+def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
+    """Strengths of any size that float64 has: c u0 gives c u. Denormal numbers have the digits that they have.
+
+    Sums of strengths near 1.8e308 overflow: refused. Zero stays zero.
+    """
+    for scheme in schemes:
+        for dim in [d for d in dims if d in ALL_SCHEMES[scheme].dims]:
+            small = {} if dim == 1 else {"half_width": 3.0, "spacing": 0.375}
+            for exterior in ALL_SCHEMES[scheme].exteriors:
+                case = case_of(scheme, beta, dim=dim, exterior=exterior, **small)
+                u0 = np.exp(-sum(np.square(part) for part in case.positions))
+                dense = case.particles < _DENSE
+                usual = (
+                    (_whole(case) @ u0.ravel()).reshape(u0.shape)
+                    if dense
+                    else prepare(case).solve(u0)
+                )
+                for size in (1e-300, 1e-320, 1e306, -1.0):
+                    digits = max(
+                        1.0, math.ulp(abs(size)) / abs(size) / EPS
+                    )  # lost to denormal numbers
+                    yield probe(
+                        "size",
+                        f"{scheme}, n = {dim}, {exterior}, data times {size:g}",
+                        "the solution times the same",
+                        lambda case=case, u0=size * u0, c=size, usual=usual: deviation(
+                            _scaled_back(run(case, u0), c), usual
+                        ),
+                        10.0 * _SAME * digits,
+                        source="scipy, dense" if dense else "",
+                        must=Verdict.HELD,
+                    )
+    for scheme in schemes:
+        case = case_of(scheme, beta)
+        for words, u0, must in (
+            ("1.7e308 everywhere", np.full(case.shape, 1.7e308), Verdict.REFUSED),
+            ("1e308, both signs", 1e308 * (-1.0) ** np.arange(case.particles), Verdict.REFUSED),
+            ("zero", np.zeros(case.shape), None),
+            ("-0.0", -np.zeros(case.shape), None),
+            ("5e-324 on one particle", np.where(case.x == 0.0, 5e-324, 0.0), None),
+        ):
+            yield probe(
+                "size",
+                f"{scheme}, {words}",
+                "refused" if must else "at most what was given",
+                lambda case=case, u0=u0: float(np.abs(run(case, u0)).max() > np.abs(u0).max()),
+                0.0,
+                source="maximum principle",
+                must=must,
+            )
+
+
+def _scaled_back(u: np.ndarray, size: float) -> np.ndarray:
+    """u / size, where 1 / size may be no number."""
+    exponent = math.frexp(size)[1]
+    return np.ldexp(u, -exponent) / math.ldexp(size, -exponent)
+
+
+def symmetries(beta: float, schemes: list[str]) -> Iterator[Probe]:
+    """Sums of data, mirrored data, and on the infinite lattice shifted data: of noise on particles in the middle."""
+    rng = np.random.default_rng(5)
+    for scheme in schemes:
+        for exterior in ALL_SCHEMES[scheme].exteriors:
+            case = case_of(scheme, beta, exterior=exterior)
+            u, v = rng.standard_normal((2, case.particles))
+            solve = prepare(case).solve
+            scale = float(np.abs(solve(u)).max() + np.abs(solve(v)).max())
+            yield probe(
+                "sum of data",
+                f"{scheme}, {exterior}, noise",
+                "S(3 u - 2 v) = 3 S u - 2 S v",
+                lambda s=solve, u=u, v=v, c=scale: _apart(s(3 * u - 2 * v), 3 * s(u) - 2 * s(v), c),
+                10.0 * _SAME,
+            )
+            yield probe(
+                "mirror",
+                f"{scheme}, {exterior}, noise",
+                "the mirrored solution",
+                lambda s=solve, u=u, c=scale: _apart(s(u[::-1].copy()), s(u)[::-1], c),
+                10.0 * _SAME,
+            )
+        if scheme == "DPSE":  # whose truncated potential reaches everywhere
+            continue
+        wide = case_of(scheme, beta, half_width=400.0)
+        solve = prepare(wide).solve
+        u = np.where(np.abs(wide.x) <= 2.0, rng.standard_normal(wide.particles), 0.0)
+        middle = np.abs(wide.x) <= 20.0
+        yield probe(
+            "shift",
+            f"{scheme}, noise on |x| <= 2, moved by 37 h, |x| <= 20 of 400",
+            "the moved solution",
+            lambda s=solve, u=u, m=middle: _apart(
+                np.roll(s(np.roll(u, 37)), -37)[m], s(u)[m], float(np.abs(s(u)).max())
+            ),
+            # What comes back from an end at 400 after T = 1/2: twice T 400^-(1+alpha), and the ends move by 37 h.
+            2.0 * 0.5 * 390.0 ** -(2.0 + beta) * 17.0,
+        )
+
+
+def _apart(u: np.ndarray, v: np.ndarray, size: float) -> float:
+    return float(np.abs(u - v).max() / size)
+
+
+def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
+    """Similarity: lengths times c and times times c^alpha / D leave c^n u unchanged, for units of any size.
+
+    h = D / n and the time of the run are rounded anew: some ulp of each, of which T |lambda| are seen.
+    """
+    for scheme in schemes:
+        for dim in [d for d in dims if d in ALL_SCHEMES[scheme].dims]:
+            plain: dict[str, Any] = {"half_width": 8.0, "spacing": 0.5} if dim > 1 else {}
+            usual = case_of(scheme, beta, dim=dim, **plain, t_initial=0.5, t_final=1.0)
+            for c, diffusivity in (
+                (1e-6, 1.0),
+                (1.0, 1e6),
+                (1e-30, 1.0),
+                (1e30, 1e-10),
+                (1e40, 1e60),
+            ):
+                time = c ** (1.0 + beta) / diffusivity
+                fields = {
+                    "t_initial": 0.5 * time,
+                    "t_final": time,
+                    "diffusivity": diffusivity,
+                    "dim": dim,
+                }
+                fields |= {"half_width": c * usual.reach, "spacing": c * usual.spacing}
+                yield probe(
+                    "units",
+                    f"{scheme}, n = {dim}, lengths times {c:g}, D = {diffusivity:g}",
+                    "the same in other units",
+                    lambda a=(scheme, beta, usual, c, fields): _in_other_units(*a),
+                    1e-10
+                    if not ALL_SCHEMES[scheme].moving
+                    else 1e-6,  # whose sums are exact to 1e-11 of the peak, a step
+                    must=Verdict.HELD if not ALL_SCHEMES[scheme].moving else None,
+                )
+
+
+def _in_other_units(
+    scheme: str, beta: float, usual: Any, c: float, fields: dict[str, Any]
+) -> float:
+    u = run(case_of(scheme, beta, **fields), None)
+    return deviation(c**usual.dim * u, run(usual, None))

@@ -1,0 +1,27 @@
+"""Rough and extreme data: pulses, noise, strengths at the ends of float64, other units, other kinds of arrays."""
+
+from __future__ import annotations
+
+from fracstudy.inputs import Inputs, Result
+from fracstudy.probe import frame
+from scenes.extremes.rough_data import kinds, linear, principles
+
+__all__ = ["study"]
+
+
+def study(
+    inputs: Inputs, *, beta: float, schemes: list[str], dims: list[int], half_width: float
+) -> Result:
+    """One row a probe. `half_width` is that of the lattices on which a point mass spreads."""
+    probes = [
+        *linear.exact(beta, schemes),
+        *linear.sizes(beta, schemes, dims),
+        *linear.symmetries(beta, schemes),
+        *linear.units(beta, schemes, dims),
+        *principles.signs(beta),
+        *principles.bounds(beta, dims),
+        *principles.point_masses(beta, half_width),
+        *principles.functions(beta, schemes),
+        *kinds.probes(beta),
+    ]
+    return Result(frame(probes))
