@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -9,7 +11,7 @@ from fracstudy.style import axes_row, legend_below, log_log
 
 __all__ = ["figure"]
 
-_LOOK = {
+_LOOK: dict[str, dict[str, Any]] = {
     "float32": {"color": "#D55E00", "marker": "s"},
     "float64, step by step": {"color": "#0072B2", "marker": "o"},
     "float64, one series": {"color": "#009E73", "marker": "^"},
