@@ -422,7 +422,7 @@ def test_streams_that_are_closed_spoil_no_file(tmp_path, closed):
     done = subprocess.run(["sh", "-c", f'"$@" {closed}', "sh", *words], capture_output=True)
     assert done.returncode == 0
     with pytest.warns(fp.StabilityWarning):
-        run = fp.solve(CASE.model_copy(update={"dt": 0.5}))
+        run = fp.solve(Case(**{**CASE.model_dump(exclude_unset=True), "dt": 0.5}))
     assert fp.read_run(tmp_path / "run.nc").identical(run)
     assert b"Traceback" not in done.stdout + done.stderr
 

@@ -162,3 +162,16 @@ def test_weights_that_change_are_warned_of_too():
             dt=0.1,
             steps=1,
         )
+
+
+def test_the_error_of_waves_does_not_depend_on_the_unit_of_length():
+    x, w = gaussian(200)
+    one = wave_error(MarkerVelocity(SHAPES["S8"], 0.3), x, w, 1e-3, 50)
+    ten = wave_error(MarkerVelocity(SHAPES["S8"], 3.0), 10.0 * x, 10.0 * w, 0.1, 50)
+    assert ten == pytest.approx(one, rel=1e-9)
+    assert one > 0.0
+
+
+def test_a_field_without_a_slope_holds_no_wave():
+    x, w = gaussian(200)
+    assert wave_error(MarkerVelocity(SHAPES["S8"], 0.3, derivatives=0), x, w, 1e-3, 50) == 0.0

@@ -6,6 +6,7 @@ import importlib.util
 import os
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -77,14 +78,10 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
             ("read", read_run),
             ("as initial data", lambda path: compute(setup.case, path)),
         ):
-
-            def run(data: bytes = data, look: Callable[[Path], object] = look) -> float:
-                copy.write_bytes(data)
-                look(copy)
-                return np.nan
-
+            run = partial(_used, look, copy, data)
             yield probe("damaged run", f"{case}, {use}", "refused", run, 0.0, must=Verdict.REFUSED)
     copy.unlink(missing_ok=True)
+<<<<<<< HEAD
     yield probe(
         "damaged run",
         "none",
@@ -101,6 +98,18 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
         0.0,
         must=Verdict.REFUSED,
     )
+=======
+    for case, path in (("none", copy), ("a directory", setup.folder)):
+        run = partial(_used, read_run, path)
+        yield probe("damaged run", case, "refused", run, 0.0, must=Verdict.REFUSED)
+
+
+def _used(look: Callable[[Path], object], path: Path, data: bytes | None = None) -> float:
+    if data is not None:
+        path.write_bytes(data)
+    look(path)
+    return np.nan
+>>>>>>> main
 
 
 def _opened(path: Path) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -25,7 +27,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """One point a run: silent where no estimate is above its limit, and then right."""
     drawn, (ax,) = axes_row(1, height=4.0, width=6.0)
     for (kind, said), points in series.groupby(["panel", "series"]):
-        look = {"color": _SAID[said], "marker": _KINDS[kind], "markersize": 4.5}
+        look: dict[str, Any] = {"color": _SAID[said], "marker": _KINDS[kind], "markersize": 4.5}
         ax.plot(points["x"], points["y"], linestyle="none", markerfacecolor="none", **look)
     allowed = 2.0 * sum(
         LIMITS[name] for name in ("wave_error", "outside_share", "between_particles")
@@ -37,7 +39,12 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     note(ax, "wrong without a word: empty", (0.02, 0.98), (0, 0), **place)
     entries = [entry(said, color=colour, linewidth=2.0) for said, colour in _SAID.items()]
     shown = [kind for kind in _KINDS if kind in set(series["panel"])]
-    look = {"color": "0.3", "linestyle": "none", "markerfacecolor": "none", "markersize": 4.5}
-    entries += [entry(kind, marker=_KINDS[kind], **look) for kind in shown]
+    grey: dict[str, Any] = {
+        "color": "0.3",
+        "linestyle": "none",
+        "markerfacecolor": "none",
+        "markersize": 4.5,
+    }
+    entries += [entry(kind, marker=_KINDS[kind], **grey) for kind in shown]
     legend_below(drawn, entries, 4)
     return drawn

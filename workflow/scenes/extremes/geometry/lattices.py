@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -76,9 +77,25 @@ def _case(scheme: str, beta: float, **given: Any) -> fp.Case:
         fields["integrator"] = "exponential"
     if "overlap" not in fields and not (kind.self_timed or not kind.has_kernel):
         fields["overlap"] = 2.0
-    if kind.self_timed and "overlap" not in fields:
+    if kind.self_timed and not {"overlap", "graded_scale"} & set(fields):
         fields["dt"] = _SPAN
     return fp.Case(scheme=scheme, beta=beta, store="metrics", **fields)
+
+
+def _run(
+    errors: Errors,
+    kind: str,
+    scheme: str,
+    beta: float,
+    given: dict[str, Any],
+    centre: float | None,
+) -> float:
+    return errors.of_run(kind, _case(scheme, beta, **given), centre)
+
+
+def _of_count(case: fp.Case, usual: float) -> float:
+    at_the_end = abs(case.x[-1] / case.reach - 1.0) / 1e-15
+    return max(Errors().of_run("", case, None) / (2.0 * usual), at_the_end)
 
 
 def lattices(
@@ -97,9 +114,7 @@ def lattices(
                     kind,
                     f"{scheme}, n = {dim}, {words}",
                     "the exact solution",
-                    lambda a=(kind, scheme, given, centre): errors.of_run(
-                        a[0], _case(a[1], beta, **a[2]), a[3]
-                    ),
+                    partial(_run, errors, kind, scheme, beta, given, centre),
                     _OF_A_FUNCTION if function else _ALLOWED,
                     source="closed form",
                 )
@@ -111,7 +126,7 @@ _Unsuitable = tuple[str, str, dict[str, Any], float | None]
 def _unsuitable(scheme: str, dim: int, wide: float, h: float) -> Iterator[_Unsuitable]:
     """Kind, words, fields, and where the data lie, None for the middle."""
     one = ALL_SCHEMES[scheme]
-    base = {"dim": dim, "half_width": wide, "spacing": h}
+    base: dict[str, Any] = {"dim": dim, "half_width": wide, "spacing": h}
     if one.has_kernel and not one.self_timed:
         for overlap in (0.25, 0.5, 0.8, 8.0, 20.0) if dim < 3 else (0.5, 4.0):
             yield "overlap", f"overlap {overlap:g}", {**base, "overlap": overlap}, None
@@ -172,10 +187,7 @@ def counts(beta: float) -> Iterator[Probe]:
             "spacing",
             f"D = {half:.4g}, h = {h:g}: N = {case.particles}, ends at D",
             "as with h = 1/8, D = 30",
-            lambda case=case: max(
-                Errors().of_run("", case, None) / (2.0 * usual),
-                abs(case.x[-1] / case.reach - 1.0) / 1e-15,
-            ),
+            partial(_of_count, case, usual),
             1.0,
             source="closed form",
             must=Verdict.HELD,
@@ -198,8 +210,14 @@ def counts(beta: float) -> Iterator[Probe]:
             "refused",
             name,
             "refused",
-            lambda given=given: Errors().of_run(
-                "", _case("KPSE", beta, **{"half_width": 30.0, "spacing": 0.1, **given}), None
+            partial(
+                _run,
+                Errors(),
+                "",
+                "KPSE",
+                beta,
+                {"half_width": 30.0, "spacing": 0.1, **given},
+                None,
             ),
             0.0,
             must=Verdict.REFUSED,
@@ -219,7 +237,7 @@ def evolved(beta: float, sizes: dict[int, list[int]]) -> Iterator[Probe]:
                 "evolve",
                 f"n = {dim}, {count} points an axis",
                 "the exact solution",
-                lambda a=(alpha, dim, half[dim], count, 0.0): _of_evolve(*a),
+                partial(_of_evolve, alpha, dim, half[dim], count, 0.0),
                 5.0 * _TAIL,
                 source="closed form",
                 must=Verdict.REFUSED if count < 8 else None,
@@ -230,7 +248,7 @@ def evolved(beta: float, sizes: dict[int, list[int]]) -> Iterator[Probe]:
                 "evolve",
                 f"n = {dim}, data at {share:g} of the half-width",
                 "the exact solution",
-                lambda a=(alpha, dim, half[dim], count, share * half[dim]): _of_evolve(*a),
+                partial(_of_evolve, alpha, dim, half[dim], count, share * half[dim]),
                 5.0 * _TAIL,
                 source="closed form",
             )
@@ -266,13 +284,7 @@ def graded(errors: Errors, beta: float) -> Iterator[Probe]:
                 "graded",
                 f"{form}, {words}",
                 "the exact solution",
-                lambda given={**base, **given}, centre=centre: errors.of_run(
-                    "graded",
-                    fp.Case(
-                        scheme="GPSE", beta=beta, t_initial=_START, t_final=_START + _SPAN, **given
-                    ),
-                    centre,
-                ),
+                partial(_run, errors, "graded", "GPSE", beta, {**base, **given}, centre),
                 _ALLOWED if centre is None else _OF_A_FUNCTION,
                 source="closed form",
             )
@@ -287,7 +299,7 @@ def graded(errors: Errors, beta: float) -> Iterator[Probe]:
             "refused",
             f"graded, {words}",
             "refused",
-            lambda a=(count, reach, scale): fp.graded_particles(*a) and np.inf,
+            partial(_particles, count, reach, scale),
             0.0,
             must=Verdict.REFUSED,
         )
@@ -295,12 +307,16 @@ def graded(errors: Errors, beta: float) -> Iterator[Probe]:
         "graded",
         "3 particles, exchange: sum V u is kept",
         "the sum before",
-        lambda: _of_three(1.0 + beta),
+        partial(_of_three, 1.0 + beta),
         # N roundings of the greatest term, that of the outer particles: V u to some ulp each.
         16.0 * float(np.finfo(float).eps),
         source="closed form",
         must=Verdict.HELD,
     )
+
+
+def _particles(count: int, reach: float, scale: float) -> float:
+    return float(np.abs(fp.graded_particles(count, reach, scale)[0]).max())
 
 
 def _of_three(alpha: float) -> float:

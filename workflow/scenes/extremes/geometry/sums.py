@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -21,8 +23,12 @@ __all__ = ["exteriors", "lattice_sums", "matrices"]
 
 _EPS = float(np.finfo(float).eps)
 _KERNELS = 1e-11  # the accuracy that `kernels.kernel` promises
-_LINE = {"fft": FourierConvolution, "naive": NaiveConvolution, "matrix": MatrixConvolution}
-_BOX = {"fft": BoxConvolution, "naive": NaiveBoxConvolution}
+_LINE: dict[str, Any] = {
+    "fft": FourierConvolution,
+    "naive": NaiveConvolution,
+    "matrix": MatrixConvolution,
+}
+_BOX: dict[str, Any] = {"fft": BoxConvolution, "naive": NaiveBoxConvolution}
 
 
 def _rounding(terms: int) -> float:
@@ -45,7 +51,7 @@ def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe
                 "sums",
                 f"line, {name}, N {kind}: {', '.join(map(str, some))}",
                 expected,
-                lambda c=convolution, some=some: max(_of_line(c, size) for size in some),
+                partial(_worst, partial(_of_line, convolution), some),
                 _rounding(max(some)),
                 source="numpy, dense",
                 must=Verdict.HELD,
@@ -54,7 +60,7 @@ def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe
             "sums",
             f"line, banded, N {kind}: {', '.join(map(str, some))}, bands up to N",
             expected,
-            lambda some=some: max(_of_band(size) for size in some),
+            partial(_worst, _of_band, some),
             _rounding(2 * max(some)),
             source="numpy, dense",
             must=Verdict.HELD,
@@ -70,11 +76,15 @@ def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe
                 "sums",
                 f"n = {dim}, {name}, from S^n to T^n: {', '.join(f'{a}-{b}' for a, b in sides)}",
                 expected,
-                lambda c=box, sides=sides, dim=dim: max(_of_box(c, *pair, dim) for pair in sides),
+                partial(_worst, partial(_of_box, box, dim), sides),
                 _rounding(19**dim),
                 source="numpy, dense",
                 must=Verdict.HELD,
             )
+
+
+def _worst(deviation: Callable[[Any], float], cases: list[Any]) -> float:
+    return max(deviation(case) for case in cases)
 
 
 def _of_line(convolution: Callable[..., Callable[[np.ndarray], np.ndarray]], size: int) -> float:
@@ -103,11 +113,9 @@ def _of_band(size: int) -> float:
 
 
 def _of_box(
-    convolution: Callable[..., Callable[[np.ndarray], np.ndarray]],
-    sources: int,
-    targets: int,
-    dim: int,
+    convolution: Callable[..., Callable[[np.ndarray], np.ndarray]], dim: int, sides: tuple[int, int]
 ) -> float:
+    sources, targets = sides
     rng, worst = np.random.default_rng(sources + targets), 0.0
     for odd in (None, *range(dim)):
         w, u = (
@@ -143,7 +151,7 @@ def matrices(
                     "matrix",
                     f"{name}, n = {dim}, overlap {overlap:g}, N = {', '.join(map(str, counts))}",
                     "the printed formula, entry by entry",
-                    lambda a=(one, beta, dim, orders, overlap, half[dim]): _of_matrices(*a),
+                    partial(_of_matrices, one, beta, dim, orders, overlap, half[dim]),
                     # An entry is the sum of N others in FPSE and DPSE, whose kernels cancel by some ten.
                     _KERNELS,
                     source="mpmath, dense" if name != "GPSE" else "QUADPACK, dense",
@@ -160,7 +168,13 @@ def _of_matrices(
         kernels = Kernels(1.0 + beta, dim, order, family)
         for n in half:
             exact = matrix(one.name, kernels, n, overlap)
-            setting = {"alpha": 1.0 + beta, "order": order, "overlap": overlap, "dim": dim, "n": n}
+            setting: dict[str, Any] = {
+                "alpha": 1.0 + beta,
+                "order": order,
+                "overlap": overlap,
+                "dim": dim,
+                "n": n,
+            }
             for summation in ("fft", "naive"):
                 found = dense_matrix(one.operator(Setting(**setting, summation=summation)))
                 difference, size = (np.abs(a).sum(axis=1).max() for a in (found - exact, exact))
@@ -181,7 +195,7 @@ def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
                 "exterior",
                 f"KPSE's kernel, n = {n}, overlap {overlap:g}",
                 "the sum to infinity",
-                lambda n=n, s=overlap: _of_exterior(alpha, n, s),
+                partial(_of_exterior, alpha, n, overlap),
                 (3.0 * n) ** -4.0,
                 source="mpmath, QUADPACK",
             )
@@ -190,7 +204,7 @@ def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
             "exterior",
             f"N = {2 * n + 1}, terms: {terms}",
             "refused: too few particles to fit",
-            lambda n=n, terms=terms: _of_few(alpha, n, terms),
+            partial(_of_few, alpha, n, terms),
             0.0,
             must=Verdict.REFUSED,
         )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
 from fracstudy.probe import Probe, Verdict, probe
 from scenes.extremes.rough_data.cases import case_of, deviation, run
@@ -26,13 +28,13 @@ def probes(beta: float) -> Iterator[Probe]:
             "kind of data",
             words,
             "as float64",
-            lambda data=data: deviation(run(case, data), exact),
+            partial(_from, case, data, exact),
             0.0,
             must=Verdict.HELD,
         )
     for words, make in _wrong(bump).items():
         for entry, use in (
-            ("solve", lambda data: run(case, data)),
+            ("solve", partial(run, case)),
             ("prepare", prepare(case).solve),
         ):
             if entry == "prepare" and words.startswith("function"):
@@ -41,10 +43,18 @@ def probes(beta: float) -> Iterator[Probe]:
                 "refused",
                 f"{words}, {entry}",
                 "refused",
-                lambda use=use, make=make: float(np.abs(use(make())).max()),
+                partial(_used, use, make),
                 -1.0,
                 must=Verdict.REFUSED,
             )
+
+
+def _from(case: Case, data: Any, exact: np.ndarray) -> float:
+    return deviation(run(case, data), exact)
+
+
+def _used(use: Callable[[Any], np.ndarray], make: Callable[[], Any]) -> float:
+    return float(np.abs(use(make())).max())
 
 
 def _right(bump: np.ndarray) -> dict[str, Any]:
@@ -70,7 +80,7 @@ def _right(bump: np.ndarray) -> dict[str, Any]:
 def _wrong(bump: np.ndarray) -> dict[str, Callable[[], Any]]:
     def with_one(value: Any, kind: type = float) -> Callable[[], Any]:
         def make() -> Any:
-            data = bump.astype(kind)
+            data: np.ndarray = bump.astype(kind)
             data[3] = value
             return data
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ __all__ = ["exact", "sizes", "symmetries", "units"]
 
 # A run is some hundred roundings of the largest strength: of each particle the sum of N, of a series a term a degree.
 _SAME = 1e-12
+Advance = Callable[[np.ndarray], np.ndarray]
 _DENSE = 500  # particles, up to which the run is done as one matrix, too
 
 
@@ -58,7 +60,7 @@ def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
                     "exact",
                     f"{scheme}, {exterior}, {words}",
                     "exp(A T) u0",
-                    lambda case=case, u0=u0, whole=whole: deviation(run(case, u0), whole @ u0),
+                    partial(_from, case, u0, whole @ u0),
                     bound,
                     source="scipy, dense",
                 )
@@ -95,9 +97,7 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
                         "size",
                         f"{scheme}, n = {dim}, {exterior}, data times {size:g}",
                         "the solution times the same",
-                        lambda case=case, u0=size * u0, c=size, usual=usual: deviation(
-                            _scaled_back(run(case, u0), c), usual
-                        ),
+                        partial(_from_scaled, case, u0, size, usual),
                         10.0 * _SAME * digits,
                         source="scipy, dense" if dense else "",
                         must=Verdict.HELD,
@@ -115,11 +115,23 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
                 "size",
                 f"{scheme}, {words}",
                 "refused" if must else "at most what was given",
-                lambda case=case, u0=u0: float(np.abs(run(case, u0)).max() > np.abs(u0).max()),
+                partial(_grown, case, u0),
                 0.0,
                 source="maximum principle",
                 must=must,
             )
+
+
+def _from(case: Case, u0: np.ndarray, exact: np.ndarray) -> float:
+    return deviation(run(case, u0), exact)
+
+
+def _from_scaled(case: Case, u0: np.ndarray, size: float, exact: np.ndarray) -> float:
+    return deviation(_scaled_back(run(case, size * u0), size), exact)
+
+
+def _grown(case: Case, u0: np.ndarray) -> float:
+    return float(np.abs(run(case, u0)).max() > np.abs(u0).max())
 
 
 def _scaled_back(u: np.ndarray, size: float) -> np.ndarray:
@@ -141,14 +153,14 @@ def symmetries(beta: float, schemes: list[str]) -> Iterator[Probe]:
                 "sum of data",
                 f"{scheme}, {exterior}, noise",
                 "S(3 u - 2 v) = 3 S u - 2 S v",
-                lambda s=solve, u=u, v=v, c=scale: _apart(s(3 * u - 2 * v), 3 * s(u) - 2 * s(v), c),
+                partial(_of_sum, solve, u, v, scale),
                 10.0 * _SAME,
             )
             yield probe(
                 "mirror",
                 f"{scheme}, {exterior}, noise",
                 "the mirrored solution",
-                lambda s=solve, u=u, c=scale: _apart(s(u[::-1].copy()), s(u)[::-1], c),
+                partial(_of_mirror, solve, u, scale),
                 10.0 * _SAME,
             )
         if scheme == "DPSE":  # whose truncated potential reaches everywhere
@@ -161,12 +173,23 @@ def symmetries(beta: float, schemes: list[str]) -> Iterator[Probe]:
             "shift",
             f"{scheme}, noise on |x| <= 2, moved by 37 h, |x| <= 20 of 400",
             "the moved solution",
-            lambda s=solve, u=u, m=middle: _apart(
-                np.roll(s(np.roll(u, 37)), -37)[m], s(u)[m], float(np.abs(s(u)).max())
-            ),
+            partial(_of_shift, solve, u, middle),
             # What comes back from an end at 400 after T = 1/2: twice T 400^-(1+alpha), and the ends move by 37 h.
             2.0 * 0.5 * 390.0 ** -(2.0 + beta) * 17.0,
         )
+
+
+def _of_sum(solve: Advance, u: np.ndarray, v: np.ndarray, size: float) -> float:
+    return _apart(solve(3.0 * u - 2.0 * v), 3.0 * solve(u) - 2.0 * solve(v), size)
+
+
+def _of_mirror(solve: Advance, u: np.ndarray, size: float) -> float:
+    return _apart(solve(u[::-1].copy()), solve(u)[::-1], size)
+
+
+def _of_shift(solve: Advance, u: np.ndarray, middle: np.ndarray) -> float:
+    here, there = solve(u), np.roll(solve(np.roll(u, 37)), -37)
+    return _apart(there[middle], here[middle], float(np.abs(here).max()))
 
 
 def _apart(u: np.ndarray, v: np.ndarray, size: float) -> float:
@@ -201,7 +224,7 @@ def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
                     "units",
                     f"{scheme}, n = {dim}, lengths times {c:g}, D = {diffusivity:g}",
                     "the same in other units",
-                    lambda a=(scheme, beta, usual, c, fields): _in_other_units(*a),
+                    partial(_in_other_units, scheme, beta, usual, c, fields),
                     1e-10
                     if not ALL_SCHEMES[scheme].moving
                     else 1e-6,  # whose sums are exact to 1e-11 of the peak, a step

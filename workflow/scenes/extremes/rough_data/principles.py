@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -46,13 +47,14 @@ def signs(beta: float) -> Iterator[Probe]:
             "sign",
             f"{scheme}, order {order}, beta = {alpha_less_one:g}, one particle",
             "stays positive" if positive else "turns negative",
-            lambda case=case, positive=positive: _sign(run(case, point(case)), positive),
+            partial(_sign, case, positive),
             0.0,
             source="weights of the matrix",
         )
 
 
-def _sign(u: np.ndarray, positive: bool) -> tuple[float, str]:
+def _sign(case: Case, positive: bool) -> tuple[float, str]:
+    u = run(case, point(case))
     least = float(u.min() / u.max())
     found = least >= -_ROUNDED
     return float(found != positive), f"least u {least:.1e} of the peak"
@@ -78,7 +80,7 @@ def bounds(beta: float, dims: list[int]) -> Iterator[Probe]:
                     "bounds",
                     f"{scheme}, n = {dim}, {words}",
                     "within the bounds of the data",
-                    lambda case=case, u0=u0: _beyond(run(case, u0), u0),
+                    partial(_beyond, case, u0),
                     _ROUNDED,
                     source="maximum principle",
                 )
@@ -86,15 +88,18 @@ def bounds(beta: float, dims: list[int]) -> Iterator[Probe]:
                     "total",
                     f"{scheme}, n = {dim}, {words}",
                     "the total of the data",
-                    lambda case=case, u0=u0: float(
-                        abs(run(case, u0).sum() - u0.sum()) / np.abs(u0).sum()
-                    ),
+                    partial(_of_total, case, u0),
                     _ROUNDED,
                     source="closed form",
                 )
 
 
-def _beyond(u: np.ndarray, u0: np.ndarray) -> float:
+def _of_total(case: Case, u0: np.ndarray) -> float:
+    return float(abs(run(case, u0).sum() - u0.sum()) / np.abs(u0).sum())
+
+
+def _beyond(case: Case, u0: np.ndarray) -> float:
+    u = run(case, u0)
     return float(max(u.max() - u0.max(), u0.min() - u.min(), 0.0) / np.abs(u0).max())
 
 
@@ -113,9 +118,7 @@ def point_masses(beta: float, half_width: float) -> Iterator[Probe]:
             "wave of two",
             f"{scheme}, one particle, T = 0.5, h = 0.05",
             f"keeps {predicted:.2f} of its amplitude",
-            lambda case=case, predicted=predicted: _wave(
-                run(case, point(case)), point(case), predicted
-            ),
+            partial(_wave, case, predicted),
             0.02,  # of the wave: the ends of the lattice reflect some of it
             source="Fourier symbol",
             must=Verdict.WARNED,
@@ -127,7 +130,7 @@ def point_masses(beta: float, half_width: float) -> Iterator[Probe]:
             "point mass",
             f"{scheme}, h = 0.1 and 0.05, open",
             "the fundamental solution" + (", error falls 4 times" if scheme == "KPSE" else ""),
-            lambda cases=cases, scheme=scheme: _converges([_error(case) for case in cases], scheme),
+            partial(_converges, cases, scheme),
             1.0,
             source="closed form",
         )
@@ -145,7 +148,7 @@ def point_masses(beta: float, half_width: float) -> Iterator[Probe]:
             "point mass",
             f"GPSE, n = {n}, one step, open",
             "the fundamental solution",
-            lambda case=case: _error(case),
+            partial(_error, case),
             # The open exterior continues the data by nothing; what is left is the particle's own share,
             # 1 - sum_j V E_j for V E_0, the error of the quadrature: exp(-(2 pi / h)^alpha T).
             1e-6,
@@ -170,7 +173,7 @@ def functions(beta: float, schemes: list[str]) -> Iterator[Probe]:
                     "function",
                     f"{scheme}, {exterior}, {words}, h = 0.25",
                     "the solution on a fine lattice",
-                    lambda case=case, u=u: _of_function(case, u),
+                    partial(_of_function, case, u),
                     allowed,
                     source="evolve",
                 )
@@ -201,7 +204,9 @@ def _of_function(case: Case, u: Callable[[np.ndarray], np.ndarray]) -> float:
     return float(np.abs(run(case, u) - exact).sum() / np.abs(exact).sum())
 
 
-def _wave(u: np.ndarray, u0: np.ndarray, predicted: float) -> tuple[float, str]:
+def _wave(case: Case, predicted: float) -> tuple[float, str]:
+    u0 = point(case)
+    u = run(case, u0)
     wave = (-1.0) ** np.arange(u.size)
     found = float(wave @ u / (wave @ u0))
     return abs(found - predicted), f"{found:.2f}"
@@ -212,7 +217,8 @@ def _error(case: Case) -> float:
     return float(np.abs(run(case, point(case)) - exact).sum() / exact.sum())
 
 
-def _converges(errors: list[float], scheme: str) -> tuple[float, str]:
+def _converges(cases: list[Case], scheme: str) -> tuple[float, str]:
+    errors = [_error(case) for case in cases]
     words = " to ".join(f"{error:.0e}" for error in errors)
     if scheme == "GPSE":
         return errors[0] / 1e-9, words

@@ -7,8 +7,10 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute
@@ -18,7 +20,7 @@ __all__ = ["CASES", "digests", "probes"]
 
 _LINE = {"beta": 0.5, "half_width": 10.0, "spacing": 0.1}
 _OPEN = {**_LINE, "exterior": "open", "integrator": "exponential"}
-CASES = {
+CASES: dict[str, dict[str, Any]] = {
     "DD, series": {"scheme": "DD", **_LINE, "integrator": "exponential"},
     "FPSE, open": {"scheme": "FPSE", **_OPEN},
     "KPSE, steps": {"scheme": "KPSE", **_LINE, "dt": 0.01, "evaluation": "stepping"},
@@ -83,11 +85,15 @@ def probes(threads: list[int], workflow: bool) -> Iterator[Probe]:
         for name, digest in first.items():
             yield probe(
                 "bits", f"{name}, {what}", "the same bits",
-                lambda a=digest, b=found[name]: (float(a != b), "the same" if a == b else "others"),
+                partial(_compared, digest, found[name]),
                 0.0, must=Verdict.HELD,
             )  # fmt: skip
     if workflow:
         yield from _workflows()
+
+
+def _compared(one: Any, other: Any) -> tuple[float, str]:
+    return float(one != other), "the same" if one == other else "others"
 
 
 def _workflows() -> Iterator[Probe]:
@@ -99,5 +105,5 @@ def _workflows() -> Iterator[Probe]:
         for path in files[0]:
             yield probe(
                 "bits", f"{Path(path).parts[0]}: {Path(path).name}, -j1 and -j2", "the same bytes",
-                lambda p=path: (float(files[0][p] != files[1].get(p)), "the same"), 0.0, must=Verdict.HELD,
+                partial(_compared, files[0][path], files[1].get(path)), 0.0, must=Verdict.HELD,
             )  # fmt: skip

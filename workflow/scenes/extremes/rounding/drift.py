@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from math import fsum, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +25,7 @@ _FIELDS = {"scheme": "KPSE", "beta": 0.5, "half_width": 5.0, "spacing": 0.5}
 _SHARE = 0.5  # of the stability limit
 
 
-def _case(steps: int, **more: object) -> Case:
+def _case(steps: int, **more: Any) -> Case:
     limit = Case(**_FIELDS, dt=1e-6).largest_stable_step
     dt = _SHARE * limit
     return Case(**_FIELDS, dt=dt, t_final=0.5 + steps * dt, integrator="euler", **more)
@@ -53,7 +55,7 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
         stepped.append(drift(u))
         done = n
     series = [drift(prepare(_case(n)).solve(u0)) for n in counts]
-    single = _by_matrix(matrix, u0, counts, np.float32, mass)
+    single = _by_matrix(matrix, u0, counts, np.float32)
     compensated = _compensated(matrix, u0, counts, mass)
     for name, values in (
         ("float64, step by step", stepped),
@@ -79,21 +81,28 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
         ):
             yield probe(
                 "mass", f"KPSE, {n:.0e} steps of Euler, {name}", "kept; drift below n N eps",
-                lambda value=value: value, n * terms * eps, source="math.fsum", must=Verdict.HELD,
+                partial(float, value), n * terms * eps, source="math.fsum", must=Verdict.HELD,
             )  # fmt: skip
     both = float(np.abs(prepare(_case(most)).solve(u0) / u - 1.0).max())
     yield probe(
         "mass", f"KPSE, {most:.0e} steps, step by step and one series", "the same, below n N eps",
-        lambda: both, most * terms * _EPS, must=Verdict.HELD,
+        partial(float, both), most * terms * _EPS, must=Verdict.HELD,
     )  # fmt: skip
 
 
+<<<<<<< HEAD
 def _by_matrix(
     matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type, mass: float
 ) -> list[float]:
     """The drift where all numbers are of a kind; by powers of ten of the matrix times the strengths, step by step."""
     a: np.ndarray = matrix.astype(kind)
     u: np.ndarray = u0.astype(kind)
+=======
+def _by_matrix(matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type) -> list[float]:
+    """The drift where all numbers are of a kind."""
+    a: Any = matrix.astype(kind)
+    u: Any = u0.astype(kind)
+>>>>>>> main
     start, done, found = fsum(map(float, u)), 0, []
     for n in counts:
         for _ in range(n - done):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from math import fsum, log2
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -61,6 +62,7 @@ def _kinds() -> Iterator[Probe]:
         "a negative stride": u0[::-1].copy()[::-1],
         "read-only": written,
     }.items():
+<<<<<<< HEAD
         expected, right = "the bits of float64", np.array(given, dtype=float)
 
         def run(given: np.ndarray = given, right: np.ndarray = right) -> float:
@@ -77,6 +79,16 @@ def _kinds() -> Iterator[Probe]:
             return float(not (same and given.tobytes() == before.tobytes()))
 
         yield probe("type", f"strengths of {name}", expected, run, 0.0, must=HELD)
+=======
+        yield probe(
+            "type",
+            f"strengths of {name}",
+            "the bits of float64",
+            partial(_other_bits, case, given),
+            0.0,
+            must=HELD,
+        )
+>>>>>>> main
     bad = {
         "complex": np.ones(case.shape, complex),
         "bool": np.ones(case.shape, bool),
@@ -89,18 +101,32 @@ def _kinds() -> Iterator[Probe]:
             "type",
             f"strengths of {name}",
             "refused",
-            lambda given=given: fp.solve(case, given) and np.nan,
+            partial(_solved, case, given),
             0.0,
             must=REFUSED,
         )
 
 
+def _solved(case: Case, given: np.ndarray) -> float:
+    fp.solve(case, given)
+    return np.nan
+
+
+def _other_bits(case: Case, given: np.ndarray) -> float:
+    """Zero if all that takes strengths gives the bits that it gives for their values, and leaves them as they are."""
+    before, ready = given.copy(), prepare(case)
+    assert ready.operator is not None
+    takers = [lambda u: fp.solve(case, u).u.values, ready.solve, ready.operator.apply]
+    right = np.array(given, dtype=float)
+    same = all(taker(given).tobytes() == taker(right).tobytes() for taker in takers)
+    return float(not (same and given.tobytes() == before.tobytes()))
+
+
 def _functions() -> Iterator[Probe]:
     """Public functions of float32: the value at the number in float64, not one of single precision."""
     x = np.linspace(-3.0, 3.0, 31).astype(np.float32)
-    wide = x.astype(float)
     time, alpha = np.float32(0.7), np.float32(1.3)
-    functions = {
+    functions: dict[str, Callable[..., Any]] = {
         "green": lambda x, t, a: fp.green(x, t, a),
         "green_flux": lambda x, t, a: fp.green_flux(x, t, a),
         "green_rate": lambda x, t, a: fp.green_rate(x, t, a),
@@ -108,8 +134,16 @@ def _functions() -> Iterator[Probe]:
         "kernel G": lambda x, t, a: fp.kernel("G", x, a),
         "evolve": lambda x, t, a: fp.evolve(np.exp(-(x.astype(float) ** 2)), 0.2, a, t),
     }
+    narrow, wide = (x, time, alpha), (x.astype(float), float(time), float(alpha))
     for name, function in functions.items():
+        run = partial(_unlike, function, narrow, wide)
+        yield probe("type", f"{name} of float32", "the bits of float64", run, 0.0, must=HELD)
+    third = np.array([1.0 / 3.0], dtype=np.float32)
+    for kept in (real_array("x", third), operand("x", third, (1,))):
+        # The number in single precision next to a third is 11184811 / 2^25.
+        run = partial(_apart, kept, np.array([11184811.0 / 2.0**25]), np.ones(1))
         yield probe(
+<<<<<<< HEAD
             "type", f"{name} of float32", "the bits of float64",
             lambda f=function: float(not np.array_equal(f(x, time, alpha), f(wide, float(time), float(alpha)))),
             0.0, must=HELD,
@@ -126,7 +160,19 @@ def _functions() -> Iterator[Probe]:
             0.0,
             source="IEEE 754",
             must=HELD,
+=======
+            "type", "a third as float32", "11184811 / 2^25", run, 0.0, source="IEEE 754", must=HELD
+>>>>>>> main
         )
+
+
+def _unlike(function: Callable[..., Any], narrow: Any, wide: Any) -> float:
+    return float(not np.array_equal(function(*narrow), function(*wide)))
+
+
+def _apart(found: Any, exact: Any, scale: Any) -> float:
+    """The greatest difference, in units of a scale."""
+    return float(np.max(np.abs(found - exact) / scale))
 
 
 def _sums(particles: int) -> Iterator[Probe]:
@@ -158,18 +204,31 @@ def _sums(particles: int) -> Iterator[Probe]:
             largest = np.linalg.norm(weights, axis=1) * np.linalg.norm(u)
             for name, operator in sums.items():
                 scale = largest * 8.0 * log2(particles) if name == "fft" else size * particles
+                case_in_words = f"{scheme}, {case.particles} particles, {what}, {name}"
+                run = partial(_apart, operator.apply(u)[rows], exact, _EPS * scale)
                 yield probe(
-                    "sum", f"{scheme}, {case.particles} particles, {what}, {name}", "mpmath.fdot, to round-off",
-                    lambda o=operator, u=u, e=exact, s=scale: float((np.abs(o.apply(u)[rows] - e) / s).max() / _EPS),
-                    1.0, source="mpmath", must=HELD,
-                )  # fmt: skip
+                    "sum",
+                    case_in_words,
+                    "mpmath.fdot, in units of its bound",
+                    run,
+                    1.0,
+                    source="mpmath",
+                    must=HELD,
+                )
     for what, u in data.items():
         case = Case(scheme="KPSE", spacing=h, **_FIELDS)
         bound = _EPS * (16.0 + log2(particles)) * float(np.abs(u).sum()) * case.particle_spacing
+        whole = case.particle_spacing * fsum(u)
+        run = partial(_apart, case.integral(u), whole, 1.0)
         yield probe(
-            "sum", f"mass of {particles} particles, {what}", "math.fsum, pairwise",
-            lambda u=u, c=case: abs(c.integral(u) - c.particle_spacing * fsum(u)), bound, source="math.fsum", must=HELD,
-        )  # fmt: skip
+            "sum",
+            f"mass of {particles} particles, {what}",
+            "math.fsum, pairwise",
+            run,
+            bound,
+            source="math.fsum",
+            must=HELD,
+        )
 
 
 def _series() -> Iterator[Probe]:
@@ -278,7 +337,9 @@ def _arithmetic() -> Iterator[Probe]:
     )
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.full(case.shape, 3e-310)
-    matrix = np.array([prepare(case).operator.apply(unit) for unit in np.eye(u0.size)]).T  # type: ignore[union-attr]
+    operator = prepare(case).operator
+    assert operator is not None
+    matrix = np.array([operator.apply(unit) for unit in np.eye(u0.size)]).T
     exact = expm(matrix * case.span) @ np.full(u0.size, 3.0)
     yield probe(
         "arithmetic",
