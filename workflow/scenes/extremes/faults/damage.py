@@ -81,24 +81,6 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
             run = partial(_used, look, copy, data)
             yield probe("damaged run", f"{case}, {use}", "refused", run, 0.0, must=Verdict.REFUSED)
     copy.unlink(missing_ok=True)
-<<<<<<< HEAD
-    yield probe(
-        "damaged run",
-        "none",
-        "refused",
-        lambda: _opened(copy),
-        0.0,
-        must=Verdict.REFUSED,
-    )
-    yield probe(
-        "damaged run",
-        "a directory",
-        "refused",
-        lambda: _opened(setup.folder),
-        0.0,
-        must=Verdict.REFUSED,
-    )
-=======
     for case, path in (("none", copy), ("a directory", setup.folder)):
         run = partial(_used, read_run, path)
         yield probe("damaged run", case, "refused", run, 0.0, must=Verdict.REFUSED)
@@ -108,13 +90,6 @@ def _used(look: Callable[[Path], object], path: Path, data: bytes | None = None)
     if data is not None:
         path.write_bytes(data)
     look(path)
-    return np.nan
->>>>>>> main
-
-
-def _opened(path: Path) -> float:
-    """Open what is no run: it must be refused."""
-    read_run(path)
     return np.nan
 
 

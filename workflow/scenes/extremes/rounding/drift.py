@@ -90,19 +90,10 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
     )  # fmt: skip
 
 
-<<<<<<< HEAD
-def _by_matrix(
-    matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type, mass: float
-) -> list[float]:
-    """The drift where all numbers are of a kind; by powers of ten of the matrix times the strengths, step by step."""
-    a: np.ndarray = matrix.astype(kind)
-    u: np.ndarray = u0.astype(kind)
-=======
 def _by_matrix(matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type) -> list[float]:
     """The drift where all numbers are of a kind."""
     a: Any = matrix.astype(kind)
     u: Any = u0.astype(kind)
->>>>>>> main
     start, done, found = fsum(map(float, u)), 0, []
     for n in counts:
         for _ in range(n - done):

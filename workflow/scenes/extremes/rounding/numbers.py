@@ -62,24 +62,6 @@ def _kinds() -> Iterator[Probe]:
         "a negative stride": u0[::-1].copy()[::-1],
         "read-only": written,
     }.items():
-<<<<<<< HEAD
-        expected, right = "the bits of float64", np.array(given, dtype=float)
-
-        def run(given: np.ndarray = given, right: np.ndarray = right) -> float:
-            before = given.copy()
-            ready = prepare(case)
-            assert ready.operator is not None
-            bits = [fp.solve(case, given).u.values, ready.solve(given), ready.operator.apply(given)]
-            wanted = [
-                fp.solve(case, right).u.values,
-                ready.solve(right),
-                ready.operator.apply(right),
-            ]
-            same = all(a.tobytes() == b.tobytes() for a, b in zip(bits, wanted, strict=True))
-            return float(not (same and given.tobytes() == before.tobytes()))
-
-        yield probe("type", f"strengths of {name}", expected, run, 0.0, must=HELD)
-=======
         yield probe(
             "type",
             f"strengths of {name}",
@@ -88,7 +70,6 @@ def _kinds() -> Iterator[Probe]:
             0.0,
             must=HELD,
         )
->>>>>>> main
     bad = {
         "complex": np.ones(case.shape, complex),
         "bool": np.ones(case.shape, bool),
@@ -143,26 +124,7 @@ def _functions() -> Iterator[Probe]:
         # The number in single precision next to a third is 11184811 / 2^25.
         run = partial(_apart, kept, np.array([11184811.0 / 2.0**25]), np.ones(1))
         yield probe(
-<<<<<<< HEAD
-            "type", f"{name} of float32", "the bits of float64",
-            lambda f=function: float(not np.array_equal(f(x, time, alpha), f(wide, float(time), float(alpha)))),
-            0.0, must=HELD,
-        )  # fmt: skip
-    for check in (real_array, lambda name, value: operand(name, value, (2,))):
-        yield probe(
-            "type",
-            "a third as float32",
-            "its own value, 0.3333333433",
-            lambda c=check: abs(
-                float(np.asarray(c("x", np.array([1 / 3, 1 / 3], dtype=np.float32)))[0])
-                - 0.3333333432674408
-            ),
-            0.0,
-            source="IEEE 754",
-            must=HELD,
-=======
             "type", "a third as float32", "11184811 / 2^25", run, 0.0, source="IEEE 754", must=HELD
->>>>>>> main
         )
 
 
