@@ -386,3 +386,11 @@ def test_the_estimates_have_no_units(length, size):
     with warnings.catch_warnings():
         warnings.simplefilter("error", RuntimeWarning)
         assert found(length, size) == pytest.approx(found(1.0, 1.0), rel=1e-6)
+
+
+@pytest.mark.parametrize(("scheme", "open_"), [("KPSE", True), ("DPSE", False)])
+def test_an_open_exterior_is_advised_where_there_is_one(scheme, open_):
+    with pytest.warns(AccuracyWarning, match="does not fit") as said:
+        compute(case_of(scheme=scheme, half_width=4.0, spacing=0.1, t_final=1.0), bump)
+    (text,) = [str(one.message) for one in said if "does not fit" in str(one.message)]
+    assert ("or exterior='open'" in text) == open_

@@ -274,3 +274,11 @@ def test_the_strengths_beyond_the_particles_are_those_of_an_open_run_only():
     tail = (20.05**-1.5 - 40.05**-1.5) / 1.5
     for beyond in (open_[:200], open_[-200:]):
         assert 0.1 * tail < h * beyond.sum() < tail
+
+
+def test_points_too_far_beyond_the_particles_are_refused_with_how_far_is_allowed():
+    x = lattice(200, 0.1)
+    velocity = dvm.DiffusionVelocity(1.5, 2, 0.2, exterior="open")
+    with pytest.raises(InvalidInput, match=rf"up to {0.5 * REACH:g} smoothing lengths beyond"):
+        velocity.field_and_flux(x, 0.1 * power(x, 1.5), np.array([20.0 + 0.6 * REACH * 0.2]))
+    velocity.field_and_flux(x, 0.1 * power(x, 1.5), np.array([20.0 + 0.45 * REACH * 0.2]))

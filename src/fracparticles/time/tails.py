@@ -175,7 +175,9 @@ class Tails:
         flat = u.reshape(len(u), self._x.size**self._dim)
         numbers = np.empty((len(u), self._fit.shape[0] + self._dim + 2))
         numbers[:, : -self._dim - 2] = flat[:, self._samples] @ self._fit.T
-        flat[:, self._beyond] = numbers[:, : -self._dim - 2] @ self._powers
+        # Here and below not by BLAS, which rounds otherwise for each number of threads.
+        amplitudes = numbers[:, : -self._dim - 2]
+        flat[:, self._beyond] = np.einsum("ij,jk->ik", amplitudes, self._powers)
         axes = range(1, self._dim + 1)
         lines = [u.mean(axis=tuple(a for a in axes if a != d)) for d in axes]  # along each axis
         numbers[:, -2 - self._dim] = lines[0].mean(axis=1)
@@ -207,7 +209,7 @@ class Tails:
             return series @ bases[0]
         series = series.reshape(-1, *[len(basis) for basis in bases])
         for basis in bases:  # each axis moves to the end in its turn
-            series = np.tensordot(series, basis, axes=(1, 0))
+            series = np.einsum("nk...,kx->n...x", series, basis)
         return series
 
 

@@ -8,6 +8,7 @@ import shutil
 import signal
 import sys
 import time
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -146,8 +147,8 @@ def _command(setup: Setup) -> int:
         status = main([*FLAGS, str(setup.path)])
         sys.stdout.flush()
     except KeyboardInterrupt as error:
-        # Before it began, or when it had ended.
-        if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+        # In the instant before it began, or after it ended: it was not at work.
+        if "_run" in {frame.name for frame in traceback.extract_tb(error.__traceback__)}:
             raise
         print("error: interrupted", file=sys.stderr)
         return 130
