@@ -246,3 +246,11 @@ def test_a_field_below_zero_is_refused_where_it_is_not_watched_and_zero_where_it
     f[place] = value
     with pytest.raises(InvalidInput, match="f = "):
         lines.solve(f, [0.0, 1e-3])
+
+
+def test_the_stabilised_steps_are_observed_from_zero_on():
+    seen: list[float] = []
+    ChebyshevStep(3).advance(
+        lambda y: -y, np.ones(1), dt=0.25, steps=3, observe=lambda t, _: seen.append(t)
+    )
+    assert seen == [0.0, 0.25, 0.5, 0.75]

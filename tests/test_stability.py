@@ -180,3 +180,13 @@ def test_in_a_box_the_range_holds_a_symbol_that_is_nearly_radial(dim, count, ord
     low, _ = symbol_range("DD", 0.5, order, 2.0, dim)
     assert low <= values.min() * (1.0 - 1e-9)
     assert low == pytest.approx(values.min(), rel=2e-3)
+
+
+def test_overlaps_from_a_quarter_to_a_thousand():
+    """Both ends are allowed."""
+    for overlap in (0.25, 1000.0):
+        low, high = symbol_range("DD", 0.5, 2, overlap)
+        assert low < high
+    for overlap in (0.2499, 1001.0):
+        with pytest.raises(InvalidInput, match=r"0\.25 to 1000"):
+            symbol_range("DD", 0.5, 2, overlap)

@@ -250,12 +250,19 @@ class Tests:
             total = self.all_lines[who] or 1
             return test not in at_line, -in_file[who] / total, -in_room[who] / total, test
 
+        # One of each function comes before the same with other parameters.
+        seen: Counter[tuple[bool, str]] = Counter()
+        order: list[tuple[bool, bool, int, str]] = []
+        for place, key in enumerate(sorted(map(farness, self.seconds))):
+            if key[2] < 0.0:
+                function = key[0], key[3].partition("[")[0]
+                order.append((key[0], seen[function] > 0, place, key[3]))
+                seen[function] += 1
         near: list[str] = []
         far: list[str] = []
         spent = 0.0
-        for test in sorted(self.seconds, key=farness):
-            sees = farness(test)[2] < 0.0
-            if sees and spent + self.seconds[test] <= seconds:
+        for *_, test in sorted(order):
+            if spent + self.seconds[test] <= seconds:
                 spent += self.seconds[test]
                 (near if spent < SOON else far).append(test)
         return near, far

@@ -46,7 +46,7 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
     mass, terms = fsum(u0), operator.size
 
     def drift(u: np.ndarray) -> float:
-        return max(abs(fsum(map(float, u)) / mass - 1.0), 0.1 * _EPS)
+        return max(abs(fsum(map(float, u)) / mass - 1.0), 0.5 * _EPS)
 
     u, done = u0, 0
     stepped = []
@@ -99,7 +99,7 @@ def _by_matrix(matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type
         for _ in range(n - done):
             u = a @ u
         done = n
-        found.append(max(abs(fsum(map(float, u)) / start - 1.0), 0.1 * _EPS))
+        found.append(max(abs(fsum(map(float, u)) / start - 1.0), 0.5 * _EPS))
     return found
 
 
@@ -115,5 +115,5 @@ def _compensated(matrix: np.ndarray, u0: np.ndarray, counts: list[int], mass: fl
             lost = added - (total - u)
             u = total
         done = n
-        found.append(max(abs(fsum([*u, *lost]) / mass - 1.0), 0.1 * _EPS))
+        found.append(max(abs(fsum([*u, *lost]) / mass - 1.0), 0.5 * _EPS))
     return found
