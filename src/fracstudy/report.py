@@ -142,7 +142,7 @@ def build(
             claims_csv=_link(claims_csv, out),
         ),
         *(_render(templates["document.md.j2"], page=part) for part in parts),
-        look_ups.filled(Path(template_dir) / f"{FINDINGS}.md.j2"),
+        look_ups.filled(Path(template_dir) / f"{FINDINGS}.md.j2", results=_link(results, out)),
     ]
     paths = pages(documents, out)
     for path, text in zip(paths, texts, strict=True):
@@ -187,7 +187,7 @@ def _section(scene: Scene, look_ups: LookUps, results: Path, out: Path) -> _Sect
     return _Section(
         name=scene.name,
         title=scene.heading,
-        caption=look_ups.filled(caption, scene=scene),
+        caption=look_ups.filled(caption, scene=scene, root=_link(Path.cwd(), out)),
         figure=_link(figures[0], out) if figures else "",
         table=table,
         rows=length,
