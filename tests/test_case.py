@@ -418,3 +418,13 @@ def test_naive_sums_of_dvm_that_would_take_minutes_are_refused():
     with pytest.raises(InvalidInput, match=r"^overlap = 60.0 .* at most 20 for naive sums"):
         case(**wide, summation="naive")
     case(**wide)
+
+
+def test_a_copy_with_another_value_is_a_case_of_its_own():
+    case = Case(scheme="KPSE", beta=0.5, half_width=10.0, spacing=0.25, dt=0.05)
+    assert case.time_step == pytest.approx(0.05)  # which is kept
+    other = case.model_copy(update={"dt": 0.5})
+    assert other == Case(scheme="KPSE", beta=0.5, half_width=10.0, spacing=0.25, dt=0.5)
+    assert other.time_step == 0.5
+    with pytest.raises(InvalidInput, match="dt"):
+        case.model_copy(update={"dt": -1.0})

@@ -12,7 +12,7 @@ __all__ = ["slowest", "summary"]
 
 
 def slowest(metadata: Path, since: float, count: int = 5) -> list[tuple[float, str]]:
-    """Return the jobs that took longest since a time, in seconds, from what Snakemake notes of every file.
+    """Return the rules whose jobs took longest since a time, in seconds, from what Snakemake notes of every file.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def slowest(metadata: Path, since: float, count: int = 5) -> list[tuple[float, s
     count : int
         How many.
     """
-    jobs: dict[tuple[float, str], float] = {}
+    jobs: dict[str, float] = {}
     for path in metadata.rglob("*"):
         if path.is_file():
             try:
@@ -32,8 +32,8 @@ def slowest(metadata: Path, since: float, count: int = 5) -> list[tuple[float, s
             except (ValueError, KeyError, OSError):
                 continue  # a note that is being written, or of another version
             if ended and ended >= since:
-                jobs[started, rule] = ended - started
-    return sorted(((took, rule) for (_, rule), took in jobs.items()), reverse=True)[:count]
+                jobs[rule] = max(jobs.get(rule, 0.0), ended - started)
+    return sorted(((took, rule) for rule, took in jobs.items()), reverse=True)[:count]
 
 
 def summary(claims: Path, pages: Iterable[Path], jobs: Iterable[tuple[float, str]]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from hashlib import sha256
 from typing import Any
 from urllib.parse import quote
@@ -60,6 +61,13 @@ class Case(Parameters):
         if self.times is not None:
             parts(self)  # each of them is checked
         return self
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Case:
+        """Return the case with other values of some fields, checked as a new one; raises as that.
+
+        Pydantic's own copies what was cached, too: the old time step of another dt.
+        """
+        return type(self)(**{**self.model_dump(exclude_unset=True), **(update or {})})
 
     def refuse_point_mass(self) -> None:
         """Refuse to start from the fundamental solution at t = 0, where it is a point mass.

@@ -36,6 +36,7 @@ from fracparticles.special.images import (
 __all__ = ["MOST_TERMS", "Tails", "later_powers", "powers", "tail_exponents"]
 
 MOST_TERMS = 6
+_FOR_BLAS = 8192  # products of two numbers, below which it takes one thread
 _SAME = 1e-9  # exponents nearer than this are one
 # Measured: six terms in space leave 1e-10 / distance of the maximum, and more near two, where all are nearly even and
 # nearly one. The amplitude of a term that is left out is proportional to the distance.
@@ -175,9 +176,7 @@ class Tails:
         flat = u.reshape(len(u), self._x.size**self._dim)
         numbers = np.empty((len(u), self._fit.shape[0] + self._dim + 2))
         numbers[:, : -self._dim - 2] = flat[:, self._samples] @ self._fit.T
-        # Here and below not by BLAS, which rounds otherwise for each number of threads.
-        amplitudes = numbers[:, : -self._dim - 2]
-        flat[:, self._beyond] = np.einsum("ij,jk->ik", amplitudes, self._powers)
+        flat[:, self._beyond] = _along(numbers[:, : -self._dim - 2], self._powers)
         axes = range(1, self._dim + 1)
         lines = [u.mean(axis=tuple(a for a in axes if a != d)) for d in axes]  # along each axis
         numbers[:, -2 - self._dim] = lines[0].mean(axis=1)
@@ -195,22 +194,27 @@ class Tails:
         return np.asarray(numbers @ (columns @ amplitudes).T)
 
     def _sum(self, numbers: np.ndarray, series: np.ndarray) -> np.ndarray:
-        """Return sum_j (a_j - p_j.grad) S_j on the lattice, shape (data, L, .., L)."""
-        parts = series @ numbers.T  # of the sum and of each derivative, for each of the data
-        total = self._on_lattice(parts[0].T, -1)
+        """Return sum_j (a_j - p_j.grad) S_j on the lattice, shape (data, L, .., L).
+
+        The polynomials are summed along one axis after the other; the sum and the derivatives of the axes that are
+        done are one array.
+        """
+        shape = (len(numbers), *(len(self._basis),) * self._dim)
+        total, *slopes = (part.T.reshape(shape) for part in series @ numbers.T)
         for d in range(self._dim):
-            total -= self._on_lattice(parts[1 + d].T, d)
+            total = _along(total, self._basis) - _along(slopes[d], self._slope)
+            slopes[d + 1 :] = [_along(slope, self._basis) for slope in slopes[d + 1 :]]
         return total
 
-    def _on_lattice(self, series: np.ndarray, sloping: int) -> np.ndarray:
-        """The polynomials on the lattice, along one axis their derivative."""
-        bases = [self._slope if axis == sloping else self._basis for axis in range(self._dim)]
-        if self._dim == 1:
-            return series @ bases[0]
-        series = series.reshape(-1, *[len(basis) for basis in bases])
-        for basis in bases:  # each axis moves to the end in its turn
-            series = np.einsum("nk...,kx->n...x", series, basis)
-        return series
+
+def _along(series: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """Sum over the first axis after the data, whose place on the lattice becomes the last.
+
+    Only small sums are left to BLAS, which rounds otherwise for another number of threads.
+    """
+    if series.ndim == 2 and series.size * basis.shape[1] <= _FOR_BLAS:
+        return np.asarray(series @ basis)
+    return np.einsum("nk...,kx->n...x", series, basis)
 
 
 def later_powers(tail: Sequence[float], dim: int, alpha: float, terms: int) -> tuple[float, ...]:

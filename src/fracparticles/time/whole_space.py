@@ -11,6 +11,7 @@ A method of the lattice has its own f: the symbol of a scheme, or of a differenc
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -291,4 +292,4 @@ def _refuse_outgrown(points: int, spread: float) -> None:
 
 def _count(u: np.ndarray, dim: int) -> int:
     """How many data there are in an array of shape (.., N, .., N)."""
-    return int(np.prod(u.shape[: u.ndim - dim]))
+    return math.prod(u.shape[: u.ndim - dim])
