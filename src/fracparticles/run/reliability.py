@@ -10,10 +10,9 @@ between_particles
     int |I - u| / int (|I| + |u|) of initial data that are a function u, by its values half-way between the particles,
     where I interpolates those at the particles. What lies between them no other estimate can see.
 wave_error
-    The greatest |p(A dt)^n - exp(-T D |k|^alpha)|, from the symbol of A, over some waves that the data hold: of their
-    wavenumber, a half, and a quarter of it, and the one that decays to 1/e; over the part of int |u| that is left,
-    which data of both signs may lose, but not beyond the lattice. It sees an overlap too small, a first
-    order, a coarse time step. Of DVM it is what the field (7) lacks of these waves.
+    sum |u^| |p(A dt)^n - exp(-T D |k|^alpha)| / sum |u^| exp(-T D |k|^alpha), with p from the symbol of A and the
+    transform u^ of the initial data: the error of a peak, where all waves are in phase, over the peak. It sees a
+    lattice too coarse, an overlap too small, a first order, a coarse time step. Of DVM it is what the field (7) lacks.
 growth
     max |u(t_f)| / max |u(t_i)|, or int |u(t_f)| / int |u(t_i)| on the lattice less the share of u(t_i) that lies beyond
     it: both are at most 1 for the equation.
@@ -112,8 +111,7 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
     if callable(initial):
         found["between_particles"] = (hidden, "misfit of initial data between the particles")
     if not case.is_graded:  # whose operator has no symbol
-        error = _ratio(wave_error(case, u0), min(1.0, left))
-        found["wave_error"] = (error, "error in the amplitude of waves that the data hold")
+        found["wave_error"] = (wave_error(case, u0), "error of the waves of a peak, over the peak")
     if case.kind.moving:  # its particles spread with the solution
         found["outside_share"] = (outside, "estimated share of |u| beyond the lattice at t_initial")
         return found
@@ -197,8 +195,8 @@ def _complaints(
         )
     if "wave_error" in large:
         yield (
-            f"waves of the length that the initial data hold come out wrong by {value['wave_error']:.2g} of their "
-            f"amplitude. Take a smaller spacing, an overlap of about 2 (now {case.resolved_overlap:.3g}), a smaller "
+            f"the waves that the initial data hold come out wrong by up to {value['wave_error']:.2g} of the peak that "
+            f"they make. Take a smaller spacing, an overlap of about 2 (now {case.resolved_overlap:.3g}), a smaller "
             "time step, or another scheme."
         )
     if "table_error" in large:
@@ -338,24 +336,43 @@ def tail_misfit(case: Case, u: np.ndarray) -> float:
 
 
 def wave_error(case: Case, u: np.ndarray) -> float:
-    """Return the greatest error in the amplitude of some waves that u holds, along an axis; see the module."""
-    tau = case.setting.rate * case.span
-    # The wavenumber of data that vary along every axis alike.
-    theta = np.sqrt(case.dim) * wavenumber(u) * np.array([1.0, 0.5, 0.25])
-    theta = np.unique(np.append(theta, min(theta[0], tau ** (-1.0 / case.alpha))))
+    """Return how much of a peak the errors in the amplitudes of its waves may make; see the module."""
+    tau, theta = case.setting.rate * case.span, waves(u)
+    if not theta.size:
+        return 0.0
     exact = np.exp(-tau * theta**case.alpha)
     if case.kind.moving:
-        return float((np.abs(1.0 - _of_the_field(case, theta)) * exact).max())
-    along = theta if case.dim == 1 else theta[:, None] * np.eye(case.dim)[0]
-    symbol = SCHEMES[case.scheme].symbol(along, case.setting)
-    with np.errstate(over="ignore"):
-        if case.steps:
-            z = symbol * tau / case.steps
-            sign, exponent = STEP_POLYNOMIALS[case.resolved_integrator].log_power(z, case.steps)
-            amplitude = sign * np.exp(exponent)
-        else:
-            amplitude = np.exp(tau * symbol)
-    return float(np.abs(amplitude - exact).max())
+        wrong = np.abs(1.0 - _of_the_field(case, theta)) * exact
+    else:
+        along = theta if case.dim == 1 else theta[:, None] * np.eye(case.dim)[0]
+        symbol = SCHEMES[case.scheme].symbol(along, case.setting)
+        with np.errstate(over="ignore"):
+            if case.steps:
+                z, polynomial = (
+                    symbol * tau / case.steps,
+                    STEP_POLYNOMIALS[case.resolved_integrator],
+                )
+                sign, exponent = polynomial.log_power(z, case.steps)
+                amplitude = sign * np.exp(exponent)
+            else:
+                amplitude = np.exp(tau * symbol)
+        wrong = np.abs(amplitude - exact)
+    return _ratio(wrong.sum(), exact.sum())
+
+
+def waves(u: np.ndarray, count: int = 64) -> np.ndarray:
+    """Return wavenumbers theta = k h <= pi, to each of which an equal share of sum |u^| belongs; none for u = 0."""
+    size = np.abs(np.fft.rfftn(u))
+    size[..., 1 : (u.shape[-1] + 1) // 2] *= 2.0  # and its conjugate
+    axes = [np.fft.fftfreq(n) for n in u.shape[:-1]] + [np.fft.rfftfreq(u.shape[-1])]
+    square = sum(np.square(axis) for axis in np.meshgrid(*axes, indexing="ij", sparse=True))
+    theta = np.minimum(2.0 * np.pi * np.sqrt(square), np.pi).reshape(-1)
+    order = np.argsort(theta, kind="stable")
+    share = np.cumsum(size.reshape(-1)[order])
+    if not share[-1] > 0.0:
+        return np.zeros(0)
+    middles = share[-1] * (np.arange(count) + 0.5) / count
+    return np.asarray(theta[order[np.searchsorted(share, middles)]])
 
 
 def _of_the_field(case: Case, theta: np.ndarray) -> np.ndarray:
