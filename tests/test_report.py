@@ -12,7 +12,8 @@ from fracstudy.claims import read_printed
 from fracstudy.config import Document
 from fracstudy.criteria import Convention, Status
 from fracstudy.findings import measured
-from fracstudy.ledger import ledger, write_ledger
+from fracstudy.ledger import ledger
+from fracstudy.ledger_text import write_ledger
 from fracstudy.lookup import LookUpError
 from fracstudy.report import ReportError, build
 from fracstudy.scene import Scene

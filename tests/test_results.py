@@ -16,7 +16,7 @@ from fracstudy.config import read_config
 from fracstudy.criteria import Status
 from fracstudy.findings import read_findings
 from fracstudy.ledger import ledger as made_ledger
-from fracstudy.ledger import read_ledger, summary_line
+from fracstudy.ledger_text import read_ledger, summary_line
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = yaml.safe_load((ROOT / "config/study.yaml").read_text())

@@ -12,7 +12,8 @@ import pytest
 from fracstudy.config import Document
 from fracstudy.criteria import Convention
 from fracstudy.findings import measured
-from fracstudy.ledger import ledger, write_ledger
+from fracstudy.ledger import ledger
+from fracstudy.ledger_text import write_ledger
 from fracstudy.report import build as build_report
 from fracstudy.scene import Scene
 from fracstudy.site import SiteError, build, ledger_page

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 import jinja2
 
 from fracparticles.errors import FracparticlesError
-from fracstudy.ledger import ours_text, read_ledger, summary_line
+from fracstudy.ledger_text import ours_text, read_ledger, summary_line
 
 if TYPE_CHECKING:
     import pandas as pd

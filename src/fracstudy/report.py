@@ -21,7 +21,7 @@ from fracparticles.files import write_text
 from fracstudy.claims import read_conventions
 from fracstudy.config import Document
 from fracstudy.criteria import CLOSE, Convention, Status
-from fracstudy.ledger import sentence_status, short_markdown, summary_line
+from fracstudy.ledger_text import sentence_status, short_markdown, summary_line
 from fracstudy.lookup import LookUps
 from fracstudy.scene import Scene
 

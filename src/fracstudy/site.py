@@ -19,7 +19,7 @@ from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
 from fracstudy.config import Document
 from fracstudy.criteria import Status
-from fracstudy.ledger import ours_text, read_ledger, summary_line
+from fracstudy.ledger_text import ours_text, read_ledger, summary_line
 from fracstudy.scene import Scene
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 from pathlib import Path
 
-from fracstudy.ledger import read_ledger, summary_line
+from fracstudy.ledger_text import read_ledger, summary_line
 
 __all__ = ["slowest", "summary"]
 

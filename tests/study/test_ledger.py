@@ -15,10 +15,8 @@ from hypothesis import strategies as st
 from fracstudy.claims import Sentence, Value
 from fracstudy.criteria import Convention, LedgerError, Status
 from fracstudy.findings import Finding, measured
-from fracstudy.ledger import (
-    COLUMNS,
-    judge,
-    ledger,
+from fracstudy.ledger import COLUMNS, judge, ledger
+from fracstudy.ledger_text import (
     ledger_markdown,
     ours_text,
     read_ledger,

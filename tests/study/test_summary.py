@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from fracstudy.ledger import read_ledger, summary_line
+from fracstudy.ledger_text import read_ledger, summary_line
 from fracstudy.summary import slowest, summary
 
 ROOT = Path(__file__).resolve().parents[2]

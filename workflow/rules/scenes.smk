@@ -65,7 +65,7 @@ rule ledger:
         mem_mb=1500,
     params:
         smoke=STUDY.smoke,
-        code=code("src/fracstudy/ledger.py"),
+        code=code("src/fracstudy/ledger.py", "src/fracstudy/ledger_text.py"),
     script:
         "../scripts/ledger.py"
 

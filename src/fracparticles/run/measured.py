@@ -14,9 +14,7 @@ stated as well.
 
 from __future__ import annotations
 
-import csv
 import os
-import re
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -29,14 +27,14 @@ import numpy as np
 from fracparticles.arguments import finite_array
 from fracparticles.errors import AccuracyWarning, InvalidInput, one_of, spelled
 from fracparticles.files import load_netcdf
+from fracparticles.run.tables import is_table, read_table
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["MEASURED", "Measured", "is_table", "measured"]
+__all__ = ["MEASURED", "Measured", "measured"]
 
 MEASURED = "measured:"  # before a path: what it holds is interpolated
-_TABLES = (".csv", ".tsv", ".txt", ".dat")
 _FEWEST = 4
 _NOTICED = 0.05
 _MOST_GAIN = 16.0  # of half the spacing: the order of both cubics is four at most
@@ -193,7 +191,7 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
         source = str(os.fspath(data))
         path = Path(source.removeprefix(MEASURED))
         if is_table(path):
-            found = _of_columns(*_read_table(path), names, u, str(path))
+            found = _of_columns(*read_table(path), names, u, str(path))
         else:
             found = _of_labels(load_netcdf(path), names, u, str(path))
         return replace(found, source=source, is_file=True)
@@ -225,67 +223,7 @@ def _names(x: Any) -> tuple[str, ...] | None:
     return None if names is None else tuple(names)
 
 
-def is_table(path: str | os.PathLike[str]) -> bool:
-    """Say whether a file is a table, by its name."""
-    return Path(path).suffix.lower() in _TABLES
-
-
 # --- reading ---------------------------------------------------------------------------------------------
-
-
-def _read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Return the columns of a table by name, and the units in their headings."""
-    try:
-        text = path.read_text("utf-8-sig")
-    except FileNotFoundError:
-        raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput(
-            "file", str(path), f"a readable table ({error})", "Write it as UTF-8."
-        ) from None
-    lines = [
-        line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise InvalidInput("file", str(path), "a table with numbers", "It is empty.")
-    separator = next((mark for mark in ";\t," if mark in lines[-1]), None)
-    comma = separator == ";" and "," in lines[-1]  # the decimal mark
-    if separator is None:
-        rows = [line.split() for line in lines]
-    else:
-        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
-    headings = None if _is_number(rows[0][0], comma) else rows.pop(0)
-    count = len(rows[0]) if rows else 0
-    if headings is None or len(headings) != count:
-        headings = [f"column {k + 1}" for k in range(count)]
-    numbers = np.empty((len(rows), count))
-    for number, row in enumerate(rows):
-        if len(row) != count or not all(_is_number(cell, comma) for cell in row):
-            shown = f"row {number + 1} of the numbers, {' '.join(row)!r}"
-            allowed = f"a table of {count} numbers a row, and this is {shown}"
-            raise InvalidInput("file", str(path), allowed, "Mend or remove the row.")
-        numbers[number] = [float(cell.replace(",", ".") if comma else cell) for cell in row]
-    split = [_name_and_unit(heading) for heading in headings]
-    names = [name for name, _ in split]
-    if len(set(names)) < len(names):
-        raise InvalidInput(
-            "file", str(path), "columns of different names", f"It has {spelled(names, ' and ')}."
-        )
-    return dict(zip(names, numbers.T, strict=True)), dict(split)
-
-
-def _is_number(text: str, comma: bool) -> bool:
-    try:
-        float(text.replace(",", ".") if comma else text)
-    except ValueError:
-        return False
-    return True
-
-
-def _name_and_unit(heading: str) -> tuple[str, str]:
-    """Return "c", "mg/L" of "c [mg/L]" or "c (mg/L)"."""
-    found = re.fullmatch(r"(.*?)\s*[\[(](.*)[\])]", heading.strip())
-    return (found[1].strip(), found[2].strip()) if found else (heading.strip(), "")
 
 
 def _of_columns(
