@@ -26,23 +26,27 @@ def relative_l2(exact: Any, ours: Any) -> float:
     with.
     """
     exact, ours = _values(exact, ours)
-    return float(np.linalg.norm(exact - ours) / _size(exact, np.linalg.norm(exact)))
+    return float(np.linalg.norm(exact - ours) / np.linalg.norm(exact))
 
 
 def r2_score(exact: Any, ours: Any) -> float:
     """(40), as `relative_l2`; the exact values must not be all the same."""
     exact, ours = _values(exact, ours)
-    with np.errstate(over="ignore", invalid="ignore"):
-        spread = _size(exact, np.sum((exact - exact.mean()) ** 2))
-        return float(1.0 - np.sum(np.abs(exact - ours) ** 2) / spread)
+    spread = np.sum((exact - exact.mean()) ** 2)
+    if not spread > 0.0:
+        raise _no_size(exact)
+    return float(1.0 - np.sum(np.abs(exact - ours) ** 2) / spread)
 
 
 def _values(exact: Any, ours: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Both over the greatest exact value, so that their squares are numbers."""
     exact = vector("exact", exact)
-    return exact, vector("ours", ours, exact.size, complex_too=True)
+    ours = vector("ours", ours, exact.size, complex_too=True)
+    greatest = np.abs(exact).max()
+    if greatest == 0.0:
+        raise _no_size(exact)
+    return exact / greatest, ours / greatest
 
 
-def _size(exact: np.ndarray, size: Any) -> Any:
-    if not 0.0 < size < np.inf:
-        raise InvalidInput("exact", exact, "values with a size to compare with", "Change them.")
-    return size
+def _no_size(exact: np.ndarray) -> InvalidInput:
+    return InvalidInput("exact", exact, "values with a size to compare with", "Change them.")
