@@ -576,7 +576,8 @@ def test_what_a_killed_call_left_is_removed_by_the_next(run_file):
 
 def test_an_interrupt_waits_for_the_end_of_a_write():
     """In the middle it may leave the lock of the NetCDF library closed: the next call would wait for ever."""
-    handler, done = signal.getsignal(signal.SIGINT), []
+    handler, done = signal.default_int_handler, []
+    before = signal.signal(signal.SIGINT, handler)  # a shell's job in the background ignores it
 
     def work() -> None:
         with uninterrupted():
@@ -584,10 +585,13 @@ def test_an_interrupt_waits_for_the_end_of_a_write():
             done.append(True)
         done.append(False)
 
-    with pytest.raises(KeyboardInterrupt):
-        work()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            work()
+        assert signal.getsignal(signal.SIGINT) is handler
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert done == [True]
-    assert signal.getsignal(signal.SIGINT) is handler
 
 
 def test_a_run_needs_no_git(monkeypatch):
