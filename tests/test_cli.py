@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -292,6 +293,126 @@ def test_show_what_is_not_a_run(cli, tmp_path):
     assert refused(cli("show"), "requires an argument")
 
 
+# --- plot and compare -----------------------------------------------------------------------------
+
+
+SERIES = (*SMALL, "--integrator", "exponential")
+
+
+@pytest.mark.parametrize("flags", ["--times 0.7,1", "--dim 2", "--dim 2 --times 0.7,1", "--dim 3"])
+@pytest.mark.parametrize("name", ["run.png", "run.svg"])
+def test_plot(cli, tmp_path, flags, name):
+    spacing = ("--spacing", 1.0)
+    given = [word for word in SERIES if word not in ("--spacing", "0.25")]
+    cli("solve", *given, *spacing, *flags.split(), "-o", "run.nc")
+    assert cli("plot", "run.nc", "-o", name, "--log") == (0, f"{name}\n", "")
+    start = (tmp_path / name).read_bytes()[:200]
+    assert start.startswith(b"\x89PNG") or b"<?xml" in start
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(["run.nc", name])
+
+
+def test_what_a_plot_shows(cli):
+    from fracparticles.run.picture import draw
+
+    run = fp.solve(CASE.until(0.7, 2.0), units=fp.Units("m", "d", "mg/L"))
+    (axes,) = draw(run).axes
+    lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+    assert np.array_equal(lines["t = 0.7"], run.u[0])
+    assert np.array_equal(lines["t = 2"], run.u[1])
+    exact = next(line.get_ydata() for line in axes.lines if line.get_linestyle() == "--")
+    assert exact == pytest.approx(fp.green(run.x.values, 0.7, 1.5))
+    assert "[m]" in axes.get_xlabel()
+    assert "[mg/L]" in axes.get_ylabel()
+
+
+def test_what_cannot_be_plotted(cli):
+    cli("solve", *SERIES, "--store", "metrics", "-o", "run.nc")
+    assert refused(cli("plot", "run.nc"), "holds its strengths", "--store field")
+    assert refused(cli("plot", "run.nc", "-o", "run.gif"), "run.gif", ".png, .svg or .pdf")
+    assert refused(cli("plot", "none.nc"), "an existing file")
+
+
+def test_a_plot_says_that_it_needs_matplotlib(cli, monkeypatch):
+    monkeypatch.setattr("fracparticles.run.picture.find_spec", lambda name: None)
+    cli("solve", *SERIES, "-o", "run.nc")
+    assert refused(cli("plot", "run.nc"), "pip install matplotlib", status=1)
+
+
+def test_compare(cli):
+    cli("solve", *SERIES, "--times", "0.7,1,2", "-o", "a.nc")
+    half = [word if word != "0.25" else "0.125" for word in SERIES]
+    cli("solve", *half, "--t-final", 2.0, "-o", "b.nc")
+    status, out, err = cli("compare", "a.nc", "b.nc")
+    assert (status, err) == (0, "")
+    head, *rows, last = out.splitlines()
+    assert head.split() == ["a.nc", "b.nc"]
+    assert {"spacing", "particle_spacing"} <= {row.split()[0] for row in rows}
+    assert not {"order", "beta", "scheme"} & {row.split()[0] for row in rows}
+    u, v = fp.read_run("a.nc").u[2].values, fp.read_run("b.nc").u.values[::2]
+    apart = np.abs(u - v).sum() / np.abs(u).sum()
+    assert f"81 shared values of 243 and 161 sum |u - v| / sum |u| = {apart:.3g}" in last
+
+
+def test_compare_what_is_the_same_and_what_cannot_be(cli):
+    cli("solve", *SERIES, "-o", "a.nc")
+    cli("solve", *SERIES, "--store", "metrics", "-o", "metrics.nc")
+    cli("solve", *SERIES, "--t-final", 2.0, "-o", "later.nc")
+    cli("solve", *SERIES, "--dim", 2, "-o", "plane.nc")
+    out = cli("compare", "a.nc", "a.nc")[1]
+    assert "no difference in parameters and results" in out
+    assert "at 81 shared values of 81 and 81 no difference" in out
+    assert "--store field" in cli("compare", "a.nc", "metrics.nc")[1]
+    assert "share no time and place" in cli("compare", "a.nc", "later.nc")[1]
+    assert "not on the same axes, t, x and t, x, y" in cli("compare", "a.nc", "plane.nc")[1]
+    assert refused(cli("compare", "a.nc", "none.nc"), "none.nc", "an existing file")
+
+
+# --- what a terminal shows ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("flags", ["--dt 0.05", "--dt 0.05 --evaluation stepping"])
+def test_progress_reaches_the_end_and_never_goes_back(flags):
+    seen = []
+    fields = {"dt": 0.05} | ({"evaluation": "stepping"} if "stepping" in flags else {})
+    case = Case(**{**CASE.model_dump(exclude_none=True, exclude_unset=False), **fields})
+    watched = fp.solve(case, progress=seen.append)
+    assert watched.identical(fp.solve(case))
+    assert seen == sorted(seen)
+    assert len(seen) == watched.operator_applications
+    assert seen[-1] == 1.0
+
+
+def test_progress_of_particles_that_move():
+    seen = []
+    case = Case(scheme="DVM", beta=0.5, half_width=10.0, spacing=0.5, dt=0.05)
+    fp.solve(case, progress=seen.append)
+    assert seen == pytest.approx(np.linspace(0.0, 1.0, len(seen)))
+
+
+def test_a_line_of_progress_begins_late_and_goes(monkeypatch, capsys):
+    from fracparticles.run import progress
+
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setattr(progress, "_FIRST", 0.0)
+    monkeypatch.setattr(progress, "_BETWEEN", 0.0)
+    with progress.on_terminal("solving") as told:
+        told(0.25)
+        told(1.0)
+    assert "solving" in capsys.readouterr().err
+    monkeypatch.setattr(progress, "_FIRST", 60.0)
+    with progress.on_terminal("solving") as told:
+        told(0.25)
+        told(1.0)
+    assert capsys.readouterr().err == ""
+
+
+def test_a_pipe_is_told_nothing():
+    from fracparticles.run.progress import on_terminal
+
+    with on_terminal("solving") as told:
+        assert told is None
+
+
 # --- limit ----------------------------------------------------------------------------------------
 
 
@@ -365,8 +486,29 @@ def test_version_and_help(cli):
     assert cli("--version") == (0, f"{fp.__version__}\n", "")
     status, out, err = cli("--help")
     assert (status, err) == (0, "")
-    for command in ("solve", "show", "limit"):
+    for command in ("solve", "show", "plot", "compare", "limit", "scenes"):
         assert command in out
+
+
+def test_the_list_of_scenes(cli, monkeypatch):
+    assert refused(cli("scenes"), "config/study.yaml", "the folder of the study")
+    monkeypatch.chdir(Path(__file__).parents[1])
+    status, out, err = cli("scenes", "--document", "lucchesi")
+    assert (status, err) == (0, "")
+    (row,) = [line for line in out.splitlines() if line.split()[0] == "lucchesi_table_3"]
+    assert "[L-T3, " in row
+    assert "marker_square" not in out
+    assert "marker_square" in cli("scenes")[1]
+    assert refused(cli("scenes", "luchesi"), "luchesi", "lucchesi")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_is_written_where_one_says(cli, tmp_path, shell):
+    script = tmp_path / "script"
+    status, out, _ = cli("--install-completion", "--shell", shell, "--output", script)
+    assert status == 0
+    assert str(script) in out
+    assert "--half-width" in script.read_text()
 
 
 def test_numbers_and_text():

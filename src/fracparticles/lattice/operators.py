@@ -61,6 +61,7 @@ class LatticeOperator(ABC):
     symmetric: bool = False  # the matrix of A
     # What the bounded lattice adds to the diagonal of the infinite one: the least and the greatest, with zero.
     diagonal_shift: tuple[float, float] = (0.0, 0.0)
+    watch: Callable[[], None] | None = None  # called after each application
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -71,6 +72,8 @@ class LatticeOperator(ABC):
         """Write scale A u + shift u + keep out into `out`; u and out are different arrays."""
         with self._lock:
             self._combine(u, out, scale, shift, keep)
+        if self.watch is not None:
+            self.watch()
 
     @abstractmethod
     def _combine(

@@ -1,4 +1,4 @@
-"""The command line: `fracparticles solve`, `show` and `limit`.
+"""The command line: `fracparticles solve`, `show`, `plot`, `compare` and `limit`.
 
 Results go to standard output, everything else to standard error, one line each. Exit status: 0 done, 1 the
 machine failed (a full disk, no memory), 2 the input cannot be worked with, 3 the solution blew up, 130 interrupted.

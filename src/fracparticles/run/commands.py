@@ -88,11 +88,13 @@ def solve(
     case = Case(**_values(flags or {}))
 
     from fracparticles.run.dataset import write
+    from fracparticles.run.progress import on_terminal
     from fracparticles.run.solve import solve as run
     from fracparticles.run.units import Units
 
     named = None if units is None else Units.read(units)
-    result = run(case, estimate=estimate, units=named)
+    with on_terminal("solving") as progress:
+        result = run(case, estimate=estimate, units=named, progress=progress)
     write(result, target)
     print(target)
     if estimate:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib.metadata import entry_points
+from importlib.util import find_spec
+
 from cyclopts import App
 
 from fracparticles import __version__
@@ -16,11 +19,20 @@ app = App(
 )
 # By their addresses: the flags are fields of Case, which takes the whole core to import.
 _COMMANDS = {
-    "solve": "Run a case and write its file.",
-    "limit": "Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.",
+    "commands:solve": "Run a case and write its file.",
+    "picture:plot": "Draw the strengths of a run.",
+    "compare:compare": "Print in what two runs differ.",
+    "commands:limit": "Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.",
 }
-for _name, _help in _COMMANDS.items():
-    app.command(f"fracparticles.run.commands:{_name}", name=_name, help=_help)
+for _place, _help in _COMMANDS.items():
+    app.command(f"fracparticles.run.{_place}", name=_place.split(":")[1], help=_help)
+# Those of other packages that are there, of the study for one.
+for _entry in entry_points(group="fracparticles.commands"):
+    if find_spec(_entry.module.split(".")[0]) is not None:
+        app.command(_entry.value, name=_entry.name)
+app.register_install_completion_command(
+    help="Install completion for bash, zsh or fish, and say where."
+)
 
 
 @app.command

@@ -8,7 +8,7 @@ from fracparticles import arguments as check
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import to_dataset
 from fracparticles.run.initial import Initial, resolved
-from fracparticles.run.solver import compute
+from fracparticles.run.solver import Progress, compute
 from fracparticles.run.units import Units, units_of, with_units
 
 if TYPE_CHECKING:
@@ -23,6 +23,7 @@ def solve(
     *,
     estimate: bool = False,
     units: Units | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Run a case.
 
@@ -39,6 +40,8 @@ def solve(
         Estimate the error, too, as `estimate_error` does: `estimated_error` and its parts are variables of the result.
     units : Units, optional
         Names of the units that the numbers are in, for the attributes of the result. Left out: what the data name.
+    progress : callable, optional
+        Called again and again with the share of the run that is done, from 0 to 1.
 
     Returns
     -------
@@ -62,7 +65,7 @@ def solve(
     """
     source = resolved(check.instance("case", case, Case), initial)
     units = units_of(source, units)
-    solution = compute(case, source)
+    solution = compute(case, source, progress)
     if estimate:
         from fracparticles.run.estimate import estimates_of  # loads what a run does not need
 

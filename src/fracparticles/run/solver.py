@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Prepared",
+    "Progress",
     "advect",
     "compute",
     "initial_strengths",
@@ -72,16 +74,20 @@ _NO_GROWTH = 1e-3  # over the run, as an exponent
 _NEAR_ONE = 16  # exponents of two
 _RATES = 1e-8, 1e8  # D / h^alpha
 Advance = Callable[[np.ndarray], np.ndarray]
+Progress = Callable[[float], None]
+"""Called with the share of a run that is done."""
 
 
-def compute(case: Case, initial: Initial | None = None) -> Solution:
+def compute(
+    case: Case, initial: Initial | None = None, progress: Progress | None = None
+) -> Solution:
     """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
     check.instance("case", case, Case)
     source = resolved(case, initial)
     u0, origin = initial_strengths(case, source)
     particles = outputs = None
     if case.kind.moving:
-        every = advect_to_outputs(case, u0)
+        every = advect_to_outputs(case, u0, progress and _by_time(case, progress))
         particles, applications = every[-1], every[-1].history.velocity_evaluations
         u = particles.field(case.x)
         if case.times is not None:
@@ -89,7 +95,10 @@ def compute(case: Case, initial: Initial | None = None) -> Solution:
             totals = np.array([float(one.strength.sum()) for one in every])
             outputs = Outputs(case.times, fields, totals)
     else:
-        u, applications = _in_range(prepare(case).run, u0)
+        ready = prepare(case)
+        if progress is not None and ready.operator is not None:
+            ready.operator.watch = _by_applications(ready.operator_applications, progress)
+        u, applications = _in_range(ready.run, u0)
         if case.times is not None:
             outputs = Outputs(case.times, u, np.array([case.integral(one) for one in u]))
             u = u[-1]
@@ -98,6 +107,17 @@ def compute(case: Case, initial: Initial | None = None) -> Solution:
         found |= source.estimates
     warn_if_doubtful(case, u0, u, found)
     return Solution(case, case.x, u0, u, applications, origin, particles, found, outputs)
+
+
+def _by_time(case: Case, progress: Progress) -> Observer:
+    """What watches particles that move: the share of the time that they have come through."""
+    return lambda time, *_: progress((time - case.t_initial) / case.span)
+
+
+def _by_applications(expected: int, progress: Progress) -> Callable[[], None]:
+    """What watches an operator: the share of the applications that are expected."""
+    count = itertools.count(1)
+    return lambda: progress(min(1.0, next(count) / expected))
 
 
 def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> ParticleRun:

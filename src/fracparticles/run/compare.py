@@ -1,0 +1,102 @@
+"""Two runs side by side: what they were asked, what came out, and how far their strengths are apart.
+
+Over the particles that the lattices share, and the output times that the runs share,
+
+    sum |u - v| / sum |u|   and   max |u - v| / max |u|,
+
+u of the first run and v of the second.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fracparticles.errors import spelled
+from fracparticles.run.dataset import read_run
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["compare", "comparison", "distance"]
+
+_SAME_PLACE = 1e-9  # of a spacing
+
+Row = tuple[str, str, str]
+
+
+def compare(first: str, second: str) -> None:
+    """Print in what two runs differ: parameters, results, strengths at the particles that they share.
+
+    Parameters
+    ----------
+    first, second : str
+        Files that `fracparticles solve` or `fp.write` wrote.
+    """
+    runs = read_run(first), read_run(second)
+    rows = [("", first, second), *comparison(*runs)]
+    widths = [max(len(row[column]) for row in rows) for column in range(2)]
+    for name, one, other in rows:
+        print(f"{name:{widths[0]}}  {one:{widths[1]}}  {other}".rstrip())
+    if len(rows) == 1:
+        print("no difference in parameters and results")
+    print(distance(*runs))
+
+
+def comparison(first: xr.Dataset, second: xr.Dataset) -> list[Row]:
+    """Return the parameters and scalar results in which two runs differ: name, value in the first and in the second."""
+    rows: list[Row] = []
+    for name in dict.fromkeys([*_scalars(first), *_scalars(second)]):
+        values = [_scalars(run).get(name) for run in (first, second)]
+        if not _equal(*values):
+            rows.append((name, _shown(values[0]), _shown(values[1])))
+    return rows
+
+
+def distance(first: xr.Dataset, second: xr.Dataset) -> str:
+    """Return in a line how far the strengths of two runs are apart; see the module."""
+    if "u" not in first or "u" not in second:
+        return "u: a file holds no strengths to compare; run the case with --store field"
+    u, v = _with_times(first), _with_times(second)
+    if u.dims != v.dims:
+        return f"u: not on the same axes, {spelled(u.dims, ', ')} and {spelled(v.dims, ', ')}"
+    tolerance = _SAME_PLACE * float(first.particle_spacing)
+    v = v.reindex(t=u.t)
+    for axis in u.dims[1:]:
+        v = v.reindex({axis: u[axis]}, method="nearest", tolerance=tolerance)
+    shared = np.isfinite(v.values)
+    if not shared.any():
+        return "u: the runs share no time and place"
+    one, other = u.values[shared], v.values[shared]
+    apart = np.abs(one - other)
+    where = f"u: at {shared.sum()} shared values of {u.size} and {second.u.size}"
+    if not apart.any():
+        return f"{where} no difference"
+    total, greatest = np.abs(one).sum(), np.abs(one).max()
+    if total == 0.0:
+        return f"{where} max |u - v| = {apart.max():.3g}, and u is zero there"
+    return (
+        f"{where} sum |u - v| / sum |u| = {apart.sum() / total:.3g}, "
+        f"max |u - v| / max |u| = {apart.max() / greatest:.3g}"
+    )
+
+
+def _with_times(run: xr.Dataset) -> xr.DataArray:
+    """u with its output times as the first axis; of a run without them the final one."""
+    return run.u if "t" in run.u.dims else run.u.expand_dims(t=[float(run.t_final)])
+
+
+def _scalars(run: xr.Dataset) -> dict[str, Any]:
+    scalars = [*run.coords.values(), *run.data_vars.values()]
+    return {str(one.name): one.item() for one in scalars if one.ndim == 0}
+
+
+def _equal(one: Any, other: Any) -> bool:
+    return one == other or (one != one and other != other)  # nan is a value like another
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

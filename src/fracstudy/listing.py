@@ -1,0 +1,51 @@
+"""The scenes of the study, with what of the documents each makes: `fracparticles scenes`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import yaml
+
+from fracparticles.errors import InvalidInput, one_of
+from fracstudy.config import read_config
+
+__all__ = ["listed", "scenes"]
+
+_CONFIG = Path("config/study.yaml")
+
+
+def scenes(document: str | None = None) -> None:
+    """List the scenes: the name, which is the target of snakemake, the title, and the items of the document.
+
+    Parameters
+    ----------
+    document : str
+        Those of one document alone, lucchesi for example.
+    """
+    print("\n".join(listed(Path.cwd(), document)))
+
+
+def listed(project: Path, document: str | None = None) -> list[str]:
+    """Return the lines of the list for the project in that folder; raises `InvalidInput` if there is none."""
+    config = project / _CONFIG
+    if not config.is_file():
+        found = f"a folder that holds {_CONFIG}"
+        raise InvalidInput("folder", str(project), found, "Change to the folder of the study.")
+    settings = yaml.safe_load(config.read_text("utf-8"))
+    settings["scenes_dir"] = str(project / settings.get("scenes_dir", "workflow/scenes"))
+    study, every = read_config(settings)
+    if document is not None and document not in study.documents:
+        remedy = "Choose one of these, or leave it out."
+        raise one_of("document", document, list(study.documents), remedy=remedy)
+    width, lines = max(map(len, every)), []
+    for name, entry in study.documents.items():
+        if document not in (None, name):
+            continue
+        lines += ["", f"{entry.title} ({name})"]
+        lines += [
+            f"  {scene.name:{width}}  {scene.heading}"
+            + (f" [{', '.join(scene.items)}]" if scene.items else "")
+            for scene in every.values()
+            if scene.document == name
+        ]
+    return lines[1:]
