@@ -1,0 +1,166 @@
+"""The time integration of a problem: which way, from output time to output time, and what it took."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.problems.krylov import KrylovStep
+from fracparticles.problems.problem import Problem
+from fracparticles.problems.rates import Rates
+from fracparticles.problems.stabilised import StabilisedStep, spectral_radius
+
+__all__ = ["Integration", "integrate"]
+
+_REAL_AXIS = 5.5  # |lambda| dt that a step of DOP853 bears
+_STAGES = 12  # evaluations that it takes
+_MOST_STEPS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Integration:
+    """What a time integration gives.
+
+    Attributes
+    ----------
+    u : list of arrays, shape (N,)
+        At each output time.
+    method : str
+        "exponential", "rkc2" or "dop853".
+    accepted, rejected, evaluations : int
+        Steps taken, steps thrown away, and evaluations of the right-hand side.
+    stiffness : float
+        The time of the run times an estimate of the largest |lambda|.
+    """
+
+    u: list[np.ndarray]
+    method: str
+    accepted: int
+    rejected: int
+    evaluations: int
+    stiffness: float
+
+
+class _Steps(Protocol):
+    accepted: int
+    rejected: int
+    largest: float
+
+    def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray: ...
+
+
+def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
+    """Integrate u' = R(t, u) from u0, shape (N,), to the output times.
+
+    Raises
+    ------
+    InvalidInput
+        If the integrator asked for does not exist for this problem.
+    NonFiniteSolution
+        If the solution grows without bound; says when.
+    """
+    linear = problem.is_linear and problem.is_autonomous
+    if problem.integrator == "exponential" and not linear:
+        what = (
+            "auto, rkc2 or dop853 for a source that depends on u, or coefficients that depend on t"
+        )
+        raise InvalidInput("integrator", problem.integrator, what, "Take auto.")
+    # The error is to be small where the solution is, not in the mean over a lattice that it hardly fills.
+    shares = np.sqrt(_filled(u0))
+    rtol = problem.rtol * shares
+    atol = problem.atol * shares if problem.atol else rtol * _size(problem, rates, u0)
+    start, span = problem.t_initial, problem.case.span
+    method, largest = problem.integrator, 0.0
+    if method == "auto":
+        method = "exponential"
+        if not linear:
+            r = rates(start, u0)
+            largest = spectral_radius(rates, start, u0, r)[0]
+            method = _cheaper(problem, span * largest)
+    steps: _Steps
+    if method == "exponential":
+        steps = KrylovStep(lambda u: rates(start, u), u0.size, rtol, atol)
+    elif method == "rkc2":
+        steps = StabilisedStep(rates, rtol, atol)
+    else:
+        steps = _Dop853(rates, rtol, atol)
+    outputs, u = [], u0
+    for before, after in pairwise((start, *(problem.times or (problem.t_final,)))):
+        u = steps.advance(u, after - before, before)
+        outputs.append(u)
+    if not steps.largest and not largest:
+        largest = spectral_radius(rates, problem.t_final, u, rates(problem.t_final, u))[0]
+    return Integration(
+        outputs, method, steps.accepted, steps.rejected, rates.evaluations,
+        span * max(steps.largest, largest),
+    )  # fmt: skip
+
+
+def _size(problem: Problem, rates: Rates, u0: np.ndarray) -> float:
+    """The greatest |u| at t_initial, or what the source makes of it where that is zero."""
+    size = float(np.abs(u0).max())
+    if size == 0.0:
+        size = problem.case.span * float(np.abs(rates(problem.t_initial, u0)).max())
+    return size if 0.0 < size < np.inf else 1.0
+
+
+def _filled(u: np.ndarray) -> float:
+    """The share of the lattice on which |u| is, (sum |u|)^2 / (N sum u^2)."""
+    size = np.abs(u).max()
+    if not size > 0.0:
+        return 1.0
+    part = np.abs(u / size)
+    return float(part.sum() ** 2 / (u.size * (part * part).sum()))
+
+
+def _cheaper(problem: Problem, stiffness: float) -> str:
+    """The explicit method that takes fewer evaluations: of order 8, bound by stability, or 2, bound by accuracy.
+
+    RKC2 in n = tol^(-1/3) steps at least, of sqrt(1.54 T rho / n) stages; waves that travel it does not bear.
+    """
+    if problem.transport:
+        return "dop853"
+    n = problem.rtol ** (-1.0 / 3.0)
+    stabilised = n * (2.0 + np.sqrt(1.0 + 1.54 * stiffness / n))
+    return "rkc2" if stabilised < _STAGES * stiffness / _REAL_AXIS else "dop853"
+
+
+class _Dop853:
+    """Steps of order 8 by Dormand & Prince, scipy's."""
+
+    def __init__(self, rates: Rates, rtol: float, atol: float) -> None:
+        self._rates, self._rtol, self._atol = rates, rtol, atol
+        self.accepted = self.rejected = 0
+        self.largest = 0.0
+        self._dt: float | None = None
+
+    def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
+        first = None if self._dt is None else min(self._dt, span)
+        solver = DOP853(
+            self._rates, start, u, start + span, rtol=self._rtol, atol=self._atol, first_step=first
+        )
+        began = solver.nfev
+        taken = 0
+        with np.errstate(over="ignore", invalid="ignore"):
+            while solver.status == "running":
+                solver.step()
+                taken += 1
+                if solver.status == "failed" or taken > _MOST_STEPS or not _finite(solver.y):
+                    raise NonFiniteSolution(
+                        f"the solution grows without bound near t = {solver.t:.6g}: the time step has shrunk to "
+                        f"nothing, and the greatest |u| is {np.abs(solver.y).max():.3g}. End before, or mend the source."
+                    )
+        self.accepted += taken
+        self.rejected += round((solver.nfev - began) / _STAGES) - taken
+        self._dt = solver.h_abs
+        return np.asarray(solver.y)
+
+
+def _finite(u: np.ndarray) -> bool:
+    return bool(np.isfinite(u).all())

@@ -1,0 +1,273 @@
+"""A problem, validated: the equation, its coefficients, the particles, the times, and how well it is to be solved.
+
+    u_t + div(a(x,t) u) = div(D(x,t) grad^beta u) + f(x,t,u),    div grad^beta = -(-Laplacian)^(alpha/2),
+
+alpha = 1 + beta, in one and two dimensions.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from fracparticles.errors import InvalidInput
+from fracparticles.problems.expressions import Coefficient
+from fracparticles.run.case import Case
+from fracparticles.run.complaints import allowed, first_complaint
+from fracparticles.run.fractional_order import with_beta
+from fracparticles.run.parameters import OVERLAPS, SIZES
+from fracparticles.run.times import with_times
+
+__all__ = ["FORMS", "Problem"]
+
+FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
+"""The schemes of a constant diffusivity, by the form of the equation."""
+
+_AXES = ("x", "y")
+_COEFFICIENT = "A number, an expression in x, y and t, or a function of them."
+_FUNCTION = "a function, which the file does not hold"  # in JSON
+
+
+class Problem(BaseModel):
+    """One problem; the fields are the parameters, keyword only.
+
+    A text is an expression, see `expressions`: "1 + 0.5*sin(x)*exp(-t)". A function takes arrays x, t on the line and
+    x, y, t in the plane, or the first of these alone; that of a source u, too, as the last. `alpha` may be given
+    instead of `beta`.
+
+    Raises
+    ------
+    InvalidInput
+        With the field, the value, what is allowed and what to do; of a coefficient with the place where it is wrong.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    beta: Any = Field(
+        description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive); a number, or for a variable order "
+        "an expression in x and y, or a function of them. alpha may be given instead.",
+        json_schema_extra={"remedy": "Give beta = alpha - 1, or alpha itself."},
+    )
+    diffusivity: Any = Field(
+        default=1.0, description=f"Diffusivity D. Not negative. {_COEFFICIENT}"
+    )
+    velocity: Any = Field(
+        default=None,
+        description=f"Velocity a, one for each coordinate. None if left out. {_COEFFICIENT}",
+    )
+    source: Any = Field(
+        default=None, description="Source f. None if left out. It may depend on u: a reaction."
+    )
+    dim: Literal[1, 2] = Field(default=1, description="Space dimension.")
+    half_width: float = Field(
+        ge=SIZES[0], le=SIZES[1], description="Half-width of the lattice in each coordinate."
+    )
+    spacing: float = Field(
+        ge=SIZES[0],
+        le=SIZES[1],
+        description="Particle spacing h. The nearest that divides the half-width is taken.",
+    )
+    order: Literal[2, 4, 6, 8, 10, 12] = Field(
+        default=4, description="Order of the kernels. FPSE in the plane has 2 and 4."
+    )
+    overlap: float = Field(
+        default=2.0, ge=OVERLAPS[0], le=OVERLAPS[1], description="Overlap epsilon / h."
+    )
+    form: Literal["FPSE", "DD", "exchange"] = Field(
+        default="FPSE",
+        description="Form of the diffusion. The flux and its divergence; direct differentiation; exchange.",
+    )
+    exterior: Literal["open", "truncated"] = Field(
+        default="open",
+        description="What lies beyond the lattice. A tail, continued by powers; or nothing.",
+    )
+    far_terms: Literal[1, 2, 3] | None = Field(
+        default=None,
+        description="Terms that continue the solution in an open exterior on the line. 1 if left out.",
+    )
+    t_initial: float = Field(default=0.0, ge=0.0, le=SIZES[1], description="Initial time.")
+    t_final: float = Field(ge=SIZES[0], le=SIZES[1], description="Final time.")
+    times: tuple[float, ...] | None = Field(
+        default=None, description="Output times. In ascending order; the last is the final time."
+    )
+    rtol: float = Field(
+        default=1e-6, ge=1e-13, le=0.1, description="Relative tolerance of the time integration."
+    )
+    atol: float | None = Field(
+        default=None, ge=1e-300, le=SIZES[1],
+        description="Absolute tolerance of the time integration. rtol times the greatest |u| at t_initial if left out. Both are of the root mean square over the part of the lattice that the data fill.",
+    )  # fmt: skip
+    integrator: Literal["auto", "exponential", "rkc2", "dop853"] = Field(
+        default="auto",
+        description="Time integrator. By Krylov spaces if all is linear and constant in time; stabilised; of order 8.",
+    )
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise first_complaint(error, type(self)) from None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _plain(cls, data: dict[str, Any]) -> dict[str, Any]:
+        for name in ("dim", "order", "far_terms"):
+            if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
+                raise InvalidInput(
+                    name, data[name], allowed(cls.model_fields[name]), "Give such a value."
+                )
+        plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+        if isinstance(plain.get("velocity"), list | np.ndarray):
+            plain["velocity"] = tuple(plain["velocity"])
+        return with_times(_with_order(plain))
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Problem:
+        _ = self.case  # which is checked
+        for coefficient in (self.order_coefficient, self.diffusion, *self.transport, self.reaction):
+            _ = coefficient
+        beta = self.order_coefficient
+        if beta.constant is not None and not 0.0 < beta.constant < 1.0:
+            raise InvalidInput("beta", beta.given, "a number with 0 < beta < 1", "Give alpha - 1.")
+        points = dict(zip(_AXES, self.case.positions, strict=False))
+        for time in (self.t_initial, *(self.times or (self.t_final,))):
+            self.diffusion.checked(0.0, **points, t=np.array(time))
+            for one in self.transport:
+                one.checked(**points, t=np.array(time))
+        if beta.constant is None:
+            values = beta.checked(0.0, **points)
+            if not ((values > 0.0) & (values < 1.0)).all():
+                ends = f"values with 0 < beta < 1, and they are from {values.min():.6g} to {values.max():.6g}"
+                raise InvalidInput("beta", beta.given, ends, "Mend it.")
+        return self
+
+    # --- the coefficients -----------------------------------------------------------------------------------
+
+    @cached_property
+    def order_coefficient(self) -> Coefficient:
+        """Beta, a coefficient of the place alone."""
+        return Coefficient("beta", self.beta, _AXES[: self.dim])
+
+    @cached_property
+    def diffusion(self) -> Coefficient:
+        """D."""
+        return Coefficient("diffusivity", self.diffusivity, (*_AXES[: self.dim], "t"))
+
+    @cached_property
+    def transport(self) -> tuple[Coefficient, ...]:
+        """The components of a; none if there is no velocity."""
+        if self.velocity is None:
+            return ()
+        given = self.velocity if isinstance(self.velocity, tuple) else (self.velocity,)
+        if len(given) != self.dim:
+            each = f"one expression for each of the {self.dim} coordinate(s)"
+            raise InvalidInput("velocity", self.velocity, each, "Give a tuple of them.")
+        return tuple(Coefficient("velocity", one, (*_AXES[: self.dim], "t")) for one in given)
+
+    @cached_property
+    def reaction(self) -> Coefficient | None:
+        """f, or None."""
+        if self.source is None:
+            return None
+        return Coefficient("source", self.source, (*_AXES[: self.dim], "t", "u"))
+
+    @property
+    def _coefficients(self) -> list[Coefficient]:
+        every = [self.order_coefficient, self.diffusion, *self.transport, self.reaction]
+        return [one for one in every if one is not None]
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the source says nothing of u."""
+        return self.reaction is None or "u" not in self.reaction.depends_on
+
+    @property
+    def is_autonomous(self) -> bool:
+        """Whether no coefficient says anything of t."""
+        return all("t" not in one.depends_on for one in self._coefficients)
+
+    @property
+    def reproducible(self) -> bool:
+        """Whether the JSON text holds all of it: not if a coefficient is a function."""
+        return all(one.reproducible for one in self._coefficients)
+
+    # --- the lattice ----------------------------------------------------------------------------------------
+
+    @cached_property
+    def case(self) -> Case:
+        """The lattice, its scheme and its times, as a run of constant coefficients: the greatest at t_initial."""
+        axis = np.linspace(-self.half_width, self.half_width, 257 if self.dim == 1 else 33)
+        points = dict(zip(_AXES, np.meshgrid(*(axis,) * self.dim, sparse=True), strict=False))
+        beta = self.order_coefficient.checked(**points).max()
+        diffusivity = self.diffusion.checked(0.0, **points, t=np.array(self.t_initial)).max()
+        fields = self.model_dump(include=_OF_THE_CASE, exclude_none=True)
+        if self.times is not None:
+            del fields["t_final"]
+        return Case(
+            scheme=FORMS[self.form], beta=float(beta), integrator="exponential",
+            diffusivity=float(diffusivity) or 1.0, **fields,
+        )  # fmt: skip
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Problem:
+        """Return the problem with other values of some fields, checked as a new one; raises as that."""
+        return type(self)(**{**self.model_dump(exclude_unset=True), **(update or {})})
+
+    def to_json(self) -> str:
+        """Return the problem as one JSON object; `from_json` reads it, unless a coefficient is a function."""
+        return json.dumps(
+            self.model_dump(exclude_none=True), sort_keys=True, default=lambda _: _FUNCTION
+        )
+
+    @classmethod
+    def from_json(cls, text: str) -> Problem:
+        """Return the problem that `to_json` wrote.
+
+        Raises
+        ------
+        InvalidInput
+            If the text is not such an object, its problem is not valid, or a coefficient was a function.
+        """
+        try:
+            fields = json.loads(text)
+        except (TypeError, ValueError, RecursionError):
+            fields = None
+        if not isinstance(fields, dict):
+            raise InvalidInput(
+                "problem", text, "a JSON object", "Give what Problem.to_json returns."
+            )
+        for name, value in fields.items():
+            if value == _FUNCTION or isinstance(value, list) and _FUNCTION in value:
+                remedy = "Make the problem again, with the function."
+                raise InvalidInput(name, value, "a number or an expression", remedy)
+        return cls(**fields)
+
+
+_OF_THE_CASE = {
+    "dim", "half_width", "spacing", "order", "overlap", "exterior", "far_terms", "t_initial", "t_final", "times",
+}  # fmt: skip
+
+
+def _with_order(fields: dict[str, Any]) -> dict[str, Any]:
+    """The fields with beta = alpha - 1 for alpha, whatever kind it is of."""
+    alpha, beta = fields.get("alpha"), fields.get("beta")
+    if beta is not None or not (isinstance(alpha, str) or callable(alpha)):
+        return with_beta(fields)
+    others = {name: value for name, value in fields.items() if name not in ("alpha", "beta")}
+    if isinstance(alpha, str):
+        return {**others, "beta": f"({alpha}) - 1"}
+    return {**others, "beta": _less_one(alpha)}
+
+
+def _less_one(alpha: Any) -> Any:
+    from functools import wraps
+
+    @wraps(alpha)
+    def beta(*points: np.ndarray) -> Any:
+        return np.asarray(alpha(*points)) - 1.0
+
+    return beta
