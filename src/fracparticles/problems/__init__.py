@@ -1,4 +1,7 @@
-"""Problems of one's own: u_t + div(a(x,t) u) = div(D(x,t) grad^beta u) + f(x,t,u), with div grad^beta = -(-Laplacian)^(alpha/2)."""
+"""Problems of one's own, with variable coefficients, transport and sources:
+
+u_t + div(a(x,t) u) = div(D(x,t) grad^beta u) + f(x,t,u),    div grad^beta = -(-Laplacian)^(alpha/2).
+"""
 
 from __future__ import annotations
 

@@ -25,15 +25,11 @@ __all__ = ["FUNCTIONS", "Coefficient"]
 _LONGEST = 2000  # characters; the evaluator descends a level an operation
 _DEEPEST = 100
 
-FUNCTIONS: dict[str, Callable[..., Any]] = {
-    **{
-        name: getattr(np, name)
-        for name in (
-            "sin cos tan arcsin arccos arctan arctan2 sinh cosh tanh exp expm1 log log1p sqrt abs sign minimum maximum "
-            "where"
-        ).split()
-    },
-    "gamma": gamma,
+_NUMPY = """
+sin cos tan arcsin arccos arctan arctan2 sinh cosh tanh exp expm1 log log1p sqrt abs sign minimum maximum where
+"""
+FUNCTIONS: dict[str, Callable[..., Any]] = {name: getattr(np, name) for name in _NUMPY.split()} | {
+    "gamma": gamma
 }
 _TAKES = {"where": 3, "arctan2": 2, "minimum": 2, "maximum": 2}
 _CONSTANTS = {"pi": np.pi, "e": np.e}
@@ -112,10 +108,12 @@ class Coefficient:
         """The number that it is everywhere and always, or None."""
         if self.depends_on:
             return None
-        return float(np.asarray(self(**dict.fromkeys(self.variables, 0.0)))) + 0.0
+        return float(np.asarray(self(dict.fromkeys(self.variables, 0.0)))) + 0.0
 
-    def __call__(self, **values: Any) -> np.ndarray:
-        """Return its values, of the shape that the variables broadcast to; what overflows is infinite or nan.
+    def __call__(self, values: Mapping[str, Any]) -> np.ndarray:
+        """Return its values by those of the variables, of the shape that these broadcast to.
+
+        What overflows is infinite or nan.
 
         Raises
         ------
@@ -150,21 +148,22 @@ class Coefficient:
             what = f"a function of arrays of {', '.join(self.variables)} ({reason_of(error)})"
             raise InvalidInput(self.field, self.given, what, "Mend the function.") from error
 
-    def checked(self, least: float | None = None, **values: Any) -> np.ndarray:
+    def checked(self, values: Mapping[str, Any], least: float | None = None) -> np.ndarray:
         """Return its values if all are finite, and none is below `least`.
 
         Raises
         ------
         InvalidInput
-            With the place and the time of the first that is not.
+            With the place and the time where it is not, of several the least.
         """
-        result = self(**values)
+        result = self(values)
         good = np.isfinite(result)
         if least is not None:
             good &= result >= least
         if good.all():
             return result
-        index = tuple(np.argwhere(~good)[0])
+        worst = np.where(np.isfinite(result), result, -np.inf) if least is not None else good
+        index = np.unravel_index(int(worst.argmin()), result.shape)
         where = ", ".join(
             f"{name} = {float(np.broadcast_to(one, result.shape)[index]):.6g}"
             for name, one in values.items()
@@ -190,8 +189,8 @@ def _parsed(field: str, text: str, variables: Sequence[str]) -> ast.expr:
             warnings.simplefilter("ignore")
             tree = ast.parse(clean.strip(), mode="eval").body
     except SyntaxError as error:
-        place = f" at position {error.offset + ahead}" if error.offset else ""
-        what = f"an expression in {spelled(variables)}; {error.msg}{place}"
+        place = (error.offset or len(clean.strip()) + 1) + ahead
+        what = f"an expression in {spelled(variables)}; {error.msg} at position {place}"
         raise InvalidInput(field, text, what, "Mend the text.") from None
     except (ValueError, RecursionError, MemoryError) as error:
         raise InvalidInput(field, text, "an expression", "Take a shorter one.") from error
@@ -214,7 +213,9 @@ def _complaints(tree: ast.expr, variables: Sequence[str]) -> Iterator[tuple[str,
         remedy = _INSTEAD.get(type(head), _INSTEAD.get(type(node), ""))
         if depth > _DEEPEST:
             yield "fewer operations within one another", node, "Take a function."
-        elif isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        elif isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+            if isinstance(node.value, bool):
+                yield plain, node, "Write 1 or 0."
             try:
                 node.value = float(node.value)
             except OverflowError:

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
-from scipy.integrate import DOP853
 
-from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.errors import InvalidInput
 from fracparticles.problems.krylov import KrylovStep
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates
 from fracparticles.problems.stabilised import StabilisedStep, spectral_radius
+from fracparticles.problems.steps import STAGES, EighthOrderStep, Steps
 
 __all__ = ["Integration", "integrate"]
 
 _REAL_AXIS = 5.5  # |lambda| dt that a step of DOP853 bears
-_STAGES = 12  # evaluations that it takes
-_MOST_STEPS = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -47,14 +43,6 @@ class Integration:
     stiffness: float
 
 
-class _Steps(Protocol):
-    accepted: int
-    rejected: int
-    largest: float
-
-    def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray: ...
-
-
 def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
     """Integrate u' = R(t, u) from u0, shape (N,), to the output times.
 
@@ -76,20 +64,21 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
     rtol = problem.rtol * shares
     atol = problem.atol * shares if problem.atol else rtol * _size(problem, rates, u0)
     start, span = problem.t_initial, problem.case.span
-    method, largest = problem.integrator, 0.0
+    method: str = problem.integrator
+    largest = 0.0
     if method == "auto":
         method = "exponential"
         if not linear:
             r = rates(start, u0)
             largest = spectral_radius(rates, start, u0, r)[0]
             method = _cheaper(problem, span * largest)
-    steps: _Steps
+    steps: Steps
     if method == "exponential":
         steps = KrylovStep(lambda u: rates(start, u), u0.size, rtol, atol)
     elif method == "rkc2":
         steps = StabilisedStep(rates, rtol, atol)
     else:
-        steps = _Dop853(rates, rtol, atol)
+        steps = EighthOrderStep(rates, rtol, atol)
     outputs, u = [], u0
     for before, after in pairwise((start, *(problem.times or (problem.t_final,)))):
         u = steps.advance(u, after - before, before)
@@ -128,39 +117,4 @@ def _cheaper(problem: Problem, stiffness: float) -> str:
         return "dop853"
     n = problem.rtol ** (-1.0 / 3.0)
     stabilised = n * (2.0 + np.sqrt(1.0 + 1.54 * stiffness / n))
-    return "rkc2" if stabilised < _STAGES * stiffness / _REAL_AXIS else "dop853"
-
-
-class _Dop853:
-    """Steps of order 8 by Dormand & Prince, scipy's."""
-
-    def __init__(self, rates: Rates, rtol: float, atol: float) -> None:
-        self._rates, self._rtol, self._atol = rates, rtol, atol
-        self.accepted = self.rejected = 0
-        self.largest = 0.0
-        self._dt: float | None = None
-
-    def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
-        first = None if self._dt is None else min(self._dt, span)
-        solver = DOP853(
-            self._rates, start, u, start + span, rtol=self._rtol, atol=self._atol, first_step=first
-        )
-        began = solver.nfev
-        taken = 0
-        with np.errstate(over="ignore", invalid="ignore"):
-            while solver.status == "running":
-                solver.step()
-                taken += 1
-                if solver.status == "failed" or taken > _MOST_STEPS or not _finite(solver.y):
-                    raise NonFiniteSolution(
-                        f"the solution grows without bound near t = {solver.t:.6g}: the time step has shrunk to "
-                        f"nothing, and the greatest |u| is {np.abs(solver.y).max():.3g}. End before, or mend the source."
-                    )
-        self.accepted += taken
-        self.rejected += round((solver.nfev - began) / _STAGES) - taken
-        self._dt = solver.h_abs
-        return np.asarray(solver.y)
-
-
-def _finite(u: np.ndarray) -> bool:
-    return bool(np.isfinite(u).all())
+    return "rkc2" if stabilised < STAGES * stiffness / _REAL_AXIS else "dop853"

@@ -17,7 +17,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import expm
 
-from fracparticles.errors import NonFiniteSolution
+from fracparticles.problems.steps import blown_up
 
 __all__ = ["KrylovStep"]
 
@@ -66,6 +66,10 @@ class KrylovStep:
         NonFiniteSolution
             If it is not finite; says when.
         """
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._advanced(u, span, start)
+
+    def _advanced(self, u: np.ndarray, span: float, start: float) -> np.ndarray:
         if self._origin is None:
             self._origin = self._rate(np.zeros_like(u))
         left, tau = span, span
@@ -73,9 +77,7 @@ class KrylovStep:
             r = self._rate(u)
             size = float(np.linalg.norm(r))
             if not np.isfinite(size):
-                raise NonFiniteSolution(
-                    f"the solution is not finite after t = {start + span - left:.6g}: it grows without bound."
-                )
+                raise blown_up(start + span - left, u)
             if size == 0.0:
                 return u
             basis, h = self._arnoldi(r / size)
@@ -128,7 +130,6 @@ def _phi(h: np.ndarray, m: int, tau: float) -> tuple[np.ndarray, float]:
     longer[:m, :m] = h[:m]
     longer[0, m] = 1.0
     longer[m, m + 1] = 1.0
-    with np.errstate(over="ignore", invalid="ignore"):
-        e = expm(tau * longer)
+    e = expm(tau * longer)
     error = h[m, m - 1] * abs(e[m - 1, m + 1])
     return e[:m, m], float(error) if np.isfinite(e).all() else np.inf

@@ -100,7 +100,8 @@ class Problem(BaseModel):
     )
     atol: float | None = Field(
         default=None, ge=1e-300, le=SIZES[1],
-        description="Absolute tolerance of the time integration. rtol times the greatest |u| at t_initial if left out. Both are of the root mean square over the part of the lattice that the data fill.",
+        description="Absolute tolerance of the time integration. rtol times the greatest |u| at t_initial if left out. "
+        "Both are of the root mean square over the part of the lattice that the data fill.",
     )  # fmt: skip
     integrator: Literal["auto", "exponential", "rkc2", "dop853"] = Field(
         default="auto",
@@ -128,22 +129,19 @@ class Problem(BaseModel):
 
     @model_validator(mode="after")
     def _consistent(self) -> Problem:
-        _ = self.case  # which is checked
-        for coefficient in (self.order_coefficient, self.diffusion, *self.transport, self.reaction):
-            _ = coefficient
-        beta = self.order_coefficient
-        if beta.constant is not None and not 0.0 < beta.constant < 1.0:
-            raise InvalidInput("beta", beta.given, "a number with 0 < beta < 1", "Give alpha - 1.")
+        beta, points = self.order_coefficient, self._samples
+        values = beta.checked(points)
+        if not ((values > 0.0) & (values < 1.0)).all():
+            allowed = f"0 < beta < 1, alpha = 1 + beta, and it is from {values.min():.6g} to {values.max():.6g}"
+            raise InvalidInput(
+                "beta", beta.given, allowed, "Give beta = alpha - 1, or alpha itself."
+            )
+        _ = self.reaction  # which is checked, as the case is
         points = dict(zip(_AXES, self.case.positions, strict=False))
         for time in (self.t_initial, *(self.times or (self.t_final,))):
-            self.diffusion.checked(0.0, **points, t=np.array(time))
+            self.diffusion.checked({**points, "t": np.array(time)}, 0.0)
             for one in self.transport:
-                one.checked(**points, t=np.array(time))
-        if beta.constant is None:
-            values = beta.checked(0.0, **points)
-            if not ((values > 0.0) & (values < 1.0)).all():
-                ends = f"values with 0 < beta < 1, and they are from {values.min():.6g} to {values.max():.6g}"
-                raise InvalidInput("beta", beta.given, ends, "Mend it.")
+                one.checked({**points, "t": np.array(time)})
         return self
 
     # --- the coefficients -----------------------------------------------------------------------------------
@@ -198,13 +196,19 @@ class Problem(BaseModel):
 
     # --- the lattice ----------------------------------------------------------------------------------------
 
+    @property
+    def _samples(self) -> dict[str, np.ndarray]:
+        """Some points of the domain: the ends, the middle, and what lies between them."""
+        axis = np.linspace(-self.half_width, self.half_width, 257 if self.dim == 1 else 33)
+        grid = np.meshgrid(*(axis,) * self.dim, indexing="ij", sparse=True)
+        return dict(zip(_AXES, grid, strict=False))
+
     @cached_property
     def case(self) -> Case:
         """The lattice, its scheme and its times, as a run of constant coefficients: the greatest at t_initial."""
-        axis = np.linspace(-self.half_width, self.half_width, 257 if self.dim == 1 else 33)
-        points = dict(zip(_AXES, np.meshgrid(*(axis,) * self.dim, sparse=True), strict=False))
-        beta = self.order_coefficient.checked(**points).max()
-        diffusivity = self.diffusion.checked(0.0, **points, t=np.array(self.t_initial)).max()
+        points = self._samples
+        beta = self.order_coefficient(points).max()
+        diffusivity = self.diffusion.checked({**points, "t": np.array(self.t_initial)}, 0.0).max()
         fields = self.model_dump(include=_OF_THE_CASE, exclude_none=True)
         if self.times is not None:
             del fields["t_final"]
@@ -241,7 +245,7 @@ class Problem(BaseModel):
                 "problem", text, "a JSON object", "Give what Problem.to_json returns."
             )
         for name, value in fields.items():
-            if value == _FUNCTION or isinstance(value, list) and _FUNCTION in value:
+            if _FUNCTION in (value if isinstance(value, list) else [value]):
                 remedy = "Make the problem again, with the function."
                 raise InvalidInput(name, value, "a number or an expression", remedy)
         return cls(**fields)

@@ -11,7 +11,7 @@ from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import FORMS, Problem
 from fracparticles.problems.transport import Transport
-from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.schemes import SCHEMES
 
 __all__ = ["Rates"]
 
@@ -61,9 +61,9 @@ def _over_time(
 ) -> Callable[[float], Any]:
     """Return the values at some points as a function of time; evaluated once if they do not change."""
     named = _named(points)
-    values = coefficient.checked(least, **named, t=np.array(start))
+    values = coefficient.checked({**named, "t": np.array(start)}, least)
     if "t" in coefficient.depends_on:
-        return lambda t: coefficient.checked(least, **named, t=np.array(t))
+        return lambda t: coefficient.checked({**named, "t": np.array(t)}, least)
     constant = coefficient.constant
     fixed = np.ascontiguousarray(values) if constant is None else np.array(constant)
     return lambda t: fixed
@@ -84,7 +84,7 @@ def _diffusion(problem: Problem) -> Part | None:
         now = fixed
         if now is None:
             nowhere = {name: np.array(0.0) for name in d.variables}
-            now = float(d.checked(0.0, **{**nowhere, "t": np.array(t)}))
+            now = float(d.checked({**nowhere, "t": np.array(t)}, 0.0))
         return now * operator.apply(u.reshape(-1)).reshape(u.shape)
 
     return constant
@@ -113,6 +113,8 @@ def _reaction(problem: Problem) -> Part | None:
         return None
     named = _named(problem.case.positions)
     if not f.depends_on & {"t", "u"}:
-        fixed = f.checked(**named, t=np.array(problem.t_initial), u=np.zeros(problem.case.shape))
+        fixed = f.checked(
+            {**named, "t": np.array(problem.t_initial), "u": np.zeros(problem.case.shape)}
+        )
         return lambda t, u: fixed
-    return lambda t, u: f(**named, t=np.array(t), u=u)
+    return lambda t, u: f({**named, "t": np.array(t), "u": u})

@@ -74,8 +74,8 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
     """
     reach = f"|x| <= {problem.half_width:.4g}"
     says = {
-        "outside_share": f"the solution has reached the ends of {reach}: about {{:.2g}} of it lies beyond, or has left. "
-        "Take a wider lattice, or an earlier end",
+        "outside_share": f"the solution has reached the ends of {reach}: about {{:.2g}} of it lies beyond, or has "
+        "left. Take a wider lattice, or an earlier end",
         "resolution": f"particles of spacing {problem.spacing:.3g} do not resolve the solution: epsilon times its "
         "wavenumber is {:.2g}. Take a smaller spacing",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "

@@ -75,4 +75,4 @@ def _probe_source(problem: Problem, u0: np.ndarray) -> None:
         return
     points = dict(zip(("x", "y"), problem.case.positions, strict=False))
     for time in (problem.t_initial, *(problem.times or (problem.t_final,))):
-        problem.reaction.checked(**points, t=np.array(time), u=u0)
+        problem.reaction.checked({**points, "t": np.array(time), "u": u0})

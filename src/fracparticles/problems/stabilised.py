@@ -10,17 +10,14 @@ of R. Time is one more unknown, t' = 1, so that the stages know theirs.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 
-from fracparticles.errors import NonFiniteSolution
+from fracparticles.problems.steps import Rate, blown_up
 from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["StabilisedStep", "spectral_radius"]
-
-Rate = Callable[[float, np.ndarray], np.ndarray]
 
 _MOST_STAGES = 200
 _RENEW = 25  # steps after which rho is estimated again
@@ -73,7 +70,7 @@ class StabilisedStep:
             most = (_MOST_STAGES - 1) ** 2 / (1.54 * self._rho) if self._rho > 0.0 else np.inf
             dt = min(dt, most)
             if dt < _SHORTEST * max(abs(t), span):
-                raise _blown_up(t, u)
+                raise blown_up(t, u)
             stages = max(2, 1 + int(np.sqrt(1.0 + 1.54 * dt * self._rho)))
             new = _one_step(self._rate, stages, t, u, r, dt)
             after = self._rate(t + dt, new)
@@ -174,10 +171,3 @@ def _one_step(
 @lru_cache(maxsize=256)
 def _step_of(stages: int) -> ChebyshevStep:
     return ChebyshevStep(stages)
-
-
-def _blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:
-    return NonFiniteSolution(
-        f"the solution grows without bound near t = {t:.6g}: the time step has shrunk to nothing, and the greatest |u| "
-        f"is {np.abs(u).max():.3g}. End before, or mend the source."
-    )

@@ -88,7 +88,7 @@ class Transport:
 
     def _fall(self, d: int, alpha: float) -> np.ndarray:
         """(|x_end| / |x|)^(2+alpha) beyond the right end along d, as the sum over one depth."""
-        square = np.moveaxis(sum(np.square(part) for part in self.points[d]), d, 0)
+        square = np.moveaxis(np.asarray(sum(np.square(part) for part in self.points[d])), d, 0)
         fall = (square[-self._pad - 1] / square[-self._pad :]) ** (1.0 + 0.5 * alpha)
         return np.moveaxis(fall, 0, d)[None]
 
@@ -121,11 +121,11 @@ class Transport:
         longer = np.empty(shape)
         lines, inside = np.moveaxis(longer, d, 0), np.moveaxis(u, d, 0)
         lines[self._pad : -self._pad] = inside
-        right, left = 0.0, 0.0
+        right, left = np.zeros_like(lines[: self._pad]), np.zeros_like(lines[: self._pad])
         for p, fall in zip(self._depth, self._falls[d], strict=True):
-            along = np.moveaxis(fall, d, 0) if u.ndim > 1 else fall
-            right = right + along * inside[-1 - p]
-            left = left + along * inside[p]
+            along = np.moveaxis(np.atleast_1d(fall), d, 0)
+            right += along * inside[-1 - p]
+            left += along * inside[p]
         lines[-self._pad :], lines[: self._pad] = right, np.flip(left, 0)
         return longer
 
