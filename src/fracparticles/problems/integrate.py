@@ -16,6 +16,7 @@ from fracparticles.problems.steps import STAGES, EighthOrderStep, Steps
 
 __all__ = ["Integration", "integrate"]
 
+_FINEST = 1e-9  # rtol of RKC2; below, the estimate of its error is round-off
 _REAL_AXIS = 5.5  # |lambda| dt that a step of DOP853 bears
 
 
@@ -59,6 +60,9 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
             "auto, rkc2 or dop853 for a source that depends on u, or coefficients that depend on t"
         )
         raise InvalidInput("integrator", problem.integrator, what, "Take auto.")
+    if problem.integrator == "rkc2" and problem.rtol < _FINEST:
+        least = f"at least {_FINEST:g} for rkc2, whose estimate of the error is round-off below"
+        raise InvalidInput("rtol", problem.rtol, least, "Take another integrator.")
     # The error is to be small where the solution is, not in the mean over a lattice that it hardly fills.
     shares = np.sqrt(_filled(u0))
     rtol = problem.rtol * shares
@@ -74,7 +78,7 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
             method = _cheaper(problem, span * largest)
     steps: Steps
     if method == "exponential":
-        steps = KrylovStep(lambda u: rates(start, u), u0.size, rtol, atol)
+        steps = KrylovStep(lambda u: rates(start, u), u0.size, rtol, atol, span)
     elif method == "rkc2":
         steps = StabilisedStep(rates, rtol, atol)
     else:
@@ -111,10 +115,10 @@ def _filled(u: np.ndarray) -> float:
 def _cheaper(problem: Problem, stiffness: float) -> str:
     """The explicit method that takes fewer evaluations: of order 8, bound by stability, or 2, bound by accuracy.
 
-    RKC2 in n = tol^(-1/3) steps at least, of sqrt(1.54 T rho / n) stages; waves that travel it does not bear.
+    RKC2 in n = tol^(-1/2) steps, of sqrt(1.54 T rho / n) stages; waves that travel it does not bear.
     """
-    if problem.transport:
+    if problem.transport or problem.rtol < _FINEST:
         return "dop853"
-    n = problem.rtol ** (-1.0 / 3.0)
+    n = problem.rtol**-0.5
     stabilised = n * (2.0 + np.sqrt(1.0 + 1.54 * stiffness / n))
     return "rkc2" if stabilised < STAGES * stiffness / _REAL_AXIS else "dop853"

@@ -40,6 +40,8 @@ class KrylovStep:
         Of u.
     rtol, atol : float
         The error of the run in the 2-norm is to be below rtol |u| + atol sqrt(N), each step's share by its length.
+    run : float
+        The time of the run.
 
     Attributes
     ----------
@@ -50,9 +52,14 @@ class KrylovStep:
     """
 
     def __init__(
-        self, rate: Callable[[np.ndarray], np.ndarray], size: int, rtol: float, atol: float
+        self,
+        rate: Callable[[np.ndarray], np.ndarray],
+        size: int,
+        rtol: float,
+        atol: float,
+        run: float,
     ) -> None:
-        self._rate, self._rtol, self._atol = rate, rtol, atol
+        self._rate, self._rtol, self._atol, self._run = rate, rtol, atol, run
         self._most = max(_FEWEST, min(_MOST, size, _NUMBERS // size))
         self.accepted = self.rejected = 0
         self.largest = 0.0
@@ -85,7 +92,7 @@ class KrylovStep:
             tau = min(tau, left)
             while True:
                 weights, error = _phi(h, basis.shape[0], tau)
-                allowed, error = scale * tau / span, size * error
+                allowed, error = scale * tau / self._run, size * error
                 if error <= allowed:
                     break
                 self.rejected += 1

@@ -4,8 +4,10 @@ Sommeijer, Shampine & Verwer, J. Comput. Appl. Math. 88 (1998) 315, Section 3: t
 
     Est = 0.8 (u_n - u_(n+1)) + 0.4 dt (R_n + R_(n+1)),
 
-with 1 + sqrt(1 + 1.54 dt rho) stages, rho the spectral radius of the Jacobian, from a power iteration with differences
-of R. Time is one more unknown, t' = 1, so that the stages know theirs.
+and 1 + sqrt(1 + 1.54 dt rho) stages, rho the spectral radius of the Jacobian, from a power iteration with differences
+of R. Time is one more unknown, t' = 1, so that the stages know theirs. What a step may
+have is smaller than there by sqrt(rtol): its error is of third order in dt, that of the run of second, so that this is
+about rtol, whatever the number of steps.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ class StabilisedStep:
     rate : callable
         R(t, u).
     rtol, atol : float
-        The root mean square of Est / (atol + rtol |u|) is at most 1 in each step.
+        The root mean square of Est / (atol + rtol |u|) is at most sqrt(rtol) in each step.
 
     Attributes
     ----------
@@ -111,7 +113,7 @@ class StabilisedStep:
 
     def _norm(self, what: np.ndarray, *of: np.ndarray) -> float:
         scale = self._atol + self._rtol * np.max(np.abs(of), axis=0)
-        return float(np.sqrt(np.mean(np.square(what / scale))))
+        return float(np.sqrt(np.mean(np.square(what / scale)) / self._rtol))
 
     def _first(self, t: float, u: np.ndarray, r: np.ndarray, span: float) -> float:
         """A first step whose error is about a tenth of what is allowed, by the change of R over a short one."""

@@ -171,7 +171,7 @@ def test_the_ways_of_time_integration_agree(fields):
         ).u.values
         for one in ("rkc2", "dop853")
     ]
-    assert_allclose(*every, atol=3e-5)  # of the first: order 2, an error per step
+    assert_allclose(*every, atol=1e-6)
 
 
 def test_stiff_and_coarse_in_time_is_stabilised():
@@ -223,6 +223,7 @@ REFUSED = {
     "nan": ({}, np.full(1001, np.nan), "initial"),
     "nan in the source": ({"source": "log(u - 1)"}, np.zeros(1001), r"nan at x = -50, t = 1, u = 0"),
     "velocity beyond the end": ({"velocity": "sqrt(50 - x)"}, np.zeros(1001), r"nan at x = 50\.1, t = 1"),
+    "digits": ({"integrator": "rkc2", "rtol": 1e-10}, np.ones(1001), "at least 1e-09 for rkc2"),
     "exponential": ({"source": "-u", "integrator": "exponential"}, np.ones(1001), "auto, rkc2 or dop853"),
 }  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Transport by moving particles: exact where they land on the lattice, of the order of the splitting and the remeshing."""
+"""Transport by moving particles: exact where they land on the lattice, else of the order of what it is made of."""
 
 from __future__ import annotations
 
