@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 
 import numpy as np
@@ -254,3 +255,22 @@ def test_the_data_set_holds_the_problem_and_can_be_written(tmp_path):
         assert run[name].ndim == 0
     assert run.mass.dims == ("t",)
     assert solve_problem(problem).identical(run)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # its own
+def test_the_checker_of_the_convention_finds_nothing(tmp_path):
+    from compliance_checker.runner import CheckSuite, ComplianceChecker
+
+    problem = Problem(
+        alpha=1.5, dim=2, half_width=4.0, spacing=0.5, times=(0.5, 1.0), source=lambda x: 0.0 * x
+    )
+    path, report = tmp_path / "run.nc", tmp_path / "report.json"
+    write(solve_problem(problem, lambda x, y: np.exp(-x * x - y * y)), path)
+    CheckSuite.load_all_available_checkers()
+    ComplianceChecker.run_checker(
+        str(path), ["cf:1.11"], 0, "normal", output_filename=str(report), output_format="json"
+    )
+    verdict = json.loads(report.read_text())["cf:1.11"]
+    assert [
+        m for level in ("high", "medium") for c in verdict[f"{level}_priorities"] for m in c["msgs"]
+    ] == []

@@ -78,6 +78,12 @@ def to_dataset(
     coordinates: dict[str, tuple] = {
         name: _scalar(_plain(getattr(problem, name)), label_of(fields[name])) for name in _STORED
     }
+    for name, coefficient in (
+        ("beta", problem.order_coefficient),
+        ("diffusivity", problem.diffusion),
+    ):
+        if coefficient.constant is not None:
+            coordinates[name] = _scalar(coefficient.constant, label_of(fields[name]))
     coordinates["scheme"] = _scalar(FORMS[problem.form], "particle scheme")
     coordinates["integrator"] = _scalar(result.method, "time integrator")
     coordinates["particle_spacing"] = _scalar(case.particle_spacing, "particle spacing, realised")
