@@ -104,3 +104,18 @@ def test_what_is_linear_and_what_is_constant_in_time():
     ):
         one = Problem(**PLAIN, **fields)
         assert (one.is_linear, one.is_autonomous) == (linear, autonomous)
+
+
+def test_a_field_may_hold_together_what_would_outgrow_the_lattice():
+    with pytest.raises(InvalidInput, match="wider than the solution"):
+        Problem(**{**PLAIN, "t_final": 1e4})
+    assert Problem(**{**PLAIN, "t_final": 1e4}, velocity="-x").span == 1e4
+    with pytest.raises(InvalidInput, match="t_final"):
+        Problem(**{**PLAIN, "t_final": 1e-9, "t_initial": 1.0}, velocity="-x")
+    with pytest.raises(InvalidInput, match="times"):
+        Problem(**{**PLAIN, "t_final": 3.0, "times": (0.5, 3.0), "t_initial": 1.0}, velocity="-x")
+
+
+def test_what_is_wrong_between_the_output_times_is_seen_before_any_work():
+    with pytest.raises(InvalidInput, match=r"-1 at .*t = 0\.3"):
+        Problem(**PLAIN, diffusivity="where((t > 0.3) & (t < 0.4), -1, 1)")

@@ -67,7 +67,7 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
     shares = np.sqrt(_filled(u0))
     rtol = problem.rtol * shares
     atol = problem.atol * shares if problem.atol else rtol * _size(problem, rates, u0)
-    start, span = problem.t_initial, problem.case.span
+    start, span = problem.t_initial, problem.span
     method: str = problem.integrator
     largest = 0.0
     if method == "auto":
@@ -84,7 +84,7 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
     else:
         steps = EighthOrderStep(rates, rtol, atol)
     outputs, u = [], u0
-    for before, after in pairwise((start, *(problem.times or (problem.t_final,)))):
+    for before, after in pairwise((start, *problem.output_times)):
         u = steps.advance(u, after - before, before)
         outputs.append(u)
     if not steps.largest and not largest:
@@ -99,7 +99,7 @@ def _size(problem: Problem, rates: Rates, u0: np.ndarray) -> float:
     """The greatest |u| at t_initial, or what the source makes of it where that is zero."""
     size = float(np.abs(u0).max())
     if size == 0.0:
-        size = problem.case.span * float(np.abs(rates(problem.t_initial, u0)).max())
+        size = problem.span * float(np.abs(rates(problem.t_initial, u0)).max())
     return size if 0.0 < size < np.inf else 1.0
 
 

@@ -59,7 +59,7 @@ def solve_with_moving_particles(
         raise InvalidInput("problem", problem.to_json(), what, "Use solve_problem.")
     assert d is not None
     u, h = check.vector("initial", initial, case.particles), case.particle_spacing
-    dt = case.span / steps
+    dt = problem.span / steps
     half = WholeSpace(case.particles, 1, case.alpha, 0.5 * d * dt * h**-case.alpha)
     velocity = problem.transport[0]
     for n in range(steps):

@@ -30,6 +30,8 @@ FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 
 _AXES = ("x", "y")
 _COEFFICIENT = "A number, an expression in x, y and t, or a function of them."
+_SHORT = 0.05  # of the half-width, how far the solution spreads
+_LOOKS = 33  # between t_initial and t_final, at coefficients that depend on time
 _FUNCTION = "a function, which the file does not hold"  # in JSON
 
 
@@ -137,12 +139,30 @@ class Problem(BaseModel):
                 "beta", beta.given, allowed, "Give beta = alpha - 1, or alpha itself."
             )
         _ = self.reaction  # which is checked, as the case is
-        points = dict(zip(_AXES, self.case.positions, strict=False))
-        for time in (self.t_initial, *(self.times or (self.t_final,))):
-            self.diffusion.checked({**points, "t": np.array(time)}, 0.0)
-            for one in self.transport:
-                one.checked({**points, "t": np.array(time)})
+        places = dict(zip(_AXES, self.case.positions, strict=False))
+        if self.times is not None and self.times[0] <= self.t_initial:
+            later = f"numbers > t_initial = {self.t_initial:g}"
+            raise InvalidInput(
+                "times", self.times, later, "Leave out the others: there are the data."
+            )
+        between = np.linspace(self.t_initial, self.t_final, _LOOKS)
+        for one in (self.diffusion, *self.transport):
+            least = 0.0 if one is self.diffusion else None
+            for time in (self.t_initial, *self.output_times):
+                one.checked({**places, "t": np.array(time)}, least)
+            for time in between if "t" in one.depends_on else ():
+                one.checked({**points, "t": np.array(time)}, least)
         return self
+
+    @property
+    def output_times(self) -> tuple[float, ...]:
+        """The output times, the last of them t_final."""
+        return self.times or (self.t_final,)
+
+    @property
+    def span(self) -> float:
+        """The time of the run, t_final - t_initial."""
+        return self.t_final - self.t_initial
 
     # --- the coefficients -----------------------------------------------------------------------------------
 
@@ -205,16 +225,21 @@ class Problem(BaseModel):
 
     @cached_property
     def case(self) -> Case:
-        """The lattice, its scheme and its times, as a run of constant coefficients: the greatest at t_initial."""
+        """The lattice and its scheme, as a run of constant coefficients: the greatest at t_initial.
+
+        Of diffusion alone it has the times, too, and refuses a lattice that the solution outgrows. A field may hold the
+        solution together, and a source spread it: then it is a short run, and what leaves the lattice is told after.
+        """
         points = self._samples
-        beta = self.order_coefficient(points).max()
-        diffusivity = self.diffusion.checked({**points, "t": np.array(self.t_initial)}, 0.0).max()
+        beta = float(self.order_coefficient(points).max())
+        d = float(self.diffusion.checked({**points, "t": np.array(self.t_initial)}, 0.0).max())
         fields = self.model_dump(include=_OF_THE_CASE, exclude_none=True)
-        if self.times is not None:
-            del fields["t_final"]
+        if self.transport or self.reaction or self.diffusion.constant is None:
+            short = (_SHORT * self.half_width) ** (1.0 + beta) / (d or 1.0)
+            soon = max(self.t_initial + short, float(np.nextafter(self.t_initial, np.inf)))
+            fields["t_final"] = min(self.t_final, soon)
         return Case(
-            scheme=FORMS[self.form], beta=float(beta), integrator="exponential",
-            diffusivity=float(diffusivity) or 1.0, **fields,
+            scheme=FORMS[self.form], beta=beta, integrator="exponential", diffusivity=d or 1.0, **fields,
         )  # fmt: skip
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Problem:
@@ -252,7 +277,7 @@ class Problem(BaseModel):
 
 
 _OF_THE_CASE = {
-    "dim", "half_width", "spacing", "order", "overlap", "exterior", "far_terms", "t_initial", "t_final", "times",
+    "dim", "half_width", "spacing", "order", "overlap", "exterior", "far_terms", "t_initial", "t_final",
 }  # fmt: skip
 
 

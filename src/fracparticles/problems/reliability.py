@@ -50,7 +50,7 @@ def estimates(problem: Problem, solutions: list[np.ndarray]) -> Estimates:
     }
     if problem.exterior == "open":
         travels = 1.0 - float(
-            central_mass(0.5 * case.reach, case.diffusivity * case.span, case.alpha, case.dim)
+            central_mass(0.5 * case.reach, case.diffusivity * problem.span, case.alpha, case.dim)
         )
         misfits = [
             tail_misfit(case, u) * share * travels if np.any(u) else 0.0
@@ -81,7 +81,7 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
     }
-    times = problem.times or (problem.t_final,)
+    times = problem.output_times
     for name, (values, _) in found.items():
         late = [(t, value) for t, value in zip(times, values, strict=True) if value > LIMITS[name]]
         if late:

@@ -74,5 +74,5 @@ def _probe_source(problem: Problem, u0: np.ndarray) -> None:
     if problem.reaction is None:
         return
     points = dict(zip(("x", "y"), problem.case.positions, strict=False))
-    for time in (problem.t_initial, *(problem.times or (problem.t_final,))):
+    for time in (problem.t_initial, *problem.output_times):
         problem.reaction.checked({**points, "t": np.array(time), "u": u0})
