@@ -2,8 +2,8 @@
 
     du_i/dt = (D / epsilon^alpha_i) sum_j V_j u_j G^(alpha_i)_epsilon(x_i - x_j).
 
-The rows are interpolated between K orders, Chebyshev points of the interval that holds all alpha_i, of radius R; each is
-a lattice sum, so that an application takes K of them. The symbol of a row, in units of D / h^alpha and without its
+The rows are interpolated between K orders, Chebyshev points of the interval that holds all alpha_i, of radius R; each
+is a lattice sum, so that an application takes K of them. The symbol of a row, in units of D / h^alpha and without its
 aliases, is -|theta|^alpha eta^(s theta), theta = h k. Its K-th derivative in alpha gains the factor (ln |theta|)^K, and
 the interpolation differs from it by at most
 
@@ -11,8 +11,8 @@ the interpolation differs from it by at most
 
 at the least or the greatest alpha. K is the least number for which this is below a tolerance.
 
-The source far away is that of the order there: u falls like |x|^(-1-alpha) with the alpha of either end of the line, and
-in the plane with the mean of alpha over the outermost particles. This holds where alpha is settled near the ends.
+The source far away is that of the order there: u falls like |x|^(-1-alpha) with the alpha of either end of the line,
+and in the plane with the mean of alpha over the outermost particles. This holds where alpha is settled near the ends.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from fracparticles.variable.sums import EvenSum
 __all__ = ["VariableOrder", "interpolation_bound", "nodes_needed"]
 
 _TOLERANCE = 1e-12  # of the largest symbol, pi^alpha at most
+_ROWS = 33  # samples of alpha
 _MOST = 40  # nodes; alpha from 1.01 to 1.99 takes fewer
 
 
@@ -104,14 +105,15 @@ class VariableOrder:
             raise InvalidInput("alpha", wrong, "1 < alpha < 2 everywhere", "Mend alpha(x).")
         varies = greatest > least
         if setting.is_open and varies:
-            _check_ends(setting, alpha)
+            _check_ends(setting, alpha, tail is not None)
         tails = tails_of(setting, tail, _usual_tails(setting, alpha))
         self.nodes = _chebyshev_points(nodes_needed(least, greatest, tolerance), least, greatest)
         self._sums = [
             EvenSum(scheme, replace(setting, alpha=float(node)), tails) for node in self.nodes
         ]
-        # The sums hold h^-alpha of their node; the rows want that of their own alpha, whose symbol alone is interpolated.
+        # The sums hold h^-alpha of their node, the rows that of their own: the symbol alone is interpolated.
         unit = setting.spacing ** (self.nodes[:, None] - alpha.reshape(-1))
+        self._alpha = alpha
         self._shares = (_lagrange(self.nodes, alpha.reshape(-1)) * unit).reshape(-1, *setting.shape)
 
     def apply(self, u: np.ndarray) -> np.ndarray:
@@ -127,21 +129,14 @@ class VariableOrder:
 
         In an open exterior it is that of the lattice without what continues it.
         """
-        weights = np.array([sums.weights.reshape(-1) for sums in self._sums])
-        axes = [np.where(np.arange(self.setting.size) == 0, 1.0, 2.0)] * self.setting.dim
-        signs = np.ones(1)
-        for twice in axes:
-            signs = np.multiply.outer(signs, twice).reshape(-1)
-        shares = self._shares.reshape(len(self._sums), -1)
-        # Rows of equal alpha are equal; between two neighbouring samples of alpha they hardly change.
-        some = np.unique(shares, axis=1)
-        some = some[:, :: max(1, some.shape[1] // 128)]
-        some = np.concatenate([some, shares[:, [0, -1]], shares[:, self._extremes]], axis=1)
-        return 1.01 * float((np.abs(some.T @ weights) @ signs).max())
-
-    @property
-    def _extremes(self) -> list[int]:
-        return []
+        # Equal orders have equal rows; between two samples of the order they hardly change.
+        values, first = np.unique(self._alpha.reshape(-1), return_index=True)
+        samples = first[np.unique(np.linspace(0, values.size - 1, _ROWS).round().astype(int))]
+        shares = self._shares.reshape(self.nodes.size, -1)[:, samples]
+        kinds = [sums.weights.reshape(-1) for sums in self._sums]
+        sides = self._sums[0].sides.reshape(-1)
+        rows = (np.abs(row @ np.array(kinds)) @ sides for row in shares.T)
+        return 1.01 * float(max(rows))
 
 
 def _usual_tails(setting: Setting, alpha: np.ndarray) -> tuple[float, float]:
@@ -153,13 +148,16 @@ def _usual_tails(setting: Setting, alpha: np.ndarray) -> tuple[float, float]:
     return mean, mean
 
 
-def _check_ends(setting: Setting, alpha: np.ndarray) -> None:
+def _check_ends(setting: Setting, alpha: np.ndarray, tail_given: bool) -> None:
+    """Refuse and warn of a tail that is not known; one that is given is."""
+    if tail_given:
+        return
     if setting.far_terms > 1:
         raise InvalidInput(
             "far_terms",
             setting.far_terms,
             "1 where the order varies",
-            "Its further terms are not known.",
+            "The further terms of the tail are not known.",
         )
     warn_unsettled("alpha - 1", alpha - 1.0, setting.n)
     if setting.dim > 1:
