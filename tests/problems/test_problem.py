@@ -16,6 +16,11 @@ REFUSED = {
     "beta": ({"alpha": None, "beta": 1.5}, "0 < beta < 1"),
     "beta as text": ({"alpha": "2.5"}, "0 < beta < 1"),
     "variable order": ({"alpha": "1.5 + x"}, "0 < beta < 1|at x"),
+    "variable order by flux": ({"alpha": "1.5 + 0.2*tanh(x)"}, "DD for a variable order"),
+    "variable order and diffusivity": (
+        {"alpha": "1.5 + 0.2*tanh(x)", "form": "DD", "diffusivity": "2 + tanh(x)"},
+        "an expression in t alone",
+    ),
     "order in t": ({"alpha": "1.5 + t"}, "not 't'"),
     "negative diffusivity": ({"diffusivity": "1 - x"}, r"-9 at x = 10, t = 0"),
     "negative later": ({"diffusivity": "0.5 - t"}, r"-0\.5 at t = 1|-0\.5 at x = -10, t = 1"),
@@ -80,7 +85,7 @@ def test_other_texts_are_no_problem(text):
 def test_alpha_is_one_more_than_beta_whatever_it_is():
     points = {"x": np.array([-1.0, 1.0])}
     for alpha in ("1.5 + 0.2*tanh(x)", lambda x: 1.5 + 0.2 * np.tanh(x)):
-        beta = Problem(**{**PLAIN, "alpha": alpha}).order_coefficient
+        beta = Problem(**{**PLAIN, "alpha": alpha}, form="DD").order_coefficient
         np.testing.assert_allclose(beta(points), 0.5 + 0.2 * np.tanh(points["x"]), rtol=1e-15)
 
 

@@ -284,3 +284,43 @@ def test_a_linear_field_ends_in_the_stationary_law():
     exact = green(run.x.values, 1.0 / 1.5, 1.5)
     assert error(run.isel(t=0), exact) < 1e-6
     assert error(run.isel(t=1), exact) < 1e-6
+
+
+@pytest.mark.parametrize("form", ["FPSE", "DD"])
+@pytest.mark.parametrize("source_of_time", [False, True])
+def test_a_diffusivity_that_varies_in_space_and_time(form, source_of_time):
+    """u = exp(-t) / (1 + x^2): D' grad^beta u + D div grad^beta u from the closed forms, as the source in text."""
+    d = "(1 + 0.5*exp(-x**2/4)*cos(t))" if source_of_time else "(1 + 0.5*exp(-x**2/4))"
+    slope = "(-0.25*x*exp(-x**2/4)*cos(t))" if source_of_time else "(-0.25*x*exp(-x**2/4))"
+    flux = "(gamma(1.5)*(1 + x**2)**(-0.75)*sin(1.5*arctan(x)))"
+    rate = "(gamma(2.5)*(1 + x**2)**(-1.25)*cos(2.5*arctan(x)))"
+    source = f"exp(-t)*({d}*{rate} + {slope}*{flux} - 1/(1 + x**2))"
+    fields = {
+        "half_width": 100.0,
+        "spacing": 0.05,
+        "t_initial": 0.0,
+        "t_final": 1.0,
+        "far_terms": None,
+    }
+    problem = Problem(**{**LINE, **fields}, form=form, diffusivity=d, source=source)
+    run = solve_problem(problem, lambda x: 1.0 / (1.0 + x * x))
+    assert error(run, np.exp(-1.0) / (1.0 + run.x.values**2)) < 1e-6
+
+
+def test_mass_is_conserved_with_all_that_varies():
+    problem = Problem(
+        alpha=1.5, half_width=20.0, spacing=0.2, t_final=1.0, exterior="truncated",
+        diffusivity="1 + 0.5*sin(x)*exp(-t)", velocity="-x*cos(t)",
+    )  # fmt: skip
+    run = solve_problem(problem, lambda x: np.exp(-x * x))
+    assert abs(float(run.mass_final / run.mass_initial) - 1.0) < 1e-12
+
+
+def test_a_variable_order_that_is_constant_is_the_constant_one():
+    fields = {**LINE, "form": "DD", "far_terms": None, "velocity": "-x", "half_width": 20.0}
+    constant = solve_problem(Problem(**fields), lambda x: np.exp(-x * x))
+    del fields["alpha"]
+    for text, most in (("1.5 + 0*x", 1e-12), ("1.5 + 1e-9*tanh(x)", 1e-9)):
+        variable = solve_problem(Problem(alpha=text, **fields), lambda x: np.exp(-x * x))
+        assert_allclose(variable.u, constant.u, atol=most)
+    assert variable.attrs["title"].endswith("-D (-Laplacian)^(alpha(x)/2) u + f")

@@ -95,7 +95,7 @@ def to_dataset(
         coordinates,
         attrs={
             "Conventions": "CF-1.11, ACDD-1.3",
-            "title": "Fractional diffusion, transport and source: u_t + div(a u) = div(D grad^beta u) + f",
+            "title": f"Fractional diffusion, transport and source: u_t + div(a u) = {_diffusion(problem)} + f",
             "summary": "Particle strengths of one run and its parameters.",
             "keywords": "fractional diffusion, particle method, transport, reaction",
             "source": source(),
@@ -108,6 +108,15 @@ def to_dataset(
             else "no: a coefficient is a function, which no file holds",
         },
     )
+
+
+def _diffusion(problem: Problem) -> str:
+    """What the form converges to."""
+    if problem.order_coefficient.constant is None:
+        return "-D (-Laplacian)^(alpha(x)/2) u"
+    if problem.form == "exchange" and problem.diffusion.depends_on - {"t"}:
+        return "(D L u + L(D u) - u L D) / 2"
+    return "div(D grad^beta u)"
 
 
 def _plain(value: Any) -> Any:

@@ -82,7 +82,9 @@ class Problem(BaseModel):
     )
     form: Literal["FPSE", "DD", "exchange"] = Field(
         default="FPSE",
-        description="Form of the diffusion. The flux and its divergence; direct differentiation; exchange.",
+        description="Form of the diffusion. The flux and its divergence; direct differentiation; exchange. A variable "
+        "order has the second alone. The exchange with a diffusivity that varies in space is that of the mean of a "
+        "pair, (D L u + L(D u) - u L D) / 2 with L of D = 1: another equation.",
     )
     exterior: Literal["open", "truncated"] = Field(
         default="open",
@@ -138,6 +140,12 @@ class Problem(BaseModel):
             raise InvalidInput(
                 "beta", beta.given, allowed, "Give beta = alpha - 1, or alpha itself."
             )
+        if beta.constant is None:
+            if self.form != "DD":
+                raise InvalidInput("form", self.form, "DD for a variable order", "Take form='DD'.")
+            if self.diffusion.depends_on - {"t"}:
+                what = "a number, or an expression in t alone, beside a variable order"
+                raise InvalidInput("diffusivity", self.diffusivity, what, "Leave the place out.")
         _ = self.reaction  # which is checked, as the case is
         places = dict(zip(_AXES, self.case.positions, strict=False))
         if self.times is not None and self.times[0] <= self.t_initial:

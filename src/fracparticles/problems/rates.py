@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import FORMS, Problem
 from fracparticles.problems.transport import Transport
-from fracparticles.schemes import SCHEMES
+from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.variable import VariableDiffusivity, VariableOrder
 
 __all__ = ["Rates"]
 
@@ -70,30 +71,26 @@ def _over_time(
 
 
 def _diffusion(problem: Problem) -> Part | None:
-    if problem.order_coefficient.constant is None or problem.diffusion.depends_on - {"t"}:
-        return _variable(problem)
-    d = problem.diffusion
-    if d.constant == 0.0:
+    if problem.diffusion.constant == 0.0:
         return None
-    case = problem.case
-    of_unit = case.model_copy(update={"diffusivity": 1.0})
-    operator = SCHEMES[FORMS[problem.form]].operator(of_unit.setting)
-    fixed = d.constant
-
-    def constant(t: float, u: np.ndarray) -> np.ndarray:
-        now = fixed
-        if now is None:
-            nowhere = {name: np.array(0.0) for name in d.variables}
-            now = float(d.checked({**nowhere, "t": np.array(t)}, 0.0))
-        return now * operator.apply(u.reshape(-1)).reshape(u.shape)
-
-    return constant
-
-
-def _variable(problem: Problem) -> Part:
-    raise InvalidInput(
-        "diffusivity", problem.diffusivity, "a coefficient of t alone", "Make it constant in space."
+    setting = replace(problem.case.setting, diffusivity=1.0)
+    if problem.diffusion.depends_on - {"t"}:
+        varying = VariableDiffusivity(problem.form, setting)
+        d = _over_time(problem.diffusion, varying.points, 0.0, problem.t_initial)
+        return lambda t, u: varying.apply(u, d(t))
+    apply = _of_unit_diffusivity(problem, setting)
+    everywhere = _over_time(
+        problem.diffusion, (np.array(0.0),) * problem.dim, 0.0, problem.t_initial
     )
+    return lambda t, u: everywhere(t) * apply(u)
+
+
+def _of_unit_diffusivity(problem: Problem, setting: Setting) -> Callable[[np.ndarray], np.ndarray]:
+    beta = problem.order_coefficient
+    if beta.constant is None:
+        return VariableOrder(setting, 1.0 + beta(_named(problem.case.positions))).apply
+    operator = SCHEMES[FORMS[problem.form]].operator(setting)
+    return lambda u: operator.apply(u.reshape(-1)).reshape(u.shape)
 
 
 def _transport(problem: Problem) -> Part | None:
