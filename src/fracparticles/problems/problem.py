@@ -17,9 +17,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
+from fracparticles.problems.order import with_any_order
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import allowed, first_complaint
-from fracparticles.run.fractional_order import with_beta
 from fracparticles.run.parameters import OVERLAPS, SIZES
 from fracparticles.run.times import with_times
 
@@ -129,7 +129,7 @@ class Problem(BaseModel):
         plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
         if isinstance(plain.get("velocity"), list | np.ndarray):
             plain["velocity"] = tuple(plain["velocity"])
-        return with_times(_with_order(plain))
+        return with_times(with_any_order(plain))
 
     @model_validator(mode="after")
     def _consistent(self) -> Problem:
@@ -287,24 +287,3 @@ class Problem(BaseModel):
 _OF_THE_CASE = {
     "dim", "half_width", "spacing", "order", "overlap", "exterior", "far_terms", "t_initial", "t_final",
 }  # fmt: skip
-
-
-def _with_order(fields: dict[str, Any]) -> dict[str, Any]:
-    """The fields with beta = alpha - 1 for alpha, whatever kind it is of."""
-    alpha, beta = fields.get("alpha"), fields.get("beta")
-    if beta is not None or not (isinstance(alpha, str) or callable(alpha)):
-        return with_beta(fields)
-    others = {name: value for name, value in fields.items() if name not in ("alpha", "beta")}
-    if isinstance(alpha, str):
-        return {**others, "beta": f"({alpha}) - 1"}
-    return {**others, "beta": _less_one(alpha)}
-
-
-def _less_one(alpha: Any) -> Any:
-    from functools import wraps
-
-    @wraps(alpha)
-    def beta(*points: np.ndarray) -> Any:
-        return np.asarray(alpha(*points)) - 1.0
-
-    return beta
