@@ -7,7 +7,8 @@ In the space of r, A r, .. A^(m-1) r, with the orthonormal basis V_m and the Hes
     tau phi_1(tau A) r ~ |r| V_m tau phi_1(tau H_m) e_1,    error ~ |r| h_(m+1,m) |e_m^T tau^2 phi_2(tau H_m) e_1|,
 
 Saad, SIAM J. Numer. Anal. 29 (1992) 209, Theorem 5.1. Both come from one exponential of H_m with two rows more. The
-space does not depend on tau: a step that is too long is taken shorter, without another application of A.
+space does not depend on tau: a step that is too long is taken shorter, without another application of A. The sums are
+those of einsum, in one order whatever the number of threads, which those of BLAS are not.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import expm
 
-from fracparticles.problems.steps import blown_up
+from fracparticles.problems.steps import blown_up, norm
 
 __all__ = ["KrylovStep"]
 
@@ -82,13 +83,13 @@ class KrylovStep:
         left, tau = span, span
         while left > 0.0:
             r = self._rate(u)
-            size = float(np.linalg.norm(r))
+            size = norm(r)
             if not np.isfinite(size):
                 raise blown_up(start + span - left, u)
             if size == 0.0:
                 return u
             basis, h = self._arnoldi(r / size)
-            scale = self._rtol * float(np.linalg.norm(u)) + self._atol * np.sqrt(u.size)
+            scale = self._rtol * norm(u) + self._atol * np.sqrt(u.size)
             tau = min(tau, left)
             while True:
                 weights, error = _phi(h, basis.shape[0], tau)
@@ -97,7 +98,7 @@ class KrylovStep:
                     break
                 self.rejected += 1
                 tau *= max(_SHORTER, _SAFETY * (allowed / error) ** (1.0 / basis.shape[0]))
-            u = u + size * (weights @ basis)
+            u = u + size * np.einsum("i,ij->j", weights, basis)
             left = left - tau if left - tau > 1e-14 * span else 0.0
             self.accepted += 1
             if error > 0.0:
@@ -114,10 +115,10 @@ class KrylovStep:
         for j in range(self._most):
             w = self._rate(basis[j]) - self._origin
             for _ in range(2):  # the second time for what the first leaves by round-off
-                along = basis[: j + 1] @ w
-                w -= along @ basis[: j + 1]
+                along = np.einsum("ij,j->i", basis[: j + 1], w)
+                w -= np.einsum("i,ij->j", along, basis[: j + 1])
                 h[: j + 1, j] += along
-            h[j + 1, j] = np.linalg.norm(w)
+            h[j + 1, j] = norm(w)
             if (
                 not np.isfinite(h[j + 1, j])
                 or h[j + 1, j] <= _NOTHING * np.abs(h[: j + 1, j]).max()

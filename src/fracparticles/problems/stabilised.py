@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from fracparticles.problems.steps import Rate, blown_up
+from fracparticles.problems.steps import Rate, blown_up, norm
 from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["StabilisedStep", "spectral_radius"]
@@ -139,16 +139,16 @@ def spectral_radius(
     """
     if mode is None:
         mode = np.where(np.arange(u.size) % 2, -1.0, 1.0) * (1.0 + 0.1 * np.cos(np.arange(u.size)))
-    small = np.sqrt(2.0**-52) * max(float(np.linalg.norm(u)), float(np.sqrt(u.size)) * 1e-100)
+    small = np.sqrt(2.0**-52) * max(norm(u), float(np.sqrt(u.size)) * 1e-100)
     rho = 0.0
     for _ in range(_ITERATIONS):
-        size = float(np.linalg.norm(mode))
+        size = norm(mode)
         if not 0.0 < size < np.inf:
             break
         step = mode * (small / size)
         with np.errstate(over="ignore", invalid="ignore"):
             image = rate(t, u + step) - r
-            now = float(np.linalg.norm(image)) / small
+            now = norm(image) / small
         if not np.isfinite(now):
             break
         done = abs(now - rho) <= _CONVERGED * now

@@ -10,7 +10,7 @@ from scipy.integrate import DOP853
 
 from fracparticles.errors import NonFiniteSolution
 
-__all__ = ["STAGES", "EighthOrderStep", "Rate", "Steps", "blown_up"]
+__all__ = ["STAGES", "EighthOrderStep", "Rate", "Steps", "blown_up", "norm"]
 
 Rate = Callable[[float, np.ndarray], np.ndarray]
 """R(t, u)."""
@@ -76,3 +76,8 @@ def blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:
         f"the solution grows without bound near t = {t:.6g}: the time step has shrunk to nothing, and the greatest |u| "
         f"is {np.abs(u).max():.3g}. End before, or mend the source."
     )
+
+
+def norm(u: np.ndarray) -> float:
+    """Return the 2-norm, summed in one order whatever the number of threads."""
+    return float(np.sqrt(np.sum(u * u)))
