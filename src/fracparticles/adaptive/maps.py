@@ -54,12 +54,12 @@ class GradedParticles(NamedTuple):
         return np.asarray(np.abs(np.where(near_right, by_right, by_left)))
 
 
-def graded_on_interval(count: int, degree: float = 8.0) -> GradedParticles:
+def graded_on_interval(particles: int, degree: float = 8.0) -> GradedParticles:
     """Return particles of (-1, 1), graded towards both ends.
 
     Parameters
     ----------
-    count : int
+    particles : int
         N, from 4 to `MOST`.
     degree : float
         p, 1 <= p <= 12: the first particle is N^(-p) from its end, but for a factor; 1 for equal volumes.
@@ -69,7 +69,7 @@ def graded_on_interval(count: int, degree: float = 8.0) -> GradedParticles:
     InvalidInput
         If an argument is outside its range, or a particle closer to an end than a power of the distance can be told.
     """
-    count = check.whole_number("count", count, 4, MOST)
+    count = check.whole_number("particles", particles, 4, MOST)
     p = check.real_between("degree", degree, 1.0, _MOST_DEGREE)
     y = (np.arange(count) + 0.5) / count
     left = 2.0 * betainc(p, p, y)
