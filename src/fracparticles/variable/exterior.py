@@ -89,7 +89,7 @@ class PlaneGradientFarField:
         wide = max(_WIDER * n, n + 2 * pad)
         targets = setting.size + 2 * pad
         j = np.meshgrid(*(np.arange(-wide, wide + 1.0) / n,) * dim, indexing="ij", sparse=True)
-        square = sum(np.square(part) for part in j)
+        square = np.asarray(sum(np.square(part) for part in j))
         square[(wide,) * dim] = np.inf
         first = square ** (-0.5 * tail)
         modes = [
@@ -98,8 +98,7 @@ class PlaneGradientFarField:
             *(first / square * part for part in j),
         ]
         within = (slice(wide - n, wide + n + 1),) * dim
-        faces = np.zeros(setting.shape, dtype=bool)
-        faces[...] = True
+        faces = np.ones(setting.shape, dtype=bool)
         faces[(slice(1, -1),) * dim] = False
         self._boundary = np.flatnonzero(faces)
         edge = np.array([mode[within].reshape(-1)[self._boundary] for mode in modes])

@@ -8,6 +8,7 @@ Both with the kernels of FPSE: F^ = i (k / |k|) |k|^beta eta^(k), so that div gr
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -33,6 +34,7 @@ class FractionalGradient:
         unit = -(setting.spacing ** (1.0 - setting.alpha))
         exact = replace(setting, kernel_table=None)
         self._far: LineFarField | PlaneGradientFarField | None = None
+        self._sums: Callable[[np.ndarray], np.ndarray]
         if dim == 1:
             w = unit * flux_weights(np.arange(size + pad, dtype=float), setting)
             self._sums = SUMMATIONS[setting.summation](w, size, parity=-1, pad=pad)

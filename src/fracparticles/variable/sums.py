@@ -7,6 +7,7 @@ The kernel is that of a scheme with one pass: G of DD, Eq. (10), alpha K of KPSE
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -49,6 +50,7 @@ class EvenSum:
         self.weights = rate * scheme.weights(lattice_radii(size, dim), setting)
         self.total = rate * float(scheme.scaled_transform(np.zeros((1, dim)), exact).flat[0])
         self.far: LineFarField | BoxFarField | None = None
+        self._sums: Callable[[np.ndarray], np.ndarray]
         if dim == 1:
             self._sums = SUMMATIONS[setting.summation](self.weights, size)
             if setting.is_open:
