@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from fracparticles.variable import closed_forms as known
+from fracparticles.variable.closed_forms import Cauchy, exchange_limit
 
 ALPHA = 1.4
 PLACES = (0.0, 0.3, 1.0, 4.0)
@@ -22,10 +22,10 @@ def over_waves(f):
 def test_laplacian_is_the_integral_over_wave_numbers(s, x):
     line = over_waves(lambda k: k**s * mp.cos(k * x))
     plane = over_waves(lambda k: k ** (s + 1) * mp.besselj(0, k * x))
-    assert -known.cauchy_laplacian([np.array(x)], s) == pytest.approx(
+    assert -Cauchy.laplacian([np.array(x)], s) == pytest.approx(
         float(line), rel=1e-12, abs=1e-13
     )
-    assert -known.cauchy_laplacian([np.array(x), np.array(0.0)], s) == pytest.approx(
+    assert -Cauchy.laplacian([np.array(x), np.array(0.0)], s) == pytest.approx(
         float(plane), rel=1e-12, abs=1e-13
     )
 
@@ -36,9 +36,9 @@ def test_gradient_has_the_transform_i_k_over_k_to_the_beta(x):
     beta = ALPHA - 1.0
     line = -over_waves(lambda k: k**beta * mp.sin(k * x))
     plane = -over_waves(lambda k: k**ALPHA * mp.besselj(1, k * x))
-    (ours,) = known.cauchy_gradient([np.array(x)], ALPHA)
+    (ours,) = Cauchy.gradient([np.array(x)], ALPHA)
     assert ours == pytest.approx(float(line), rel=1e-12, abs=1e-13)
-    ours, across = known.cauchy_gradient([np.array(x), np.array(0.0)], ALPHA)
+    ours, across = Cauchy.gradient([np.array(x), np.array(0.0)], ALPHA)
     assert ours == pytest.approx(float(plane), rel=1e-12, abs=1e-13)
     assert across == 0.0
 
@@ -48,11 +48,11 @@ def test_divergence_of_the_gradient_is_the_laplacian():
     divergence = 0.0
     for axis, shift in enumerate(step * np.eye(2)):
         ahead, behind = (
-            known.cauchy_gradient(list(at), ALPHA)[axis] for at in (place + shift, place - shift)
+            Cauchy.gradient(list(at), ALPHA)[axis] for at in (place + shift, place - shift)
         )
         divergence += (ahead - behind) / (2.0 * step)
     # Central differences: step^2 / 6 of third derivatives of order one to ten, and rounding of 1e-16 / step.
-    assert divergence == pytest.approx(known.cauchy_laplacian(list(place), ALPHA), abs=1e-7)
+    assert divergence == pytest.approx(Cauchy.laplacian(list(place), ALPHA), abs=1e-7)
 
 
 def test_limit_of_the_exchange_is_the_nonlocal_integral():
@@ -73,17 +73,17 @@ def test_limit_of_the_exchange_is_the_nonlocal_integral():
     with mp.workdps(40):
         integral = scale * mp.quad(pairs, range(-36, 31, 6))
     # Beyond are a share exp(-36 (2 - alpha)) = 4e-10 of a second derivative and exp(-30 alpha).
-    ours = known.exchange_limit(np.array(0.6), ALPHA, c)
+    ours = exchange_limit(np.array(0.6), ALPHA, c)
     assert ours == pytest.approx(float(integral), rel=1e-8)
 
 
 def test_the_two_equations_meet_where_alpha_is_two():
     x = np.linspace(-4.0, 4.0, 81)
-    u = known.cauchy([x])
+    u = Cauchy.value([x])
     gaps = [
         np.abs(
-            known.exchange_limit(x, alpha, 0.5)
-            - known.cauchy_flux_divergence([x], alpha, 1.0 + 0.5 * u, [-x * u * u])
+            exchange_limit(x, alpha, 0.5)
+            - Cauchy.flux_divergence([x], alpha, 1.0 + 0.5 * u, [-x * u * u])
         ).max()
         for alpha in (1.5, 1.9, 1.999)
     ]
