@@ -1,81 +1,76 @@
-"""-(-Laplacian)^(alpha(x)/2) u: the order of the rows, what their interpolation costs, and the tails of a solution.
+"""-(-Laplacian)^(alpha(x)/2) u: its order in h, how many orders the rows are interpolated from, and its tails.
 
-The operator is tested on u = 1 / (1 + x^2) on the line and exp(-|x|^2) in the plane, whose fractional Laplacians of any
-order are closed forms. Solutions start from 1 / (1 + x^2)^2, whose own tail is below what the equation makes, and are
-compared with that of a lattice which is much wider.
+alpha(x) = mean + change tanh(x) on the line, mean + change exp(-|x|^2) in the plane. The error is the greatest over the
+particles, over the greatest value of the exact right-hand side.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
+from scipy.special import gamma
 
-from fracparticles.errors import AccuracyWarning
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.orders import observed_order
+from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.base import OnePass
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import VariableOrder
-from fracparticles.variable.closed_forms import Cauchy, Gaussian, KnownField
+from fracparticles.variable.closed_forms import Cauchy, Gaussian
 from fracparticles.variable.order import interpolation_bound
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
 __all__ = ["study"]
 
-_SPACING = 0.25  # of the solutions, in kernels of order 8: 1e-5 and below
-_TIME = 1.0
-_ROWS = 101  # of different order, where the interpolation is measured
-_TOLERANCES = np.geomspace(1e-2, 1e-13, 12)
+_ROWS = 60  # half the particles on which rows are compared with those of their own order
+_MOMENTS = 16  # intervals of time over which the mass is integrated
+_SIDES = {"left": -1.0, "right": 1.0}
 
 
 def study(
     inputs: Inputs,
     *,
-    middle: float,
-    swing: float,
+    mean: float,
+    change: float,
     overlap: float,
     half_width: float,
     spacings: list[float],
     orders: list[int],
     plane_half_width: float,
     plane_spacings: list[float],
-    plane_orders: list[int],
-    intervals: list[list[float]],
+    plane_order: int,
+    ranges: list[list[float]],
+    tolerances: list[float],
     wide: float,
+    wide_spacing: float,
+    time: float,
     narrow: list[float],
 ) -> Result:
-    """A row for each order and spacing of the operator, for each lattice of a solution, and for each of its tails."""
+    """A row for each number: part, case, where, ours, and what it should be or be below."""
     panels = Panels()
     rows: list[dict[str, Any]] = []
-    common = {"alpha": middle, "overlap": overlap, "exterior": "open"}
+    common: dict[str, Any] = {"alpha": mean, "overlap": overlap, "exterior": "open"}
     for order in orders:
-        line = [
+        settings = [
             Setting(**common, order=order, n=round(half_width / h), spacing=h, far_terms=3)
             for h in spacings
         ]
-        rows += _levels(line, middle, swing, panels)
-    for order in plane_orders:
-        plane = [
-            Setting(**common, order=order, n=round(plane_half_width / h), spacing=h, dim=2)
-            for h in plane_spacings
-        ]
-        rows += _levels(plane, middle, swing, panels)
-    for least, greatest in intervals:
-        _interpolation(least, greatest, overlap, panels)
-    rows += _solutions(middle, swing, wide, narrow, panels)
+        rows += _levels(settings, change, panels)
+    settings = [
+        Setting(**common, order=plane_order, dim=2, n=round(plane_half_width / h), spacing=h)
+        for h in plane_spacings
+    ]
+    rows += _levels(settings, change, panels)
+    for low, high in ranges:
+        rows += _interpolation(low, high, tolerances, panels)
+    rows.append(_constant(mean, overlap))
+    rows += _tails(mean, change, wide, wide_spacing, time, narrow, panels)
     return Result(pd.DataFrame(rows), (), panels.frame)
-
-
-def _order_at(points: Sequence[np.ndarray], middle: float, swing: float) -> np.ndarray:
-    """Alpha: from one value to another on the line, a hill in the plane."""
-    if len(points) == 1:
-        return np.asarray(middle + swing * np.tanh(points[0]))
-    return np.asarray(middle + swing * np.exp(-sum(np.square(part) for part in points)))
 
 
 def _particles(setting: Setting) -> list[np.ndarray]:
@@ -83,87 +78,146 @@ def _particles(setting: Setting) -> list[np.ndarray]:
     return list(np.meshgrid(*(x,) * setting.dim, indexing="ij", sparse=True))
 
 
-def _levels(
-    settings: Sequence[Setting], middle: float, swing: float, panels: Panels
-) -> Iterator[dict[str, Any]]:
-    """One row a spacing: the greatest error over the greatest value of the exact right-hand side."""
-    dim, order = settings[0].dim, settings[0].order
-    field: type[KnownField] = Cauchy if dim == 1 else Gaussian
-    spacings, errors, nodes = [setting.spacing for setting in settings], [], []
+def _levels(settings: Sequence[Setting], change: float, panels: Panels) -> Iterator[dict[str, Any]]:
+    """The error for each spacing, against the closed form with the order of each place."""
+    errors = []
     for setting in settings:
         at = _particles(setting)
-        alpha = _order_at(at, middle, swing)
-        operator = VariableOrder(setting, alpha, tail=2.0 if dim == 1 else None)
+        field = Cauchy if setting.dim == 1 else Gaussian
+        varied = np.tanh(at[0]) if setting.dim == 1 else Gaussian.value(at)
+        alpha = setting.alpha + change * varied
         exact = field.laplacian(at, alpha)
-        errors.append(_relative(operator.apply(field.value(at)), exact))
-        nodes.append(operator.nodes.size)
-    panels.add("order", order, spacings, errors, dim=dim)
-    observed = [np.nan, *observed_order(spacings, errors)]
-    for h, error, slope, count in zip(spacings, errors, observed, nodes, strict=True):
-        yield {
-            "what": "operator",
-            "dim": dim,
-            "order": order,
-            "h": h,
-            "sums": count,
-            "error": error,
-            "observed order": slope,
-        }
+        rate = VariableOrder(setting, alpha, tail=setting.dim + 1.0).apply(field.value(at))
+        errors.append(float(np.abs(rate - exact).max() / np.abs(exact).max()))
+    spacings = [setting.spacing for setting in settings]
+    dim, order = settings[0].dim, settings[0].order
+    case = f"{'line' if dim == 1 else 'plane'}, order {order}"
+    panels.add("error", case, spacings, errors, order=order, dim=dim)
+    slopes = [np.nan, *observed_order(spacings, errors)]
+    for h, error, slope in zip(spacings, errors, slopes, strict=True):
+        yield {"part": "error", "case": case, "at": h, "ours": error, "observed order": slope}
 
 
-def _relative(ours: np.ndarray, exact: np.ndarray) -> float:
-    return float(np.abs(ours - exact).max() / np.abs(exact).max())
-
-
-def _interpolation(least: float, greatest: float, overlap: float, panels: Panels) -> None:
-    """The greatest error of a weight, in units of D / h^alpha, against the number of sums; and its bound."""
-    setting = Setting(alpha=least, overlap=overlap, n=_ROWS // 2)
-    alpha = np.linspace(least, greatest, setting.size)
-    point = np.zeros(setting.size)
-    point[setting.n] = 1.0
-    best = VariableOrder(setting, alpha, tolerance=1e-15).apply(point)
-    found: dict[int, float] = {}
-    for tolerance in _TOLERANCES:
-        operator = VariableOrder(setting, alpha, tolerance=float(tolerance))
-        found[operator.nodes.size] = float(np.abs(operator.apply(point) - best).max())
-    bounds = [interpolation_bound(count, least, greatest) for count in found]
-    panels.add("sums", f"{least:g}-{greatest:g}", list(found), list(found.values()), kind="ours")
-    panels.add("sums", f"{least:g}-{greatest:g}", list(found), bounds, kind="bound")
-
-
-def _solutions(
-    middle: float, swing: float, wide: float, narrow: Sequence[float], panels: Panels
+def _interpolation(
+    low: float, high: float, tolerances: Sequence[float], panels: Panels
 ) -> Iterator[dict[str, Any]]:
-    """Rows of lattices, against a wide one, and of the two tails of that."""
-    reference = _solved(middle, swing, wide, "open")
-    x, u = reference["x"].values, reference["u"].values
-    for half_width in narrow:
-        for exterior in ("open", "truncated"):
-            run = _solved(middle, swing, half_width, exterior)
-            exact = u[np.abs(x) <= half_width + 0.5 * _SPACING]
-            error = _relative(run["u"].values, exact)
-            panels.add("exterior", exterior, half_width, error)
-            yield {"what": f"solution, {exterior}", "L": half_width, "error": error}
-    for side, sign in (("left", -1.0), ("right", 1.0)):
-        far = (sign * x >= 5.0) & (sign * x <= 0.5 * wide)
-        distance, there = np.abs(x[far]), u[far]
-        order = np.argsort(distance)
-        distance, there = distance[order], there[order]
-        some = np.unique(np.geomspace(1, distance.size, 60).round().astype(int)) - 1
-        panels.add("tail", side, distance[some], there[some])
-        outer = distance >= 0.25 * wide
-        slope = np.polyfit(np.log(distance[outer]), np.log(there[outer]), 1)[0]
-        exact_order = middle + sign * swing
-        yield {"what": f"tail, {side}", "ours": -float(slope), "exact": 1.0 + exact_order}
+    """The rows against those summed with the kernel of their own order: the greatest Euclidean norm of a difference.
+
+    The norm of a row is no more than the greatest value of its symbol, which is what the bound is for.
+    """
+    setting = Setting(alpha=low, order=4, n=_ROWS)
+    i = np.arange(setting.size, dtype=float)
+    alpha = np.linspace(low, high, setting.size)
+    scheme = SCHEMES["DD"]
+    assert isinstance(scheme, OnePass)
+    own = np.array(
+        [scheme.weights(np.abs(i - k), replace(setting, alpha=a)) for k, a in enumerate(alpha)]
+    )
+    found: dict[int, float] = {}
+    for tolerance in tolerances:
+        operator = VariableOrder(setting, alpha, tolerance=tolerance)
+        nodes = operator.nodes.size
+        if nodes not in found:
+            ours = np.array([operator.apply(e) for e in np.eye(setting.size)]).T
+            found[nodes] = float(np.linalg.norm(ours - own, axis=1).max())
+    case = f"{low:g} to {high:g}"
+    bounds = [interpolation_bound(nodes, low, high) for nodes in found]
+    panels.add("interpolation", case, list(found), list(found.values()), bound=bounds)
+    for (nodes, ours), bound in zip(found.items(), bounds, strict=True):
+        yield {"part": "interpolation", "case": case, "at": nodes, "ours": ours, "theory": bound}
 
 
-def _solved(middle: float, swing: float, half_width: float, exterior: str) -> xr.Dataset:
+def _constant(alpha: float, overlap: float) -> dict[str, Any]:
+    """A constant order against the operator of DD."""
+    setting = Setting(alpha=alpha, overlap=overlap, order=4, n=400, spacing=0.1, exterior="open")
+    u = Cauchy.value(_particles(setting))
+    plain = SCHEMES["DD"].operator(setting).apply(u)
+    ours = VariableOrder(setting, alpha).apply(u)
+    difference = float(np.abs(ours - plain).max() / np.abs(plain).max())
+    return {"part": "constant order", "case": "line", "ours": difference, "theory": 0.0}
+
+
+def _tails(
+    mean: float,
+    change: float,
+    wide: float,
+    h: float,
+    time: float,
+    narrow: Sequence[float],
+    panels: Panels,
+) -> Iterator[dict[str, Any]]:
+    """A run from a bell on a wide lattice: its tails, its mass, and what a narrow lattice makes of it.
+
+    Far away du/dt = c(alpha) M(t) / |x|^(1 + alpha) with the alpha of the place and the mass M, so that u falls like
+    c(alpha) int M dt / |x|^(1 + alpha): c(alpha) = Gamma(1 + alpha) sin(pi alpha / 2) / pi.
+    """
     problem = Problem(
-        alpha=f"{middle} + {swing}*tanh(x)", form="DD", order=8, spacing=_SPACING, half_width=half_width,
-        exterior=exterior, t_final=_TIME, rtol=1e-8,
-    )  # fmt: skip
-    with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", AccuracyWarning
-        )  # of the narrow ones, which are what is shown
-        return solve_problem(problem, lambda x: (1.0 + x * x) ** -2.0)
+        alpha=f"{mean} + {change}*tanh(x)",
+        form="DD",
+        half_width=wide,
+        spacing=h,
+        times=tuple(np.linspace(0.0, time, _MOMENTS + 1)[1:].tolist()),
+        rtol=1e-10,
+    )
+    run = solve_problem(problem, lambda x: np.exp(-x * x))
+    x, u = run["x"].values, run["u"].values[-1]
+    first = np.exp(-x * x).sum() * h
+    masses = np.array([first, *(run["u"].values.sum(axis=1) * h)])
+    impulse = float(np.trapezoid(masses, dx=time / _MOMENTS))
+    for side, sign in _SIDES.items():
+        alpha = mean + sign * change
+        expected = gamma(1.0 + alpha) * np.sin(0.5 * np.pi * alpha) / np.pi * impulse
+        out = (sign * x >= 2.0) & (sign * x <= 0.8 * wide)
+        r, values = sign * x[out][:: int(sign)], u[out][:: int(sign)]
+        some = np.unique(np.geomspace(1, r.size, 60).astype(int)) - 1
+        r, values = r[some], values[some]
+        panels.add("tail", side, r, values, theory=expected * r ** (-1.0 - alpha))
+        share = values[-1] * r[-1] ** (1.0 + alpha) / expected
+        power = -np.log(values[-1] / values[-5]) / np.log(r[-1] / r[-5])
+        yield {
+            "part": "tail, exponent",
+            "case": side,
+            "at": r[-1],
+            "ours": power,
+            "theory": 1.0 + alpha,
+        }
+        yield {"part": "tail, amplitude", "case": side, "at": r[-1], "ours": share, "theory": 1.0}
+    yield {
+        "part": "mass",
+        "case": "line",
+        "at": time,
+        "ours": float(masses[-1] / masses[0]),
+        "theory": np.nan,
+    }
+    yield from _narrowed(mean, change, x, u, h, narrow, panels)
+
+
+def _narrowed(
+    mean: float,
+    change: float,
+    x: np.ndarray,
+    u: np.ndarray,
+    h: float,
+    narrow: Sequence[float],
+    panels: Panels,
+) -> Iterator[dict[str, Any]]:
+    """du/dt on a part of the lattice, with a tail of each end, with one of the mean order, and without any."""
+
+    def rate(n: int, tail: Any) -> np.ndarray:
+        exterior = "truncated" if tail == "none" else "open"
+        setting = Setting(alpha=mean, order=4, n=n, spacing=h, exterior=exterior)
+        middle = slice(x.size // 2 - n, x.size // 2 + n + 1)
+        alpha = mean + change * np.tanh(x[middle])
+        given = 1.0 + mean if tail == "one for both" else None
+        return VariableOrder(setting, alpha, tail=given).apply(u[middle])
+
+    whole = rate(x.size // 2, "own")
+    for tail in ("own", "one for both", "none"):
+        errors = []
+        for half_width in narrow:
+            n = round(half_width / h)
+            middle = slice(x.size // 2 - n, x.size // 2 + n + 1)
+            error = np.abs(rate(n, tail) - whole[middle]).max() / np.abs(whole).max()
+            errors.append(float(error))
+            yield {"part": "exterior", "case": tail, "at": half_width, "ours": errors[-1]}
+        panels.add("exterior", tail, narrow, errors)
