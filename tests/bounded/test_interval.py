@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
+from fracparticles.adaptive.inverse import InverseExchange
 from fracparticles.bounded.interval import Interval
-from fracparticles.bounded.interval_inverse import InverseExchange
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.special import tail_constant

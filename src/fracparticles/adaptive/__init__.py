@@ -1,1 +1,1 @@
-"""Particles of unequal volume on the line: maps that place them, an exchange of high order, placing again."""
+"""Particles of unequal volume on the line: where they are put, what they exchange, how they follow a solution."""

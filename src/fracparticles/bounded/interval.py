@@ -10,7 +10,7 @@ reflecting
 given
     u = g(y, t) outside, C int_outside g |x - y|^(-1-alpha) dy is added to the first.
 
-The integral over Omega is an exchange with the weights of `adaptive.weights` on the map of degree p of `adaptive.maps`.
+The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`.
 With q weights of near neighbours, eigenvalues and solutions with absorbing ends have the order min(2 q + 2 - alpha, p)
 in 1 / N: the first from inside, the second from the ends, where the error is like the distance of the first particle.
 A lattice of equal volumes has p = 1, as linear finite elements of equal size have h in the L2 norm and h^(1/2) in that
@@ -26,12 +26,12 @@ from typing import Any
 import numpy as np
 
 from fracparticles import arguments as check
+from fracparticles.adaptive.exchange import exchange_matrix, rate_matrix
+from fracparticles.adaptive.inverse import InverseExchange
 from fracparticles.adaptive.maps import graded_on_interval
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.interval_exchange import exchange_matrix, loss_rates, rate_matrix
-from fracparticles.bounded.interval_inverse import InverseExchange
-from fracparticles.bounded.interval_outside import OutsideValues
+from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
 from fracparticles.bounded.interval_time import forced_modes
 from fracparticles.errors import InvalidInput
 

@@ -1,7 +1,8 @@
-"""What particles get of values that are given outside an interval.
+"""What particles lose to the outside of an interval, and what they get of values that are given there.
 
 On (-1, 1), with the distances d of particle i from the two ends,
 
+    kappa_i = C int_outside |x_i - y|^(-1-alpha) dy = (C / alpha) sum_ends d^(-alpha),
     b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds.
 
 In s the integrand is smooth on the scale one wherever the particle is, if g is smooth in log |y - end|: the trapezoidal
@@ -20,11 +21,17 @@ from fracparticles.adaptive.maps import GradedParticles
 from fracparticles.arguments import FloatArray
 from fracparticles.special import tail_constant
 
-__all__ = ["OutsideValues"]
+__all__ = ["OutsideValues", "loss_rates"]
 
 _STEP = 0.25
 _FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
 _NEAR = 40.0  # e^-40 of the distance of the first particle
+
+
+def loss_rates(particles: GradedParticles, alpha: float) -> FloatArray:
+    """Return kappa_i, shape (N,)."""
+    losses = particles.left**-alpha + particles.right**-alpha
+    return np.asarray(tail_constant(alpha) / alpha * losses)
 
 
 class OutsideValues:
@@ -48,10 +55,10 @@ class OutsideValues:
         s = np.arange(first - _NEAR, _FAR, _STEP)
         beyond = np.exp(s)
         self._points = place(np.concatenate([-1.0 - beyond, 1.0 + beyond]))
-        loss = tail_constant(alpha) / alpha
+        lost = tail_constant(alpha) / alpha
         self._weights = np.concatenate(
             [
-                _weights(distance, beyond, alpha) * (loss * distance**-alpha)[:, None]
+                _weights(distance, beyond, alpha) * (lost * distance**-alpha)[:, None]
                 for distance in (particles.left, particles.right)
             ],
             axis=1,

@@ -1,10 +1,10 @@
 """The inverse of an exchange, to relative round-off, and with it its slow modes.
 
-A_ij = K_ij V_j, A_ii = -sum_j K_ij V_j - kappa_i has rates up to d^(-alpha), d the distance of the first particle from
-its end: 1e30 and more, beside which those that matter, of order one, would be lost in round-off. The elimination of
-Grassmann, Taksar & Heyman (Oper. Res. 33 (1985) 1107) keeps them: it never subtracts, since each diagonal is the sum of
-what the particle still exchanges. With the outside as one more particle, which exchanges V_i kappa_i with particle i
-and is held at zero,
+A_ij = K_ij V_j, A_ii = -sum_j K_ij V_j - kappa_i has rates up to d^(-alpha), d the distance of two neighbours: at the
+end of an interval 1e30 and more, beside which those that matter, of order one, would be lost in round-off. The
+elimination of Grassmann, Taksar & Heyman (Oper. Res. 33 (1985) 1107) keeps them: it takes no difference of nearly equal
+rates, since each diagonal is the sum of what the particle still exchanges. With the outside as one more particle, which
+exchanges V_i kappa_i with particle i and is held at zero,
 
     L_ij = V_i K_ij V_j (exchanges),  d_k = sum_(j > k) L_kj,  L_ij <- L_ij + L_ik L_kj / d_k,   i, j > k,
 
@@ -12,7 +12,7 @@ leaves -V A = U^T diag(d) U, U_kj = -L_kj / d_k, and
 
     -(V^(1/2) A V^(-1/2))^(-1) = Y Y^T,   Y = V^(1/2) U^(-1) d^(-1/2):
 
-the largest eigenvalues of Y Y^T are one over the slowest rates. Particles are taken from the ends inwards. Where
+the largest eigenvalues of Y Y^T are one over the slowest rates. The closest particles are taken first. Where
 nothing goes out, the last particle is held instead, and the constant, whose rate is zero, is projected out.
 """
 
