@@ -34,19 +34,19 @@ def errors(result, **values):
 @pytest.mark.parametrize("order", [2, 4])
 def test_flux_and_product_rule_solve_the_equation(result, form, order):
     # The order is reached from below, and the distance from it falls like h^2: extrapolate it from two.
-    observed = pick(result.table, dim=1, form=form, order=order)["observed order"].to_numpy()
+    observed = pick(result.table, dim=1, way=form, order=order)["observed order"].to_numpy()
     assert observed[-1] + (observed[-1] - observed[-2]) / 3.0 == pytest.approx(order, abs=0.1)
 
 
 def test_exchange_solves_another_equation(result):
-    wrong = errors(result, form="exchange", equation=FLUX)
-    right = errors(result, form="exchange", equation=MEAN, order=2)
+    wrong = errors(result, way="exchange", equation=FLUX)
+    right = errors(result, way="exchange", equation=MEAN, order=2)
     assert wrong[-1] > 0.08  # what is between the equations stays,
     assert right[-1] < 0.1 * wrong[-1]  # and what is of the particles goes
 
 
 def test_flux_and_exchange_are_conservative_and_the_product_rule_is_not(result):
-    drift = result.table.groupby("form")["drift of the total"].max()
+    drift = result.table.groupby("way")["drift of the total"].max()
     assert drift["FPSE"] < 1e-12
     assert drift["exchange"] < 1e-12
     assert drift["DD"] > 0.01

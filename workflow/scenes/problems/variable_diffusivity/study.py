@@ -95,7 +95,7 @@ def _levels(
     for h, error, slope, drift, norm in zip(spacings, errors, observed, drifts, norms, strict=True):
         yield {
             "dim": dim,
-            "form": form,
+            "way": form,
             "equation": equation,
             "order": order,
             "h": h,

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, log_log, name_ticks, panel_title, slope_triangle
@@ -54,10 +55,10 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
             label=points["series"].iloc[0],
             **style,
         )
-        finest = points.sort_values("x").iloc[:2]
-        if not plane and len(finest) > 1 and finest["y"].iloc[0] > 1e-11:
-            h, error = finest.iloc[0][["x", "y"]]
-            slope_triangle(ax, h, 1.8 * error, float(points["order"].iloc[0]), above=True)
+        h, error = points.sort_values("x")[["x", "y"]].to_numpy().T
+        slopes = np.diff(np.log(error)) / np.diff(np.log(h))
+        if not plane and slopes.size and slopes.argmax() == 0:  # it does not end at round-off
+            slope_triangle(ax, h[0], 1.8 * error[0], float(points["order"].iloc[0]), above=True)
     ticks = sorted(part["x"].unique())
     log_log(ax, xlabel="particle spacing $h$", ylabel="error of $du/dt$, relative")
     ax.set_xlim(0.6 * ticks[0], 1.3 * ticks[-1])
@@ -71,16 +72,16 @@ def _interpolation(ax: Axes, part: pd.DataFrame) -> None:
         ax.plot(points["x"], points["y"], label=points["series"].iloc[0], linestyle="", **style)
         ax.plot(points["x"], points["bound"], color=style["color"], linestyle=":", marker="")
     ax.set(yscale="log", xlabel="orders summed, $K$", ylabel="difference of rows; bound (dotted)")
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.legend(loc="upper right", fontsize=7, title=r"range of $\alpha$", title_fontsize=7)
     panel_title(ax, "b", r"interpolation in $\alpha$")
 
 
 def _tails(ax: Axes, part: pd.DataFrame) -> None:
     for points, style in _styled(part):
-        name = points["series"].iloc[0]
-        ax.plot(points["x"], points["y"], label=name, linestyle="", **{**style, "markersize": 3.0})
-        far = points[points["x"] > np.sqrt(points["x"].max())]
-        ax.plot(far["x"], far["theory"], color=style["color"], linestyle=":", marker="")
+        label = f"{points['series'].iloc[0]}, $\\alpha = {points['alpha'].iloc[0]:g}$"
+        ax.plot(points["x"], points["y"], label=label, linestyle="", **style)
+        ax.plot(points["x"], points["theory"], color=style["color"], linestyle=":", marker="")
     log_log(ax, xlabel="distance $|x|$", ylabel="$u(x, t)$")
     ax.legend(loc="lower left", fontsize=7)
     panel_title(ax, "c", "tails of a run")
