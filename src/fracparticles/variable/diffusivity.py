@@ -21,6 +21,7 @@ divergence reaches; the exchange takes D beyond an end for what it is there.
 
 from __future__ import annotations
 
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -73,7 +74,7 @@ class VariableDiffusivity:
         usual = setting.dim + setting.alpha
         tails = tails_of(setting, tail, (usual, usual))
         self.conservative = form != "DD"
-        self._pad, self._settled = 0, not setting.is_open
+        self._pad, self._settled, self._lock = 0, not setting.is_open, Lock()
         if form == "FPSE":
             self._pad = ExchangeDivergence.reach(setting) if setting.is_open else 0
             self._gradient = FractionalGradient(setting, self._pad, tails)
@@ -101,9 +102,9 @@ class VariableDiffusivity:
         """
         u = np.ascontiguousarray(operand("u", u, self.setting.shape))
         d = self._checked(diffusivity)
-        return {"FPSE": self._flux, "DD": self._product_rule, "exchange": self._mean}[self.form](
-            u, d
-        )
+        rate = {"FPSE": self._flux, "DD": self._product_rule, "exchange": self._mean}[self.form]
+        with self._lock:  # the sums keep work arrays
+            return rate(u, d)
 
     def spectral_radius(self, diffusivity: Any) -> float:
         """Return an upper bound of |lambda|; in an open exterior of the lattice without what continues it."""

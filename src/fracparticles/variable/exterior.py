@@ -86,41 +86,33 @@ class PlaneGradientFarField:
         self, weights: Callable[[int], list[np.ndarray]], setting: Setting, pad: int, tail: float
     ) -> None:
         n, dim = setting.n, setting.dim
-        wide = max(_WIDER * n, n + 2 * pad)
-        targets = setting.size + 2 * pad
-        j = np.meshgrid(*(np.arange(-wide, wide + 1.0) / n,) * dim, indexing="ij", sparse=True)
+        wide, targets = max(_WIDER * n, n + 2 * pad), setting.size + 2 * pad
+        line = np.arange(-wide, wide + 1.0) / n
+        j = np.meshgrid(*(line,) * dim, indexing="ij", sparse=True)
         square = np.asarray(sum(np.square(part) for part in j))
         square[(wide,) * dim] = np.inf
         first = square ** (-0.5 * tail)
-        modes = [
-            first,
-            first * square ** (0.5 * (dim - tail)),
-            *(first / square * part for part in j),
-        ]
         within = (slice(wide - n, wide + n + 1),) * dim
         faces = np.ones(setting.shape, dtype=bool)
         faces[(slice(1, -1),) * dim] = False
         self._boundary = np.flatnonzero(faces)
-        edge = np.array([mode[within].reshape(-1)[self._boundary] for mode in modes])
-        self._fit = np.linalg.solve(edge @ edge.T, edge)
-        reach = wide + n + pad + 1
-        convolve = BOX_SUMMATIONS["fft"](weights(reach), range(dim), 2 * wide + 1, targets)
-        sums = []
-        for mode in modes:
+        convolve = BOX_SUMMATIONS["fft"](
+            weights(wide + n + pad + 1), range(dim), 2 * wide + 1, targets
+        )
+        edge = np.empty((dim + 2, self._boundary.size))
+        self._sums = np.empty((dim + 2, dim, *(targets,) * dim))
+        factors = [1.0, square ** (0.5 * (dim - tail)), *(part / square for part in j)]
+        for k, factor in enumerate(factors):
+            mode = first * factor
+            edge[k] = mode[within].reshape(-1)[self._boundary]
             mode[within] = 0.0
-            sums.append(convolve(mode).copy())
-        self._sums = np.array(sums)
+            self._sums[k] = convolve(mode)
+        self._fit = np.linalg.solve(edge @ edge.T, edge)
 
     def add(self, u: np.ndarray, y: np.ndarray) -> None:
         """Add the contribution of the exterior to y, shape (components, points, points)."""
         amplitudes = self._fit @ u.reshape(-1)[self._boundary]
         y += np.tensordot(amplitudes, self._sums, 1)
-
-    @property
-    def norm(self) -> float:
-        """An upper bound of the norm of what is added, |S| |fit|."""
-        flat = self._sums.reshape(len(self._sums), -1)
-        return float(np.linalg.norm(flat) * np.linalg.norm(self._fit, 2))
 
 
 def warn_unsettled(field: str, values: np.ndarray, n: int) -> None:

@@ -82,23 +82,21 @@ class ExchangeDivergence:
         self.setting, self._pad = setting, pad
         dim, size = setting.dim, setting.size
         exact = replace(setting, kernel_table=None)
-        reach = self.reach(setting)
         if dim == 1:
-            c = divergence_weights(np.arange(reach + 1, dtype=float), exact) / -setting.spacing
+            m = np.arange(self.reach(setting) + 1, dtype=float)
+            c = divergence_weights(m, exact) / -setting.spacing
             self._banded = BandedConvolution(c, parity=-1)
             self.diagonal = None if pad else [sums_of_weights(c, parity=-1, size=size)]
             return
         count = size + pad
         r = lattice_radii(count, dim)
         scale = setting.overlap ** (-1.0 - dim) / setting.spacing
-        radial = np.where(r <= 1.5 * reach, scale, 0.0) * setting.kernel(
-            "eta1", r / setting.overlap
-        )
+        radial = scale * exact.kernel("eta1", r / setting.overlap)
         radial /= np.where(r > 0.0, r, 1.0)
-        m = np.meshgrid(*(np.arange(count, dtype=float),) * dim, indexing="ij", sparse=True)
+        offsets = np.meshgrid(*(np.arange(count, dtype=float),) * dim, indexing="ij", sparse=True)
         self._sums = [
             BOX_SUMMATIONS["fft"]([radial * part], [axis], size + 2 * pad, size)
-            for axis, part in enumerate(m)
+            for axis, part in enumerate(offsets)
         ]
         ones = np.ones(setting.shape)
         self.diagonal = None if pad else [sums(ones)[0].copy() for sums in self._sums]

@@ -20,6 +20,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import replace
 from math import e, lgamma, log, pi
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -114,15 +115,16 @@ class VariableOrder:
         ]
         # The sums hold h^-alpha of their node, the rows that of their own: the symbol alone is interpolated.
         unit = setting.spacing ** (self.nodes[:, None] - alpha.reshape(-1))
-        self._alpha = alpha
+        self._alpha, self._lock = alpha, Lock()
         self._shares = (_lagrange(self.nodes, alpha.reshape(-1)) * unit).reshape(-1, *setting.shape)
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return du/dt for the strengths u, shape `setting.shape`."""
         u = np.ascontiguousarray(operand("u", u, self.setting.shape))
         total = np.zeros(self.setting.shape)
-        for share, sums in zip(self._shares, self._sums, strict=True):
-            total += share * sums(u)
+        with self._lock:  # the sums keep work arrays
+            for share, sums in zip(self._shares, self._sums, strict=True):
+                total += share * sums(u)
         return total
 
     def spectral_radius(self) -> float:
