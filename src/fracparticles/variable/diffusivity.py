@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import choice, finite_array, instance, operand
+from fracparticles.arguments import choice, finite_array, instance, of_shape, operand
 from fracparticles.errors import InvalidInput
 from fracparticles.lattice.exterior import LineFarField
 from fracparticles.schemes import SCHEMES
@@ -119,7 +119,10 @@ class VariableDiffusivity:
         return 2.0 * float(d.max()) * (self._exchange.norm - centre)
 
     def _checked(self, diffusivity: Any) -> np.ndarray:
-        d = finite_array("diffusivity", diffusivity, self.points_shape)
+        d = finite_array("diffusivity", diffusivity)
+        if d.ndim == 0:
+            d = np.full(self.points_shape, d[()])
+        of_shape("diffusivity", d, self.points_shape, "one number, or one for each of the points")
         if d.min() < 0.0:
             raise InvalidInput(
                 "diffusivity", float(d.min()), "no negative number", "Give D(x, t) >= 0."

@@ -80,12 +80,21 @@ class PlaneGradientFarField:
         How many points beyond the faces are wanted.
     tail : float
         p of u ~ |x|^-p.
+
+    Raises
+    ------
+    InvalidInput
+        If the lattice is a single particle.
     """
 
     def __init__(
         self, weights: Callable[[int], list[np.ndarray]], setting: Setting, pad: int, tail: float
     ) -> None:
         n, dim = setting.n, setting.dim
+        if n < 1:
+            raise InvalidInput(
+                "n", n, "at least 1", "Take more particles, or exterior='truncated'."
+            )
         wide, targets = max(_WIDER * n, n + 2 * pad), setting.size + 2 * pad
         line = np.arange(-wide, wide + 1.0) / n
         j = np.meshgrid(*(line,) * dim, indexing="ij", sparse=True)

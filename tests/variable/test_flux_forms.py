@@ -242,6 +242,23 @@ def test_what_there_is_not_is_refused(setting, form, field):
     assert refused.value.field == field
 
 
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("dim", [1, 2])
+@pytest.mark.parametrize("exterior", ["truncated", "open"])
+def test_the_smallest_lattices(form, dim, exterior):
+    if (form, dim, exterior) == ("exchange", 2, "open"):
+        return  # there is none
+    single = Setting(alpha=ALPHA, n=0, dim=dim, exterior=exterior)
+    if exterior == "open":
+        with pytest.raises(InvalidInput, match="n = 0"):
+            VariableDiffusivity(form, single)
+    else:
+        assert np.isfinite(VariableDiffusivity(form, single).apply(np.ones((1,) * dim), 1.0)).all()
+    three = VariableDiffusivity(form, replace(single, n=1))
+    assert np.isfinite(three.apply(np.ones((3,) * dim), 1.0)).all()
+    assert np.isfinite(three.spectral_radius(1.0))
+
+
 @pytest.mark.parametrize("d", [-1.0, np.nan, np.ones(3), "x"])
 def test_a_diffusivity_that_is_none_is_refused(d):
     operator = VariableDiffusivity("FPSE", lattice(0.5, 4.0))
