@@ -1,0 +1,72 @@
+"""Samples of a function, close where it is curved: from them the first particles are placed.
+
+An interval is halved while its middle is off the straight line between its ends by so much that the area between them,
+about |u''| d^3 / 12, is more than a share of int |u|; and with it its neighbours, so that no bend is passed by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
+from fracparticles.errors import InvalidInput
+
+__all__ = ["adapted_samples"]
+
+_FIRST = 129
+_SHARE = 1e-4  # of int |u|: samples are then a fifth of l apart
+_MOST = 20_000
+_LEVELS = 80
+
+
+def adapted_samples(
+    f: Callable[[FloatArray], FloatArray], low: float, high: float, seen: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return places from `low` to `high` in ascending order, and f at them.
+
+    Parameters
+    ----------
+    f : callable
+    low, high : float
+    seen : array
+        Places that are among the first: what is narrow is found from there.
+
+    Raises
+    ------
+    InvalidInput
+        If f is not finite, zero everywhere, or so rough that 20000 samples do not do.
+    """
+    inside = seen[(seen > low) & (seen < high)]
+    x = np.unique(np.concatenate([np.linspace(low, high, _FIRST), inside]))
+    u = check.sampled("initial", f, x)
+    open_ = np.ones(x.size - 1, dtype=bool)
+    for _ in range(_LEVELS):
+        gaps = np.diff(x)
+        middles = x[:-1] + 0.5 * gaps
+        open_ &= (middles > x[:-1]) & (middles < x[1:])
+        if not open_.any():
+            break
+        new = check.sampled("initial", f, middles[open_])
+        area = np.zeros(gaps.size)
+        area[open_] = np.abs(new - 0.5 * (u[:-1] + u[1:])[open_]) * gaps[open_]
+        mass = np.trapezoid(np.abs(u), x)
+        bent = area > _SHARE * mass
+        bent[1:] |= area[:-1] > _SHARE * mass
+        bent[:-1] |= area[1:] > _SHARE * mass
+        # Both halves of what is bent are looked at again; the rest is done.
+        halves = np.repeat(bent, 1 + open_)
+        x, u = (
+            np.insert(old, np.flatnonzero(open_) + 1, at)
+            for old, at in ((x, middles[open_]), (u, new))
+        )
+        open_ = halves
+        if x.size > _MOST:
+            raise InvalidInput("initial", f, "a function with bounded bends", "Smooth it.")
+    if not np.any(u):
+        raise InvalidInput(
+            "initial", "zero at all samples", "values that are not zero", "Name where they are."
+        )
+    return x, u

@@ -1,0 +1,1 @@
+"""Fractional diffusion on bounded domains, with what is outside: absorbing, reflecting or given."""

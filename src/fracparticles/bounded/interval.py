@@ -1,0 +1,275 @@
+"""Fractional diffusion on an interval (a, b): u_t = D A u + f(x, t), by particles that are graded towards the ends.
+
+With C = `special.tail_constant` and Omega = (a, b), the exterior says what A is:
+
+absorbing
+    u = 0 outside, the restricted operator -(-Laplacian)^(alpha/2): C int_Omega (u(y) - u(x)) |x - y|^(-1-alpha) dy -
+    kappa u, kappa(x) = C int_outside |x - y|^(-1-alpha) dy.
+reflecting
+    Nothing crosses the ends, the regional operator: kappa is left out. int u is conserved.
+given
+    u = g(y, t) outside, C int_outside g |x - y|^(-1-alpha) dy is added to the first.
+
+The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`.
+With q weights of near neighbours, eigenvalues and solutions with absorbing ends have the order min(2 q + 2 - alpha, p)
+in 1 / N: the first from inside, the second from the ends, where the error is like the distance of the first particle.
+A lattice of equal volumes has p = 1, as linear finite elements of equal size have h in the L2 norm and h^(1/2) in that
+of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fracparticles import arguments as check
+from fracparticles.adaptive.exchange import exchange_matrix, rate_matrix
+from fracparticles.adaptive.inverse import InverseExchange
+from fracparticles.adaptive.maps import graded_on_interval
+from fracparticles.adaptive.weights import MOST_NEAR
+from fracparticles.arguments import FloatArray
+from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
+from fracparticles.bounded.interval_time import forced_modes
+from fracparticles.errors import InvalidInput
+
+__all__ = ["EXTERIORS", "Interval"]
+
+EXTERIORS = ("absorbing", "reflecting", "given")
+_SHORTEST = 1e-9  # time times the slowest rate: before, modes matter that are not told apart
+_BALANCE = 1e-8  # of int |f|, what int f may be where nothing can leave
+
+
+class Interval:
+    """Particles between two ends, and the problems that can be solved on them.
+
+    Parameters
+    ----------
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    particles : int
+        N, from 4 to 4000; 100 give six digits of the first eigenvalue.
+    ends : (float, float)
+        a and b.
+    exterior : {"absorbing", "reflecting", "given"}
+    diffusivity : float
+        D.
+    degree : float
+        p of the map; 1 for equal volumes.
+    near : int
+        q, how many neighbours on either side have a weight, 0 to 6.
+
+    Attributes
+    ----------
+    x, volumes : array, shape (N,)
+        Positions in ascending order, and V_i.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
+    """
+
+    def __init__(
+        self,
+        *,
+        alpha: float,
+        particles: int = 200,
+        ends: tuple[float, float] = (-1.0, 1.0),
+        exterior: str = "absorbing",
+        diffusivity: float = 1.0,
+        degree: float = 8.0,
+        near: int = 3,
+    ) -> None:
+        self.alpha = check.fractional_order(alpha)
+        low, high = check.pair("ends", ends, rising=True)
+        self.exterior = check.choice("exterior", exterior, EXTERIORS)
+        self.diffusivity = check.scale("diffusivity", diffusivity)
+        self.near = check.whole_number("near", near, 0, MOST_NEAR)
+        self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
+        if not self._middle + self._half * (1.0 - 1e-6) < high:
+            raise InvalidInput("ends", ends, "ends that are told apart", "Move the origin.")
+        self._unit = graded_on_interval(particles, degree)
+        self.x = self._place(self._unit.x)
+        self.volumes = self._half * self._unit.volumes
+        # D A in the unit of (-1, 1).
+        self._rate = self.diffusivity * self._half**-self.alpha
+
+    def _place(self, unit: FloatArray) -> FloatArray:
+        return self._middle + self._half * unit
+
+    @cached_property
+    def _exchange(self) -> FloatArray:
+        return exchange_matrix(self._unit, self.alpha, self.near)
+
+    @cached_property
+    def _loss(self) -> FloatArray | None:
+        return None if self.exterior == "reflecting" else loss_rates(self._unit, self.alpha)
+
+    @cached_property
+    def _inverse(self) -> InverseExchange:
+        unit = self._unit
+        inwards = np.argsort(np.minimum(unit.left, unit.right), kind="stable")
+        return InverseExchange.of(self._exchange, unit.volumes, self._loss, inwards)
+
+    @cached_property
+    def _modes(self) -> tuple[FloatArray, FloatArray]:
+        return self._inverse.modes()
+
+    @cached_property
+    def _outside(self) -> OutsideValues:
+        return OutsideValues(self._unit, self.alpha, self._place)
+
+    def matrix(self) -> FloatArray:
+        """Return D A, shape (N, N): du/dt = D A u, for what is inside."""
+        return self._rate * rate_matrix(self._exchange, self._unit.volumes, self._loss)
+
+    def eigenvalues(self, count: int = 1) -> FloatArray:
+        """Return the lowest eigenvalues of -D A in ascending order, shape (count,); the first of reflecting ends is 0.
+
+        Raises
+        ------
+        InvalidInput
+            If there are fewer particles than twice the count.
+        """
+        return self.modes(count)[0]
+
+    def modes(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Return the lowest eigenvalues, and the eigenfunctions at the particles, shape (N, count), sum V u^2 = 1.
+
+        Raises
+        ------
+        InvalidInput
+            If there are fewer particles than twice the count.
+        """
+        count = check.positive_integer("count", count, len(self.x) // 2)
+        rates, vectors = self._inverse.modes(count)
+        functions = vectors / np.sqrt(self.volumes)[:, None]
+        # One sign each time: the first that is not small is positive.
+        first = np.argmax(np.abs(vectors) > 0.5 * np.abs(vectors).max(axis=0), axis=0)
+        return self._rate * rates, functions * np.sign(vectors[first, range(count)])
+
+    def stationary(self, source: Any = 0.0, outside: Any = None) -> FloatArray:
+        """Return u of D A u + f = 0, shape (N,); of reflecting ends that of mean zero.
+
+        Parameters
+        ----------
+        source : callable, array or number
+            f(x), or its values.
+        outside : callable or number, optional
+            g(y), where the exterior is given.
+
+        Raises
+        ------
+        InvalidInput
+            If they are not finite, `outside` is missing or superfluous, or f makes what reflecting ends keep.
+        """
+        g = self._checked_outside(outside, timed=False)
+        f = self._source(source, timed=False)(0.0)
+        if self.exterior == "reflecting":
+            total, size = self.volumes @ f, self.volumes @ np.abs(f)
+            if abs(total) > _BALANCE * size:
+                allowed = "a source of integral zero, where nothing leaves"
+                raise InvalidInput("source", f"int f = {total:g}", allowed, "Take its mean off.")
+        return self._steady(f / self._rate, g, 0.0)
+
+    def evolve(
+        self,
+        initial: Any,
+        time: float,
+        source: Any = None,
+        outside: Any = None,
+        tolerance: float = 1e-10,
+    ) -> FloatArray:
+        """Return u at the particles, shape (N,), a time after `initial`.
+
+        Parameters
+        ----------
+        initial : callable, array or number
+            u(x, 0), or its values at the particles.
+        time : float
+            Positive.
+        source : callable, array or number, optional
+            f(x, t), or values that do not change.
+        outside : callable or number, optional
+            g(y, t), where the exterior is given.
+        tolerance : float
+            Of the integral in time over what depends on it, relative to u.
+
+        Raises
+        ------
+        InvalidInput
+            If they are not finite, `outside` is missing or superfluous, or the time is too short for the particles.
+        NonFiniteSolution
+            If the source or g varies too fast in time.
+        """
+        time = check.positive_real("time", time)
+        tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
+        g = self._checked_outside(outside, timed=True)
+        f = self._source(0.0 if source is None else source, timed=True)
+        start = self._values("initial", initial)
+        rates, vectors = self._modes
+        rates = self._rate * rates
+        slowest = rates[0] or rates[1]
+        if time * slowest < _SHORTEST:
+            allowed = f"{_SHORTEST / slowest:.2g} or more"
+            raise InvalidInput("time", time, allowed, "A shorter one is not resolved at the ends.")
+        root = np.sqrt(self.volumes)
+        changes = callable(source) or callable(outside)
+        if not changes and self.exterior != "reflecting":
+            steady = self._steady(f(0.0) / self._rate, g, 0.0)
+            y = np.exp(-rates * time) * (vectors.T @ (root * (start - steady)))
+            return np.asarray(steady + vectors @ y / root)
+
+        # What the values outside alone would hold in place, w(t): u - w has a forcing f - w_t that is bounded.
+        def held(t: float) -> FloatArray:
+            return np.zeros(len(root)) if g is None else self._steady(np.zeros(len(root)), g, t)
+
+        def forcing(times: FloatArray, length: float) -> FloatArray:
+            loads = np.array([f(t) for t in times])
+            if g is not None:
+                loads -= _derivative(times, np.array([held(t) for t in times]))
+            return np.asarray((loads * root) @ vectors)
+
+        y = vectors.T @ (root * (start - held(0.0)))
+        y = forced_modes(rates, y, forcing, time, tolerance)
+        return np.asarray(held(time) + vectors @ y / root)
+
+    def _steady(self, load: FloatArray, g: Any, t: float) -> FloatArray:
+        """u of A u + load + b = 0 in the unit of (-1, 1)."""
+        if g is not None:
+            load = load + self._outside.load(g, t)
+        return self._inverse.apply(self._unit.volumes * load)
+
+    def _values(self, field: str, given: Any) -> FloatArray:
+        if callable(given):
+            return check.sampled(field, given, self.x)
+        return np.asarray(check.finite_array(field, given, self.x.shape), dtype=float)
+
+    def _source(self, source: Any, *, timed: bool) -> Callable[[float], FloatArray]:
+        if callable(source) and timed:
+            return lambda t: self._values("source", lambda x: source(x, t))
+        values = self._values("source", source)
+        return lambda t: values
+
+    def _checked_outside(self, outside: Any, *, timed: bool) -> Callable[..., Any] | None:
+        if (outside is None) == (self.exterior == "given"):
+            allowed = "values of u outside if the exterior is given, nothing otherwise"
+            raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
+        if outside is None:
+            return None
+        if callable(outside):
+            return outside if timed else lambda y, t: outside(y)
+        value = check.finite_real("outside", outside)
+        return lambda y, t: np.full(np.shape(y), value)
+
+
+def _derivative(times: FloatArray, values: FloatArray) -> FloatArray:
+    """The derivative of the polynomial through the values, at the same times."""
+    middle, half = 0.5 * (times[0] + times[-1]), 0.5 * (times[-1] - times[0])
+    s = (times - middle) / half
+    coefficients = np.linalg.solve(np.polynomial.chebyshev.chebvander(s, len(s) - 1), values)
+    slopes = np.polynomial.chebyshev.chebder(coefficients) / half
+    return np.asarray(np.polynomial.chebyshev.chebval(s, slopes).T)

@@ -1,0 +1,82 @@
+"""What particles lose to the outside of an interval, and what they get of values that are given there.
+
+On (-1, 1), with the distances d of particle i from the two ends,
+
+    kappa_i = C int_outside |x_i - y|^(-1-alpha) dy = (C / alpha) sum_ends d^(-alpha),
+    b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds.
+
+In s the integrand is smooth on the scale one wherever the particle is, if g is smooth in log |y - end|: the trapezoidal
+rule, its step 1/4, has its own error of e^(-8 pi^2) for a constant g. The weights are scaled to add up to kappa_i, so
+that a constant outside is met by the same constant inside to round-off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fracparticles import arguments as check
+from fracparticles.adaptive.maps import GradedParticles
+from fracparticles.arguments import FloatArray
+from fracparticles.special import tail_constant
+
+__all__ = ["OutsideValues", "loss_rates"]
+
+_STEP = 0.25
+_FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
+_NEAR = 40.0  # e^-40 of the distance of the first particle
+
+
+def loss_rates(particles: GradedParticles, alpha: float) -> FloatArray:
+    """Return kappa_i, shape (N,)."""
+    losses = particles.left**-alpha + particles.right**-alpha
+    return np.asarray(tail_constant(alpha) / alpha * losses)
+
+
+class OutsideValues:
+    """b_i of a function g(y, t) that is given outside (-1, 1).
+
+    Parameters
+    ----------
+    particles : GradedParticles
+    alpha : float
+    place : callable
+        From the interval (-1, 1) to the caller's.
+    """
+
+    def __init__(
+        self,
+        particles: GradedParticles,
+        alpha: float,
+        place: Callable[[FloatArray], FloatArray],
+    ) -> None:
+        first = np.log(min(particles.left[0], particles.right[-1]))
+        s = np.arange(first - _NEAR, _FAR, _STEP)
+        beyond = np.exp(s)
+        self._points = place(np.concatenate([-1.0 - beyond, 1.0 + beyond]))
+        lost = tail_constant(alpha) / alpha
+        self._weights = np.concatenate(
+            [
+                _weights(distance, beyond, alpha) * (lost * distance**-alpha)[:, None]
+                for distance in (particles.left, particles.right)
+            ],
+            axis=1,
+        )
+
+    def load(self, g: Callable[..., FloatArray], t: float) -> FloatArray:
+        """Return b_i at the time t, shape (N,).
+
+        Raises
+        ------
+        InvalidInput
+            If g does not return finite values.
+        """
+        values = check.sampled("outside", lambda y: np.asarray(g(y, t)) + 0.0 * y, self._points)
+        return np.asarray(self._weights @ values)
+
+
+def _weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:
+    """Weights in proportion to (d + e^s)^(-1-alpha) e^s, each row of sum one."""
+    weights = (1.0 + beyond / distance[:, None]) ** (-1.0 - alpha) * (beyond / distance[:, None])
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))

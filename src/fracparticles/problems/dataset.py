@@ -1,0 +1,131 @@
+"""A solved problem as a data set, of the same form as that of a run: see `run.dataset`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fracparticles.problems.integrate import Integration
+from fracparticles.problems.problem import FORMS, Problem
+from fracparticles.run.complaints import label_of
+from fracparticles.run.dataset import source
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["to_dataset"]
+
+_STORED = (
+    "order",
+    "half_width",
+    "spacing",
+    "overlap",
+    "form",
+    "exterior",
+    "dim",
+    "t_initial",
+    "t_final",
+    "rtol",
+)
+
+
+def to_dataset(
+    problem: Problem,
+    u0: np.ndarray,
+    result: Integration,
+    estimates: dict[str, tuple[list[float], str]],
+    origin: str,
+) -> xr.Dataset:
+    """Return u on x (and y) at t_final, or along t at each of `times`, with what the solution took and may be off by.
+
+    Parameters
+    ----------
+    problem, result
+        The problem and its integration.
+    u0 : array, shape (N, .., N)
+        Initial strengths.
+    estimates : dict
+        By name a value for each output time, and what it is in words.
+    origin : str
+        What the initial data were given as.
+    """
+    import xarray as xr
+
+    case, several = problem.case, problem.times is not None
+    shape = case.shape
+    u = np.array([one.reshape(shape) for one in result.u])
+    mass = np.array([case.integral(one) for one in u])
+    along = ("t",) if several else ()
+    axes = ("x", "y")[: problem.dim]
+
+    def each(values: Any, meaning: str) -> tuple:
+        values = np.asarray(values, dtype=float)
+        return along, values if several else values[0], _describe(meaning)
+
+    data = {
+        "u": ((*along, *axes), u if several else u[0], _describe("particle strength u")),
+        "mass": each(mass, "total mass, the sum of V u"),
+        "mass_initial": _scalar(case.integral(u0), "total mass, the sum of V u, at t_initial"),
+        "mass_final": _scalar(float(mass[-1]), "total mass, the sum of V u, at t_final"),
+        "accepted_steps": _scalar(np.int64(result.accepted), "number of time steps"),
+        "rejected_steps": _scalar(np.int64(result.rejected), "number of time steps that were thrown away"),
+        "evaluations": _scalar(np.int64(result.evaluations), "number of evaluations of the right-hand side"),
+        "stiffness": _scalar(result.stiffness, "estimate of the largest eigenvalue times the time of the run"),
+        **{name: each(values, meaning) for name, (values, meaning) in estimates.items()},
+    }  # fmt: skip
+    fields = type(problem).model_fields
+    coordinates: dict[str, tuple] = {
+        name: _scalar(_plain(getattr(problem, name)), label_of(fields[name])) for name in _STORED
+    }
+    for name, coefficient in (
+        ("beta", problem.order_coefficient),
+        ("diffusivity", problem.diffusion),
+    ):
+        if coefficient.constant is not None:
+            coordinates[name] = _scalar(coefficient.constant, label_of(fields[name]))
+    coordinates["scheme"] = _scalar(FORMS[problem.form], "particle scheme")
+    coordinates["integrator"] = _scalar(result.method, "time integrator")
+    coordinates["particle_spacing"] = _scalar(case.particle_spacing, "particle spacing, realised")
+    coordinates |= {axis: ((axis,), case.x, _describe("particle position")) for axis in axes}
+    if several:
+        coordinates["t"] = (("t",), np.array(problem.times), _describe("output time"))
+    return xr.Dataset(
+        data,
+        coordinates,
+        attrs={
+            "Conventions": "CF-1.11, ACDD-1.3",
+            "title": f"Fractional diffusion, transport and source: u_t + div(a u) = {_diffusion(problem)} + f",
+            "summary": "Particle strengths of one run and its parameters.",
+            "keywords": "fractional diffusion, particle method, transport, reaction",
+            "source": source(),
+            "history": "fracparticles.solve_problem(problem, initial)",
+            "references": "Lucchesi et al. (2020), doi:10.1007/s40571-019-00275-8",
+            "initial_data": origin,
+            "problem": problem.to_json(),
+            "reproducible": "yes"
+            if problem.reproducible
+            else "no: a coefficient is a function, which no file holds",
+        },
+    )
+
+
+def _diffusion(problem: Problem) -> str:
+    """What the form converges to."""
+    if problem.order_coefficient.constant is None:
+        return "-D (-Laplacian)^(alpha(x)/2) u"
+    if problem.form == "exchange" and problem.diffusion.depends_on - {"t"}:
+        return "(D L u + L(D u) - u L D) / 2"
+    return "div(D grad^beta u)"
+
+
+def _plain(value: Any) -> Any:
+    return np.int64(value) if isinstance(value, int) else value
+
+
+def _scalar(value: object, meaning: str) -> tuple:
+    return (), value, _describe(meaning)
+
+
+def _describe(meaning: str) -> dict[str, str]:
+    return {"long_name": meaning, "units": "1"}

@@ -1,0 +1,124 @@
+"""The time integration of a problem: which way, from output time to output time, and what it took."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from fracparticles.errors import InvalidInput
+from fracparticles.problems.krylov import KrylovStep
+from fracparticles.problems.problem import Problem
+from fracparticles.problems.rates import Rates
+from fracparticles.problems.stabilised import StabilisedStep, spectral_radius
+from fracparticles.problems.steps import STAGES, EighthOrderStep, Steps
+
+__all__ = ["Integration", "integrate"]
+
+_FINEST = 1e-9  # rtol of RKC2; below, the estimate of its error is round-off
+_REAL_AXIS = 5.5  # |lambda| dt that a step of DOP853 bears
+
+
+@dataclass(frozen=True)
+class Integration:
+    """What a time integration gives.
+
+    Attributes
+    ----------
+    u : list of arrays, shape (N,)
+        At each output time.
+    method : str
+        "exponential", "rkc2" or "dop853".
+    accepted, rejected, evaluations : int
+        Steps taken, steps thrown away, and evaluations of the right-hand side.
+    stiffness : float
+        The time of the run times an estimate of the largest |lambda|.
+    """
+
+    u: list[np.ndarray]
+    method: str
+    accepted: int
+    rejected: int
+    evaluations: int
+    stiffness: float
+
+
+def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
+    """Integrate u' = R(t, u) from u0, shape (N,), to the output times.
+
+    Raises
+    ------
+    InvalidInput
+        If the integrator asked for does not exist for this problem.
+    NonFiniteSolution
+        If the solution grows without bound; says when.
+    """
+    linear = problem.is_linear and problem.is_autonomous
+    if problem.integrator == "exponential" and not linear:
+        what = (
+            "auto, rkc2 or dop853 for a source that depends on u, or coefficients that depend on t"
+        )
+        raise InvalidInput("integrator", problem.integrator, what, "Take auto.")
+    if problem.integrator == "rkc2" and problem.rtol < _FINEST:
+        least = f"at least {_FINEST:g} for rkc2, whose estimate of the error is round-off below"
+        raise InvalidInput("rtol", problem.rtol, least, "Take another integrator.")
+    # The error is to be small where the solution is, not in the mean over a lattice that it hardly fills.
+    shares = np.sqrt(_filled(u0))
+    rtol = problem.rtol * shares
+    atol = problem.atol * shares if problem.atol else rtol * _size(problem, rates, u0)
+    start, span = problem.t_initial, problem.span
+    method: str = problem.integrator
+    largest = 0.0
+    if method == "auto":
+        method = "exponential"
+        if not linear:
+            r = rates(start, u0)
+            largest = spectral_radius(rates, start, u0, r)[0]
+            method = _cheaper(problem, span * largest)
+    steps: Steps
+    if method == "exponential":
+        steps = KrylovStep(lambda u: rates(start, u), u0.size, rtol, atol, span)
+    elif method == "rkc2":
+        steps = StabilisedStep(rates, rtol, atol)
+    else:
+        steps = EighthOrderStep(rates, rtol, atol)
+    outputs, u = [], u0
+    for before, after in pairwise((start, *problem.output_times)):
+        u = steps.advance(u, after - before, before)
+        outputs.append(u)
+    if not steps.largest and not largest:
+        largest = spectral_radius(rates, problem.t_final, u, rates(problem.t_final, u))[0]
+    return Integration(
+        outputs, method, steps.accepted, steps.rejected, rates.evaluations,
+        span * max(steps.largest, largest),
+    )  # fmt: skip
+
+
+def _size(problem: Problem, rates: Rates, u0: np.ndarray) -> float:
+    """The greatest |u| at t_initial, or what the source makes of it where that is zero."""
+    size = float(np.abs(u0).max())
+    if size == 0.0:
+        size = problem.span * float(np.abs(rates(problem.t_initial, u0)).max())
+    return size if 0.0 < size < np.inf else 1.0
+
+
+def _filled(u: np.ndarray) -> float:
+    """The share of the lattice on which |u| is, (sum |u|)^2 / (N sum u^2)."""
+    size = np.abs(u).max()
+    if not size > 0.0:
+        return 1.0
+    part = np.abs(u / size)
+    return float(part.sum() ** 2 / (u.size * (part * part).sum()))
+
+
+def _cheaper(problem: Problem, stiffness: float) -> str:
+    """The explicit method that takes fewer evaluations: of order 8, bound by stability, or 2, bound by accuracy.
+
+    RKC2 in n = tol^(-1/2) steps, of sqrt(1.54 T rho / n) stages; waves that travel it does not bear.
+    """
+    if problem.transport or problem.rtol < _FINEST:
+        return "dop853"
+    n = problem.rtol**-0.5
+    stabilised = n * (2.0 + np.sqrt(1.0 + 1.54 * stiffness / n))
+    return "rkc2" if stabilised < STAGES * stiffness / _REAL_AXIS else "dop853"

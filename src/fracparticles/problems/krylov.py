@@ -1,0 +1,143 @@
+"""Linear problems with constant coefficients, u' = A u + b, without steps of their own: by Krylov spaces.
+
+    u(t + tau) = u + tau phi_1(tau A) r,    r = A u + b,    phi_1(z) = (e^z - 1) / z.
+
+In the space of r, A r, .. A^(m-1) r, with the orthonormal basis V_m and the Hessenberg matrix H_m of Arnoldi,
+
+    tau phi_1(tau A) r ~ |r| V_m tau phi_1(tau H_m) e_1,    error ~ |r| h_(m+1,m) |e_m^T tau^2 phi_2(tau H_m) e_1|,
+
+Saad, SIAM J. Numer. Anal. 29 (1992) 209, Theorem 5.1. Both come from one exponential of H_m with two rows more. The
+space does not depend on tau: a step that is too long is taken shorter, without another application of A. The sums are
+those of einsum, in one order whatever the number of threads, which those of BLAS are not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import expm
+
+from fracparticles.problems.steps import blown_up, norm
+
+__all__ = ["KrylovStep"]
+
+_MOST = 40  # vectors of a space, and fewer in the plane:
+_NUMBERS = 4_000_000  # that they hold
+_FEWEST = 12
+_SHORTER, _LONGER = 0.2, 4.0  # of one step to the next
+_SAFETY = 0.85
+_NOTHING = 1e-14  # a vector that is left of one of norm one
+
+
+class KrylovStep:
+    """Steps of u' = R(u), R affine.
+
+    Parameters
+    ----------
+    rate : callable
+        R.
+    size : int
+        Of u.
+    rtol, atol : float
+        The error of the run in the 2-norm is to be below rtol |u| + atol sqrt(N), each step's share by its length.
+    run : float
+        The time of the run.
+
+    Attributes
+    ----------
+    accepted, rejected : int
+        Steps taken, and lengths that were too long.
+    largest : float
+        The largest |lambda| that a space has seen.
+    """
+
+    def __init__(
+        self,
+        rate: Callable[[np.ndarray], np.ndarray],
+        size: int,
+        rtol: float,
+        atol: float,
+        run: float,
+    ) -> None:
+        self._rate, self._rtol, self._atol, self._run = rate, rtol, atol, run
+        self._most = max(_FEWEST, min(_MOST, size, _NUMBERS // size))
+        self.accepted = self.rejected = 0
+        self.largest = 0.0
+        self._origin: np.ndarray | None = None  # R(0) = b
+
+    def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
+        """Return u after the time `span`, shape (N,).
+
+        Raises
+        ------
+        NonFiniteSolution
+            If it is not finite; says when.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._advanced(u, span, start)
+
+    def _advanced(self, u: np.ndarray, span: float, start: float) -> np.ndarray:
+        if self._origin is None:
+            self._origin = self._rate(np.zeros_like(u))
+        left, tau = span, span
+        while left > 0.0:
+            r = self._rate(u)
+            size = norm(r)
+            if not np.isfinite(size):
+                raise blown_up(start + span - left, u)
+            if size == 0.0:
+                return u
+            basis, h = self._arnoldi(r / size)
+            scale = self._rtol * norm(u) + self._atol * np.sqrt(u.size)
+            tau = min(tau, left)
+            while True:
+                weights, error = _phi(h, basis.shape[0], tau)
+                allowed, error = scale * tau / self._run, size * error
+                if error <= allowed:
+                    break
+                self.rejected += 1
+                tau *= max(_SHORTER, _SAFETY * (allowed / error) ** (1.0 / basis.shape[0]))
+            u = u + size * np.einsum("i,ij->j", weights, basis)
+            left = left - tau if left - tau > 1e-14 * span else 0.0
+            self.accepted += 1
+            if error > 0.0:
+                tau *= min(_LONGER, _SAFETY * (allowed / error) ** (1.0 / basis.shape[0]))
+            else:
+                tau = left
+        return u
+
+    def _arnoldi(self, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """V_m, shape (m, N), and H of shape (m + 1, m); m smaller where the space is full."""
+        basis = np.empty((self._most, first.size))
+        h = np.zeros((self._most + 1, self._most))
+        basis[0] = first
+        for j in range(self._most):
+            w = self._rate(basis[j]) - self._origin
+            for _ in range(2):  # the second time for what the first leaves by round-off
+                along = np.einsum("ij,j->i", basis[: j + 1], w)
+                w -= np.einsum("i,ij->j", along, basis[: j + 1])
+                h[: j + 1, j] += along
+            h[j + 1, j] = norm(w)
+            if (
+                not np.isfinite(h[j + 1, j])
+                or h[j + 1, j] <= _NOTHING * np.abs(h[: j + 1, j]).max()
+            ):
+                break
+            if j + 1 < self._most:
+                basis[j + 1] = w / h[j + 1, j]
+        m = j + 1
+        if np.isfinite(h).all():
+            self.largest = max(self.largest, float(np.abs(np.linalg.eigvals(h[:m, :m])).max()))
+        return basis[:m], h[: m + 1, :m]
+
+
+def _phi(h: np.ndarray, m: int, tau: float) -> tuple[np.ndarray, float]:
+    """tau phi_1(tau H) e_1, and h_(m+1,m) |e_m^T tau^2 phi_2(tau H) e_1|."""
+    longer = np.zeros((m + 2, m + 2))
+    longer[:m, :m] = h[:m]
+    longer[0, m] = 1.0
+    longer[m, m + 1] = 1.0
+    e = expm(tau * longer)
+    error = h[m, m - 1] * abs(e[m - 1, m + 1])
+    return e[:m, m], float(error) if np.isfinite(e).all() else np.inf

@@ -1,0 +1,99 @@
+"""Transport by particles that move with the field: the other way, on the line, to compare with `transport`.
+
+One step of length dt, Strang's splitting with the exact diffusion of the whole space S (`time.whole_space`),
+
+    u <- S(dt / 2) u,    dx_p/dt = a(x_p, t), U_p = h u_p constant,    remesh,    u <- S(dt / 2) u.
+
+The particles start on the lattice, move for one step by the classical Runge-Kutta scheme, and their strengths are put
+back on the lattice (`moving.remeshing`). Beyond its ends are as many more as may move in, whose u goes on like
+|x|^(-1-alpha) from the last. Mass is conserved but for what passes the ends. The error is of second
+order in dt, from the splitting, and each remeshing adds one of its own, of an order in h: more steps, more of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fracparticles import arguments as check
+from fracparticles.errors import InvalidInput
+from fracparticles.moving.remeshing import REMESHINGS, remesh
+from fracparticles.problems.expressions import Coefficient
+from fracparticles.problems.problem import Problem
+from fracparticles.time.whole_space import WholeSpace
+
+__all__ = ["solve_with_moving_particles"]
+
+
+_ROOM = 8  # particles beyond the ends, and as many as the ends move
+
+
+def solve_with_moving_particles(
+    problem: Problem, initial: ArrayLike, steps: int, remeshing: str = "Lambda3"
+) -> np.ndarray:
+    """Return u at `t_final` on the lattice of the problem, shape (N,).
+
+    Parameters
+    ----------
+    problem : Problem
+        On the line, with a velocity, a constant order and diffusivity, no source, an open exterior.
+    initial : array, shape (N,)
+        Initial strengths u.
+    steps : int
+        How many steps of equal length.
+    remeshing : {"Lambda3", "M4'"}
+        Interpolation function.
+
+    Raises
+    ------
+    InvalidInput
+        If the problem is another, or a particle runs away.
+    """
+    problem = check.instance("problem", problem, Problem)
+    steps = check.positive_integer("steps", steps)
+    check.choice("remeshing", remeshing, REMESHINGS)
+    d, case = problem.diffusion.constant, problem.case
+    plain = d is not None and d > 0.0 and problem.order_coefficient.constant is not None
+    if not (plain and problem.dim == 1 and len(problem.transport) == 1 and not problem.reaction):
+        what = "one on the line with a velocity, a constant order and diffusivity, and no source"
+        raise InvalidInput("problem", problem.to_json(), what, "Use solve_problem.")
+    assert d is not None
+    u, h = check.vector("initial", initial, case.particles), case.particle_spacing
+    dt = problem.span / steps
+    half = WholeSpace(case.particles, 1, case.alpha, 0.5 * d * dt * h**-case.alpha)
+    velocity = problem.transport[0]
+    for n in range(steps):
+        t = problem.t_initial + n * dt
+        pad = _ROOM + int(np.abs(_moved(velocity, case.x, t, dt) - case.x).max() / h)
+        x = np.arange(-case.n - pad, case.n + pad + 1) * h
+        places = _moved(velocity, x, t, dt)
+        strength = h * _continued(half.solve(u), pad, case.n, case.alpha)
+        u = half.solve(_on_lattice(*remesh(places, strength, h, remeshing), h, case.n))
+    return np.asarray(check.finite_result("u", u))
+
+
+def _continued(u: np.ndarray, pad: int, n: int, alpha: float) -> np.ndarray:
+    """u with `pad` more at either end."""
+    fall = (n / np.arange(n + 1.0, n + pad + 1.0)) ** (1.0 + alpha)
+    return np.concatenate([u[0] * fall[::-1], u, u[-1] * fall])
+
+
+def _moved(velocity: Coefficient, x: np.ndarray, t: float, dt: float) -> np.ndarray:
+    """Where the particles are after dt, by the classical Runge-Kutta scheme."""
+
+    def a(x: np.ndarray, t: float) -> np.ndarray:
+        return velocity.checked({"x": x, "t": np.array(t)})
+
+    first = a(x, t)
+    second = a(x + 0.5 * dt * first, t + 0.5 * dt)
+    third = a(x + 0.5 * dt * second, t + 0.5 * dt)
+    fourth = a(x + dt * third, t + dt)
+    return x + dt / 6.0 * (first + 2.0 * (second + third) + fourth)
+
+
+def _on_lattice(places: np.ndarray, strength: np.ndarray, h: float, n: int) -> np.ndarray:
+    """u on -n .. n; what lies beyond has left."""
+    u, index = np.zeros(2 * n + 1), np.rint(places / h).astype(int) + n
+    inside = (index >= 0) & (index < u.size)
+    u[index[inside]] = strength[inside] / h
+    return u

@@ -1,0 +1,78 @@
+"""Solve a problem of one's own: the one call that does all."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fracparticles import arguments as check
+from fracparticles.errors import InvalidInput
+from fracparticles.problems.dataset import to_dataset
+from fracparticles.problems.integrate import integrate
+from fracparticles.problems.problem import Problem
+from fracparticles.problems.rates import Rates
+from fracparticles.problems.reliability import estimates, warn_if_doubtful
+from fracparticles.run.initial import Initial, initial_strengths
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["solve_problem"]
+
+
+def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Dataset:
+    """Solve a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+    initial : array, labelled data, callable or path, optional
+        Initial strengths, as those of `solve`: an array of shape `problem.case.shape`, or a function of x, of x and y.
+        Left out, the fundamental solution at `t_initial`, of a problem with a constant order and diffusivity.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `dataset.to_dataset`.
+
+    Raises
+    ------
+    InvalidInput
+        If the initial data do not fit, or a coefficient is wrong somewhere.
+    NonFiniteSolution
+        If the solution grows without bound; says when.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the solution has reached the ends of the lattice, or the lattice does not resolve it.
+
+    Examples
+    --------
+    >>> problem = Problem(alpha=1.5, velocity="-x", half_width=50.0, spacing=0.1, t_initial=1.0, t_final=2.0)
+    >>> u = solve_problem(problem).u
+    """
+    problem = check.instance("problem", problem, Problem)
+    plain = problem.order_coefficient.constant is not None and problem.diffusion.constant
+    if initial is None and not plain:
+        given = "data of your own: there is no fundamental solution with these coefficients"
+        raise InvalidInput("initial", None, given, "Pass an array, or a function.")
+    case = problem.case.model_copy(
+        update={"t_initial": problem.t_initial}
+    )  # it is said, if by default
+    u0, origin = initial_strengths(case, initial)
+    _probe_source(problem, u0)
+    result = integrate(problem, Rates(problem), u0.reshape(-1))
+    found = estimates(problem, [u0, *(one.reshape(u0.shape) for one in result.u)])
+    warn_if_doubtful(problem, found)
+    return to_dataset(problem, u0, result, found, origin)
+
+
+def _probe_source(problem: Problem, u0: np.ndarray) -> None:
+    """Refuse a source that is not a finite number at each particle, for the initial data, at each output time."""
+    if problem.reaction is None:
+        return
+    points = dict(zip(("x", "y"), problem.case.positions, strict=False))
+    for time in (problem.t_initial, *problem.output_times):
+        problem.reaction.checked({**points, "t": np.array(time), "u": u0})

@@ -1,0 +1,83 @@
+"""What takes steps, and the ones of order 8 by Dormand & Prince, scipy's, for problems that are not stiff."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from fracparticles.errors import NonFiniteSolution
+
+__all__ = ["STAGES", "EighthOrderStep", "Rate", "Steps", "blown_up", "norm"]
+
+Rate = Callable[[float, np.ndarray], np.ndarray]
+"""R(t, u)."""
+
+STAGES = 12  # evaluations that a step of order 8 takes
+
+
+class Steps(Protocol):
+    """Steps of u' = R(t, u).
+
+    Attributes
+    ----------
+    accepted, rejected : int
+        Steps taken, and steps thrown away.
+    largest : float
+        The largest |lambda| that was seen; 0 if nobody looked.
+    """
+
+    accepted: int
+    rejected: int
+    largest: float
+
+    def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
+        """Return u, shape (N,), at the time `start + span`; raises `NonFiniteSolution` if it blows up."""
+
+
+class EighthOrderStep:
+    """Steps of order 8 with an estimate of their error, in the root mean square of atol + rtol |u|."""
+
+    def __init__(self, rate: Rate, rtol: float, atol: float) -> None:
+        self._rate, self._rtol, self._atol = rate, rtol, atol
+        self.accepted = self.rejected = 0
+        self.largest = 0.0
+        self._dt: float | None = None
+
+    def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
+        """Return u after the time `span`, shape (N,).
+
+        Raises
+        ------
+        NonFiniteSolution
+            If it grows without bound: the step has shrunk to nothing; says when.
+        """
+        first = None if self._dt is None else min(self._dt, span)
+        tolerances = {"rtol": self._rtol, "atol": self._atol}
+        with np.errstate(over="ignore", invalid="ignore"):
+            solver = DOP853(self._rate, start, u, start + span, first_step=first, **tolerances)
+            began, taken = solver.nfev, 0
+            while solver.status == "running":
+                solver.step()
+                taken += 1
+                if solver.status == "failed" or not np.isfinite(solver.y).all():
+                    raise blown_up(solver.t, solver.y)
+        self.accepted += taken
+        self.rejected += round((solver.nfev - began) / STAGES) - taken
+        self._dt = solver.h_abs
+        return np.asarray(solver.y)
+
+
+def blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:
+    """Return the error of a solution whose time step has shrunk to nothing."""
+    return NonFiniteSolution(
+        f"the solution grows without bound near t = {t:.6g}: the time step has shrunk to nothing, and the greatest |u| "
+        f"is {np.abs(u).max():.3g}. End before, or mend the source."
+    )
+
+
+def norm(u: np.ndarray) -> float:
+    """Return the 2-norm, summed in one order whatever the number of threads."""
+    return float(np.sqrt(np.sum(u * u)))

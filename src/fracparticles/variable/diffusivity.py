@@ -1,0 +1,213 @@
+"""Variable diffusivity, du/dt = div(D(x, t) grad^beta u), in three forms:
+
+FPSE: the diffusivity is in the flux, Eqs. (19), (25). Conservative.
+
+    Q_i = -(D_i / epsilon^beta) sum_j V_j u_j F_epsilon(x_i - x_j),
+    du_i/dt = -(1 / epsilon) sum_j V_j (Q_j + Q_i) eta1_epsilon(x_i - x_j).
+
+DD: the product rule, Eq. (10) and the gradient of (19). D' is the central difference of D that has the order of the
+kernels. Not conservative.
+
+    du_i/dt = (D_i / epsilon^alpha) sum_j V_j u_j G_epsilon(x_i - x_j) + D'_i . (grad^beta u)_i.
+
+exchange: Eq. (34) with the mean diffusivity of a pair. Conservative and symmetric, and another equation: with L of the
+constant operator, L = -(-Laplacian)^(alpha/2), it converges to (D L u + L(D u) - u L D) / 2.
+
+    du_i/dt = (alpha / epsilon^alpha) sum_j V_j (D_i + D_j) / 2 (u_j - u_i) K_epsilon(x_j - x_i).
+
+In an open exterior u goes on with its tail. The flux of FPSE is needed, and so D, as far beyond the ends as the
+divergence reaches; the exchange takes D beyond an end for what it is there.
+"""
+
+from __future__ import annotations
+
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from fracparticles.arguments import choice, finite_array, instance, of_shape, operand
+from fracparticles.errors import InvalidInput
+from fracparticles.lattice.exterior import LineFarField
+from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.base import OnePass
+from fracparticles.schemes.setting import Setting
+from fracparticles.variable.exterior import tails_of, warn_unsettled
+from fracparticles.variable.gradient import ExchangeDivergence, FractionalGradient
+from fracparticles.variable.sums import EvenSum
+
+__all__ = ["FORMS", "VariableDiffusivity"]
+
+FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}  # and the scheme that has the kernels
+
+
+class VariableDiffusivity:
+    """div(D grad^beta u) on a lattice, or what the exchange makes of it.
+
+    Parameters
+    ----------
+    form : {"FPSE", "DD", "exchange"}
+        See the module.
+    setting : Setting
+        Its diffusivity is 1: D is given at the points.
+    tail : float, optional
+        p of u ~ |x|^-p in an open exterior; n + alpha, that of the fundamental solution, if left out.
+
+    Attributes
+    ----------
+    points : tuple of array
+        Coordinates where D is needed, one array a dimension, that broadcast to `points_shape`.
+    points_shape : tuple of int
+    conservative : bool
+        Whether the total strength is invariant (truncated exterior).
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such form, or not with this setting.
+    """
+
+    def __init__(self, form: str, setting: Setting, tail: float | None = None) -> None:
+        self.form = choice("form", form, tuple(FORMS))
+        self.setting = instance("setting", setting, Setting)
+        _check(form, setting)
+        usual = setting.dim + setting.alpha
+        tails = tails_of(setting, tail, (usual, usual))
+        self.conservative = form != "DD"
+        self._pad, self._settled, self._lock = 0, not setting.is_open, Lock()
+        if form == "FPSE":
+            self._pad = ExchangeDivergence.reach(setting) if setting.is_open else 0
+            self._gradient = FractionalGradient(setting, self._pad, tails)
+            self._divergence = ExchangeDivergence(setting, self._pad)
+        elif form == "DD":
+            self._pad = setting.order // 2
+            self._gradient = FractionalGradient(setting, 0, tails)
+            self._laplacian = EvenSum(_scheme("DD"), setting, tails)
+            self._difference = _central_difference(setting.order) / setting.spacing
+        else:
+            self._exchange = EvenSum(_scheme("KPSE"), setting, tails)
+            self._beyond = _beyond(self._exchange)
+        count = setting.n + self._pad
+        line = setting.spacing * np.arange(-count, count + 1.0)
+        self.points = tuple(np.meshgrid(*(line,) * setting.dim, indexing="ij", sparse=True))
+        self.points_shape = (line.size,) * setting.dim
+
+    def apply(self, u: np.ndarray, diffusivity: Any) -> np.ndarray:
+        """Return du/dt for the strengths u, shape `setting.shape`, and D at the points.
+
+        Raises
+        ------
+        InvalidInput
+            If D is not finite and not negative, or has another shape.
+        """
+        u = np.ascontiguousarray(operand("u", u, self.setting.shape))
+        d = self._checked(diffusivity)
+        rate = {"FPSE": self._flux, "DD": self._product_rule, "exchange": self._mean}[self.form]
+        with self._lock:  # the sums keep work arrays
+            return rate(u, d)
+
+    def spectral_radius(self, diffusivity: Any) -> float:
+        """Return an upper bound of |lambda|; in an open exterior of the lattice without what continues it."""
+        d = self._checked(diffusivity)
+        if self.form == "FPSE":
+            return float(d.max()) * self._gradient.norm * self._divergence.norm
+        if self.form == "DD":
+            slope = np.sqrt(sum(np.square(part) for part in self._slopes(d)))
+            largest = float(np.abs(self._inner(d)).max())
+            return largest * self._laplacian.norm + float(slope.max()) * self._gradient.norm
+        centre = abs(self._exchange.weights.flat[0])  # cancels from u_j - u_i
+        return 2.0 * float(d.max()) * (self._exchange.norm - centre)
+
+    def _checked(self, diffusivity: Any) -> np.ndarray:
+        d = finite_array("diffusivity", diffusivity)
+        if d.ndim == 0:
+            d = np.full(self.points_shape, d[()])
+        of_shape("diffusivity", d, self.points_shape, "one number, or one for each of the points")
+        if d.min() < 0.0:
+            raise InvalidInput(
+                "diffusivity", float(d.min()), "no negative number", "Give D(x, t) >= 0."
+            )
+        if not self._settled:
+            self._settled = True  # one warning is enough
+            warn_unsettled("diffusivity", self._inner(d), self.setting.n)
+        return d
+
+    def _inner(self, d: np.ndarray) -> np.ndarray:
+        """D at the particles."""
+        inner = slice(self._pad, self._pad + self.setting.size)
+        return d[(inner,) * self.setting.dim]
+
+    def _flux(self, u: np.ndarray, d: np.ndarray) -> np.ndarray:
+        return self._divergence(d * self._gradient(u))
+
+    def _product_rule(self, u: np.ndarray, d: np.ndarray) -> np.ndarray:
+        total = self._inner(d) * self._laplacian(u)
+        for slope, component in zip(self._slopes(d), self._gradient(u), strict=True):
+            total += slope * component
+        return total
+
+    def _slopes(self, d: np.ndarray) -> list[np.ndarray]:
+        """D' at the particles, one array a dimension."""
+        size, pad, slopes = self.setting.size, self._pad, []
+        inner = slice(pad, pad + size)
+        for axis in range(d.ndim):
+            lines = np.moveaxis(d, axis, 0)
+            slope = sum(
+                c * (lines[pad + m : pad + m + size] - lines[pad - m : pad - m + size])
+                for m, c in enumerate(self._difference, 1)
+            )
+            slope = slope[(slice(None),) + (inner,) * (d.ndim - 1)]
+            slopes.append(np.moveaxis(slope, 0, axis))
+        return slopes
+
+    def _mean(self, u: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(D_i + D_j) (u_j - u_i) = D_i (u_j - u_i) + (D_j u_j - D_i u_i) - u_i (D_j - D_i): three sums."""
+        sums, far = self._exchange.inside, self._exchange.far
+        total = 0.5 * (d * sums(u) + sums(d * u) - u * sums(d) - d * u * sums(np.ones_like(u)))
+        if isinstance(far, LineFarField):
+            last, right, left = u.size - 1 - far.depth, far.right, far.left
+            from_right, from_left = u[last] @ right, u[far.depth] @ left
+            total += 0.5 * (d + d[-1]) * (from_right - u * self._beyond[::-1])
+            total += 0.5 * (d + d[0]) * (from_left - u * self._beyond)
+        return total
+
+
+def _scheme(name: str) -> OnePass:
+    return instance("scheme", SCHEMES[name], OnePass)
+
+
+def _check(form: str, setting: Setting) -> None:
+    """Refuse what a form does not exist for."""
+    scheme = SCHEMES[FORMS[form]]
+    # In the plane the divergence takes the general sums here, and so every order.
+    if form == "FPSE" and setting.dim == 2:
+        scheme = SCHEMES["DD"]
+    scheme.check(setting.dim, setting.order, setting.family)
+    if setting.dim > 2:
+        raise InvalidInput("dim", setting.dim, "1 or 2", "Take the line or the plane.")
+    if setting.diffusivity != 1.0:
+        raise InvalidInput("setting.diffusivity", setting.diffusivity, "1", "Put it into D.")
+    choice("exterior", setting.exterior, ("truncated", "open"))
+    if form == "exchange" and setting.dim > 1 and setting.is_open:
+        raise InvalidInput(
+            "exterior",
+            "open",
+            "'truncated' for the exchange in the plane",
+            "Truncate it, or take FPSE.",
+        )
+
+
+def _central_difference(order: int) -> np.ndarray:
+    """c_m of f'(0) = sum_(m = 1 .. order / 2) c_m (f(m) - f(-m)) + O(h^order)."""
+    m = np.arange(1, order // 2 + 1, dtype=float)
+    moments = m ** (2.0 * np.arange(m.size)[:, None] + 1.0)
+    return np.linalg.solve(2.0 * moments, np.eye(m.size)[0])
+
+
+def _beyond(exchange: EvenSum) -> np.ndarray:
+    """sum of the weights w_m of all m > i, i = 0 .. N - 1: of what lies beyond the left end from particle i."""
+    w = exchange.weights
+    if w.ndim > 1:
+        return np.zeros(0)
+    half = 0.5 * (exchange.total - w[0])
+    return half - np.cumsum(np.append(0.0, w[1:]))

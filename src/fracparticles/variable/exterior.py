@@ -1,0 +1,141 @@
+"""What lies beyond the lattice, where the tail of the solution need not be that of a constant operator.
+
+u_j = a_1 (n / |j|)^p + .. is continued as in `lattice.exterior` and `lattice.exterior_box`, with an exponent p of its
+own at either end of the line: a solution of variable order falls like |x|^(-1-alpha) with the alpha of where it is.
+The flux in the plane gains, for each of the modes that continue u, the sum over a lattice four times as wide; what is
+beyond that is left out. It is 4^(-2 p) of what the modes add, up to a constant.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+
+import numpy as np
+
+from fracparticles.arguments import pair, real_between
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.lattice.exterior import LineFarField, far_field
+from fracparticles.lattice.sums import BOX_SUMMATIONS
+from fracparticles.schemes.setting import Setting
+
+__all__ = ["PlaneGradientFarField", "line_far_field", "tails_of", "warn_unsettled"]
+
+Tails = tuple[float, float]
+
+_WIDER = 4
+_OUTER = (
+    0.75  # a coefficient is settled if it is nearly constant beyond this share of the half-width,
+)
+_UNSETTLED = 0.1  # within this share of its greatest value
+
+
+def tails_of(setting: Setting, tail: object, default: Tails) -> Tails:
+    """Return the exponents p of the tail at the left and the right end; one number stands for both.
+
+    Raises
+    ------
+    InvalidInput
+        If one is not between n and n + 6, n the dimension, or the exterior is truncated, or they differ in the plane.
+    """
+    if tail is None:
+        return default
+    if not setting.is_open:
+        raise InvalidInput(
+            "tail", tail, "nothing for exterior='truncated'", "Leave it out, or open the exterior."
+        )
+    given = (tail, tail) if np.ndim(tail) == 0 else pair("tail", tail)  # type: ignore[arg-type]
+    dim = float(setting.dim)
+    left, right = (real_between("tail", one, dim, dim + 6.0, inside=True) for one in given)
+    if setting.dim > 1 and left != right:
+        raise InvalidInput("tail", tail, "one number in the plane", "Give one exponent.")
+    return left, right
+
+
+def line_far_field(
+    weight: Callable[[np.ndarray], np.ndarray],
+    decay: float,
+    setting: Setting,
+    tails: Tails,
+    parity: int = 1,
+    pad: int = 0,
+) -> LineFarField:
+    """Return the exterior sums on the line, see `lattice.exterior.far_field`, each end with its own tail."""
+    left, right = (
+        far_field(weight, decay, p - 1.0, setting.n, parity, pad, setting.far_terms) for p in tails
+    )
+    return LineFarField(right.depth, right.right, left.left)
+
+
+class PlaneGradientFarField:
+    """What the exterior of a square adds to a sum with an odd vector kernel, sum_k a_k S_k with a = fit u_boundary.
+
+    Parameters
+    ----------
+    weights : callable
+        From a number of offsets 0 .. M - 1 to the weights of each component, a list of arrays of shape (M, M).
+    setting : Setting
+        In the plane.
+    pad : int
+        How many points beyond the faces are wanted.
+    tail : float
+        p of u ~ |x|^-p.
+
+    Raises
+    ------
+    InvalidInput
+        If the lattice is a single particle.
+    """
+
+    def __init__(
+        self, weights: Callable[[int], list[np.ndarray]], setting: Setting, pad: int, tail: float
+    ) -> None:
+        n, dim = setting.n, setting.dim
+        if n < 1:
+            raise InvalidInput(
+                "n", n, "at least 1", "Take more particles, or exterior='truncated'."
+            )
+        wide, targets = max(_WIDER * n, n + 2 * pad), setting.size + 2 * pad
+        line = np.arange(-wide, wide + 1.0) / n
+        j = np.meshgrid(*(line,) * dim, indexing="ij", sparse=True)
+        square = np.asarray(sum(np.square(part) for part in j))
+        square[(wide,) * dim] = np.inf
+        first = square ** (-0.5 * tail)
+        within = (slice(wide - n, wide + n + 1),) * dim
+        faces = np.ones(setting.shape, dtype=bool)
+        faces[(slice(1, -1),) * dim] = False
+        self._boundary = np.flatnonzero(faces)
+        convolve = BOX_SUMMATIONS["fft"](
+            weights(wide + n + pad + 1), range(dim), 2 * wide + 1, targets
+        )
+        edge = np.empty((dim + 2, self._boundary.size))
+        self._sums = np.empty((dim + 2, dim, *(targets,) * dim))
+        factors = [1.0, square ** (0.5 * (dim - tail)), *(part / square for part in j)]
+        for k, factor in enumerate(factors):
+            mode = first * factor
+            edge[k] = mode[within].reshape(-1)[self._boundary]
+            mode[within] = 0.0
+            self._sums[k] = convolve(mode)
+        self._fit = np.linalg.solve(edge @ edge.T, edge)
+
+    def add(self, u: np.ndarray, y: np.ndarray) -> None:
+        """Add the contribution of the exterior to y, shape (components, points, points)."""
+        amplitudes = self._fit @ u.reshape(-1)[self._boundary]
+        y += np.tensordot(amplitudes, self._sums, 1)
+
+
+def warn_unsettled(field: str, values: np.ndarray, n: int) -> None:
+    """Warn of a coefficient on the lattice that still varies near the ends, where the tail takes it for constant."""
+    outer = round(_OUTER * n)
+    middle = values.shape[0] // 2
+    for axis in range(values.ndim):
+        along = np.moveaxis(values, axis, 0)
+        for part in (along[: middle - outer + 1], along[middle + outer :]):
+            varied = float(np.ptp(part, axis=0).max())
+            if varied > _UNSETTLED * float(np.abs(values).max()):
+                message = (
+                    f"{field} varies by {varied:.2g} in the outer quarter of the lattice, and the tail of the "
+                    "solution is continued as if it were constant there: widen the domain."
+                )
+                warnings.warn(message, AccuracyWarning, stacklevel=4)
+                return

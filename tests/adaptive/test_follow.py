@@ -1,0 +1,115 @@
+"""Particles that follow a solution: two blobs of very different widths, against their exact evolution."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fracparticles.adaptive.follow import _placed_again, follow
+from fracparticles.adaptive.placement import LengthField, place_particles, wanted_lengths
+from fracparticles.adaptive.samples import adapted_samples
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.special import green
+
+TIMES = (1e-3, 0.1, 1.0, 10.0)
+
+
+def blobs(x, t, alpha):
+    """Two fundamental solutions, of widths 0.01 and 1 at the time zero, 50 apart."""
+    return 0.5 * green(x, 0.01**alpha + t, alpha) + 0.5 * green(x - 50.0, 1.0 + t, alpha)
+
+
+def followed(alpha, times=TIMES, **how):
+    return follow(lambda x: blobs(x, 0.0, alpha), times, alpha=alpha, window=(-20.0, 80.0), **how)
+
+
+def error(state, alpha):
+    """Sum V |u - exact|, of a mass of one."""
+    exact = blobs(state.particles.x, state.time, alpha)
+    return float(state.particles.volumes @ np.abs(state.u - exact))
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
+def test_two_blobs_at_all_times(alpha):
+    states = followed(alpha, step=0.25)
+    assert max(error(state, alpha) for state in states) < 5e-5
+    masses = np.array([state.mass for state in states])
+    assert np.abs(masses / masses[0] - 1.0).max() < 1e-12
+    # As the narrow one widens, particles that are close are merged.
+    counts = [state.u.size for state in states]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[-1] < 0.75 * counts[0] < 300
+    assert states[-1].placements > 5
+
+
+def test_the_error_falls_with_the_step_by_its_order():
+    """Without placing again: the order of the exchange, 2 q + 2 - alpha = 4.5, in the parts of a length."""
+    errors = [
+        error(followed(1.5, (0.01,), step=h, near=2, again=False)[0], 1.5) for h in (0.24, 0.12)
+    ]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.5, abs=0.1)
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.8])
+def test_a_placement_keeps_mass_and_first_moment(alpha):
+    before = followed(alpha, (0.05,), step=0.3, again=False)[0]
+    after = _placed_again(before, tuple(before.particles.x[[0, -1]]), 0.3)
+    assert after.u.size < before.u.size
+    assert 0.0 < after.corrected < 1e-4
+    assert after.mass == pytest.approx(before.mass, rel=1e-13)
+    moments = [state.particles.volumes * state.particles.x @ state.u for state in (before, after)]
+    size = before.particles.volumes * np.abs(before.particles.x) @ before.u
+    assert moments[1] == pytest.approx(moments[0], abs=1e-13 * size)
+
+
+def test_between_the_particles_it_has_the_same_error():
+    state = followed(1.5, (0.1,), step=0.2)[0]
+    x = np.concatenate([np.linspace(-1.0, 1.0, 77), np.linspace(45.0, 55.0, 77), [300.0]])
+    assert state.at(x) == pytest.approx(blobs(x, 0.1, 1.5), abs=1e-5 * state.u.max())
+    with pytest.raises(InvalidInput, match=r"^x = "):
+        state.at(1e9)
+
+
+def test_a_constant_length_gives_equal_distances():
+    x = np.linspace(-50.0, 50.0, 2001)
+    field = LengthField(x, np.full(2001, 0.7))
+    assert field(0.3) == pytest.approx(0.7, rel=1e-4)  # but for the ends
+    particles = place_particles(lambda x: 2.0, -10.0, 10.0, 0.5)
+    assert np.diff(particles.x) == pytest.approx(1.0, rel=1e-9)
+    assert particles.volumes[1:-1] == pytest.approx(1.0)
+    assert particles.volumes.sum() == pytest.approx(20.0)
+
+
+def test_a_length_does_not_change_by_more_than_the_distance():
+    x, u = adapted_samples(lambda x: blobs(x, 0.0, 1.5), -20.0, 80.0, np.zeros(0))
+    field = LengthField(x, wanted_lengths(x, u))
+    at = np.sort(np.concatenate([np.geomspace(1e-4, 400.0, 300), -np.geomspace(1e-4, 400.0, 300)]))
+    lengths = np.array([field(one) for one in at])
+    assert (np.abs(np.diff(lengths)) <= np.diff(at) * (1.0 + 1e-9)).all()
+    assert field(0.0) == pytest.approx(0.01, rel=0.5)
+    assert field(50.0) == pytest.approx(1.0, rel=0.5)
+
+
+def test_what_is_refused_or_warned_of():
+    def bell(x):
+        return np.exp(-x * x)
+
+    good = {"alpha": 1.5, "window": (-5.0, 5.0)}
+    for field, call in {
+        "alpha": lambda: follow(bell, 1.0, alpha=2.5, window=(-5.0, 5.0)),
+        "window": lambda: follow(bell, 1.0, alpha=1.5, window=(5.0, -5.0)),
+        "times": lambda: follow(bell, (1.0, 0.5), **good),
+        "step": lambda: follow(bell, 1.0, step=2.0, **good),
+        "diffusivity": lambda: follow(bell, 1.0, diffusivity=-1.0, **good),
+        "initial": lambda: follow(lambda x: np.where(x > 0, np.nan, 1.0), 1.0, **good),
+        "near": lambda: follow(bell, 1.0, near=9, **good),
+        "reach": lambda: follow(bell, 1.0, reach=-1.0, **good),
+        "again": lambda: follow(bell, 1.0, again=1, **good),
+    }.items():
+        with pytest.raises(InvalidInput, match=f"^{field} = ") as error:
+            call()
+        assert "\n" not in str(error.value)
+    with pytest.raises(InvalidInput, match="zero at all samples"):
+        follow(lambda x: 0.0 * x, 1.0, **good)
+    with pytest.warns(AccuracyWarning, match=r"of int \|u\|"):
+        follow(bell, 0.1, step=1.0, **good)

@@ -1,0 +1,170 @@
+"""Reactions and sources: the fractional Fisher-KPP front, decay, a manufactured source, blow-up."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from scipy.special import gamma, hyp1f1
+
+from fracparticles.errors import AccuracyWarning, NonFiniteSolution
+from fracparticles.problems import Problem, solve_problem
+from fracparticles.run.orders import observed_order
+from fracparticles.special import green
+from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import Panels
+
+__all__ = ["front", "study"]
+
+_LEVEL = 0.5  # of the front
+_DRAWN = 1.5  # the order whose front is drawn
+_LINE = {"alpha": 1.5, "half_width": 50.0, "far_terms": 3}
+
+
+def study(
+    inputs: Inputs,
+    *,
+    alphas: list[float],
+    half_width: float,
+    spacing: float,
+    until: list[int],
+    plane_half_width: float,
+    plane_spacing: float,
+    plane_until: int,
+    tolerances: list[float],
+    source_spacings: list[float],
+    decay: float,
+) -> Result:
+    """A row for each number that is known: the rate of the front, a factor, an order, a time."""
+    panels = Panels()
+    rows: list[dict[str, Any]] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter(
+            "ignore", AccuracyWarning
+        )  # of narrow lattices; what lies beyond is in the table
+        for alpha, last in zip(alphas, until, strict=True):
+            one = {"alpha": alpha, "half_width": half_width, "spacing": spacing}
+            rows.append(_front_row(one, last, panels))
+        plane = {
+            "alpha": 1.5, "dim": 2, "form": "exchange", "half_width": plane_half_width, "spacing": plane_spacing,
+        }  # fmt: skip
+        rows.append(_front_row(plane, plane_until, panels))
+        rows += _decay(decay, tolerances, panels)
+        rows += _manufactured(source_spacings)
+        rows.append(_blow_up())
+    table = pd.DataFrame(rows)
+    table.insert(4, "deviation", (table["ours"] - table["exact"]).abs() / table["exact"].abs())
+    return Result(table, (), panels.frame)
+
+
+def front(x: np.ndarray, u: np.ndarray, level: float = _LEVEL) -> float:
+    """Return the largest x at which u, given at x > 0, falls below the level; between particles by a power of x."""
+    i = int(np.flatnonzero((u[:-1] >= level) & (u[1:] < level))[-1])
+    share = np.log(u[i] / level) / np.log(u[i] / u[i + 1])
+    return float(x[i] * (x[i + 1] / x[i]) ** share)
+
+
+def _front_row(fields: dict[str, Any], last: int, panels: Panels) -> dict[str, Any]:
+    """Fisher-KPP, f = u (1 - u): the front runs like exp(f'(0) t / (n + alpha)), f'(0) = 1."""
+    dim, alpha = fields.get("dim", 1), fields["alpha"]
+    times = tuple(float(t) for t in range(2, last + 1))
+    problem = Problem(**fields, source="u*(1 - u)", times=times, order=4, rtol=1e-6)
+    if dim == 1:
+        run = solve_problem(problem, lambda x: np.exp(-x * x / 8.0))
+        along = run["u"]
+    else:
+        run = solve_problem(problem, lambda x, y: np.exp(-(x * x + y * y) / 8.0))
+        along = run["u"].sel(y=0.0)
+    right = along.sel(x=slice(0.5 * problem.spacing, None))
+    x = right["x"].values
+    places = np.array([front(x, u) for u in right.values])
+    rates = np.diff(np.log(places))
+    name = f"α = {alpha:g}" + (", plane" if dim > 1 else "")
+    panels.add("rate", name, times[1:], rates, exact=1.0 / (dim + alpha))
+    if dim == 1 and alpha == _DRAWN:
+        some = np.unique(np.geomspace(1, x.size, 150).astype(int)) - 1
+        for time, u in list(zip(times, right.values, strict=True))[1::4]:
+            panels.add("front", f"{time:g}", x[some], u[some])
+    return {
+        "problem": "Fisher-KPP, " + ("line" if dim == 1 else "plane"),
+        "quantity": f"rate of the front, α = {alpha:g}, up to t = {last}",
+        "exact": 1.0 / (dim + alpha),
+        "ours": float(rates[-1]),
+        "integrator": str(run["integrator"].values),
+        "evaluations": int(run["evaluations"]),
+        "beyond the lattice": float(run["outside_share"][-1]),
+    }
+
+
+def _decay(c: float, tolerances: list[float], panels: Panels) -> Iterator[dict[str, Any]]:
+    """u_t = .. - c u: the factor exp(-c t), for each tolerance by each integrator; the last ones in the table."""
+    fields = {**_LINE, "spacing": 0.1, "order": 12, "t_initial": 1.0, "t_final": 2.0}
+    for integrator in ("dop853", "rkc2"):
+        errors, counts = [], []
+        for rtol in tolerances:
+            run = solve_problem(
+                Problem(**fields, source=f"-{c}*u", rtol=rtol, integrator=integrator)
+            )
+            exact = np.exp(-c) * green(run["x"].values, 2.0, 1.5)
+            errors.append(float(np.abs(run["u"].values - exact).max() / exact.max()))
+            counts.append(int(run["evaluations"]))
+        panels.add("tolerance", integrator, counts, errors)
+        middle = float(run["u"].sel(x=0.0) / green(0.0, 2.0, 1.5))
+        yield {
+            "problem": "decay",
+            "quantity": f"factor, tolerance {tolerances[-1]:.0e}",
+            "exact": float(np.exp(-c)),
+            "ours": middle,
+            "error": errors[-1],
+            "integrator": integrator,
+            "evaluations": counts[-1],
+        }
+
+
+def _manufactured(spacings: list[float]) -> Iterator[dict[str, Any]]:
+    """u = cos(t) exp(-x^2): the source that makes it, and the order in the spacing."""
+
+    def source(x: np.ndarray, t: float) -> np.ndarray:
+        half, bell = 1.25, np.exp(-x * x)
+        rate = 2.0**1.5 * gamma(half) / np.sqrt(np.pi) * hyp1f1(half, 0.5, -x * x)
+        return np.asarray(-np.sin(t) * bell + np.cos(t) * rate)
+
+    for order in (4, 6):
+        errors = []
+        for h in spacings:
+            problem = Problem(
+                **{**_LINE, "half_width": 25.0},
+                spacing=h,
+                order=order,
+                source=source,
+                t_final=1.0,
+                rtol=1e-11,
+            )
+            run = solve_problem(problem, lambda x: np.exp(-x * x))
+            exact = np.cos(1.0) * np.exp(-(run["x"].values ** 2))
+            errors.append(float(np.abs(run["u"].values - exact).max() / exact.max()))
+        yield {
+            "problem": "manufactured source",
+            "quantity": f"order in h, kernel of order {order}, h = {spacings[-2]:g} and {spacings[-1]:g}",
+            "exact": float(order),
+            "ours": float(observed_order(spacings, errors)[-1]),
+            "error": errors[-1],
+            "integrator": str(run["integrator"].values),
+            "evaluations": int(run["evaluations"]),
+        }
+
+
+def _blow_up() -> dict[str, Any]:
+    """u_t = u^2 from u = 1/2, without diffusion: infinite at t = 2, which is what the error says."""
+    problem = Problem(
+        alpha=1.5, half_width=5.0, spacing=0.5, diffusivity=0.0, source="u**2", t_final=3.0, order=2
+    )
+    said = np.nan
+    try:
+        solve_problem(problem, np.full(problem.case.shape, 0.5))
+    except NonFiniteSolution as error:
+        said = float(str(error).split("t = ")[1].split(":")[0])
+    return {"problem": "blow-up", "quantity": "time", "exact": 2.0, "ours": said}

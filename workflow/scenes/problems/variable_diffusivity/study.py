@@ -1,0 +1,157 @@
+"""div(D(x) grad^beta u) by three forms: which equation each solves, and to what order.
+
+On the line u = 1 / (1 + x^2), in the plane u = exp(-|x|^2), whose fractional derivatives are closed forms, and
+D = 1 + c u. The error is the greatest over the particles, over the greatest value of the exact right-hand side; what is
+tested is the operator alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from fracparticles.run.orders import observed_order
+from fracparticles.schemes.setting import Setting
+from fracparticles.variable import VariableDiffusivity
+from fracparticles.variable.closed_forms import Cauchy, Gaussian, KnownField, exchange_limit
+from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import Panels
+
+__all__ = ["study"]
+
+_FLUX, _MEAN = "div(D grad^beta u)", "(D L u + L(D u) - u L D) / 2"
+_SHORT = 4.0  # half-width of a truncated lattice, that loses something if it is not conservative
+_SHOWN = 8.0  # half-width of what is drawn of the right-hand sides
+
+
+def study(
+    inputs: Inputs,
+    *,
+    alpha: float,
+    amplitude: float,
+    overlap: float,
+    half_width: float,
+    spacings: list[float],
+    orders: list[int],
+    plane_half_width: float,
+    plane_spacings: list[float],
+    plane_orders: list[int],
+    alphas: list[float],
+) -> Result:
+    """A row for each form, equation, order and spacing; the distance of the two equations against alpha."""
+    panels = Panels()
+    common: dict[str, Any] = {"alpha": alpha, "overlap": overlap, "exterior": "open"}
+    rows: list[dict[str, Any]] = []
+    for form, equation, order in _line_cases(orders):
+        settings = [
+            Setting(**common, order=order, n=round(half_width / h), spacing=h, far_terms=3)
+            for h in spacings
+        ]
+        rows += _levels(form, equation, settings, amplitude, panels)
+    for form in ("FPSE", "DD"):
+        for order in plane_orders:
+            settings = [
+                Setting(**common, order=order, dim=2, n=round(plane_half_width / h), spacing=h)
+                for h in plane_spacings
+            ]
+            rows += _levels(form, _FLUX, settings, amplitude, panels)
+    _two_equations(alpha, amplitude, alphas, panels)
+    return Result(pd.DataFrame(rows), (), panels.frame)
+
+
+def _line_cases(orders: Sequence[int]) -> Iterator[tuple[str, str, int]]:
+    for form in ("FPSE", "DD"):
+        for order in orders:
+            yield form, _FLUX, order
+    for equation in (_FLUX, _MEAN):
+        yield "exchange", equation, 2
+    if 4 in orders:
+        yield "exchange", _MEAN, 4
+
+
+def _levels(
+    form: str, equation: str, settings: Sequence[Setting], c: float, panels: Panels
+) -> Iterator[dict[str, Any]]:
+    """One row a spacing."""
+    spacings = [setting.spacing for setting in settings]
+    errors, drifts, norms = [], [], []
+    for setting in settings:
+        operator = VariableDiffusivity(form, setting, tail=setting.dim + 1.0)
+        u, exact = _given(setting, equation, c)
+        d = 1.0 + c * _field(setting).value(operator.points)
+        rate = operator.apply(u, d)
+        errors.append(float(np.abs(rate - exact).max() / np.abs(exact).max()))
+        norms.append(operator.spectral_radius(d) * setting.spacing**setting.alpha)
+        drifts.append(_drift(form, setting, c))
+    observed = [np.nan, *observed_order(spacings, errors)]
+    dim, order = settings[0].dim, settings[0].order
+    panels.add(
+        "line" if dim == 1 else "plane", form, spacings, errors, order=order, equation=equation
+    )
+    for h, error, slope, drift, norm in zip(spacings, errors, observed, drifts, norms, strict=True):
+        yield {
+            "dim": dim,
+            "way": form,
+            "equation": equation,
+            "order": order,
+            "h": h,
+            "error": error,
+            "observed order": slope,
+            "drift of the total": drift,
+            "bound of |lambda| h^alpha": norm,
+        }
+
+
+def _field(setting: Setting) -> type[KnownField]:
+    return Cauchy if setting.dim == 1 else Gaussian
+
+
+def _given(setting: Setting, equation: str, c: float) -> tuple[np.ndarray, np.ndarray]:
+    """u at the particles, and the right-hand side of an equation there."""
+    at, field, alpha = _particles(setting), _field(setting), setting.alpha
+    u = field.value(at)
+    if equation == _MEAN:
+        return u, exchange_limit(at[0], alpha, c)
+    slopes = [c * part for part in field.gradient(at, 2.0)]  # beta = 1 is the gradient
+    return u, field.flux_divergence(at, alpha, 1.0 + c * u, slopes)
+
+
+def _drift(form: str, setting: Setting, c: float) -> float:
+    """The rate of the total strength over the sum of |du/dt|, on a truncated lattice: zero if conservative."""
+    truncated = replace(
+        setting, n=round(_SHORT / setting.spacing), exterior="truncated", far_terms=1
+    )
+    operator = VariableDiffusivity(form, truncated)
+    field = _field(truncated)
+    u, d = field.value(_particles(truncated)), 1.0 + c * field.value(operator.points)
+    rate = operator.apply(u, d)
+    return float(abs(rate.sum()) / np.abs(rate).sum())
+
+
+def _particles(setting: Setting) -> list[np.ndarray]:
+    x = setting.spacing * np.arange(-setting.n, setting.n + 1.0)
+    return list(np.meshgrid(*(x,) * setting.dim, indexing="ij", sparse=True))
+
+
+def _two_equations(alpha: float, c: float, alphas: Sequence[float], panels: Panels) -> None:
+    """The two right-hand sides, and how far apart they are for other alpha; both closed forms."""
+    fine = Setting(alpha=alpha, n=400, spacing=_SHOWN / 400.0)
+    (x,) = _particles(fine)
+    for equation in (_FLUX, _MEAN):
+        panels.add("right-hand side", equation, x, _given(fine, equation, c)[1])
+    ours = replace(fine, order=4, n=1600, exterior="open", far_terms=3)
+    operator = VariableDiffusivity("exchange", ours, tail=2.0)
+    (at,) = _particles(ours)
+    rate = operator.apply(Cauchy.value([at]), 1.0 + c * Cauchy.value(operator.points))
+    near = np.flatnonzero(np.abs(at) <= _SHOWN)[::10]
+    panels.add("right-hand side", "exchange", at[near], rate[near])
+    gaps = []
+    for one in alphas:
+        setting = Setting(alpha=one, n=400, spacing=_SHOWN / 400.0)
+        first, second = (_given(setting, equation, c)[1] for equation in (_FLUX, _MEAN))
+        gaps.append(float(np.abs(first - second).max() / np.abs(first).max()))
+    panels.add("gap", "gap", [2.0 - one for one in alphas], gaps)
