@@ -325,6 +325,17 @@ def test_what_a_plot_shows(cli):
     assert "[mg/L]" in axes.get_ylabel()
 
 
+@pytest.mark.parametrize("dim", [1, 2])
+def test_a_solved_problem_is_shown_and_plotted_as_a_run_is(cli, dim):
+    drift = ("1", "0")[:dim]
+    fields = {"half_width": 10.0, "spacing": 0.5, "t_initial": 0.5, "t_final": 1.0}
+    problem = fp.Problem(alpha=1.5, dim=dim, velocity=drift, form="DD", **fields)
+    fp.write(fp.solve_problem(problem), "problem.nc")
+    assert cli("plot", "problem.nc") == (0, "problem.png\n", "")
+    assert cli("show", "problem.nc")[0] == 0
+    assert "no difference" in cli("compare", "problem.nc", "problem.nc")[1]
+
+
 def test_what_cannot_be_plotted(cli):
     cli("solve", *SERIES, "--store", "metrics", "-o", "run.nc")
     assert refused(cli("plot", "run.nc"), "holds its strengths", "--store field")

@@ -258,7 +258,7 @@ def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:
 
 
 def read_run(path: str | Path) -> xr.Dataset:
-    """Read a run's file, closed again.
+    """Read the file of a run, or of a solved problem, closed again.
 
     Raises
     ------
@@ -268,7 +268,7 @@ def read_run(path: str | Path) -> xr.Dataset:
     if not isinstance(path, str | os.PathLike):
         raise InvalidInput("file", path, "the path of a file", "Give such a path.")
     dataset = load_netcdf(Path(os.fsdecode(path)))
-    if "case" not in dataset.attrs or "mass_final" not in dataset:
+    if not {"case", "problem"} & set(dataset.attrs) or "mass_final" not in dataset:
         remedy = "Make one with `fracparticles solve`."
         raise InvalidInput("file", str(path), "a run written by fracparticles", remedy)
     return dataset

@@ -73,24 +73,30 @@ def draw(run: xr.Dataset, *, log: bool = False) -> Any:
     if name is None:
         held = "a run that holds its strengths"
         raise InvalidInput("file", "metrics only", held, "Run the case with --store field.")
-    u, case = run[name], Case.from_json(run.attrs["case"])
-    outputs = u if "t" in u.dims else u.expand_dims(t=[case.t_final])
-    drawn = _map(outputs[-1], log) if outputs.ndim > 2 else _lines(outputs, case, log)
+    u = run[name]
+    outputs = u if "t" in u.dims else u.expand_dims(t=[float(run.t_final)])
+    drawn = _map(outputs[-1], log) if outputs.ndim > 2 else _lines(outputs, _known(run), log)
     drawn.axes.set_title(run.attrs["title"], fontsize=9, wrap=True)
     return drawn.figure
 
 
-def _lines(outputs: xr.DataArray, case: Case, log: bool) -> Any:
+def _known(run: xr.Dataset) -> Case | None:
+    """The case of a run from the fundamental solution, whose exact solution is known."""
+    case = Case.from_json(run.attrs["case"]) if "case" in run.attrs else None
+    return case if case is not None and case.initial == FUNDAMENTAL else None
+
+
+def _lines(outputs: xr.DataArray, known: Case | None, log: bool) -> Any:
     """A line for each output time, and the exact one where it is known; on a logarithmic axis what is positive."""
     where: dict[str, Any] = {"figsize": _SIZE}
     for u in outputs.where(outputs > 0.0) if log else outputs:
         time = float(u.t)
         (drawn,) = u.plot(x="x", label=f"t = {time:g}", **where)
         where = {"ax": drawn.axes}
-        if case.initial == FUNDAMENTAL:
-            exact = green(u.x.values, case.diffusivity * time, case.alpha, case.dim)
+        if known is not None:
+            exact = green(u.x.values, known.diffusivity * time, known.alpha, known.dim)
             drawn.axes.plot(u.x.values, exact, **_EXACT)
-    if case.initial == FUNDAMENTAL:
+    if known is not None:
         drawn.axes.plot([], [], label="exact", **_EXACT)
     if log:
         drawn.axes.set_yscale("log")
