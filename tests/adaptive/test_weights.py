@@ -57,15 +57,13 @@ def test_an_exchange_is_symmetric_and_conserves():
 
 def test_distances_keep_their_digits_at_the_ends():
     particles = graded_on_interval(50, 8.0)
-    mp.mp.dps = 60
-    left = [mp.mpf(one) for one in particles.left]
-    x = [
-        one - 1 if one < 1 else 1 - mp.mpf(r) for one, r in zip(left, particles.right, strict=True)
-    ]
-    for i, j in ((0, 1), (3, 2), (48, 49), (49, 20), (0, 49), (24, 25)):
-        assert particles.distances[i, j] == pytest.approx(float(abs(x[i] - x[j])), rel=1e-13)
+    with mp.workdps(60):
+        sides = zip(particles.left, particles.right, strict=True)
+        x = [mp.mpf(a) - 1 if a < 1 else 1 - mp.mpf(b) for a, b in sides]
+        for i, j in ((0, 1), (3, 2), (48, 49), (49, 20), (0, 49), (24, 25)):
+            exact = float(abs(x[i] - x[j]))
+            assert particles.distances[i, j] == pytest.approx(exact, rel=1e-13)
     assert particles.volumes.sum() == pytest.approx(2.0, rel=1e-10)  # the rule has the order p
-    mp.mp.dps = 15
 
 
 def test_what_is_refused():

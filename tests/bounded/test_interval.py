@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mpmath as mp
 import numpy as np
 import pytest
 from scipy.special import gamma
@@ -9,6 +10,7 @@ from scipy.special import gamma
 from fracparticles.adaptive.inverse import InverseExchange
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
+from fracparticles.bounded.interval_no_flux import no_flux_state
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.special import tail_constant
 
@@ -208,3 +210,23 @@ def test_what_is_refused_in_one_line():
         given.evolve(0.0, 1.0)
     with pytest.raises(NonFiniteSolution, match="512 panels"):
         line.evolve(0.0, 1.0, source=lambda x, t: np.sign(t - 1 / 3) + 0.0 * x)
+
+
+def test_the_state_without_flux_has_a_constant_potential():
+    """Its mass is one, and int u(y) |x - y|^(1-alpha) dy the same everywhere: with y = cos t, by mpmath."""
+    for alpha in (1.2, 1.5):
+        unit = float(no_flux_state(np.zeros(1), alpha)[0])
+
+        def around(x, power, alpha=alpha):
+            def integrand(t):
+                return mp.sin(t) ** (alpha - 1) * abs(mp.cos(t) - x) ** power
+
+            return float(mp.quad(integrand, [0, mp.acos(x), mp.pi]))
+
+        assert unit * around(0.6, 0) == pytest.approx(1.0, rel=1e-8)
+        assert around(0.6, 1 - alpha) == pytest.approx(around(0.1, 1 - alpha), rel=1e-6)
+    assert no_flux_state(np.array([0.5]), 1.5, 3.0) == pytest.approx(
+        3.0 * no_flux_state(np.zeros(1), 1.5) * 0.75**-0.25
+    )
+    with pytest.raises(InvalidInput, match=r"^x = "):
+        no_flux_state(np.array([1.0]), 1.5)

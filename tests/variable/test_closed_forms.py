@@ -22,9 +22,7 @@ def over_waves(f):
 def test_laplacian_is_the_integral_over_wave_numbers(s, x):
     line = over_waves(lambda k: k**s * mp.cos(k * x))
     plane = over_waves(lambda k: k ** (s + 1) * mp.besselj(0, k * x))
-    assert -Cauchy.laplacian([np.array(x)], s) == pytest.approx(
-        float(line), rel=1e-12, abs=1e-13
-    )
+    assert -Cauchy.laplacian([np.array(x)], s) == pytest.approx(float(line), rel=1e-12, abs=1e-13)
     assert -Cauchy.laplacian([np.array(x), np.array(0.0)], s) == pytest.approx(
         float(plane), rel=1e-12, abs=1e-13
     )

@@ -66,7 +66,7 @@ def test_rows_are_those_of_a_dense_sum_with_one_kernel_each(dim, least, greatest
         row = kernel("G", r, a, dim=dim, order=4) * volume * epsilon ** (-dim - a)
         expected.append(row @ u.reshape(-1))
     found = VariableOrder(setting, alpha).apply(u).reshape(-1)
-    # The tolerance of the interpolation, in units of the largest entry of a row, and the 1e-11 of the kernels.
+    # Kernels are good to 1e-11, relative, and the interpolation is better than that.
     np.testing.assert_allclose(found, expected, atol=2e-11 * np.abs(expected).max())
 
 
@@ -85,12 +85,12 @@ def test_the_interpolation_of_the_symbol_is_below_its_bound(least, greatest):
     assert interpolation_bound(nodes - 1, least, greatest) > 1e-12
 
 
-@pytest.mark.parametrize("order", [2, 4, 6, 8])
+@pytest.mark.parametrize("order", [2, 4, 6, 8, 10, 12])
 def test_converges_with_the_order_of_the_kernels(order):
-    h = {2: 0.04, 4: 0.08, 6: 0.15, 8: 0.2}[order]
+    h = {2: 0.04, 4: 0.07, 6: 0.08, 8: 0.1, 10: 0.1, 12: 0.12}[order]
     errors = []
     for size in (1.2 * h, h):
-        setting = lattice(size, 72.0, order=order, exterior="open")
+        setting = lattice(size, 72.0, order=order, overlap=3.0, exterior="open")
         (x,) = particles(setting)
         alpha = 1.5 + 0.3 * np.sin(x) * np.exp(-((x / 20.0) ** 2))
         found = VariableOrder(setting, alpha).apply(Packet.value([x]))

@@ -58,6 +58,11 @@ def test_the_two_equations_meet_in_proportion_to_2_minus_alpha(result):
     assert slope == pytest.approx(1.0, abs=0.05)
 
 
+def test_a_run_with_a_diffusivity_of_place_and_time_is_exact_to_a_millionth(result):
+    runs = pick(result.table, equation="u_t = div(D grad^beta u) + f")
+    assert (runs["error"] < 1e-6).all()
+
+
 def test_the_figure_can_be_drawn(scene, result):
     drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
     assert len(drawn.axes) == 4

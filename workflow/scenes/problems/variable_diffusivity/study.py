@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.orders import observed_order
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import VariableDiffusivity
@@ -24,6 +25,8 @@ from fracstudy.panels import Panels
 __all__ = ["study"]
 
 _FLUX, _MEAN = "div(D grad^beta u)", "(D L u + L(D u) - u L D) / 2"
+_RUN = "u_t = div(D grad^beta u) + f"
+_FAR = 6.0  # half-width of a run, where exp(-x^2) is 2e-16
 _SHORT = 4.0  # half-width of a truncated lattice, that loses something if it is not conservative
 _SHOWN = 8.0  # half-width of what is drawn of the right-hand sides
 
@@ -41,8 +44,9 @@ def study(
     plane_spacings: list[float],
     plane_orders: list[int],
     alphas: list[float],
+    runs: list[list[Any]],
 ) -> Result:
-    """A row for each form, equation, order and spacing; the distance of the two equations against alpha."""
+    """A row for each form, equation, order and spacing, and for each run; how far apart the two equations are."""
     panels = Panels()
     common: dict[str, Any] = {"alpha": alpha, "overlap": overlap, "exterior": "open"}
     rows: list[dict[str, Any]] = []
@@ -59,6 +63,7 @@ def study(
                 for h in plane_spacings
             ]
             rows += _levels(form, _FLUX, settings, amplitude, panels)
+    rows += [_run(alpha, *run) for run in runs]
     _two_equations(alpha, amplitude, alphas, panels)
     return Result(pd.DataFrame(rows), (), panels.frame)
 
@@ -135,6 +140,41 @@ def _drift(form: str, setting: Setting, c: float) -> float:
 def _particles(setting: Setting) -> list[np.ndarray]:
     x = setting.spacing * np.arange(-setting.n, setting.n + 1.0)
     return list(np.meshgrid(*(x,) * setting.dim, indexing="ij", sparse=True))
+
+
+def _run(alpha: float, form: str, dim: int, order: int, h: float) -> dict[str, Any]:
+    """u = exp(-t - |x|^2) with D = 1 + exp(-|x|^2) cos(t) / 2, by the source that makes it, to t = 1."""
+
+    def swing(points: Sequence[np.ndarray], t: Any) -> np.ndarray:
+        return np.asarray(0.5 * Gaussian.value(points) * np.cos(t))
+
+    def diffusivity(*at: np.ndarray) -> np.ndarray:
+        return 1.0 + swing(at[:dim], at[dim])
+
+    def source(*at: np.ndarray) -> np.ndarray:
+        points, t = at[:dim], at[dim]
+        d = swing(points, t)
+        spread = Gaussian.flux_divergence(points, alpha, 1.0 + d, [-2.0 * x * d for x in points])
+        return np.asarray(-np.exp(-t) * (Gaussian.value(points) + spread))
+
+    problem = Problem(
+        diffusivity=diffusivity,
+        source=source,
+        alpha=alpha,
+        dim=dim,
+        form=form,
+        order=order,
+        spacing=h,
+        half_width=_FAR,
+        t_final=1.0,
+        rtol=1e-8,
+    )
+    at = _particles(problem.case.setting)
+    start = Gaussian.value(at)
+    run = solve_problem(problem, start)
+    exact = np.exp(-1.0) * start
+    error = float(np.abs(run["u"].values - exact).max() / exact.max())
+    return {"dim": dim, "way": form, "equation": _RUN, "order": order, "h": h, "error": error}
 
 
 def _two_equations(alpha: float, c: float, alphas: Sequence[float], panels: Panels) -> None:

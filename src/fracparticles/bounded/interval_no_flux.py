@@ -1,0 +1,40 @@
+"""The third problem with closed ends: u = 0 outside, and no fractional flux through them. FPSE and DPSE solve it.
+
+A scheme that takes the flux q = -grad^beta u = -d/dx I u of what is on its particles alone, with the Riesz potential
+I u = c int u(y) |x - y|^(1-alpha) dy, and then exchanges it between them, keeps sum V u as the regional operator does.
+But
+
+    u_t = -dq/dx,   q = -grad^beta u with u = 0 outside (-1, 1),   q(-1) = q(1) = 0,
+
+is another problem. It does not end in a constant but where I u is one, which is so for (Popov, 1982)
+
+    u = m Gamma(alpha) / (2^(alpha-1) Gamma(alpha/2)^2) (1 - x^2)^(alpha/2-1),   m = int u:
+
+infinite at the ends. All that decays has the rates of the absorbing problem: if -dq/dx = -lambda u, then q is zero
+outside and lambda q = -grad^beta (lambda u) = -grad^beta dq/dx = (-Laplacian)^(alpha/2) q.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
+
+__all__ = ["no_flux_state"]
+
+
+def no_flux_state(x: FloatArray, alpha: float, mass: float = 1.0) -> FloatArray:
+    """Return u of the last line at places inside (-1, 1).
+
+    Raises
+    ------
+    InvalidInput
+        If alpha is not between 1 and 2, or a place not inside.
+    """
+    alpha, mass = check.fractional_order(alpha), check.finite_real("mass", mass)
+    x = check.within("x", check.finite_array("x", x), -1.0, 1.0, inside=True)
+    whole = 2.0 ** (alpha - 1.0) * math.gamma(0.5 * alpha) ** 2 / math.gamma(alpha)
+    return np.asarray(mass / whole * ((1.0 - x) * (1.0 + x)) ** (0.5 * alpha - 1.0))

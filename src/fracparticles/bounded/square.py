@@ -1,0 +1,286 @@
+r"""Fractional diffusion in a square |x|, |y| < R, by strengths that the particles of a lattice exchange:
+
+    u_t = D L u + f,    L u(x) = c p.v. int (u(y) - u(x)) |x - y|^(-2-alpha) dy = -(-Laplacian)^(alpha/2) u,
+
+with one of three exteriors:
+
+- "absorbing": u = 0 outside, the restricted operator. The lattice is fitted to the edges, see `square_lattice`:
+  eigenvalues are of order 4 - alpha and better, where a lattice that is not fitted has the order one, as the energy of
+  linear finite elements on a uniform mesh has, Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472;
+- "reflecting": the integral is over the square only, the regional operator. The total is conserved;
+- "given": u = g outside. With v = u - g, which is zero there, v_t = D L v + D L g + f; a constant stays a constant. L g
+  takes a wider lattice and quadratures beyond (`square_outside`), so that g has to be smooth across the edge.
+
+The N^2 particles lie at the middles of square cells, h = 2 R / N, and their sums are fast Fourier transforms. Time is
+exact, by Chebyshev series; steady fields are found by conjugate gradients.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.fft import dctn, dstn, idctn, idstn
+from scipy.sparse.linalg import LinearOperator, cg, eigsh
+
+from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
+from fracparticles.bounded.square_lattice import (
+    edge_exchange,
+    edge_fit,
+    edge_volumes,
+    rate_of_all,
+    weights,
+)
+from fracparticles.bounded.square_outside import mean_outside, outward_rate
+from fracparticles.errors import FracparticlesError, InvalidInput
+from fracparticles.lattice.box import BoxConvolution
+from fracparticles.lattice.operators import ConvolutionOperator
+from fracparticles.time.pieces import exponential_flow
+
+__all__ = ["EXTERIORS", "Square"]
+
+EXTERIORS = ("absorbing", "reflecting", "given")
+_MOST = 512  # particles along a side
+_SOLVED = 1e-12  # the residual of a steady field, relative
+_MOST_STEPS = 20000
+_BALANCE = 1e-6  # of int |f|, what int f may be where nothing can leave
+
+Field = FloatArray | float | Callable[..., Any]
+
+
+class Square:
+    """Particles in a square.
+
+    Parameters
+    ----------
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    side : int
+        N, particles along a side, 8 to 512.
+    exterior : {"absorbing", "reflecting", "given"}
+    half_width, diffusivity : float
+        R and D.
+    given : callable, optional
+        g(x, y), for the exterior "given" only: bounded, and smooth across the edge. Its values inside are where u - g
+        is counted from.
+    fitted : bool
+        Whether the lattice is fitted to the edges; False to see what that is worth.
+
+    Attributes
+    ----------
+    x, y, volumes : array, shape (N, N)
+        Where the particles are, x along the first axis, and their volumes; a field is an array of that shape.
+
+    Raises
+    ------
+    InvalidInput
+        If one of them is not allowed.
+    """
+
+    def __init__(
+        self,
+        alpha: float,
+        side: int = 64,
+        exterior: str = "absorbing",
+        *,
+        half_width: float = 1.0,
+        diffusivity: float = 1.0,
+        given: Callable[..., Any] | None = None,
+        fitted: bool = True,
+    ) -> None:
+        self.alpha = check.fractional_order(alpha)
+        self.side = check.whole_number("side", side, 8, _MOST)
+        self.exterior = check.choice("exterior", exterior, EXTERIORS)
+        self.half_width = check.scale("half_width", half_width)
+        self.diffusivity = check.scale("diffusivity", diffusivity)
+        fitted = check.flag("fitted", fitted)
+        if (given is None) == (exterior == "given"):
+            allowed = "a function g(x, y) for exterior='given', and nothing for others"
+            raise InvalidInput("given", given, allowed, "Give one, or choose another exterior.")
+        h = 2.0 * self.half_width / self.side
+        self._rate = (
+            self.diffusivity * h**-self.alpha
+        )  # of the operator on a lattice of spacing one
+        middle = h * (np.arange(self.side) - 0.5 * (self.side - 1))
+        self.x, self.y = np.meshgrid(middle, middle, indexing="ij")
+        line = np.ones(self.side)
+        if fitted and exterior != "reflecting":
+            line = edge_volumes(self.alpha, self.side)
+            line = line * line[::-1]
+        volumes = np.multiply.outer(line, line)
+        self.volumes = h * h * volumes
+        # Between the values of V^(1/2) u the operator is symmetric.
+        self._root = np.sqrt(volumes).reshape(-1)
+        shape = (self.side, self.side)
+        self._sums = BoxConvolution([weights(self.alpha, self.side)], [None], self.side, self.side)
+        if exterior == "reflecting" or not fitted:
+            lost = self._sums(np.ones(shape))[0].copy()
+            if exterior != "reflecting":
+                lost += outward_rate(self.x / h, self.y / h, 0.5 * self.side, self.alpha)
+        else:
+            fit = edge_fit(self.alpha, self.side)
+            fit = fit + fit[::-1]
+            lost = rate_of_all(self.alpha) + np.add.outer(fit, fit)
+        self._lost = lost.reshape(-1)
+        self._along = np.zeros((self.side, 1))
+        if fitted and exterior == "reflecting":
+            along = edge_exchange(self.alpha, self.side)
+            self._along = (along + along[::-1])[:, None]
+        self._operator = ConvolutionOperator(self._convolved, -self._lost, None, dim=2)
+        self._base, self._inflow = np.zeros(shape), np.zeros(shape)
+        if given is not None:
+            self._base = check.sampled("given", given, self.x, self.y)
+            self._inflow = self._rate_of_smooth(given)
+
+    def total(self, u: FloatArray) -> float:
+        """Return the strength of all particles, int u dx."""
+        return float((self.volumes * self._field("u", u)).sum())
+
+    def rate(self, u: Field) -> FloatArray:
+        """Return D L u at the particles."""
+        v = self._inner(self._field("u", u) - self._base)
+        return self._rate * (self._outer(self._operator.apply(v)) + self._inflow)
+
+    def solve(self, initial: Field, t: float, source: Field = 0.0) -> FloatArray:
+        """Return u at time t, exact in time, shape (N, N).
+
+        Parameters
+        ----------
+        initial, source : array, number or callable
+            u at time 0, and f: arrays of the shape of `x`, or functions of (x, y).
+        t : float
+            Time, 0 or more.
+
+        Raises
+        ------
+        FracparticlesError
+            If the time is so long that it takes too many sums.
+        """
+        t = self._rate * check.not_negative("t", t)
+        v = self._inner(self._field("initial", initial) - self._base)
+        f = self._inner(self._field("source", source) / self._rate + self._inflow)
+        mean = grown = np.zeros_like(v)
+        if self.exterior == "reflecting":
+            mean, grown = np.full_like(v, v.mean()), np.full_like(f, f.mean())
+            v, f = v - mean, f - grown
+        at_rest = self._at_rest(f)
+        v = v - at_rest
+        if t > 0.0:
+            v = exponential_flow(self._operator, t, -2.0 * float(self._lost.max()), 0.0)(v)
+        if self.exterior == "reflecting":
+            v = v - v.mean()  # round-off
+        return self._base + self._outer(v + at_rest + mean + t * grown)
+
+    def steady(self, source: Field) -> FloatArray:
+        """Return the u that does not change, D L u + f = 0; of the exterior "reflecting" the one of total 0.
+
+        Raises
+        ------
+        InvalidInput
+            If the exterior is "reflecting" and the total of the source is not zero, to 1e-6 of that of its size.
+        """
+        f = self._inner(self._field("source", source) / self._rate + self._inflow)
+        if self.exterior == "reflecting":
+            if abs(f.sum()) > _BALANCE * np.abs(f).sum():
+                allowed = "a source of total 0 for a reflecting exterior"
+                shown = f"a total of {f.sum() / np.abs(f).sum():.3g} of its size"
+                raise InvalidInput("source", shown, allowed, "Take off its mean.")
+            f = f - f.mean()
+        return self._base + self._outer(self._at_rest(f))
+
+    def eigenvalues(self, count: int) -> FloatArray:
+        """Return the least eigenvalues of -D L, in order, each as often as it occurs: up to 20 of them."""
+        count = check.positive_integer("count", count, 20)
+        size = self.side**2
+        idle = self.exterior == "reflecting"  # the constant
+        if idle and count == 1:
+            return np.zeros(1)
+        inverse = LinearOperator((size, size), matvec=self._at_rest, dtype=float)
+        operator = LinearOperator(
+            (size, size), matvec=lambda v: -self._operator.apply(v), dtype=float
+        )
+        start = np.random.default_rng(0).standard_normal(size)  # every symmetry is in it
+        wanted = count - int(idle)
+        found = eigsh(
+            operator,
+            wanted,
+            sigma=0.0,
+            OPinv=inverse,
+            v0=start - start.mean() * idle,
+            return_eigenvectors=False,
+        )
+        return self._rate * np.concatenate([np.zeros(count - wanted), np.sort(found)])
+
+    # --- between V^(1/2) u and u ------------------------------------------------------------------
+
+    def _convolved(self, v: FloatArray) -> FloatArray:
+        field = (self._root * v).reshape(self.side, self.side)
+        out = self._sums(field)[0]
+        if self.exterior == "reflecting":
+            for u, y in ((field, out), (field.T, out.T)):  # lines along either pair of edges
+                passed = self._along * np.diff(u, axis=1)
+                y[:, :-1] += passed
+                y[:, 1:] -= passed
+        return self._root * out.reshape(-1)
+
+    def _inner(self, u: FloatArray) -> FloatArray:
+        return self._root * u.reshape(-1)
+
+    def _outer(self, v: FloatArray) -> FloatArray:
+        return (v / self._root).reshape(self.side, self.side)
+
+    def _at_rest(self, f: FloatArray) -> FloatArray:
+        """The v with L v + f = 0, by conjugate gradients; of total 0 for a reflecting exterior."""
+        idle, f = self.exterior == "reflecting", f.reshape(-1)
+        if idle:
+            f = f - f.mean()
+        if not f.any():
+            return np.zeros_like(f)
+        minus = LinearOperator(
+            (f.size, f.size), matvec=lambda v: -self._operator.apply(v), dtype=float
+        )
+        scaled = LinearOperator((f.size, f.size), matvec=self._nearly_inverse, dtype=float)
+        v, state = cg(minus, f, rtol=_SOLVED, maxiter=_MOST_STEPS, M=scaled)
+        if state:
+            raise FracparticlesError(
+                f"no steady field after {_MOST_STEPS} steps of conjugate gradients"
+            )
+        return np.asarray(v - v.mean() if idle else v)
+
+    def _nearly_inverse(self, f: FloatArray) -> FloatArray:
+        """The inverse of the spectral power of the Laplacian, by sines or cosines: equivalent to the restricted one."""
+        idle = self.exterior == "reflecting"
+        there, back = (dctn, idctn) if idle else (dstn, idstn)
+        k = np.pi / self.side * (np.arange(self.side) + float(not idle))
+        symbol = np.add.outer(k * k, k * k) ** (0.5 * self.alpha)
+        symbol[0, 0] = symbol[0, 0] or np.inf
+        u = self._outer(f)
+        return self._inner(back(there(u, type=2) / symbol, type=2))
+
+    # --- fields -----------------------------------------------------------------------------------
+
+    def _field(self, name: str, value: Field) -> FloatArray:
+        if callable(value):
+            return check.sampled(name, value, self.x, self.y)
+        return check.finite_array(name, value, self.x.shape)
+
+    def _rate_of_smooth(self, g: Callable[..., Any]) -> FloatArray:
+        """L g in the square, in the unit of the lattice: a lattice twice as wide, and the mean beyond."""
+        n, h = self.side, 2.0 * self.half_width / self.side
+        margin = n // 2
+        wide = h * (np.arange(n + 2 * margin) - 0.5 * (n + 2 * margin - 1))
+        values = check.sampled("given", g, *np.meshgrid(wide, wide, indexing="ij"))
+        own = values[margin : margin + n, margin : margin + n]
+        sums = BoxConvolution([weights(self.alpha, n + margin)], [None], n + 2 * margin, n)
+        # The level is taken off first: a constant is one to the last digit.
+        level = float(own.mean())
+        gained = sums(values - level)[0].copy()
+        lost = (own - level) * sums(np.ones_like(values))[0]
+        half = 0.5 * n + margin
+        beyond = mean_outside(
+            lambda x, y: g(h * x, h * y), self.x / h, self.y / h, half, self.alpha
+        )
+        kappa = outward_rate(self.x / h, self.y / h, half, self.alpha)
+        return np.asarray(gained - lost + kappa * (beyond - own))

@@ -1,0 +1,138 @@
+r"""The lattice of a square: what its particles exchange, and how it is fitted to the edges.
+
+The bare kernel c |x - y|^(-2-alpha) on a lattice of spacing h, in the unit h = 1. A punctured rule leaves out the
+neighbourhood of i = j; of the sum over pairs, w (u_i - u_j)^2 / 2, that is -Z(alpha) c |grad u|^2 / 4, Z(s) the sum of
+|m|^-s over the m != 0 of the plane, continued to s < 2 (Epstein's zeta function, 4 zeta(s/2) beta(s/2)). So
+
+    w_m = c |m|^(-2-alpha),    and -Z(alpha) c / 4 > 0 more for the four next neighbours:
+
+order 4 - alpha for a smooth field, and all weights are positive. A field that is zero outside behaves like d^(alpha/2)
+at the distance d from an edge. A lattice that takes no notice of it has the order one. Here two things do:
+
+- the volumes of the outermost two lines, 1 + delta_k, are those with which the rule integrates d^(alpha/2) and
+  d^(alpha/2 + 1), sum_k delta_k (k - 1/2)^(alpha/2 + m) = -zeta(-alpha/2 - m, 1/2), m = 0, 1, as in Navot's rule;
+- the rate at which line k gives to all others is such that d^(alpha/2) in the half-plane is harmonic, as it is for
+  the operator: D_k d_k^(alpha/2) = sum_(j != k) W_(k-j) V_j d_j^(alpha/2), W the sum of w along a line.
+
+The second replaces the rate of the infinite lattice, D = sum w, by D + `edge_fit`, which falls like k^-4. Near a
+corner those of two edges are added.
+
+A field that nothing leaves has a slope along the edge, to the very edge. There the neighbourhood of a pair is cut, and
+-Z(alpha) is not what is left out. For u = t, the coordinate along the edge, lines at the distance k exchange
+c_1 k^(1-alpha) / (alpha-1) each way, and what the sum over the lines on the far side of the edge differs by from
+its integral, in the mean over the cell of line k,
+
+    zeta(alpha-1, k) + int_(k-1)^k y^(2-alpha) dy / (2-alpha),
+
+is mended by weights of neighbours on line k, `edge_exchange`. Without them the order is 3 - alpha. Nothing of all this
+depends on h.
+"""
+
+from __future__ import annotations
+
+from math import gamma, pi
+from typing import Any
+
+import numpy as np
+from scipy.special import hyp2f1, kv, zeta, zetac
+
+from fracparticles.arguments import FloatArray
+from fracparticles.bounded.disc_rings import plane_constant
+from fracparticles.special.tails import tail_constant
+
+__all__ = [
+    "edge_exchange",
+    "edge_fit",
+    "edge_volumes",
+    "epstein_zeta",
+    "line_weights",
+    "rate_of_all",
+    "weights",
+]
+
+_TERMS = 25  # of an accelerated alternating series: 5.8^-25 is below round-off
+_ALIASES = 6  # K_nu(2 pi 6) is 1e-17
+
+
+def epstein_zeta(s: float) -> float:
+    """Return the sum of |m|^-s over the points m != 0 of the square lattice, continued to 0 < s < 2."""
+    half = 0.5 * s
+    odd = 2.0 * np.arange(_TERMS) + 1.0
+    return 4.0 * float(1.0 + zetac(half)) * _alternating(odd**-half)
+
+
+def weights(alpha: float, count: int) -> FloatArray:
+    """Return w_m for offsets 0 <= m_1, m_2 < count, 0 for the first, shape (count, count)."""
+    squared = np.add.outer(np.arange(count) ** 2.0, np.arange(count) ** 2.0)
+    squared[0, 0] = 1.0
+    w = plane_constant(alpha) * squared ** (-1.0 - 0.5 * alpha)
+    w[0, 0] = 0.0
+    w[0, 1] += _neighbours(alpha)
+    w[1, 0] += _neighbours(alpha)
+    return np.asarray(w)
+
+
+def line_weights(alpha: float, count: int) -> FloatArray:
+    """Return W_k, the sum of w along a line at the distance k = 1 .. count, by Poisson's formula."""
+    k, nu = np.arange(1.0, count + 1.0), 0.5 * (1.0 + alpha)
+    z = 2.0 * pi * np.multiply.outer(k, np.arange(1.0, _ALIASES + 1.0))
+    aliases = 2.0 ** (1.0 - nu) / gamma(nu) * z**nu * kv(nu, z)
+    w = tail_constant(alpha) * k ** (-1.0 - alpha) * (1.0 + 2.0 * aliases.sum(axis=1))
+    w[0] += _neighbours(alpha)
+    return np.asarray(w)
+
+
+def rate_of_all(alpha: float) -> float:
+    """Return D, the sum of w over the infinite lattice."""
+    return plane_constant(alpha) * epstein_zeta(2.0 + alpha) + 4.0 * _neighbours(alpha)
+
+
+def edge_volumes(alpha: float, count: int) -> FloatArray:
+    """Return the volumes of lines at the distances 1/2, 3/2, .. from an edge, shape (count,)."""
+    power = 0.5 * alpha + np.arange(2.0)
+    moments = np.power([0.5, 1.5], power[:, None])
+    missing = -(2.0**-power - 1.0) * (1.0 + zetac(-power))  # -zeta(-p, 1/2)
+    v = np.ones(count)
+    v[:2] += np.linalg.solve(moments, missing)
+    return v
+
+
+def edge_fit(alpha: float, count: int) -> FloatArray:
+    """Return what the rate of a line differs by from that of the infinite lattice, shape (count,)."""
+    lines, s, k = 2 * count + 200, 0.5 * alpha, np.arange(count)
+    d = np.arange(lines) + 0.5
+    w = np.concatenate([[0.0], line_weights(alpha, lines)])
+    own = 2.0 * plane_constant(alpha) * zeta(2.0 + alpha) + 2.0 * _neighbours(alpha)
+    volumes = edge_volumes(alpha, lines)
+    inflow = w[np.abs(k[:, None] - np.arange(lines))] @ (volumes * d**s)
+    # Beyond, the sum is the integral of c_1 (y - d_k)^(-1-alpha) y^s, to the square of the distance in spacings.
+    far = hyp2f1(1.0 + alpha, s, s + 1.0, d[:count] / lines) * lines**-s / s
+    inflow += tail_constant(alpha) * far
+    return np.asarray(inflow / d[:count] ** s + volumes[:count] * own - rate_of_all(alpha))
+
+
+def edge_exchange(alpha: float, count: int) -> FloatArray:
+    """Return what neighbours on line k = 1 .. count exchange more, shape (count,)."""
+    k = np.arange(1.0, count + 1.0)
+    # zeta(s, k) = zeta(s) - sum_(i < k) i^-s
+    passed = np.concatenate([[0.0], np.cumsum(k[:-1] ** (1.0 - alpha))])
+    mean = (k ** (3.0 - alpha) - (k - 1.0) ** (3.0 - alpha)) / (3.0 - alpha)
+    excess = 1.0 + zetac(alpha - 1.0) - passed + mean / (2.0 - alpha)
+    return np.asarray(0.5 * tail_constant(alpha) / (alpha - 1.0) * excess)
+
+
+def _neighbours(alpha: float) -> float:
+    return -0.25 * plane_constant(alpha) * epstein_zeta(alpha)
+
+
+def _alternating(terms: Any) -> float:
+    """The sum of (-1)^k a_k: Cohen, Rodriguez Villegas & Zagier, Exp. Math. 9 (2000) 3, Algorithm 1."""
+    n = terms.size
+    d = (3.0 + np.sqrt(8.0)) ** n
+    d = 0.5 * (d + 1.0 / d)
+    b, c, total = -1.0, -d, 0.0
+    for k in range(n):
+        c = b - c
+        total += c * terms[k]
+        b *= (k + n) * (k - n) / ((k + 0.5) * (k + 1.0))
+    return float(total / d)

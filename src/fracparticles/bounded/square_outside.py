@@ -1,0 +1,84 @@
+r"""What lies outside a square |x|, |y| < R, as seen from a point inside.
+
+    c int_outside g(y) |x - y|^(-2-alpha) dy
+        = (c / alpha) int_0^(2 pi) rho^-alpha int_0^1 g(x + rho tau^(-1/alpha) e) dtau dtheta,
+
+rho(x, theta) the distance to the edge along e = (cos theta, sin theta). For the side at the distance d, rho is
+d / cos theta: the integral of cos^alpha from its foot is half an incomplete beta function, which serves for the rate
+kappa (g = 1) and as the variable of the quadrature in theta. Of a g that is constant the mean is that constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.special import beta, betainc, betaincinv
+
+from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
+from fracparticles.bounded.disc_rings import plane_constant
+
+__all__ = ["mean_outside", "outward_rate"]
+
+_DIRECTIONS, _DISTANCES = 12, 12  # nodes for each side
+
+
+def outward_rate(x: FloatArray, y: FloatArray, half: float, alpha: float) -> FloatArray:
+    """Return kappa at points inside the square |x|, |y| < half, of the shape of x and y."""
+    total = np.zeros(np.broadcast(x, y).shape)
+    for _, _, d, low, high in _sides(x, y, half, alpha):
+        total += d**-alpha * (high - low)
+    return plane_constant(alpha) / alpha * total
+
+
+def mean_outside(
+    g: Callable[..., Any], x: FloatArray, y: FloatArray, half: float, alpha: float
+) -> FloatArray:
+    """Return the mean of g(x, y) outside, with the weight |x - y|^(-2-alpha), for each point inside."""
+    nodes, shares = _legendre(_DIRECTIONS)
+    stretch, parts = _legendre(_DISTANCES)
+    stretch = stretch ** (-1.0 / alpha)
+    total, whole = np.zeros(np.broadcast(x, y).shape), np.zeros(np.broadcast(x, y).shape)
+    for outward, along, d, low, high in _sides(x, y, half, alpha):
+        size = d**-alpha * (high - low)
+        whole += size
+        for node, weight in zip(nodes, shares, strict=True):
+            slope = _slope(low + node * (high - low), alpha)
+            for far, part in zip(stretch, parts, strict=True):
+                step = d * far
+                at_x = x + step * (outward[0] + slope * along[0])
+                at_y = y + step * (outward[1] + slope * along[1])
+                total += weight * part * size * check.sampled("given", g, at_x, at_y)
+    return np.asarray(total / whole)
+
+
+def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss-Legendre nodes and weights on (0, 1)."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return 0.5 * (1.0 + nodes), 0.5 * weights
+
+
+def _sides(x: FloatArray, y: FloatArray, half: float, alpha: float) -> Any:
+    """Of each side: outward and along it, the distance, and the integrals of cos^alpha to its two corners."""
+    for d, t, outward, along in (
+        (half - x, y, (1.0, 0.0), (0.0, 1.0)),
+        (half + x, y, (-1.0, 0.0), (0.0, 1.0)),
+        (half - y, x, (0.0, 1.0), (1.0, 0.0)),
+        (half + y, x, (0.0, -1.0), (1.0, 0.0)),
+    ):
+        yield outward, along, d, _angle((-half - t) / d, alpha), _angle((half - t) / d, alpha)
+
+
+def _angle(slope: FloatArray, alpha: float) -> FloatArray:
+    """The integral of cos^alpha theta from 0 to arctan(slope)."""
+    part = betainc(0.5, 0.5 * (1.0 + alpha), slope**2 / (1.0 + slope**2))
+    return np.asarray(0.5 * beta(0.5, 0.5 * (1.0 + alpha)) * np.sign(slope) * part)
+
+
+def _slope(angle: FloatArray, alpha: float) -> FloatArray:
+    """The inverse of `_angle`."""
+    whole = 0.5 * beta(0.5, 0.5 * (1.0 + alpha))
+    squared = betaincinv(0.5, 0.5 * (1.0 + alpha), np.minimum(np.abs(angle) / whole, 1.0))
+    return np.asarray(np.sign(angle) * np.sqrt(squared / (1.0 - squared)))

@@ -1,0 +1,322 @@
+"""The square: closed forms, sums over all pairs, invariants, orders, and what is refused."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import gamma, pi
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.special import hyp2f1
+
+from fracparticles.bounded.disc_rings import plane_constant
+from fracparticles.bounded.square import Square
+from fracparticles.bounded.square_lattice import (
+    edge_exchange,
+    edge_fit,
+    edge_volumes,
+    epstein_zeta,
+    line_weights,
+    rate_of_all,
+    weights,
+)
+from fracparticles.bounded.square_outside import mean_outside, outward_rate
+from fracparticles.errors import InvalidInput
+
+ALPHAS = (1.2, 1.5, 1.8)
+
+
+@cache
+def square(alpha, side=32, exterior="absorbing"):
+    return Square(alpha, side, exterior)
+
+
+def bump(one, power=4):
+    """(1 - r^2)_+^power, which is zero at the edge of the square and beyond."""
+    return np.maximum(1.0 - one.x**2 - one.y**2, 0.0) ** power
+
+
+def applied(one, alpha, power=4):
+    """Its (-Laplacian)^(alpha/2): B. Dyda (2012), Theorem 1, in the disc; -c times the integral outside."""
+    s, r2 = 0.5 * alpha, one.x**2 + one.y**2
+    size = 2.0**alpha * gamma(s + 1.0) * gamma(power + 1.0) / gamma(power + 1.0 - s)
+    inside = size * hyp2f1(s + 1.0, s - power, 1.0, np.minimum(r2, 1.0))
+    far = np.maximum(r2, 1.0)
+    outside = -plane_constant(alpha) * pi / (power + 1.0) * far ** (-1.0 - s)
+    return np.where(r2 < 1.0, inside, outside * hyp2f1(1.0 + s, 1.0 + s, power + 2.0, 1.0 / far))
+
+
+def orders(errors):
+    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+
+
+# --- the lattice ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("s", [1.2, 1.9, 3.5])
+def test_epsteins_zeta_function_is_a_product(s):
+    half, quarter = mpmath.mpf(s) / 2, mpmath.mpf(1) / 4
+    beta = 4**-half * (mpmath.zeta(half, quarter) - mpmath.zeta(half, 3 * quarter))
+    assert epstein_zeta(s) == pytest.approx(float(4 * mpmath.zeta(half) * beta), rel=1e-13)
+
+
+def test_the_weights_of_a_line_are_the_sums_along_it():
+    alpha, k = 1.5, np.arange(1.0, 4.0)
+    m = np.arange(-200000.0, 200001.0)
+    sums = [(plane_constant(alpha) * (j * j + m * m) ** (-1.0 - 0.5 * alpha)).sum() for j in k]
+    sums[0] += weights(alpha, 2)[0, 1] - plane_constant(alpha)
+    assert line_weights(alpha, 3) == pytest.approx(sums, rel=1e-10)
+    w = weights(alpha, 400)
+    assert (4.0 * w[1:, :].sum()) == pytest.approx(
+        rate_of_all(alpha), rel=2e-4
+    )  # the rest: 400^-1.5
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_fitted_volumes_integrate_the_power_at_the_edge(alpha):
+    # int_0^1 d^s cos(d) dd with the far end mended by the trapezoidal end terms: smooth there, so take a window.
+    s, errors = 0.5 * alpha, []
+    for n in (40, 80):
+        d = (np.arange(n) + 0.5) / n
+        window = (1.0 - d) ** 4
+        exact = float(mpmath.beta(s + 1.0, 5.0))
+        errors.append(abs((edge_volumes(alpha, n) * d**s * window).sum() / n - exact))
+    # d^s and d^(s+1) are met, d^(s+2) is not.
+    assert orders(errors)[0] == pytest.approx(s + 3.0, abs=0.3)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_fitted_half_plane_holds_its_harmonic_power(alpha):
+    # The sum over lines as it stands, to 4e5 lines and the integral beyond by its leading term.
+    s, far, lines = 0.5 * alpha, 400000, 3
+    d = np.arange(far) + 0.5
+    values = edge_volumes(alpha, far) * d**s
+    w = np.concatenate([[0.0], line_weights(alpha, 200)])
+    k = np.arange(200.0, far)
+    w = np.concatenate([w[:200], w[200] * (k / 200.0) ** (-1.0 - alpha)])
+    own = rate_of_all(alpha) - 2.0 * w.sum() - 2.0 * w[-1] * far / alpha
+    for line in range(lines):
+        gained = w[np.abs(np.arange(far) - line)] @ values + w[-1] * far ** (1.0 + s) / s
+        lost = (rate_of_all(alpha) + edge_fit(alpha, lines)[line]) * d[line] ** s
+        gained += own * values[line] if line < 2 else own * d[line] ** s
+        assert gained == pytest.approx(lost, rel=1e-6)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_what_neighbours_on_an_edge_line_exchange_is_what_lines_beyond_leave(alpha):
+    total = float(mpmath.zeta(alpha - 1.0))
+    lines = np.arange(1, 6)
+    unit = edge_exchange(alpha, 1)[0] / (total + 1.0 / (3.0 - alpha) / (2.0 - alpha))
+    for k, ours in zip(lines, edge_exchange(alpha, 5), strict=True):
+        mean = (k ** (3.0 - alpha) - (k - 1.0) ** (3.0 - alpha)) / (3.0 - alpha)
+        hurwitz = float(mpmath.zeta(alpha - 1.0, int(k)))
+        assert ours == pytest.approx(unit * (hurwitz + mean / (2.0 - alpha)), rel=1e-9)
+
+
+def test_the_sums_are_those_over_all_pairs():
+    one, alpha = square(1.5, 8, "reflecting"), 1.5
+    u = np.random.default_rng(2).random((8, 8))
+    w, along = weights(alpha, 8), edge_exchange(alpha, 8)
+    along = along + along[::-1]
+    dense = np.zeros((8, 8))
+    for i, j, k, m in np.ndindex(8, 8, 8, 8):
+        weight = w[abs(i - k), abs(j - m)]
+        weight += along[i] * (i == k and abs(j - m) == 1) + along[j] * (j == m and abs(i - k) == 1)
+        dense[i, j] += weight * (u[k, m] - u[i, j])
+    # A unit of the lattice is h = 1/4. The exchange along the edges is symmetric: its loss is that of neighbours.
+    assert one.rate(u) == pytest.approx(dense * 4.0**alpha, rel=1e-10)
+
+
+# --- outside --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_rate_to_the_outside_of_the_middle(alpha):
+    # Eight right triangles: (c / alpha) 8 int_0^(pi/4) cos^alpha.
+    exact = (
+        8
+        * plane_constant(alpha)
+        / alpha
+        * mpmath.quad(lambda t: mpmath.cos(t) ** alpha, [0, mpmath.pi / 4])
+    )
+    found = outward_rate(np.zeros(1), np.zeros(1), 1.0, alpha)
+    assert found[0] == pytest.approx(float(exact), rel=1e-12)
+    d = 1e-5  # near a side it is that of the half-plane, c_1 / alpha d^-alpha
+    near = outward_rate(np.array([1.0 - d]), np.zeros(1), 1.0, alpha)[0]
+    half = line_weights(alpha, 100)[-1] * 100.0 ** (1.0 + alpha) / alpha * d**-alpha
+    assert near == pytest.approx(half, rel=1e-4)
+
+
+def test_the_mean_outside_is_that_of_the_integral():
+    alpha, x, y = 1.5, 0.4, -0.3
+
+    def integral(with_g):
+        def along(t):
+            e = mpmath.cos(t), mpmath.sin(t)
+            # towards the four sides
+            rho = min(((1 if c > 0 else -1) - at) / c for c, at in zip(e, (x, y), strict=True) if c)
+
+            def radial(v):
+                s = rho / v
+                g = mpmath.exp(-((x + s * e[0]) ** 2) / 4) if with_g else 1
+                return g * s ** (-1 - alpha) * rho / v**2
+
+            return mpmath.quad(radial, [0, 1], maxdegree=3)
+
+        corners = sorted(
+            float(mpmath.atan2(b - y, a - x)) % (2 * pi) for a in (-1, 1) for b in (-1, 1)
+        )
+        return mpmath.quad(along, [*corners, corners[0] + 2 * pi], maxdegree=3)
+
+    with mpmath.workdps(8):
+        exact = float(integral(True) / integral(False))
+    found = mean_outside(
+        lambda x, y: np.exp(-(x**2) / 4.0), np.array([x]), np.array([y]), 1.0, alpha
+    )
+    assert found[0] == pytest.approx(exact, rel=1e-4)
+
+
+# --- against closed forms -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("exterior", ["absorbing", "reflecting"])
+def test_a_manufactured_solution_has_the_order_four_less_alpha(alpha, exterior):
+    errors = []
+    for side in (32, 64):
+        one = square(alpha, side, exterior)
+        u, source = bump(one), applied(one, alpha)
+        if exterior == "reflecting":
+            source = source - outward_rate(one.x, one.y, 1.0, alpha) * u
+        errors.append(np.abs(one.solve(u, 0.3, source) - u).max())
+    assert errors[-1] < 6e-4
+    # What is left at the edges that nothing leaves is of the second order.
+    order = 4.0 - alpha if exterior == "absorbing" else min(4.0 - alpha, 2.3)
+    assert orders(errors)[-1] == pytest.approx(order, abs=0.2)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_a_field_given_outside_is_continued_inside(alpha):
+    s, p = 0.5 * alpha, 2.3
+
+    def u(x, y):
+        return (1.0 + (x - 0.3) ** 2 + y**2) ** -p
+
+    def source(x, y):
+        size = 2.0**alpha * gamma(p + s) * gamma(1.0 + s) / gamma(p)
+        return size * hyp2f1(p + s, 1.0 + s, 1.0, -((x - 0.3) ** 2) - y**2)
+
+    errors = []
+    for side in (16, 32):
+        one = Square(alpha, side, "given", given=u)
+        errors.append(np.abs(one.steady(source) - u(one.x, one.y)).max())
+    assert errors[-1] < 1.5e-3
+    assert orders(errors)[-1] == pytest.approx(4.0 - alpha, abs=0.3)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_fitted_lattice_wins_the_order_back(alpha):
+    # Against itself at N = 64; the error of the plain lattice is of the first order in h.
+    reference = square(alpha, 64).eigenvalues(1)[0]
+    fitted = [abs(square(alpha, n).eigenvalues(1)[0] - reference) for n in (10, 20, 40)]
+    plain = [abs(Square(alpha, n, fitted=False).eigenvalues(1)[0] - reference) for n in (20, 40)]
+    assert orders(fitted)[0] > 1.9
+    assert fitted[-1] < 1e-3 * reference
+    assert fitted[-1] < 0.03 * plain[-1]
+    assert orders(plain)[0] == pytest.approx(1.0, abs=0.35)  # alpha = 1.8 is on its way there
+
+
+def test_the_square_lies_between_its_discs():
+    # Domain monotonicity: the disc inscribed has the greater eigenvalue, that around the square the smaller.
+    from fracparticles.bounded.disc_polynomials import AbsorbingDisc
+
+    for alpha in ALPHAS:
+        inscribed = AbsorbingDisc(alpha).eigenvalues[0]
+        found = square(alpha, 32).eigenvalues(1)[0]
+        assert inscribed * 2.0 ** (-0.5 * alpha) < found < inscribed
+
+
+# --- invariants -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_reflecting_total_stays(alpha):
+    one = square(alpha, 32, "reflecting")
+    u = np.exp(-8.0 * ((one.x - 0.5) ** 2 + one.y**2))
+    for t in (1e-3, 1.0):
+        assert one.total(one.solve(u, t)) == pytest.approx(one.total(u), rel=1e-13)
+    assert np.ptp(one.solve(u, 25.0)) < 1e-12
+    assert one.eigenvalues(1)[0] == 0.0
+    assert one.total(one.solve(0.0, 2.0, 3.0)) == pytest.approx(24.0, rel=1e-13)
+
+
+def test_a_constant_stays_if_it_is_given():
+    one = Square(1.8, 16, "given", given=lambda x, y: 0.0 * x + 2.0)
+    assert np.abs(one.solve(2.0, 5.0) - 2.0).max() < 1e-14
+    assert np.abs(one.solve(0.0, 60.0) - 2.0).max() < 1e-9
+
+
+@pytest.mark.parametrize("exterior", ["absorbing", "reflecting"])
+def test_the_symmetries_of_the_square(exterior):
+    one = square(1.5, 16, exterior)
+    u = np.random.default_rng(3).random((16, 16))
+    for turned in (np.rot90, np.transpose, np.flipud):
+        assert one.solve(turned(u), 0.1) == pytest.approx(turned(one.solve(u, 0.1)), abs=1e-11)
+    assert np.ptp(one.eigenvalues(3)[1:]) < 1e-9  # x and y
+
+
+def test_a_long_decay_is_that_of_the_first_eigenvalue():
+    one = square(1.5, 16)
+    first = one.total(one.solve(1.0, 6.0)) / one.total(one.solve(1.0, 7.0))
+    assert np.log(first) == pytest.approx(one.eigenvalues(1)[0], rel=1e-8)
+    assert one.solve(1.0, 1.0).min() > 0.0
+
+
+def test_half_width_and_diffusivity_are_units():
+    small, large = square(1.5, 16), Square(1.5, 16, half_width=3.0, diffusivity=2.0)
+    factor = 2.0 * 3.0**-1.5
+    assert large.eigenvalues(2) == pytest.approx(factor * small.eigenvalues(2), rel=1e-10)
+    u = bump(small)
+    assert large.solve(u, 0.5) == pytest.approx(small.solve(u, 0.5 * factor), rel=1e-9)
+    assert large.steady(1.0) == pytest.approx(small.steady(1.0 / factor), rel=1e-9)
+    assert large.rate(u) == pytest.approx(factor * small.rate(u), rel=1e-9)
+
+
+# --- what is refused ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("bad", "field"),
+    [
+        ({"alpha": 1.0}, "alpha"),
+        ({"side": 7}, "side"),
+        ({"side": 513}, "side"),
+        ({"exterior": "open"}, "exterior"),
+        ({"exterior": "given"}, "given"),
+        ({"given": lambda x, y: x}, "given"),
+        ({"exterior": "given", "given": lambda x, y: x * np.inf}, "given"),
+        ({"half_width": 0.0}, "half_width"),
+        ({"diffusivity": -1.0}, "diffusivity"),
+        ({"fitted": 1}, "fitted"),
+    ],
+)
+def test_bad_squares_are_refused(bad, field):
+    with pytest.raises(InvalidInput, match=rf"^{field} = ") as error:
+        Square(**{"alpha": 1.5, "side": 8, **bad})
+    assert "\n" not in str(error.value)
+
+
+def test_bad_fields_are_refused():
+    one = square(1.5, 8)
+    for name, call in {
+        "initial": lambda: one.solve(np.ones(3), 1.0),
+        "t": lambda: one.solve(1.0, np.nan),
+        "source": lambda: one.solve(1.0, 1.0, lambda x, y: x / 0.0),
+        "u": lambda: one.total(np.full((8, 8), np.inf)),
+        "count": lambda: one.eigenvalues(21),
+    }.items():
+        with pytest.raises(InvalidInput, match=rf"^{name} = "):
+            call()
+    with pytest.raises(InvalidInput, match=r"^source = .* total 0"):
+        square(1.5, 8, "reflecting").steady(1.0)
