@@ -1,4 +1,4 @@
-"""Values outside an interval: in closed form, and what is not resolved warns."""
+"""Values outside an interval in closed form; and what is not resolved, outside or at the start, warns."""
 
 from __future__ import annotations
 
@@ -36,3 +36,14 @@ def test_smooth_values_do_not_warn():
         warnings.simplefilter("error")
         line.stationary(outside=lambda y: 1.0 / (1.0 + y * y))
         line.stationary(outside=0.0)
+
+
+@pytest.mark.parametrize("particles", [50, 100, 200])
+def test_a_start_that_falls_between_the_particles_warns(particles):
+    """A bell of width 0.005 has none, one or two particles."""
+    line = Interval(alpha=1.5, particles=particles, exterior="reflecting")
+    with pytest.warns(AccuracyWarning, match="do not resolve the initial data"):
+        line.evolve(lambda x: np.exp(-(((x - 0.1) / 0.005) ** 2)), 0.1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        line.evolve(lambda x: np.exp(-(((x - 0.1) / 0.2) ** 2)), 0.1)
