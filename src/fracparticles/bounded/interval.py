@@ -19,6 +19,7 @@ of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any
@@ -33,12 +34,13 @@ from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
 from fracparticles.bounded.interval_time import forced_modes
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 
 __all__ = ["EXTERIORS", "Interval"]
 
 EXTERIORS = ("absorbing", "reflecting", "given")
 _SHORTEST = 1e-9  # time times the slowest rate: before, modes matter that are not told apart
+_UNRESOLVED = 0.01  # of int |u|, what initial data may hold that the particles do not see
 _BALANCE = 1e-8  # of int |f|, what int f may be where nothing can leave
 
 
@@ -204,12 +206,19 @@ class Interval:
             If they are not finite, `outside` is missing or superfluous, or the time is too short for the particles.
         NonFiniteSolution
             If the source or g varies too fast in time.
+
+        Warns
+        -----
+        AccuracyWarning
+            If the particles do not resolve `initial`, or what is outside.
         """
         time = check.positive_real("time", time)
         tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
         g = self._checked_outside(outside, timed=True)
         f = self._source(0.0 if source is None else source, timed=True)
         start = self._values("initial", initial)
+        if callable(initial):
+            self._warn_of_the_unseen(initial, start)
         rates, vectors = self._modes
         rates = self._rate * rates
         slowest = rates[0] or rates[1]
@@ -236,6 +245,21 @@ class Interval:
         y = vectors.T @ (root * (start - held(0.0)))
         y = forced_modes(rates, y, forcing, time, tolerance)
         return np.asarray(held(time) + vectors @ y / root)
+
+    def _warn_of_the_unseen(self, initial: Callable[..., Any], start: FloatArray) -> None:
+        """Compare int |u| by the particles with that by them and the middles between."""
+        middles = 0.5 * (self.x[1:] + self.x[:-1])
+        places = np.arange(1, self.x.size)
+        x = np.insert(self.x, places, middles)
+        u = np.insert(start, places, check.sampled("initial", initial, middles))
+        finer = float(np.trapezoid(np.abs(u), x))
+        missed = abs(float(np.trapezoid(np.abs(start), self.x)) - finer)
+        if missed > _UNRESOLVED * finer:
+            warnings.warn(
+                f"the particles do not resolve the initial data, by {missed / finer:.1g} of int |u|. Take more.",
+                AccuracyWarning,
+                stacklevel=3,
+            )
 
     def _steady(self, load: FloatArray, g: Any, t: float) -> FloatArray:
         """u of A u + load + b = 0 in the unit of (-1, 1)."""

@@ -7,11 +7,13 @@ On (-1, 1), with the distances d of particle i from the two ends,
 
 In s the integrand is smooth on the scale one wherever the particle is, if g is smooth in log |y - end|: the trapezoidal
 rule, its step 1/4, has its own error of e^(-8 pi^2) for a constant g. The weights are scaled to add up to kappa_i, so
-that a constant outside is met by the same constant inside to round-off.
+that a constant outside is met by the same constant inside to round-off. Values that jump, or that swing for ever as
+cos(y) does, are not smooth in log |y - end|: every other point alone gives another sum then, and a warning says so.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -19,12 +21,16 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.adaptive.maps import GradedParticles
 from fracparticles.arguments import FloatArray
+from fracparticles.errors import AccuracyWarning
 from fracparticles.special import tail_constant
 
 __all__ = ["OutsideValues", "loss_rates"]
 
 _STEP = 0.25
 _FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
+_UNRESOLVED = (
+    1e-5  # of kappa max |g|, between all points and every other: for smooth values below 1e-8
+)
 _NEAR = 40.0  # e^-40 of the distance of the first particle
 
 
@@ -71,9 +77,25 @@ class OutsideValues:
         ------
         InvalidInput
             If g does not return finite values.
+
+        Warns
+        -----
+        AccuracyWarning
+            If the points do not resolve g.
         """
         values = check.sampled("outside", lambda y: np.asarray(g(y, t)) + 0.0 * y, self._points)
-        return np.asarray(self._weights @ values)
+        load = np.asarray(self._weights @ values)
+        every_other = 2.0 * self._weights[:, ::2] @ values[::2]
+        size = self._weights.sum(axis=1) * np.abs(values).max()
+        share = float((np.abs(load - every_other) / np.maximum(size, np.finfo(float).tiny)).max())
+        if share > _UNRESOLVED:
+            warnings.warn(
+                f"the values outside are not smooth in log |y - end|: their sum is off by up to {share:.1g} of what "
+                "they can weigh. Smooth jumps, and let what swings fall off.",
+                AccuracyWarning,
+                stacklevel=3,
+            )
+        return load
 
 
 def _weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:

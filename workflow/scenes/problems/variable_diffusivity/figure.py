@@ -81,7 +81,7 @@ def _slope(ax: Axes, points: pd.DataFrame, order: float) -> None:
     if slopes.size and slopes.argmax() == 0:
         slope_triangle(ax, h[0], 1.8 * error[0], order, above=True)
     elif slopes.size:  # it ends at round-off
-        note(ax, f"order {order:g}", (h[1], error[1]), (0, -11), ha="center")
+        note(ax, f"order {order:g}", (h[1], error[1]), (9, -3), ha="left")
 
 
 def _right_hand_sides(ax: Axes, part: pd.DataFrame) -> None:
