@@ -3,6 +3,7 @@
 JOBS          ?= 2
 ARGS          ?=
 SMOKE_RESULTS ?= results-smoke
+SITE          ?= site
 
 # requirements.lock is resolved for this version of Python.
 PYTHON_VERSION := 3.11
@@ -25,10 +26,10 @@ PYTEST    = OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
 SHELL         := bash
 .SHELLFLAGS   := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup study test smoke bench verify test-slurm mutants lint report lock clean
+.PHONY: help setup study test smoke bench verify browser coverage test-slurm mutants lint report lock clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 	@echo '  JOBS=$(JOBS) parallel jobs, ARGS="..." more arguments for test, study, smoke and bench'
 
 setup: $(INSTALLED) ## make .venv from requirements.lock, again only when the lock or pyproject.toml changed
@@ -50,6 +51,12 @@ report: $(INSTALLED) ## build the report, and the site of it
 
 verify: $(INSTALLED) ## recompute a sample of the tracked results and compare; ARGS="--seed 1 --scenes 20"
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python -m fracstudy.verify $(ARGS)
+
+browser: $(INSTALLED) ## look at every page of the site in headless Chromium; SITE=site
+	$(BIN)/python tools/browser.py $(SITE)
+
+coverage: $(INSTALLED) ## run the tests, and report which lines of the packages they run
+	$(PYTEST) --cov=fracparticles --cov=fracstudy --cov-report=term:skip-covered --cov-report=html:htmlcov $(ARGS)
 
 test-slurm: $(INSTALLED) ## the smoke workflow through a Slurm of this machine (root, Debian), compared with a local run
 	tools/slurm.sh $(ARGS)

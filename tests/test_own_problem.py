@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import re
-import warnings
 from pathlib import Path
 
 import matplotlib as mpl
@@ -13,35 +10,19 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import fracparticles as fp
-from fracparticles.run.cli import main
+from pages import blocks, executed
 
 mpl.use("Agg")
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "own_problem.md"
-BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+BLOCKS = blocks(PAGE)
 
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
-    """Run the page in a folder of its own and return its names; a warning is an error."""
-    names: dict = {}
-    folder, before = tmp_path_factory.mktemp("page"), Path.cwd()
-    os.chdir(folder)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", fp.FracparticlesWarning)
-            for kind, text in BLOCKS:
-                if kind == "text":
-                    Path(text.split()[1]).write_text(text, "utf-8")
-                elif kind == "python":
-                    exec(compile(text, str(PAGE), "exec"), names)
-                else:
-                    words = text.replace("\\\n", " ").split()
-                    assert words[0] == "fracparticles"
-                    assert main(words[1:]) == 0
-        yield names, folder
-    finally:
-        os.chdir(before)
+    """Run the page in a folder of its own and return its names, and the folder."""
+    with executed(PAGE, tmp_path_factory.mktemp("page")) as names:
+        yield names, Path.cwd()
 
 
 def test_the_readme_links_the_page():

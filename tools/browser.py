@@ -77,7 +77,9 @@ def look(site: Path, browser: str, seconds: float = 600.0) -> list[str]:
         options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"]
         size = ["--window-size=1500,1000", "--remote-debugging-port=0"]  # which keeps it open
         shown = subprocess.Popen(
-            [browser, *options, *size, address], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            [browser, *options, *size, address],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
         try:
             if not done.wait(seconds):
@@ -93,7 +95,9 @@ def main(site: str) -> int:
     """Look at a site, print what is wrong, and return the exit status."""
     browser = next(filter(None, map(shutil.which, _NAMES)), None)
     if browser is None:
-        print(f"none of {', '.join(_NAMES)} is installed: apt-get install chromium", file=sys.stderr)
+        print(
+            f"none of {', '.join(_NAMES)} is installed: apt-get install chromium", file=sys.stderr
+        )
         return 2
     if not (Path(site) / "index.html").is_file():
         print(f"{site} holds no site: make report, or make smoke", file=sys.stderr)
