@@ -14,6 +14,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolutio
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.dataset import write
 from fracparticles.special import green
+from fracparticles.variable.closed_forms import Gaussian
 
 LINE = {
     "alpha": 1.5, "half_width": 50.0, "spacing": 0.1, "order": 12, "far_terms": 3, "t_initial": 1.0, "t_final": 2.0,
@@ -324,3 +325,27 @@ def test_a_variable_order_that_is_constant_is_the_constant_one():
         variable = solve_problem(Problem(alpha=text, **fields), lambda x: np.exp(-x * x))
         assert_allclose(variable.u, constant.u, atol=most)
     assert variable.attrs["title"].endswith("-D (-Laplacian)^(alpha(x)/2) u + f")
+
+
+@pytest.mark.parametrize("form", ["FPSE", "DD"])
+def test_a_diffusivity_that_varies_in_the_plane(form):
+    """u = exp(-|x|^2) (1 + t) of a source made for it: of order 12, for FPSE, too, whose printed kernels end at 4."""
+    alpha, rise = 1.5, 0.5
+
+    def exact(x, y, t):
+        return (1.0 + t) * Gaussian.value((x, y))
+
+    def source(x, y, t, u):
+        bump = rise * Gaussian.value((x, y))
+        slopes = Gaussian.gradient((x, y), alpha)
+        along = sum(-2.0 * part * bump * slope for part, slope in zip((x, y), slopes, strict=True))
+        spread = -(1.0 + bump) * Gaussian.riesz((x, y), alpha) + along
+        return Gaussian.value((x, y)) - (1.0 + t) * spread
+
+    problem = Problem(
+        alpha=alpha, dim=2, form=form, order=12, diffusivity=f"1 + {rise}*exp(-x**2 - y**2)",
+        source=source, half_width=10.0, spacing=0.2, t_final=0.5, rtol=1e-7,
+    )  # fmt: skip
+    run = solve_problem(problem, lambda x, y: exact(x, y, 0.0))
+    x, y = np.meshgrid(run.x, run.y, indexing="ij")
+    assert np.abs(run.u.values - exact(x, y, 0.5)).max() < 1e-4 * 1.5

@@ -75,7 +75,8 @@ class Problem(BaseModel):
         description="Particle spacing h. The nearest that divides the half-width is taken.",
     )
     order: Literal[2, 4, 6, 8, 10, 12] = Field(
-        default=4, description="Order of the kernels. FPSE in the plane has 2 and 4."
+        default=4,
+        description="Order of the kernels. FPSE in the plane has 2 and 4 where the diffusivity is the same everywhere.",
     )
     overlap: float = Field(
         default=2.0, ge=OVERLAPS[0], le=OVERLAPS[1], description="Overlap epsilon / h."
@@ -246,8 +247,11 @@ class Problem(BaseModel):
             short = (_SHORT * self.half_width) ** (1.0 + beta) / (d or 1.0)
             soon = max(self.t_initial + short, float(np.nextafter(self.t_initial, np.inf)))
             fields["t_final"] = min(self.t_final, soon)
+        # Where D varies the flux has kernels of every order, in the plane, too; the lattice is that of any scheme.
+        varies = bool(self.diffusion.depends_on - {"t"})
+        scheme = "DD" if varies and self.form == "FPSE" else FORMS[self.form]
         return Case(
-            scheme=FORMS[self.form], beta=beta, integrator="exponential", diffusivity=d or 1.0, **fields,
+            scheme=scheme, beta=beta, integrator="exponential", diffusivity=d or 1.0, **fields,
         )  # fmt: skip
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Problem:
