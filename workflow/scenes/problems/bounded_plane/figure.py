@@ -21,10 +21,12 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     drawn, axes = axes_row(4, height=3.7, width=3.4)
     _errors(axes[0], pick(series, panel="disc"), "-")
     log_log(axes[0], xlabel="rings $N$", ylabel="error of the first eigenvalue, relative")
+    name_ticks(axes[0], np.unique(pick(series, panel="disc")["x"]))
     panel_title(axes[0], "a", "disc, absorbing")
     _errors(axes[1], pick(series, panel="square, fitted"), "-")
     _errors(axes[1], pick(series, panel="square, plain"), "--", named=False)
     log_log(axes[1], xlabel="particles along a side $N$")
+    name_ticks(axes[1], np.unique(pick(series, panel="square, plain")["x"]))
     panel_title(axes[1], "b", "square; dashed: plain lattice")
     decay = pick(series, panel="decay")
     axes[2].plot(decay["x"], decay["exact"], color="black", marker="", label="spectral method")
@@ -52,6 +54,5 @@ def _errors(ax: Axes, part: pd.DataFrame, line: str, named: bool = True) -> None
         label = rf"$\alpha$ = {float(points['series'].iloc[0]):g}" if named else None
         style = {"color": colour, "marker": marker, "linestyle": line, "markersize": 4.0}
         ax.plot(points["x"], points["y"], label=label, **style)
-    name_ticks(ax, np.unique(part["x"]))
     if named:
         ax.legend(loc="lower left", fontsize=7)
