@@ -8,9 +8,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 import yaml
-from scenes.problems.what_is_stated.study import study
 
 from fracstudy.inputs import Inputs
+from scenes.problems.what_is_stated.study import study
 
 ROOT = Path(__file__).parents[3]
 SCENE = yaml.safe_load(
