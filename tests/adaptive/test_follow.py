@@ -55,11 +55,29 @@ def test_a_placement_keeps_mass_and_first_moment(alpha):
     before = followed(alpha, (0.05,), step=0.3, again=False)[0]
     after = _placed_again(before, tuple(before.particles.x[[0, -1]]), 0.3)
     assert after.u.size < before.u.size
-    assert 0.0 < after.corrected < 1e-4
+    assert 0.0 < after.corrected < 1e-5
     assert after.mass == pytest.approx(before.mass, rel=1e-13)
     moments = [state.particles.volumes * state.particles.x @ state.u for state in (before, after)]
     size = before.particles.volumes * np.abs(before.particles.x) @ before.u
     assert moments[1] == pytest.approx(moments[0], abs=1e-13 * size)
+
+
+def test_a_long_time_from_a_narrow_bell_is_the_fundamental_solution():
+    """u(t) = sqrt(pi) G(x, t) but for G'' / 4, the second moment of the bell."""
+    state = follow(lambda x: np.exp(-x * x), 1e3, alpha=1.7, window=(-5.0, 5.0), step=0.2)[0]
+    x = np.linspace(-200.0, 200.0, 41)
+    bend = (green(x + 1.0, 1e3, 1.7) - 2.0 * green(x, 1e3, 1.7) + green(x - 1.0, 1e3, 1.7)) / 4.0
+    exact = np.sqrt(np.pi) * (green(x, 1e3, 1.7) + bend)
+    assert state.at(x) == pytest.approx(exact, abs=1e-5 * exact.max())
+
+
+def test_data_of_both_signs_keep_their_first_moment_in_time():
+    states = follow(lambda x: x * np.exp(-x * x), (0.01, 1.0), alpha=1.6, window=(-5.0, 5.0))
+    for state in states:
+        assert abs(state.mass) < 1e-9  # of the sum at the start
+        assert state.mass == pytest.approx(states[0].mass, abs=1e-13)
+        moment = state.particles.volumes * state.particles.x @ state.u
+        assert moment == pytest.approx(0.5 * np.sqrt(np.pi), rel=1e-4)
 
 
 def test_between_the_particles_it_has_the_same_error():

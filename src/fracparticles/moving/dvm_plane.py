@@ -75,7 +75,7 @@ class PlaneVelocity:
         self, x: np.ndarray, y: np.ndarray, strength: np.ndarray, at: tuple[np.ndarray, np.ndarray]
     ) -> np.ndarray:
         """Return u, Eq. (45), of particles, shape (N, N), at the points `at`, shape (M,)."""
-        return self._sums(*_flat(self.continued(x, y, strength)), at)[0]
+        return np.asarray(self._sums(*_flat(self.continued(x, y, strength)), at)[0])
 
     def __call__(
         self, x: np.ndarray, y: np.ndarray, strength: np.ndarray
@@ -260,8 +260,9 @@ def _on_lattice(
     return out
 
 
-def _flat(arrays: Particles) -> list[np.ndarray]:
-    return [one.reshape(-1) for one in arrays]
+def _flat(arrays: Particles) -> Particles:
+    x, y, strength = (one.reshape(-1) for one in arrays)
+    return x, y, strength
 
 
 def _stepped(

@@ -86,8 +86,8 @@ class PlaneTail:
 def far_flux(x: np.ndarray, y: np.ndarray, alpha: float, reach: float) -> np.ndarray:
     """Return g_x at points of the square |x|, |y| < reach < 1."""
     coefficients, scale = _polynomial(alpha, reach), 2.0 / reach**2
-    squares = (scale * v * v - 1.0 for v in (x, y))
-    return np.asarray(x * chebyshev.chebval2d(*squares, coefficients))
+    a, b = scale * x * x - 1.0, scale * y * y - 1.0
+    return np.asarray(x * chebyshev.chebval2d(a, b, coefficients))
 
 
 @lru_cache(maxsize=64)

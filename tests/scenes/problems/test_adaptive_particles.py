@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from fracstudy.inputs import Inputs
+from fracstudy.panels import pick
 from fracstudy.scene import call, read_scenes
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -22,18 +23,26 @@ def result(scene):
     return call(scene.function("study"), Inputs("adaptive_particles"), **scene.parameters)
 
 
-def test_twenty_times_fewer_particles_than_the_best_lattice(result):
-    known = result.table["times fewer"].dropna()
-    assert len(known) >= 2
-    assert (known > 20.0).all()
+def test_a_lattice_takes_twenty_times_the_particles_for_the_same_error(result):
+    rows = result.table.dropna(subset="times fewer")
+    assert len(rows) == 3
+    assert (rows["times fewer"] > 20.0).all()
+    assert rows["error"].min() < 1e-5
 
 
-def test_placed_again_the_mass_is_kept_and_the_error_small(result):
+def test_placing_again_keeps_the_error_and_the_mass(result):
     rows = result.table.dropna(subset="placements")
+    assert (rows["error"] < 2e-5).all()
     assert (rows["mass"] <= 1e-12).all()
-    assert (rows["error"] < 1e-4).all()
-    assert rows["placements"].is_monotonic_increasing
+    assert (rows["corrected"] < 1e-5).all()
+    assert rows["placements"].max() > 5
     assert rows["particles"].is_monotonic_decreasing
+
+
+def test_volumes_are_smallest_where_the_narrow_blob_is(result):
+    first = pick(result.series, panel="spacing", series="t = 0")
+    assert abs(first["x"].iloc[first["y"].argmin()]) < 0.01
+    assert first["y"].max() / first["y"].min() > 500.0
 
 
 def test_the_figure_can_be_drawn(scene, result):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -36,7 +38,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     panel_title(axes[2], "c", "decay in the disc")
     truncated = pick(series, panel="truncated")
     for name, points in truncated.groupby("series", sort=False):
-        style = {"color": COLOURS[str(name)], "marker": MARKERS[str(name)]}
+        style: dict[str, Any] = {"color": COLOURS[str(name)], "marker": MARKERS[str(name)]}
         axes[3].plot(points["x"], points["y"], label=str(name), **style)
         axes[3].axhline(points["exact"].iloc[0], color=COLOURS[str(name)], linestyle=":", marker="")
     axes[3].set(
@@ -52,7 +54,12 @@ def _errors(ax: Axes, part: pd.DataFrame, line: str, named: bool = True) -> None
     groups = [points for _, points in part.groupby("series", sort=False)]
     for points, colour, marker in zip(groups, _COLOURS, _MARKERS, strict=False):
         label = rf"$\alpha$ = {float(points['series'].iloc[0]):g}" if named else None
-        style = {"color": colour, "marker": marker, "linestyle": line, "markersize": 4.0}
+        style: dict[str, Any] = {
+            "color": colour,
+            "marker": marker,
+            "linestyle": line,
+            "markersize": 4.0,
+        }
         ax.plot(points["x"], points["y"], label=label, **style)
     if named:
         ax.legend(loc="lower left", fontsize=7)

@@ -1,0 +1,39 @@
+"""DVM in the plane beside the line, on the smoke grid."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from fracstudy.inputs import Inputs
+from fracstudy.panels import pick
+from fracstudy.scene import call, read_scenes
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return read_scenes(ROOT / "workflow/scenes", ["problems"], smoke=True)["dvm_plane"]
+
+
+@pytest.fixture(scope="module")
+def result(scene):
+    return call(scene.function("study"), Inputs("dvm_plane"), **scene.parameters)
+
+
+def test_the_total_is_kept_or_counted(result):
+    assert pick(result.table, dim=2)["drift"].max() < 1e-12
+
+
+def test_without_remeshing_the_order_is_that_of_the_kernels(result):
+    rows = pick(result.table, remeshing="none").dropna(subset=["observed order"])
+    second, fourth = (pick(rows, order=order)["observed order"] for order in (2, 4))
+    assert (second - 2.0).abs().max() < 0.1
+    assert fourth.min() > 3.9  # on lattices as coarse as these it is more
+
+
+def test_the_figure_can_be_drawn(scene, result):
+    drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
+    assert len(drawn.axes) == 2
