@@ -208,6 +208,13 @@ def test_what_is_refused_in_one_line():
         assert "\n" not in str(error.value)
     with pytest.raises(InvalidInput, match=r"^outside = None"):
         given.evolve(0.0, 1.0)
+    for g in (lambda y, t: y * y, lambda y, t: np.abs(y) ** 1.5):
+        with pytest.raises(InvalidInput, match="do not grow"):
+            given.evolve(0.0, 1.0, outside=g)
+    assert np.isfinite(given.evolve(0.0, 1.0, outside=lambda y, t: np.log1p(y * y))).all()
+    assert (line.evolve(1.0, 1e300) == 0.0).all()
+    with pytest.raises(NonFiniteSolution, match="not finite at t = 1:"):
+        line.evolve(1.7e308, 1.0)
     with pytest.raises(NonFiniteSolution, match="512 panels"):
         line.evolve(0.0, 1.0, source=lambda x, t: np.sign(t - 1 / 3) + 0.0 * x)
 

@@ -13,6 +13,7 @@ cos(y) does, are not smooth in log |y - end|: every other point alone gives anot
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable
 
@@ -21,7 +22,7 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.adaptive.maps import GradedParticles
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import tail_constant
 
 __all__ = ["OutsideValues", "loss_rates"]
@@ -61,6 +62,9 @@ class OutsideValues:
         s = np.arange(first - _NEAR, _FAR, _STEP)
         beyond = np.exp(s)
         self._points = place(np.concatenate([-1.0 - beyond, 1.0 + beyond]))
+        ends = np.array([s.size, 2 * s.size]) - 1
+        self._farthest, self._near = ends, np.tile(s <= math.log(10.0), 2)
+        self._far_share = math.exp(-alpha * s[-1])
         lost = tail_constant(alpha) / alpha
         self._weights = np.concatenate(
             [
@@ -76,7 +80,7 @@ class OutsideValues:
         Raises
         ------
         InvalidInput
-            If g does not return finite values.
+            If g does not return finite values, or grows like |y|^alpha.
 
         Warns
         -----
@@ -84,6 +88,12 @@ class OutsideValues:
             If the points do not resolve g.
         """
         values = check.sampled("outside", lambda y: np.asarray(g(y, t)) + 0.0 * y, self._points)
+        if (
+            self._far_share * np.abs(values[self._farthest]).max()
+            > _UNRESOLVED * np.abs(values[self._near]).max()
+        ):
+            allowed = "values that do not grow like |y|^alpha far out, where nothing would be left of the integral"
+            raise InvalidInput("outside", g, allowed, "Give bounded ones.")
         load = np.asarray(self._weights @ values)
         every_other = 2.0 * self._weights[:, ::2] @ values[::2]
         size = self._weights.sum(axis=1) * np.abs(values).max()
