@@ -30,6 +30,7 @@ from fracparticles import arguments as check
 from fracparticles.adaptive.exchange import exchange_matrix, rate_matrix
 from fracparticles.adaptive.inverse import InverseExchange
 from fracparticles.adaptive.maps import graded_on_interval
+from fracparticles.adaptive.samples import unseen_share
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
@@ -220,8 +221,9 @@ class Interval:
         g = self._checked_outside(outside, timed=True)
         f = self._source(0.0 if source is None else source, timed=True)
         start = self._values("initial", initial)
-        if callable(initial):
-            self._warn_of_the_unseen(initial, start)
+        if callable(initial) and (share := unseen_share(initial, self.x, start)) > _UNRESOLVED:
+            text = f"the particles do not resolve the initial data, by {share:.1g} of int |u|. Take more."
+            warnings.warn(text, AccuracyWarning, stacklevel=2)
         rates = self._rate * self._modes[0]
         slowest = rates[0] or rates[1]
         if time * slowest < _SHORTEST:
@@ -231,10 +233,8 @@ class Interval:
             changes = callable(source) or callable(outside) or self.exterior == "reflecting"
             u = (self._moved if changes else self._relaxed)(start, rates, f, g, time, tolerance)
         if not np.isfinite(u).all():
-            raise NonFiniteSolution(
-                f"u is not finite at t = {time:g}: the data are near the largest number, or the source grows too fast. "
-                "Take other units, or a shorter time."
-            )
+            text = f"u is not finite at t = {time:g}: data or source are near the largest number. Take other units."
+            raise NonFiniteSolution(text)
         return u
 
     def _relaxed(
@@ -264,21 +264,6 @@ class Interval:
         y = vectors.T @ (root * (start - held(0.0)))
         y = forced_modes(rates, y, forcing, time, tolerance)
         return np.asarray(held(time) + vectors @ y / root)
-
-    def _warn_of_the_unseen(self, initial: Callable[..., Any], start: FloatArray) -> None:
-        """Compare int |u| by the particles with that by them and the middles between."""
-        middles = 0.5 * (self.x[1:] + self.x[:-1])
-        places = np.arange(1, self.x.size)
-        x = np.insert(self.x, places, middles)
-        u = np.insert(start, places, check.sampled("initial", initial, middles))
-        finer = float(np.trapezoid(np.abs(u), x))
-        missed = abs(float(np.trapezoid(np.abs(start), self.x)) - finer)
-        if missed > _UNRESOLVED * finer:
-            warnings.warn(
-                f"the particles do not resolve the initial data, by {missed / finer:.1g} of int |u|. Take more.",
-                AccuracyWarning,
-                stacklevel=3,
-            )
 
     def _steady(self, load: FloatArray, g: Any, t: float) -> FloatArray:
         """u of A u + load + b = 0 in the unit of (-1, 1)."""
