@@ -77,6 +77,19 @@ def test_the_stationary_solution_of_a_constant_source_is_getoors(alpha):
     assert scaled == pytest.approx(u, rel=1e-12)
 
 
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_greatest_error_is_at_the_ends(alpha):
+    """Like d^(alpha/2) there, d ~ N^(-p): of the order p alpha/2; int |error| has the order p."""
+    greatest, mean = [], []
+    for n in (200, 400):
+        line = Interval(alpha=alpha, particles=n, degree=4.0)
+        error = np.abs(line.stationary(gamma(1.0 + alpha)) - getoor(line))
+        greatest.append(error.max())
+        mean.append(line.volumes @ error)
+    assert orders(greatest)[0] == pytest.approx(2.0 * alpha, abs=0.1)
+    assert orders(mean)[0] == pytest.approx(4.0, abs=0.1)
+
+
 def test_the_first_mode_decays_by_its_eigenvalue_to_the_ends():
     line = Interval(alpha=1.5, particles=200)
     mode = line.modes(1)[1][:, 0]

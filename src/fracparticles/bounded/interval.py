@@ -11,8 +11,9 @@ given
     u = g(y, t) outside, C int_outside g |x - y|^(-1-alpha) dy is added to the first.
 
 The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`.
-With q weights of near neighbours, eigenvalues and solutions with absorbing ends have the order min(2 q + 2 - alpha, p)
-in 1 / N: the first from inside, the second from the ends, where the error is like the distance of the first particle.
+With q weights of near neighbours, eigenvalues with absorbing ends and int |error| have the order min(2 q + 2 - alpha, p)
+in 1 / N: the first from inside, the second from the ends, like the distance d of the first particle. The greatest error
+is that at the ends, like d^(alpha/2): of the order min(2 q + 2 - alpha, p alpha/2).
 A lattice of equal volumes has p = 1, as linear finite elements of equal size have h in the L2 norm and h^(1/2) in that
 of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 """
