@@ -30,7 +30,7 @@ def study(
     spacings: list[float],
     orders: list[int],
 ) -> Result:
-    """A row for each run: the greatest error for |x| <= 2, of the peak, and the drift of the total, what left counted."""
+    """A row for each run: the greatest error for |x| <= 2, of the peak, and the drift of the total."""
     panels, rows = Panels(), []
     for remeshing, exterior in _WAYS:
         for order in orders:
