@@ -10,10 +10,10 @@ reflecting
 given
     u = g(y, t) outside, C int_outside g |x - y|^(-1-alpha) dy is added to the first.
 
-The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`.
-With q weights of near neighbours, eigenvalues with absorbing ends and int |error| have the order min(2 q + 2 - alpha, p)
-in 1 / N: the first from inside, the second from the ends, like the distance d of the first particle. The greatest error
-is that at the ends, like d^(alpha/2): of the order min(2 q + 2 - alpha, p alpha/2).
+The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`. With q weights
+of near neighbours, eigenvalues with absorbing ends and int |error| have the order min(2 q + 2 - alpha, p) in 1 / N: the
+first from inside, the second from the ends, like the distance d of the first particle. The greatest error is that at
+the ends, like d^(alpha/2): of the order min(2 q + 2 - alpha, p alpha/2).
 A lattice of equal volumes has p = 1, as linear finite elements of equal size have h in the L2 norm and h^(1/2) in that
 of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 """
@@ -34,7 +34,7 @@ from fracparticles.adaptive.maps import graded_on_interval
 from fracparticles.adaptive.samples import unseen_share
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
+from fracparticles.bounded.interval_outside import OutsideValues, given_outside, loss_rates
 from fracparticles.bounded.interval_time import forced_modes, slopes_in_time
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 
@@ -158,6 +158,23 @@ class Interval:
         first = np.argmax(np.abs(vectors) > 0.5 * np.abs(vectors).max(axis=0), axis=0)
         return self._rate * rates, functions * np.sign(vectors[first, range(count)])
 
+    def starting(self, initial: Any) -> FloatArray:
+        """Return u(x, 0) at the particles; warns if they do not resolve it."""
+        start = self.values("initial", initial)
+        if callable(initial) and (share := unseen_share(initial, self.x, start)) > _UNRESOLVED:
+            text = f"the particles do not resolve the initial data, by {share:.1g} of int |u|. Take more."
+            warnings.warn(text, AccuracyWarning, stacklevel=3)
+        return start
+
+    def all_modes(self) -> tuple[FloatArray, FloatArray]:
+        """Return all eigenvalues of -D A, those above 1e15 times the first as that, and orthonormal V^(1/2) u."""
+        return self._rate * self._modes[0], self._modes[1]
+
+    def held(self, outside: Any) -> FloatArray:
+        """Return what values g(y) outside alone hold in place, zero where nothing is given."""
+        g, nothing = given_outside(self.exterior, outside, timed=False), np.zeros(self.x.size)
+        return nothing if g is None else self._steady(nothing, g, 0.0)
+
     def stationary(self, source: Any = 0.0, outside: Any = None) -> FloatArray:
         """Return u of D A u + f = 0, shape (N,); of reflecting ends that of mean zero.
 
@@ -173,7 +190,7 @@ class Interval:
         InvalidInput
             If they are not finite, `outside` is missing or superfluous, or f makes what reflecting ends keep.
         """
-        g = self._checked_outside(outside, timed=False)
+        g = given_outside(self.exterior, outside, timed=False)
         f = self._source(source, timed=False)(0.0)
         if self.exterior == "reflecting":
             total, size = self.volumes @ f, self.volumes @ np.abs(f)
@@ -219,12 +236,9 @@ class Interval:
         """
         time = check.positive_real("time", time)
         tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
-        g = self._checked_outside(outside, timed=True)
+        g = given_outside(self.exterior, outside, timed=True)
         f = self._source(0.0 if source is None else source, timed=True)
-        start = self._values("initial", initial)
-        if callable(initial) and (share := unseen_share(initial, self.x, start)) > _UNRESOLVED:
-            text = f"the particles do not resolve the initial data, by {share:.1g} of int |u|. Take more."
-            warnings.warn(text, AccuracyWarning, stacklevel=2)
+        start = self.starting(initial)
         rates = self._rate * self._modes[0]
         slowest = rates[0] or rates[1]
         if time * slowest < _SHORTEST:
@@ -272,24 +286,14 @@ class Interval:
             load = load + self._outside.load(g, t)
         return self._inverse.apply(self._unit.volumes * load)
 
-    def _values(self, field: str, given: Any) -> FloatArray:
+    def values(self, field: str, given: Any) -> FloatArray:
+        """Return a function, an array or a number at the particles, shape (N,)."""
         if callable(given):
             return check.sampled(field, given, self.x)
         return np.asarray(check.finite_array(field, given, self.x.shape), dtype=float)
 
     def _source(self, source: Any, *, timed: bool) -> Callable[[float], FloatArray]:
         if callable(source) and timed:
-            return lambda t: self._values("source", lambda x: source(x, t))
-        values = self._values("source", source)
+            return lambda t: self.values("source", lambda x: source(x, t))
+        values = self.values("source", source)
         return lambda t: values
-
-    def _checked_outside(self, outside: Any, *, timed: bool) -> Callable[..., Any] | None:
-        if (outside is None) == (self.exterior == "given"):
-            allowed = "values of u outside if the exterior is given, nothing otherwise"
-            raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
-        if outside is None:
-            return None
-        if callable(outside):
-            return outside if timed else lambda y, t: outside(y)
-        value = check.finite_real("outside", outside)
-        return lambda y, t: np.full(np.shape(y), value)

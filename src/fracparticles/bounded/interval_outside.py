@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import tail_constant
 
-__all__ = ["OutsideValues", "loss_rates"]
+__all__ = ["OutsideValues", "given_outside", "loss_rates"]
 
 _STEP = 0.25
 _FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
@@ -39,6 +40,25 @@ def loss_rates(particles: GradedParticles, alpha: float) -> FloatArray:
     """Return kappa_i, shape (N,)."""
     losses = particles.left**-alpha + particles.right**-alpha
     return np.asarray(tail_constant(alpha) / alpha * losses)
+
+
+def given_outside(exterior: str, outside: Any, *, timed: bool) -> Callable[..., Any] | None:
+    """Return g(y, t) of a function g(y, t), or g(y) if it is not `timed`, or of a number; None for no values outside.
+
+    Raises
+    ------
+    InvalidInput
+        If there are none where the exterior is given, or some where it is not.
+    """
+    if (outside is None) == (exterior == "given"):
+        allowed = "values of u outside if the exterior is given, nothing otherwise"
+        raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
+    if outside is None:
+        return None
+    if callable(outside):
+        return outside if timed else lambda y, t: outside(y)
+    value = check.finite_real("outside", outside)
+    return lambda y, t: np.full(np.shape(y), value)
 
 
 class OutsideValues:
