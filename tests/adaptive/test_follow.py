@@ -131,3 +131,5 @@ def test_what_is_refused_or_warned_of():
         follow(lambda x: 0.0 * x, 1.0, **good)
     with pytest.warns(AccuracyWarning, match=r"of int \|u\|"):
         follow(bell, 0.1, step=1.0, **good)
+    with pytest.warns(AccuracyWarning, match=r"beyond the particles is .* of int \|u\|"):
+        follow(bell, 0.1, reach=1.0, **good)

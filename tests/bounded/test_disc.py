@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from functools import cache
 from math import gamma
 
@@ -19,7 +20,7 @@ from fracparticles.bounded.disc_rings import (
     plane_constant,
     ring_kernel,
 )
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special.tails import tail_constant
 
 ALPHAS = (1.2, 1.5, 1.8)
@@ -270,6 +271,14 @@ def test_radius_and_diffusivity_are_units():
     assert large.solve(u, 0.5) == pytest.approx(small.solve(u, 0.5 * factor), rel=1e-9)
     assert large.volumes.sum() == pytest.approx(9.0 * np.pi, rel=1e-5)
     assert large.steady(1.0) == pytest.approx(small.steady(1.0 / factor), rel=1e-9)
+
+
+def test_a_field_that_the_particles_do_not_see_is_said():
+    with pytest.warns(AccuracyWarning, match="the particles do not resolve initial"):
+        disc(1.5, 64, 1).solve(lambda x, y: np.exp(-4.0 * (x - 0.5) ** 2), 1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        disc(1.5, 64, 16).solve(lambda x, y: np.exp(-4.0 * (x - 0.5) ** 2), 1.0)
 
 
 # --- what is refused ------------------------------------------------------------------------------

@@ -77,6 +77,19 @@ def test_the_stationary_solution_of_a_constant_source_is_getoors(alpha):
     assert scaled == pytest.approx(u, rel=1e-12)
 
 
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_greatest_error_is_at_the_ends(alpha):
+    """Like d^(alpha/2) there, d ~ N^(-p): of the order p alpha/2; int |error| has the order p."""
+    greatest, mean = [], []
+    for n in (200, 400):
+        line = Interval(alpha=alpha, particles=n, degree=4.0)
+        error = np.abs(line.stationary(gamma(1.0 + alpha)) - getoor(line))
+        greatest.append(error.max())
+        mean.append(line.volumes @ error)
+    assert orders(greatest)[0] == pytest.approx(2.0 * alpha, abs=0.1)
+    assert orders(mean)[0] == pytest.approx(4.0, abs=0.1)
+
+
 def test_the_first_mode_decays_by_its_eigenvalue_to_the_ends():
     line = Interval(alpha=1.5, particles=200)
     mode = line.modes(1)[1][:, 0]
@@ -208,6 +221,13 @@ def test_what_is_refused_in_one_line():
         assert "\n" not in str(error.value)
     with pytest.raises(InvalidInput, match=r"^outside = None"):
         given.evolve(0.0, 1.0)
+    for g in (lambda y, t: y * y, lambda y, t: np.abs(y) ** 1.5):
+        with pytest.raises(InvalidInput, match="do not grow"):
+            given.evolve(0.0, 1.0, outside=g)
+    assert np.isfinite(given.evolve(0.0, 1.0, outside=lambda y, t: np.log1p(y * y))).all()
+    assert (line.evolve(1.0, 1e300) == 0.0).all()
+    with pytest.raises(NonFiniteSolution, match="not finite at t = 1:"):
+        line.evolve(1.7e308, 1.0)
     with pytest.raises(NonFiniteSolution, match="512 panels"):
         line.evolve(0.0, 1.0, source=lambda x, t: np.sign(t - 1 / 3) + 0.0 * x)
 

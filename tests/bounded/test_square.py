@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from functools import cache
 from math import gamma, pi
 
@@ -22,7 +23,7 @@ from fracparticles.bounded.square_lattice import (
     weights,
 )
 from fracparticles.bounded.square_outside import mean_outside, outward_rate
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 
 ALPHAS = (1.2, 1.5, 1.8)
 
@@ -281,6 +282,14 @@ def test_half_width_and_diffusivity_are_units():
     assert large.solve(u, 0.5) == pytest.approx(small.solve(u, 0.5 * factor), rel=1e-9)
     assert large.steady(1.0) == pytest.approx(small.steady(1.0 / factor), rel=1e-9)
     assert large.rate(u) == pytest.approx(factor * small.rate(u), rel=1e-9)
+
+
+def test_a_field_that_the_particles_do_not_see_is_said():
+    with pytest.warns(AccuracyWarning, match="the particles do not resolve initial"):
+        square(1.5, 8).solve(lambda x, y: 1.0 + np.cos(8.0 * pi * x), 1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        square(1.5, 32).solve(lambda x, y: 1.0 + np.cos(8.0 * pi * x), 1.0)
 
 
 # --- what is refused ------------------------------------------------------------------------------

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
+
 import mpmath
 import numpy as np
 import pytest
 
 import fracparticles as fp
-from fracparticles.errors import InvalidInput, StabilityWarning
+from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
 from fracparticles.moving.dvm_plane import PlaneVelocity, remesh_plane, run_in_plane
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracparticles.moving.plane_sums import PlaneSums, naive_sums
@@ -195,6 +197,34 @@ def test_a_step_that_is_too_large_is_said():
         run_in_plane(
             exact(x, y), spacing=0.5, alpha=ALPHA, dt=1.1 * limit, steps=1, exterior="open"
         )
+
+
+@pytest.mark.parametrize(
+    ("exterior", "words"), [("open", "does not meet the field inside"), ("truncated", "left out 0")]
+)
+def test_a_lattice_that_is_too_small_is_said(exterior, words):
+    for half_width, expected in ((2.0, 1), (8.0, 0)):
+        x, y = lattice(0.5, half_width)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            run_in_plane(
+                exact(x, y),
+                spacing=0.5,
+                alpha=ALPHA,
+                dt=0.1,
+                steps=10,
+                start=1.0,
+                exterior=exterior,
+            )
+        assert sum(words in str(one.message) for one in said) == expected
+        assert all(one.category is AccuracyWarning for one in said)
+
+
+def test_a_field_is_not_asked_for_where_the_sums_do_not_hold_it():
+    x, y = lattice(0.5, 4.0)
+    run = run_in_plane(exact(x, y), spacing=0.5, alpha=ALPHA, dt=0.1, steps=1, exterior="open")
+    with pytest.raises(InvalidInput, match=r"^x = "):
+        run.field(np.array([30.0]), np.array([0.0]))
 
 
 @pytest.mark.parametrize(

@@ -138,6 +138,11 @@ def follow(
     ------
     InvalidInput
         If an argument is outside its range, or more particles would be needed than a matrix is for.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the particles do not resolve `initial`, a placement changed u, or u reaches the last of them.
     """
     alpha = check.fractional_order(alpha)
     low, high = check.pair("window", window, rising=True)
@@ -170,6 +175,7 @@ def follow(
             results.append(evolved.at(left.pop(0)))
         if not left:
             _warn(state.corrected, "the placements were off by")
+            _warn(_at_the_ends(results[-1], alpha), "beyond the particles is", "Go farther out.")
             return results
         state = _placed_again(evolved.at(until), ends, step)
 
@@ -245,7 +251,17 @@ def _missed(
     )
 
 
-def _warn(share: float, text: str) -> None:
+def _at_the_ends(state: Followed, alpha: float) -> float:
+    """The share of int |u| beyond the particles, if u goes on as |x|^(-1-alpha)."""
+    x, u = state.particles.x, np.abs(state.u)
+    beyond = 0.5 * (x[-1] - x[0]) / alpha * (u[0] + u[-1])
+    return float(beyond / (beyond + state.particles.volumes @ u))
+
+
+def _warn(
+    share: float,
+    text: str,
+    advice: str = "Take a shorter step, or name `where` the narrow parts are.",
+) -> None:
     if not share < _UNRESOLVED:
-        advice = "Take a shorter step, or name `where` the narrow parts are."
         warnings.warn(f"{text} {share:.1g} of int |u|. {advice}", AccuracyWarning, stacklevel=3)

@@ -20,8 +20,9 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 
-__all__ = ["MOST", "GradedParticles", "graded_on_interval"]
+__all__ = ["LEAST", "MOST", "GradedParticles", "graded_on_interval"]
 
+LEAST = 16  # particles: of fewer the first eigenvalue is off by one per cent
 MOST = 4000  # particles: a matrix of them takes 128 MB
 _MOST_DEGREE = 12.0
 _CLOSEST = 1e-60  # of a particle to an end, whose powers are still numbers
@@ -60,7 +61,7 @@ def graded_on_interval(particles: int, degree: float = 8.0) -> GradedParticles:
     Parameters
     ----------
     particles : int
-        N, from 4 to `MOST`.
+        N, from `LEAST` to `MOST`.
     degree : float
         p, 1 <= p <= 12: the first particle is N^(-p) from its end, but for a factor; 1 for equal volumes.
 
@@ -69,7 +70,7 @@ def graded_on_interval(particles: int, degree: float = 8.0) -> GradedParticles:
     InvalidInput
         If an argument is outside its range, or a particle closer to an end than a power of the distance can be told.
     """
-    count = check.whole_number("particles", particles, 4, MOST)
+    count = check.whole_number("particles", particles, LEAST, MOST)
     p = check.real_between("degree", degree, 1.0, _MOST_DEGREE)
     y = (np.arange(count) + 0.5) / count
     left = 2.0 * betainc(p, p, y)

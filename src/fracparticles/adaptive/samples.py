@@ -14,7 +14,7 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 
-__all__ = ["adapted_samples"]
+__all__ = ["adapted_samples", "unseen_share"]
 
 _FIRST = 129
 _SHARE = 1e-4  # of int |u|: samples are then a fifth of l apart
@@ -70,3 +70,18 @@ def adapted_samples(
             "initial", "zero at all samples", "values that are not zero", "Name where they are."
         )
     return x, u
+
+
+def unseen_share(f: Callable[[FloatArray], FloatArray], x: FloatArray, u: FloatArray) -> float:
+    """Return by what share int |f| changes if f is seen in the middles between the places x too; u is f there.
+
+    Raises
+    ------
+    InvalidInput
+        If f is not finite.
+    """
+    middles = 0.5 * (x[1:] + x[:-1])
+    places = np.arange(1, x.size)
+    seen = check.sampled("initial", f, middles)
+    finer = float(np.trapezoid(np.abs(np.insert(u, places, seen)), np.insert(x, places, middles)))
+    return abs(float(np.trapezoid(np.abs(u), x)) - finer) / finer if finer > 0.0 else 0.0

@@ -26,6 +26,7 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import Rings, exterior_rate
+from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.errors import InvalidInput
 
 __all__ = ["EXTERIORS", "Disc"]
@@ -35,6 +36,7 @@ _MOST_RINGS = (
     128  # beyond, the innermost digits of 1 - r ~ N^-3 are worth less than the order gains
 )
 _MOST_ANGLES = 512
+_TURN = 0.382  # of a step of the angle, where fields are looked at again: no simple fraction
 
 Field = FloatArray | float | Callable[..., Any]
 
@@ -124,6 +126,11 @@ class Disc:
             u at time 0, and f: arrays of the shape of `x`, or functions of (x, y).
         t : float
             Time, 0 or more.
+
+        Warns
+        -----
+        AccuracyWarning
+            If the particles do not resolve one of these functions.
         """
         t = self._rate * check.not_negative("t", t)
         u = self._transformed(self._field("initial", initial) - self._level)
@@ -235,9 +242,16 @@ class Disc:
     # --- fields and their waves in the angle ------------------------------------------------------
 
     def _field(self, name: str, value: Field) -> FloatArray:
-        if callable(value):
-            return check.sampled(name, value, self.x, self.y)
-        return check.finite_array(name, value, self.x.shape)
+        if not callable(value):
+            return check.finite_array(name, value, self.x.shape)
+        field = check.sampled(name, value, self.x, self.y)
+        between = Rings.between(self.radial)
+        angle = 2.0 * np.pi / self.angular * (np.arange(self.angular) + _TURN)
+        r = self.radius * between.r[:, None]
+        other = check.sampled(name, value, r * np.cos(angle), r * np.sin(angle))
+        volumes = 2.0 * np.pi / self.angular * self.radius**2 * between.volumes[:, None]
+        warn_of_the_unseen(name, field, self.volumes, other, volumes)
+        return field
 
     def _transformed(self, field: FloatArray) -> Any:
         return np.fft.rfft(field, axis=1)

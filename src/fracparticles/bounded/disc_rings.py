@@ -68,6 +68,11 @@ class Rings:
         """Return so many rings, graded to the edge."""
         return cls(*_graded((np.arange(count) + 0.5) / count, count))
 
+    @classmethod
+    def between(cls, count: int) -> Rings:
+        """Return the rings between those."""
+        return cls(*_graded(np.arange(1.0, count) / count, count))
+
     @property
     def volumes(self) -> FloatArray:
         """V_i, for each radian."""

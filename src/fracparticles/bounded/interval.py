@@ -10,9 +10,10 @@ reflecting
 given
     u = g(y, t) outside, C int_outside g |x - y|^(-1-alpha) dy is added to the first.
 
-The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`.
-With q weights of near neighbours, eigenvalues and solutions with absorbing ends have the order min(2 q + 2 - alpha, p)
-in 1 / N: the first from inside, the second from the ends, where the error is like the distance of the first particle.
+The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`. With q weights
+of near neighbours, eigenvalues with absorbing ends and int |error| have the order min(2 q + 2 - alpha, p) in 1 / N: the
+first from inside, the second from the ends, like the distance d of the first particle. The greatest error is that at
+the ends, like d^(alpha/2): of the order min(2 q + 2 - alpha, p alpha/2).
 A lattice of equal volumes has p = 1, as linear finite elements of equal size have h in the L2 norm and h^(1/2) in that
 of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 """
@@ -30,17 +31,21 @@ from fracparticles import arguments as check
 from fracparticles.adaptive.exchange import exchange_matrix, rate_matrix
 from fracparticles.adaptive.inverse import InverseExchange
 from fracparticles.adaptive.maps import graded_on_interval
+from fracparticles.adaptive.samples import unseen_share
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
-from fracparticles.bounded.interval_time import forced_modes
-from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.bounded.interval_outside import OutsideValues, given_outside, loss_rates
+from fracparticles.bounded.interval_time import forced_modes, slopes_in_time
+from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 
 __all__ = ["EXTERIORS", "Interval"]
+
+_Load = Callable[[float], FloatArray]
 
 EXTERIORS = ("absorbing", "reflecting", "given")
 _SHORTEST = 1e-9  # time times the slowest rate: before, modes matter that are not told apart
 _UNRESOLVED = 0.01  # of int |u|, what initial data may hold that the particles do not see
+_EACH = 8  # particles for a mode; higher ones are off by more than 0.1 per cent
 _BALANCE = 1e-8  # of int |f|, what int f may be where nothing can leave
 
 
@@ -52,7 +57,7 @@ class Interval:
     alpha : float
         Fractional order, 1 < alpha < 2.
     particles : int
-        N, from 4 to 4000; 100 give six digits of the first eigenvalue.
+        N, from 16 to 4000; 100 give six digits of the first eigenvalue.
     ends : (float, float)
         a and b.
     exterior : {"absorbing", "reflecting", "given"}
@@ -134,7 +139,7 @@ class Interval:
         Raises
         ------
         InvalidInput
-            If there are fewer particles than twice the count.
+            If there are not eight particles for each.
         """
         return self.modes(count)[0]
 
@@ -144,14 +149,31 @@ class Interval:
         Raises
         ------
         InvalidInput
-            If there are fewer particles than twice the count.
+            If there are not eight particles for each.
         """
-        count = check.positive_integer("count", count, len(self.x) // 2)
+        count = check.positive_integer("count", count, len(self.x) // _EACH)
         rates, vectors = self._inverse.modes(count)
         functions = vectors / np.sqrt(self.volumes)[:, None]
         # One sign each time: the first that is not small is positive.
         first = np.argmax(np.abs(vectors) > 0.5 * np.abs(vectors).max(axis=0), axis=0)
         return self._rate * rates, functions * np.sign(vectors[first, range(count)])
+
+    def starting(self, initial: Any) -> FloatArray:
+        """Return u(x, 0) at the particles; warns if they do not resolve it."""
+        start = self.values("initial", initial)
+        if callable(initial) and (share := unseen_share(initial, self.x, start)) > _UNRESOLVED:
+            text = f"the particles do not resolve the initial data, by {share:.1g} of int |u|. Take more."
+            warnings.warn(text, AccuracyWarning, stacklevel=3)
+        return start
+
+    def all_modes(self) -> tuple[FloatArray, FloatArray]:
+        """Return all eigenvalues of -D A, those above 1e15 times the first as that, and orthonormal V^(1/2) u."""
+        return self._rate * self._modes[0], self._modes[1]
+
+    def held(self, outside: Any) -> FloatArray:
+        """Return what values g(y) outside alone hold in place, zero where nothing is given."""
+        g, nothing = given_outside(self.exterior, outside, timed=False), np.zeros(self.x.size)
+        return nothing if g is None else self._steady(nothing, g, 0.0)
 
     def stationary(self, source: Any = 0.0, outside: Any = None) -> FloatArray:
         """Return u of D A u + f = 0, shape (N,); of reflecting ends that of mean zero.
@@ -168,7 +190,7 @@ class Interval:
         InvalidInput
             If they are not finite, `outside` is missing or superfluous, or f makes what reflecting ends keep.
         """
-        g = self._checked_outside(outside, timed=False)
+        g = given_outside(self.exterior, outside, timed=False)
         f = self._source(source, timed=False)(0.0)
         if self.exterior == "reflecting":
             total, size = self.volumes @ f, self.volumes @ np.abs(f)
@@ -205,7 +227,7 @@ class Interval:
         InvalidInput
             If they are not finite, `outside` is missing or superfluous, or the time is too short for the particles.
         NonFiniteSolution
-            If the source or g varies too fast in time.
+            If the source or g varies too fast in time, or numbers overflow.
 
         Warns
         -----
@@ -214,52 +236,49 @@ class Interval:
         """
         time = check.positive_real("time", time)
         tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
-        g = self._checked_outside(outside, timed=True)
+        g = given_outside(self.exterior, outside, timed=True)
         f = self._source(0.0 if source is None else source, timed=True)
-        start = self._values("initial", initial)
-        if callable(initial):
-            self._warn_of_the_unseen(initial, start)
-        rates, vectors = self._modes
-        rates = self._rate * rates
+        start = self.starting(initial)
+        rates = self._rate * self._modes[0]
         slowest = rates[0] or rates[1]
         if time * slowest < _SHORTEST:
             allowed = f"{_SHORTEST / slowest:.2g} or more"
             raise InvalidInput("time", time, allowed, "A shorter one is not resolved at the ends.")
-        root = np.sqrt(self.volumes)
-        changes = callable(source) or callable(outside)
-        if not changes and self.exterior != "reflecting":
-            steady = self._steady(f(0.0) / self._rate, g, 0.0)
-            y = np.exp(-rates * time) * (vectors.T @ (root * (start - steady)))
-            return np.asarray(steady + vectors @ y / root)
+        with np.errstate(over="ignore", invalid="ignore"):
+            changes = callable(source) or callable(outside) or self.exterior == "reflecting"
+            u = (self._moved if changes else self._relaxed)(start, rates, f, g, time, tolerance)
+        if not np.isfinite(u).all():
+            text = f"u is not finite at t = {time:g}: data or source are near the largest number. Take other units."
+            raise NonFiniteSolution(text)
+        return u
 
-        # What the values outside alone would hold in place, w(t): u - w has a forcing f - w_t that is bounded.
+    def _relaxed(
+        self, start: FloatArray, rates: FloatArray, f: _Load, g: Any, time: float, tolerance: float
+    ) -> FloatArray:
+        """Return what is left of the distance from the stationary solution, and that: nothing depends on time."""
+        root, vectors = np.sqrt(self.volumes), self._modes[1]
+        steady = self._steady(f(0.0) / self._rate, g, 0.0)
+        y = np.exp(-rates * time) * (vectors.T @ (root * (start - steady)))
+        return np.asarray(steady + vectors @ y / root)
+
+    def _moved(
+        self, start: FloatArray, rates: FloatArray, f: _Load, g: Any, time: float, tolerance: float
+    ) -> FloatArray:
+        """Return w + v: w(t) is what the values outside alone would hold in place, v_t = A v + f - w_t is bounded."""
+        root, vectors = np.sqrt(self.volumes), self._modes[1]
+
         def held(t: float) -> FloatArray:
             return np.zeros(len(root)) if g is None else self._steady(np.zeros(len(root)), g, t)
 
-        def forcing(times: FloatArray, length: float) -> FloatArray:
+        def forcing(times: FloatArray) -> FloatArray:
             loads = np.array([f(t) for t in times])
             if g is not None:
-                loads -= _derivative(times, np.array([held(t) for t in times]))
+                loads -= slopes_in_time(times, np.array([held(t) for t in times]))
             return np.asarray((loads * root) @ vectors)
 
         y = vectors.T @ (root * (start - held(0.0)))
         y = forced_modes(rates, y, forcing, time, tolerance)
         return np.asarray(held(time) + vectors @ y / root)
-
-    def _warn_of_the_unseen(self, initial: Callable[..., Any], start: FloatArray) -> None:
-        """Compare int |u| by the particles with that by them and the middles between."""
-        middles = 0.5 * (self.x[1:] + self.x[:-1])
-        places = np.arange(1, self.x.size)
-        x = np.insert(self.x, places, middles)
-        u = np.insert(start, places, check.sampled("initial", initial, middles))
-        finer = float(np.trapezoid(np.abs(u), x))
-        missed = abs(float(np.trapezoid(np.abs(start), self.x)) - finer)
-        if missed > _UNRESOLVED * finer:
-            warnings.warn(
-                f"the particles do not resolve the initial data, by {missed / finer:.1g} of int |u|. Take more.",
-                AccuracyWarning,
-                stacklevel=3,
-            )
 
     def _steady(self, load: FloatArray, g: Any, t: float) -> FloatArray:
         """u of A u + load + b = 0 in the unit of (-1, 1)."""
@@ -267,33 +286,14 @@ class Interval:
             load = load + self._outside.load(g, t)
         return self._inverse.apply(self._unit.volumes * load)
 
-    def _values(self, field: str, given: Any) -> FloatArray:
+    def values(self, field: str, given: Any) -> FloatArray:
+        """Return a function, an array or a number at the particles, shape (N,)."""
         if callable(given):
             return check.sampled(field, given, self.x)
         return np.asarray(check.finite_array(field, given, self.x.shape), dtype=float)
 
     def _source(self, source: Any, *, timed: bool) -> Callable[[float], FloatArray]:
         if callable(source) and timed:
-            return lambda t: self._values("source", lambda x: source(x, t))
-        values = self._values("source", source)
+            return lambda t: self.values("source", lambda x: source(x, t))
+        values = self.values("source", source)
         return lambda t: values
-
-    def _checked_outside(self, outside: Any, *, timed: bool) -> Callable[..., Any] | None:
-        if (outside is None) == (self.exterior == "given"):
-            allowed = "values of u outside if the exterior is given, nothing otherwise"
-            raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
-        if outside is None:
-            return None
-        if callable(outside):
-            return outside if timed else lambda y, t: outside(y)
-        value = check.finite_real("outside", outside)
-        return lambda y, t: np.full(np.shape(y), value)
-
-
-def _derivative(times: FloatArray, values: FloatArray) -> FloatArray:
-    """The derivative of the polynomial through the values, at the same times."""
-    middle, half = 0.5 * (times[0] + times[-1]), 0.5 * (times[-1] - times[0])
-    s = (times - middle) / half
-    coefficients = np.linalg.solve(np.polynomial.chebyshev.chebvander(s, len(s) - 1), values)
-    slopes = np.polynomial.chebyshev.chebder(coefficients) / half
-    return np.asarray(np.polynomial.chebyshev.chebval(s, slopes).T)

@@ -13,18 +13,20 @@ cos(y) does, are not smooth in log |y - end|: every other point alone gives anot
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.adaptive.maps import GradedParticles
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import tail_constant
 
-__all__ = ["OutsideValues", "loss_rates"]
+__all__ = ["OutsideValues", "given_outside", "loss_rates"]
 
 _STEP = 0.25
 _FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
@@ -38,6 +40,25 @@ def loss_rates(particles: GradedParticles, alpha: float) -> FloatArray:
     """Return kappa_i, shape (N,)."""
     losses = particles.left**-alpha + particles.right**-alpha
     return np.asarray(tail_constant(alpha) / alpha * losses)
+
+
+def given_outside(exterior: str, outside: Any, *, timed: bool) -> Callable[..., Any] | None:
+    """Return g(y, t) of a function g(y, t), or g(y) if it is not `timed`, or of a number; None for no values outside.
+
+    Raises
+    ------
+    InvalidInput
+        If there are none where the exterior is given, or some where it is not.
+    """
+    if (outside is None) == (exterior == "given"):
+        allowed = "values of u outside if the exterior is given, nothing otherwise"
+        raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
+    if outside is None:
+        return None
+    if callable(outside):
+        return outside if timed else lambda y, t: outside(y)
+    value = check.finite_real("outside", outside)
+    return lambda y, t: np.full(np.shape(y), value)
 
 
 class OutsideValues:
@@ -61,6 +82,9 @@ class OutsideValues:
         s = np.arange(first - _NEAR, _FAR, _STEP)
         beyond = np.exp(s)
         self._points = place(np.concatenate([-1.0 - beyond, 1.0 + beyond]))
+        ends = np.array([s.size, 2 * s.size]) - 1
+        self._farthest, self._near = ends, np.tile(s <= math.log(10.0), 2)
+        self._far_share = math.exp(-alpha * s[-1])
         lost = tail_constant(alpha) / alpha
         self._weights = np.concatenate(
             [
@@ -76,7 +100,7 @@ class OutsideValues:
         Raises
         ------
         InvalidInput
-            If g does not return finite values.
+            If g does not return finite values, or grows like |y|^alpha.
 
         Warns
         -----
@@ -84,6 +108,12 @@ class OutsideValues:
             If the points do not resolve g.
         """
         values = check.sampled("outside", lambda y: np.asarray(g(y, t)) + 0.0 * y, self._points)
+        if (
+            self._far_share * np.abs(values[self._farthest]).max()
+            > _UNRESOLVED * np.abs(values[self._near]).max()
+        ):
+            allowed = "values that do not grow like |y|^alpha far out, where nothing would be left of the integral"
+            raise InvalidInput("outside", g, allowed, "Give bounded ones.")
         load = np.asarray(self._weights @ values)
         every_other = 2.0 * self._weights[:, ::2] @ values[::2]
         size = self._weights.sum(axis=1) * np.abs(values).max()

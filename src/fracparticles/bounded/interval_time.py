@@ -18,7 +18,7 @@ from scipy.special import gammainc
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import NonFiniteSolution
 
-__all__ = ["forced_modes", "moments_of_decay"]
+__all__ = ["forced_modes", "moments_of_decay", "slopes_in_time"]
 
 _DEGREE = 8
 _MOST_PANELS = 512
@@ -43,7 +43,7 @@ def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
 def forced_modes(
     rates: FloatArray,
     start: FloatArray,
-    forcing: Callable[[FloatArray, float], FloatArray],
+    forcing: Callable[[FloatArray], FloatArray],
     time: float,
     tolerance: float,
 ) -> FloatArray:
@@ -56,8 +56,7 @@ def forced_modes(
     start : array, shape (K,)
         y(0).
     forcing : callable
-        From the times of a panel, shape (9,) in ascending order, to F at them, shape (9, K). The second argument is the
-        length of the panel.
+        From the times of a panel, shape (9,) in ascending order, to F at them, shape (9, K).
     time : float
     tolerance : float
         Of |y|, between the results of one number of panels and of twice as many.
@@ -82,7 +81,7 @@ def forced_modes(
 def _on_panels(
     rates: FloatArray,
     y: FloatArray,
-    forcing: Callable[[FloatArray, float], FloatArray],
+    forcing: Callable[[FloatArray], FloatArray],
     time: float,
     panels: int,
 ) -> FloatArray:
@@ -92,6 +91,15 @@ def _on_panels(
     weights = length * moments_of_decay(rates * length, _DEGREE)
     decay = np.exp(-rates * length)
     for panel in range(panels):
-        values = forcing((panel + nodes) * length, length)
+        values = forcing((panel + nodes) * length)
         y = decay * y + (weights * np.linalg.solve(powers, values)).sum(axis=0)
     return y
+
+
+def slopes_in_time(times: FloatArray, values: FloatArray) -> FloatArray:
+    """Return the derivative of the polynomial through the values, at the same times."""
+    middle, half = 0.5 * (times[0] + times[-1]), 0.5 * (times[-1] - times[0])
+    s = (times - middle) / half
+    coefficients = np.linalg.solve(np.polynomial.chebyshev.chebvander(s, len(s) - 1), values)
+    slopes = np.polynomial.chebyshev.chebder(coefficients) / half
+    return np.asarray(np.polynomial.chebyshev.chebval(s, slopes).T)

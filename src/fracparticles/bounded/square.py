@@ -26,6 +26,7 @@ from scipy.sparse.linalg import LinearOperator, cg, eigsh
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
+from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.bounded.square_lattice import (
     edge_exchange,
     edge_fit,
@@ -157,6 +158,11 @@ class Square:
         ------
         FracparticlesError
             If the time is so long that it takes too many sums.
+
+        Warns
+        -----
+        AccuracyWarning
+            If the particles do not resolve one of these functions.
         """
         t = self._rate * check.not_negative("t", t)
         v = self._inner(self._field("initial", initial) - self._base)
@@ -262,9 +268,17 @@ class Square:
     # --- fields -----------------------------------------------------------------------------------
 
     def _field(self, name: str, value: Field) -> FloatArray:
-        if callable(value):
-            return check.sampled(name, value, self.x, self.y)
-        return check.finite_array(name, value, self.x.shape)
+        if not callable(value):
+            return check.finite_array(name, value, self.x.shape)
+        field = check.sampled(name, value, self.x, self.y)
+        # The corners of the cells, those at the edges for a half.
+        line = np.linspace(-self.half_width, self.half_width, self.side + 1)
+        part = np.full(self.side + 1, 2.0 * self.half_width / self.side)
+        part[[0, -1]] *= 0.5
+        corners = check.sampled(name, value, *np.meshgrid(line, line, indexing="ij"))
+        cell = np.full(field.shape, (2.0 * self.half_width / self.side) ** 2)
+        warn_of_the_unseen(name, field, cell, corners, np.multiply.outer(part, part))
+        return field
 
     def _rate_of_smooth(self, g: Callable[..., Any]) -> FloatArray:
         """L g in the square, in the unit of the lattice: a lattice twice as wide, and the mean beyond."""

@@ -20,16 +20,23 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fracparticles import arguments as check
-from fracparticles.errors import FracparticlesError, NonFiniteSolution, StabilityWarning
+from fracparticles.errors import (
+    AccuracyWarning,
+    FracparticlesError,
+    NonFiniteSolution,
+    StabilityWarning,
+)
 from fracparticles.moving.dvm import EXTERIORS, DiffusionVelocity, largest_gap
 from fracparticles.moving.lagrangian import REMESHING, FieldNotPositive, quotient_velocity
 from fracparticles.moving.plane_sums import PlaneSums
-from fracparticles.moving.plane_tail import PlaneTail
+from fracparticles.moving.plane_tail import REACH, PlaneTail
 from fracparticles.moving.remeshing import REMESHINGS, interpolation_function
 
 __all__ = ["PlaneRun", "PlaneVelocity", "remesh_plane", "run_in_plane"]
 
 _ULPS = 2.0 * float(np.finfo(float).eps)
+_GONE = 0.05  # of the total strength: what the ends of a truncated lattice may leave out
+_MISFIT = 0.05  # of the total strength: what the far field may hold wrongly
 _MOST = 2**13  # lattice points along an axis: a particle that needs more has run away
 
 Particles = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -60,6 +67,7 @@ class PlaneVelocity:
         self._tail: PlaneTail | None = None
         if check.choice("exterior", exterior, EXTERIORS) == "open":
             self._tail = PlaneTail(alpha, order, epsilon)
+        self._epsilon = epsilon
         self._factor = -diffusivity / epsilon ** (alpha - 1.0)
 
     @property
@@ -67,9 +75,18 @@ class PlaneVelocity:
         """That of the line: the transform of eta is the same function of |k|."""
         return self._line.largest_stable_step
 
+    @property
+    def reach(self) -> float:
+        """How far beyond the particles the field is known."""
+        return 0.0 if self._tail is None else 0.5 * REACH * self._epsilon
+
     def continued(self, x: np.ndarray, y: np.ndarray, strength: np.ndarray) -> Particles:
         """Return the particles, and those of the far field around them."""
         return (x, y, strength) if self._tail is None else self._tail.continued(x, y, strength)
+
+    def misfit(self, x: np.ndarray, y: np.ndarray, strength: np.ndarray) -> float | None:
+        """Return what share of the total the far field may hold wrongly; None if there is none."""
+        return None if self._tail is None else self._tail.misfit(x, y, strength)
 
     def field(
         self, x: np.ndarray, y: np.ndarray, strength: np.ndarray, at: tuple[np.ndarray, np.ndarray]
@@ -123,8 +140,15 @@ class PlaneRun:
         return float(self.strength.sum())
 
     def field(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return u at the points (x, y), of their shape, among the particles."""
+        """Return u at the points (x, y), of their shape.
+
+        Raises `InvalidInput` for points beyond the rectangle of the particles and, with an open exterior, the next few
+        smoothing lengths, where the sums do not hold the field.
+        """
         x, y = check.together(x=check.places("x", x), y=check.places("y", y))
+        reach = self.velocity.reach
+        for name, z, own in (("x", x, self.x), ("y", y, self.y)):
+            check.within(name, z, float(own.min()) - reach, float(own.max()) + reach)
         at = x.reshape(-1), y.reshape(-1)
         return self.velocity.field(self.x, self.y, self.strength, at).reshape(x.shape)
 
@@ -173,6 +197,8 @@ def run_in_plane(
     -----
     StabilityWarning
         If the step is larger than `PlaneVelocity.largest_stable_step`.
+    AccuracyWarning
+        If much of the strength has been left out, or the far field of an open exterior is not what lies beyond.
     """
     h, overlap = check.scale("spacing", spacing), check.positive_real("overlap", overlap)
     alpha, diffusivity = check.fractional_order(alpha), check.scale("diffusivity", diffusivity)
@@ -211,6 +237,7 @@ def run_in_plane(
             kind = FieldNotPositive if isinstance(error, FieldNotPositive) else NonFiniteSolution
             when = f"step {step} of {steps}, from t = {time - dt:.6g} to {time:.6g}"
             raise kind(f"{when}: {error}") from error
+    _warn(velocity, x, y, strength, lost / total)
     return PlaneRun(x, y, strength, velocity, total, lost, times)
 
 
@@ -237,6 +264,27 @@ def remesh_plane(
     )
     at_x, at_y = np.meshgrid(*lines, indexing="ij")
     return at_x, at_y, total.reshape(shape)
+
+
+def _warn(
+    velocity: PlaneVelocity, x: np.ndarray, y: np.ndarray, strength: np.ndarray, lost: float
+) -> None:
+    """What a run can know of itself, as on the line."""
+    found = velocity.misfit(x, y, strength)
+    if found is None and abs(lost) > _GONE:
+        warnings.warn(
+            f"remeshing has left out {lost:.2g} of the total strength, which now lies beyond the ends of the lattice. "
+            "Take a wider one, or exterior='open'.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    if found is not None and found > _MISFIT:
+        warnings.warn(
+            "the far field that continues u beyond the particles does not meet the field inside: "
+            f"{min(found, 1.0):.2g} of the total may be wrong. Take a wider lattice, or data about the origin.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def _split(cell: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:

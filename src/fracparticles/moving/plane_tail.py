@@ -55,6 +55,15 @@ class PlaneTail:
         fall = np.where(r > 0.0, at / np.where(r > 0.0, r, 1.0), 1.0) ** (2.0 + self._alpha)
         return wide_x, wide_y, last * fall
 
+    def misfit(self, x: np.ndarray, y: np.ndarray, strength: np.ndarray) -> float:
+        """Return how much of the total the far field may hold wrongly: its share times the spread of A at the ends."""
+        edge = _edge(x)
+        r = np.hypot(x[edge], y[edge])
+        amplitude = strength[edge] / _cells(x, y)[edge] * r ** (2.0 + self._alpha)
+        # The far field beyond a circle of that radius, the mean of those of the ends.
+        share = 2.0 * np.pi / self._alpha * float(r.mean()) ** -self._alpha
+        return float(share * amplitude.std() / abs(strength.sum()))
+
     def flux(
         self, wide: tuple[np.ndarray, np.ndarray, np.ndarray], x: np.ndarray, y: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -67,8 +76,7 @@ class PlaneTail:
             + np.diff(at_y, axis=1)[:, [0, -1]].mean(axis=0).sum()
         )
         width = float(np.mean(sides)) + 0.5 * gap
-        edge = np.zeros(at_x.shape, dtype=bool)
-        edge[[0, -1]] = edge[:, [0, -1]] = True
+        edge = _edge(at_x)
         r = np.hypot(at_x[edge], at_y[edge])
         cell = _cells(at_x, at_y)[edge]
         amplitude = float((strength[edge] / cell * r ** (2.0 + self._alpha)).mean())
@@ -129,6 +137,13 @@ def _extended(v: np.ndarray, more: int) -> np.ndarray:
         above = v[-1] + k * (v[-1] - v[-2])
         v = np.concatenate([below, v, above]).T
     return v
+
+
+def _edge(x: np.ndarray) -> np.ndarray:
+    """Whether a particle is on the rim of the rectangle."""
+    edge = np.zeros(x.shape, dtype=bool)
+    edge[[0, -1]] = edge[:, [0, -1]] = True
+    return edge
 
 
 def _cells(x: np.ndarray, y: np.ndarray) -> np.ndarray:

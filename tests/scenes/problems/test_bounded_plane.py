@@ -39,7 +39,7 @@ def test_the_fitted_lattice_is_far_better_than_the_plain_one(result):
 
 
 def test_reflecting_totals_stay(result):
-    assert pick(result.table, part="total, reflecting")["error"].max() < 1e-12
+    assert pick(result.table, part="drift of the total, reflecting")["error"].max() < 1e-12
 
 
 def test_decay_is_that_of_the_spectral_method(result):

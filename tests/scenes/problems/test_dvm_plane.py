@@ -24,7 +24,7 @@ def result(scene):
 
 
 def test_the_total_is_kept_or_counted(result):
-    assert pick(result.table, dim=2)["drift"].max() < 1e-12
+    assert pick(result.table, dim=2)["drift below"].max() < 1e-12
 
 
 def test_without_remeshing_the_order_is_that_of_the_kernels(result):
@@ -36,4 +36,4 @@ def test_without_remeshing_the_order_is_that_of_the_kernels(result):
 
 def test_the_figure_can_be_drawn(scene, result):
     drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
-    assert len(drawn.axes) == 2
+    assert len(drawn.axes) == 3

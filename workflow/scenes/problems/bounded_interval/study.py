@@ -13,6 +13,7 @@ from scipy.special import gamma
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
 from fracparticles.bounded.interval_no_flux import no_flux_state
+from fracparticles.bounded.interval_reaction import react
 from fracparticles.run.orders import observed_order
 from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
@@ -114,11 +115,19 @@ def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
     yield row("absorbing", "first eigenvalue", ours / exact - 1.0, exact=exact, ours=ours)
     middle = particles // 2
     first, second = (absorbing.evolve(1.0, t)[middle] for t in (8.0, 9.0))
-    rate = float(np.log(first / second))
-    yield row("absorbing", "decay from t = 8 to 9", rate / exact - 1.0, exact=exact, ours=rate)
-    steady = absorbing.stationary(gamma(1.0 + alpha))
+    ours = float(np.log(first / second))
+    yield row("absorbing", "decay from t = 8 to 9", ours / exact - 1.0, exact=exact, ours=ours)
+    rate = float(gamma(1.0 + alpha))
+    steady = absorbing.stationary(rate)
     getoor = np.clip(1.0 - x * x, 0.0, None) ** (0.5 * alpha)
     yield row("absorbing", "stationary, f = 1 (Getoor)", np.abs(steady - getoor).max())
+
+    def reaction(x: np.ndarray, t: float, u: np.ndarray) -> np.ndarray:
+        exact = np.cos(t) * getoor
+        return np.asarray(np.cos(t) * rate - np.sin(t) * getoor + exact**2 - u**2)
+
+    u = react(absorbing, getoor, 1.0, reaction)
+    yield row("absorbing", "f = g(x, t) - u^2 at t = 1", np.abs(u - np.cos(1.0) * getoor).max())
     start = np.exp(-20.0 * (x - _BUMP) ** 2)
     mass = reflecting.volumes @ start
     after = reflecting.evolve(start, 0.1)

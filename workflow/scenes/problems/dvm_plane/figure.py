@@ -10,13 +10,17 @@ from fracstudy.style import axes_row, log_log, name_ticks, panel_title
 
 __all__ = ["figure"]
 
-_TITLES = {"none": "without remeshing", "M4'": "remeshed by M4'"}
+_TITLES = {
+    "none": "open, not remeshed",
+    "Lambda3": r"open, remeshed by $\Lambda_3$",
+    "M4'": "truncated, remeshed by M4'",
+}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
-    """Draw (a) without remeshing, (b) with it: solid the plane, dashed the line."""
-    drawn, axes = axes_row(2, height=3.7, width=3.8, sharey=True)
-    for ax, letter, (panel, title) in zip(axes, "ab", _TITLES.items(), strict=True):
+    """Draw a panel for each way to end and to remesh the particles: solid the plane, dashed the line."""
+    drawn, axes = axes_row(3, height=3.7, width=3.4, sharey=True)
+    for ax, letter, (panel, title) in zip(axes, "abc", _TITLES.items(), strict=True):
         for name, points in pick(series, panel=panel).groupby("series", sort=False):
             plane, second = points["dim"].iloc[0] == 2, points["order"].iloc[0] == 2
             ax.plot(points["x"], points["y"], label=str(name), linestyle="-" if plane else "--",
@@ -25,5 +29,5 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         name_ticks(ax, sorted(series["x"].unique()))
         panel_title(ax, letter, title)
     axes[0].set_ylabel("error, of the peak")
-    axes[1].legend(loc="lower right", fontsize=7)
+    axes[0].legend(loc="lower right", fontsize=7)
     return drawn
