@@ -15,10 +15,10 @@ MAKEFILE = (ROOT / "Makefile").read_text("utf-8")
 def test_all_name_one_python():
     (image,) = re.findall(r"^FROM python:(\d+\.\d+)", (ROOT / "Dockerfile").read_text(), re.M)
     conda = yaml.safe_load((ROOT / "environment.yml").read_text())["dependencies"]
-    (action,) = re.findall(
+    actions = re.findall(
         r'python-version: "(.+?)"', (ROOT / ".github/workflows/ci.yml").read_text()
     )
-    assert {image, action} == {PYTHON}
+    assert {image, *actions} == {PYTHON}
     assert f"python={PYTHON}" in conda
 
 

@@ -29,6 +29,7 @@ KEPT = {
     "particle_note": ("note_particles",),
     "run_times": ("scattered_sums",),
     "beyond": ("kernel_orders",),
+    "problems": (),
     "extremes": (),
 }
 TARGETS = tuple(name for names in KEPT.values() for name in names)
