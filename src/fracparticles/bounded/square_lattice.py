@@ -9,8 +9,9 @@ neighbourhood of i = j; of the sum over pairs, w (u_i - u_j)^2 / 2, that is -Z(a
 order 4 - alpha for a smooth field, and all weights are positive. A field that is zero outside behaves like d^(alpha/2)
 at the distance d from an edge. A lattice that takes no notice of it has the order one. Here two things do:
 
-- the volumes of the outermost two lines, 1 + delta_k, are those with which the rule integrates d^(alpha/2) and
-  d^(alpha/2 + 1), sum_k delta_k (k - 1/2)^(alpha/2 + m) = -zeta(-alpha/2 - m, 1/2), m = 0, 1, as in Navot's rule;
+- the volumes of the outermost three lines, 1 + delta_k, are those with which the rule integrates d^p for p = alpha/2,
+  alpha/2 + 1 and 1, sum_k delta_k (k - 1/2)^p = -zeta(-p, 1/2), as in Navot's rule. The first two are in the field. The
+  third is its work: what the operator makes of d^(alpha/2 + 1) is d^(1 - alpha/2), times d^(alpha/2);
 - the rate at which line k gives to all others is such that d^(alpha/2) in the half-plane is harmonic, as it is for
   the operator: D_k d_k^(alpha/2) = sum_(j != k) W_(k-j) V_j d_j^(alpha/2), W the sum of w along a line.
 
@@ -88,12 +89,12 @@ def rate_of_all(alpha: float) -> float:
 
 
 def edge_volumes(alpha: float, count: int) -> FloatArray:
-    """Return the volumes of lines at the distances 1/2, 3/2, .. from an edge, shape (count,)."""
-    power = 0.5 * alpha + np.arange(2.0)
-    moments = np.power([0.5, 1.5], power[:, None])
+    """Return the volumes of lines at the distances 1/2, 3/2, .. from an edge, shape (count,), 3 or more."""
+    power = np.array([0.5 * alpha, 0.5 * alpha + 1.0, 1.0])
+    moments = np.power([0.5, 1.5, 2.5], power[:, None])
     missing = -(2.0**-power - 1.0) * (1.0 + zetac(-power))  # -zeta(-p, 1/2)
     v = np.ones(count)
-    v[:2] += np.linalg.solve(moments, missing)
+    v[:3] += np.linalg.solve(moments, missing)
     return v
 
 
