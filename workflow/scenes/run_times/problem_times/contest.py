@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["Contender", "Contest", "OURS", "PEER", "greatest_error"]
+__all__ = ["OURS", "PEER", "Contender", "Contest", "greatest_error"]
 
 OURS, PEER = "ours", "peer"
 

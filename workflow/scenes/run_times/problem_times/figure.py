@@ -13,6 +13,7 @@ from fracstudy.style import COLOURS, MARKERS, entry, legend_below, log_log, note
 
 __all__ = ["figure"]
 
+_COLUMNS = 3
 _FLOOR = 1e-14  # errors below are drawn there
 _TITLES = {
     "variable diffusivity": r"$\partial_x(D(x)\,\mathrm{grad}^\beta u) + f$",
@@ -44,8 +45,9 @@ _LOOKS: dict[str, dict[str, Any]] = {
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw the front of each contender; hollow with dashes are peers."""
     problems = list(series["problem"].unique())
-    drawn = Figure(figsize=(2.9 * len(problems), 4.6), layout="constrained")
-    axes = list(drawn.subplots(1, len(problems), sharey=True, squeeze=False)[0])
+    rows = -(-len(problems) // _COLUMNS)
+    drawn = Figure(figsize=(3.4 * _COLUMNS, 3.1 * rows + 1.2), layout="constrained")
+    axes = list(drawn.subplots(rows, _COLUMNS, sharey=True, squeeze=False).flat)
     for ax, letter, problem in zip(axes, "abcdefgh", problems, strict=False):
         part = pick(series, problem=problem)
         for name, points in part[part["front"].astype(bool)].groupby("contender", sort=False):
@@ -56,7 +58,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
         ax.xaxis.set_minor_formatter(NullFormatter())
         panel_title(ax, letter, _TITLES[problem])
-    axes[0].set(ylabel="relative error", ylim=(0.5 * _FLOOR, 2.0))
+    for ax in axes[::_COLUMNS]:
+        ax.set_ylabel("relative error")
+    for ax in axes[len(problems) :]:
+        ax.set_visible(False)
+    axes[0].set_ylim(0.5 * _FLOOR, 2.0)
     axes[0].yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
     there = {name: pick(series, contender=name) for name in _LOOKS}
     names = [

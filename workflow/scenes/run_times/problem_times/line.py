@@ -26,7 +26,7 @@ _OURS = {f"{form} {order}": (form, order) for form in ("FPSE", "DD") for order i
 
 
 class _Source:
-    """f of u = exp(-t - x^2) and D = 1 + exp(-x^2) / 2; what depends on x is kept for each lattice, for all contenders."""
+    """f of u = exp(-t - x^2) and D = 1 + exp(-x^2) / 2; what depends on x is kept for each lattice, for all alike."""
 
     def __init__(self, alpha: float) -> None:
         self._alpha = alpha
@@ -86,7 +86,9 @@ def drawn_back(alpha: float) -> Contest:
     It keeps its shape: u = green(x, s), s(t) = 1 / alpha + (1 - 1 / alpha) exp(-alpha (t - 1)).
     """
     last = 1.0 / alpha + (1.0 - 1.0 / alpha) * np.exp(-alpha)
-    start = partial(green, t=1.0, alpha=alpha)
+
+    def start(x: np.ndarray) -> np.ndarray:
+        return np.asarray(green(x, 1.0, alpha))
 
     def ours(
         form: str, order: int, half_width: float, spacing: float, rtol: float, overlap: float = 2.0
@@ -108,7 +110,7 @@ def drawn_back(alpha: float) -> Contest:
         return _run(x, rate, start, (1.0, 2.0), rtol)
 
     return Contest(
-        greatest_error(lambda x: green(x, last, alpha)),
+        greatest_error(lambda x: np.asarray(green(x, last, alpha))),
         {
             **{name: Contender(OURS, partial(ours, *which)) for name, which in _OURS.items()},
             "Fourier, circle": Contender(PEER, partial(peer, pseudo_spectral)),

@@ -7,7 +7,8 @@ Fourier, on a circle of length 2 L, the products at the points (Trefethen, Spect
 Fractional centred differences (Ortigueira 2006; Celik & Duman, J. Comput. Phys. 231 (2012) 1743), the flux half-way
 between the points, u = 0 beyond the lattice:
 
-    q_(i+1/2) = D_(i+1/2) h^(-beta) sum_m g_m (u_(i+1-m) - u_(i-m)) - (a u)_(i+1/2),   R_i = (q_(i+1/2) - q_(i-1/2)) / h,
+    q_(i+1/2) = D_(i+1/2) h^(-beta) sum_m g_m (u_(i+1-m) - u_(i-m)) - (a u)_(i+1/2),
+    R_i = (q_(i+1/2) - q_(i-1/2)) / h,
 
 sum_m g_m e^(i m theta) = |2 sin(theta/2)|^(beta-1). With D = 1 that is -(2 sin(theta/2) / h)^alpha, of second order.
 """
@@ -58,9 +59,8 @@ def pseudo_spectral(
 
     def rate(t: float, u: np.ndarray) -> np.ndarray:
         waves = rfft(u)
-        if d is None:
-            total = laplacian * waves
-        else:
+        total = laplacian * waves
+        if d is not None:
             total = derivative * rfft(d * irfft(gradient * waves, 2 * n))
         if a is not None:
             total = total - derivative * rfft(a * u)
@@ -77,7 +77,7 @@ def differences(
     velocity: Field | None,
     upwind: bool = False,
 ) -> tuple[np.ndarray, Rate]:
-    """Return the points of the lattice and R(t, u) without a source; the mean of neighbours is carried, or the upwind one."""
+    """Return the points of the lattice and R(t, u) without a source; carried is the mean or the upwind value."""
     n = round(half_width / spacing)
     h = half_width / n
     x, middles = h * np.arange(-n, n + 1), h * (np.arange(-n - 1, n + 1) + 0.5)
