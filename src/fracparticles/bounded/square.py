@@ -4,10 +4,10 @@ r"""Fractional diffusion in a square |x|, |y| < R, by strengths that the particl
 
 with one of three exteriors:
 
-- "absorbing": u = 0 outside, the restricted operator. The lattice is fitted to the edges, see `square_lattice`:
-  eigenvalues are of order 4 - alpha and better, where a lattice that is not fitted has the order one, as the energy of
-  linear finite elements on a uniform mesh has, Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472;
-- "reflecting": the integral is over the square only, the regional operator. The total is conserved;
+- "absorbing": u = 0 outside, the restricted operator. The lattice is fitted to the edges, see `square_lattice`: the
+  order is 6 - alpha inside and 1 + alpha at the edges, where a lattice that is not fitted has the order one (as linear
+  finite elements on a uniform mesh, Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472);
+- "reflecting": the integral is over the square only, the regional operator. The total is conserved. The order is 2;
 - "given": u = g outside. With v = u - g, which is zero there, v_t = D L v + D L g + f; a constant stays a constant. L g
   takes a wider lattice and quadratures beyond (`square_outside`), so that g has to be smooth across the edge.
 

@@ -1,16 +1,20 @@
 r"""The lattice of a square: what its particles exchange, and how it is fitted to the edges.
 
 The bare kernel c |x - y|^(-2-alpha) on a lattice of spacing h, in the unit h = 1. A punctured rule leaves out the
-neighbourhood of i = j; of the sum over pairs, w (u_i - u_j)^2 / 2, that is -Z(alpha) c |grad u|^2 / 4, Z(s) the sum of
-|m|^-s over the m != 0 of the plane, continued to s < 2 (Epstein's zeta function, 4 zeta(s/2) beta(s/2)). So
+neighbourhood of i = j. The symbol says what that is: with sums over the m != 0 of the plane, continued (`epstein_zeta`,
+`harmonic_zeta`),
 
-    w_m = c |m|^(-2-alpha),    and -Z(alpha) c / 4 > 0 more for the four next neighbours:
+    sum w_m (1 - cos k.m) = |k|^alpha + c/2 sum |m|^(-2-alpha) (k.m)^2 - c/24 sum |m|^(-2-alpha) (k.m)^4 + ...
 
-order 4 - alpha for a smooth field, and all weights are positive. A field that is zero outside behaves like d^(alpha/2)
-at the distance d from an edge. A lattice that takes no notice of it has the order one. Here two things do:
+Weights for three kinds of neighbours, at (1, 0), (1, 1) and (2, 0), take both away (`neighbours`): order 6 - alpha for
+a smooth field. The whole weight at (2, 0) is a little negative, all others are positive.
 
-- the volumes of the outermost two lines, 1 + delta_k, are those with which the rule integrates d^(alpha/2) and
-  d^(alpha/2 + 1), sum_k delta_k (k - 1/2)^(alpha/2 + m) = -zeta(-alpha/2 - m, 1/2), m = 0, 1, as in Navot's rule;
+A field that is zero outside behaves like d^(alpha/2) at the distance d from an edge. A lattice that takes no notice of
+it has the order one. Here two things do:
+
+- the volumes of the outermost three lines, 1 + delta_k, are those with which the rule integrates d^p for p = alpha/2,
+  alpha/2 + 1 and 1, sum_k delta_k (k - 1/2)^p = -zeta(-p, 1/2), as in Navot's rule. The first two are in the field. The
+  third is its work: what the operator makes of d^(alpha/2 + 1) is d^(1 - alpha/2), times d^(alpha/2);
 - the rate at which line k gives to all others is such that d^(alpha/2) in the half-plane is harmonic, as it is for
   the operator: D_k d_k^(alpha/2) = sum_(j != k) W_(k-j) V_j d_j^(alpha/2), W the sum of w along a line.
 
@@ -18,7 +22,7 @@ The second replaces the rate of the infinite lattice, D = sum w, by D + `edge_fi
 corner those of two edges are added.
 
 A field that nothing leaves has a slope along the edge, to the very edge. There the neighbourhood of a pair is cut, and
--Z(alpha) is not what is left out. For u = t, the coordinate along the edge, lines at the distance k exchange
+these weights are not what is left out. For u = t, the coordinate along the edge, lines at the distance k exchange
 c_1 k^(1-alpha) / (alpha-1) each way, and what the sum over the lines on the far side of the edge differs by from
 its integral, in the mean over the cell of line k,
 
@@ -30,11 +34,12 @@ depends on h.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import gamma, pi
 from typing import Any
 
 import numpy as np
-from scipy.special import hyp2f1, kv, zeta, zetac
+from scipy.special import gammaincc, hyp2f1, kv, zeta, zetac
 
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import plane_constant
@@ -45,17 +50,20 @@ __all__ = [
     "edge_fit",
     "edge_volumes",
     "epstein_zeta",
+    "harmonic_zeta",
     "line_weights",
+    "neighbours",
     "rate_of_all",
     "weights",
 ]
 
 _TERMS = 25  # of an accelerated alternating series: 5.8^-25 is below round-off
+_SHELLS = 4  # exp(-25 pi) is below round-off
 _ALIASES = 6  # K_nu(2 pi 6) is 1e-17
 
 
 def epstein_zeta(s: float) -> float:
-    """Return the sum of |m|^-s over the points m != 0 of the square lattice, continued to 0 < s < 2."""
+    """Return the sum of |m|^-s over the points m != 0 of the square lattice, continued to s < 2."""
     half = 0.5 * s
     odd = 2.0 * np.arange(_TERMS) + 1.0
     return 4.0 * float(1.0 + zetac(half)) * _alternating(odd**-half)
@@ -67,8 +75,12 @@ def weights(alpha: float, count: int) -> FloatArray:
     squared[0, 0] = 1.0
     w = plane_constant(alpha) * squared ** (-1.0 - 0.5 * alpha)
     w[0, 0] = 0.0
-    w[0, 1] += _neighbours(alpha)
-    w[1, 0] += _neighbours(alpha)
+    next_to, across, second = neighbours(alpha)
+    w[0, 1] += next_to
+    w[1, 0] += next_to
+    w[1, 1] += across
+    w[0, 2] += second
+    w[2, 0] += second
     return np.asarray(w)
 
 
@@ -78,22 +90,24 @@ def line_weights(alpha: float, count: int) -> FloatArray:
     z = 2.0 * pi * np.multiply.outer(k, np.arange(1.0, _ALIASES + 1.0))
     aliases = 2.0 ** (1.0 - nu) / gamma(nu) * z**nu * kv(nu, z)
     w = tail_constant(alpha) * k ** (-1.0 - alpha) * (1.0 + 2.0 * aliases.sum(axis=1))
-    w[0] += _neighbours(alpha)
+    next_to, across, second = neighbours(alpha)
+    w[0] += next_to + 2.0 * across
+    w[1] += second
     return np.asarray(w)
 
 
 def rate_of_all(alpha: float) -> float:
     """Return D, the sum of w over the infinite lattice."""
-    return plane_constant(alpha) * epstein_zeta(2.0 + alpha) + 4.0 * _neighbours(alpha)
+    return plane_constant(alpha) * epstein_zeta(2.0 + alpha) + 4.0 * sum(neighbours(alpha))
 
 
 def edge_volumes(alpha: float, count: int) -> FloatArray:
-    """Return the volumes of lines at the distances 1/2, 3/2, .. from an edge, shape (count,)."""
-    power = 0.5 * alpha + np.arange(2.0)
-    moments = np.power([0.5, 1.5], power[:, None])
+    """Return the volumes of lines at the distances 1/2, 3/2, .. from an edge, shape (count,), 3 or more."""
+    power = np.array([0.5 * alpha, 0.5 * alpha + 1.0, 1.0])
+    moments = np.power([0.5, 1.5, 2.5], power[:, None])
     missing = -(2.0**-power - 1.0) * (1.0 + zetac(-power))  # -zeta(-p, 1/2)
     v = np.ones(count)
-    v[:2] += np.linalg.solve(moments, missing)
+    v[:3] += np.linalg.solve(moments, missing)
     return v
 
 
@@ -102,7 +116,8 @@ def edge_fit(alpha: float, count: int) -> FloatArray:
     lines, s, k = 2 * count + 200, 0.5 * alpha, np.arange(count)
     d = np.arange(lines) + 0.5
     w = np.concatenate([[0.0], line_weights(alpha, lines)])
-    own = 2.0 * plane_constant(alpha) * zeta(2.0 + alpha) + 2.0 * _neighbours(alpha)
+    next_to, _, second = neighbours(alpha)
+    own = 2.0 * (plane_constant(alpha) * zeta(2.0 + alpha) + next_to + second)
     volumes = edge_volumes(alpha, lines)
     inflow = w[np.abs(k[:, None] - np.arange(lines))] @ (volumes * d**s)
     # Beyond, the sum is the integral of c_1 (y - d_k)^(-1-alpha) y^s, to the square of the distance in spacings.
@@ -118,11 +133,42 @@ def edge_exchange(alpha: float, count: int) -> FloatArray:
     passed = np.concatenate([[0.0], np.cumsum(k[:-1] ** (1.0 - alpha))])
     mean = (k ** (3.0 - alpha) - (k - 1.0) ** (3.0 - alpha)) / (3.0 - alpha)
     excess = 1.0 + zetac(alpha - 1.0) - passed + mean / (2.0 - alpha)
-    return np.asarray(0.5 * tail_constant(alpha) / (alpha - 1.0) * excess)
+    more = 0.5 * tail_constant(alpha) / (alpha - 1.0) * excess
+    more[0] += neighbours(alpha)[1]  # line 1 has no neighbours beyond the edge
+    return np.asarray(more)
 
 
-def _neighbours(alpha: float) -> float:
-    return -0.25 * plane_constant(alpha) * epstein_zeta(alpha)
+@lru_cache(maxsize=16)
+def neighbours(alpha: float) -> tuple[float, float, float]:
+    """Return the weights at (1, 0), (1, 1) and (2, 0) that are added to those of the kernel.
+
+    Of weights a, b, e there, sum w (k.m)^2 / 2 is (a + 2 b + 4 e) |k|^2, and sum w (k.m)^4 / 24 is
+    (a + 2 b + 16 e) (k_1^4 + k_2^4) / 12 + b k_1^2 k_2^2.
+    """
+    c = plane_constant(alpha)
+    second = -0.25 * c * epstein_zeta(alpha)
+    # The sums of m_1^4 and of m_1^2 m_2^2, from that of |m|^4 / 2 and that of |m|^4 cos 4 theta.
+    both, harmonic = 0.5 * epstein_zeta(alpha - 2.0), harmonic_zeta(alpha)
+    fourth = (harmonic + 6.0 * both) / 8.0
+    b = -0.25 * c * (both - fourth)
+    e = (-0.5 * c * fourth - second) / 12.0
+    return second - 2.0 * b - 4.0 * e, b, e
+
+
+def harmonic_zeta(alpha: float) -> float:
+    """Return the sum of |m|^(2-alpha) cos(4 theta_m) over the m != 0 of the plane, continued.
+
+    By the theta function of the harmonic polynomial P = |m|^4 cos 4 theta, which 1/t takes into t^5 times itself: with
+    w = 1 + alpha/2, pi^w / Gamma(w) sum P (g(w) + g(5 - w)), g(a) = int_1^inf t^(a-1) exp(-pi |m|^2 t) dt.
+    """
+    w, m = 1.0 + 0.5 * alpha, np.arange(-_SHELLS, _SHELLS + 1.0)
+    x, y = (v.reshape(-1) for v in np.meshgrid(m, m))
+    polynomial, y = x**4 - 6.0 * x**2 * y**2 + y**4, pi * np.maximum(x**2 + y**2, 1.0)
+
+    def g(a: float) -> FloatArray:
+        return np.asarray(gamma(a) * gammaincc(a, y) * y**-a)
+
+    return float(pi**w / gamma(w) * (polynomial * (g(w) + g(5.0 - w))).sum())
 
 
 def _alternating(terms: Any) -> float:

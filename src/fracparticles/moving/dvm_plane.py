@@ -28,18 +28,15 @@ from fracparticles.errors import (
 )
 from fracparticles.moving.dvm import EXTERIORS, DiffusionVelocity, largest_gap
 from fracparticles.moving.lagrangian import REMESHING, FieldNotPositive, quotient_velocity
+from fracparticles.moving.plane_remeshing import Particles, on_square, remesh_plane
 from fracparticles.moving.plane_sums import PlaneSums
 from fracparticles.moving.plane_tail import REACH, PlaneTail
-from fracparticles.moving.remeshing import REMESHINGS, interpolation_function
+from fracparticles.moving.remeshing import REMESHINGS
 
-__all__ = ["PlaneRun", "PlaneVelocity", "remesh_plane", "run_in_plane"]
+__all__ = ["PlaneRun", "PlaneVelocity", "run_in_plane"]
 
-_ULPS = 2.0 * float(np.finfo(float).eps)
 _GONE = 0.05  # of the total strength: what the ends of a truncated lattice may leave out
 _MISFIT = 0.05  # of the total strength: what the far field may hold wrongly
-_MOST = 2**13  # lattice points along an axis: a particle that needs more has run away
-
-Particles = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class PlaneVelocity:
@@ -229,7 +226,7 @@ def run_in_plane(
             if remeshing != "none" and _largest_gap(x, y) > above * h:
                 before = float(strength.sum())
                 wide = velocity.continued(x, y, strength)
-                strength = _on_lattice(*remesh_plane(*wide, h, remeshing), h, n)
+                strength = on_square(*remesh_plane(*wide, h, remeshing), h, n)
                 x, y = np.meshgrid(lattice, lattice, indexing="ij")
                 lost += before - float(strength.sum())
                 times.append(time)
@@ -239,31 +236,6 @@ def run_in_plane(
             raise kind(f"{when}: {error}") from error
     _warn(velocity, x, y, strength, lost / total)
     return PlaneRun(x, y, strength, velocity, total, lost, times)
-
-
-def remesh_plane(
-    x: np.ndarray, y: np.ndarray, strength: np.ndarray, spacing: float, name: str
-) -> Particles:
-    """Return positions and strengths on the lattice (p h, q h), a rectangle that holds what the particles give.
-
-    Every particle is split among four by four points, by the interpolation function `name` in each coordinate.
-
-    Raises `InvalidInput` if a particle has run away.
-    """
-    (first_x, w_x), (first_y, w_y) = (_split(v.reshape(-1) / spacing, name) for v in (x, y))
-    low_x, low_y = first_x.min(), first_y.min()
-    shape = int(first_x.max() - low_x) + 4, int(first_y.max() - low_y) + 4
-    check.whole_number("lattice points along an axis", max(shape), 1, _MOST)
-    q, total = strength.reshape(-1), np.zeros(shape[0] * shape[1])
-    for a in range(4):
-        for b in range(4):
-            index = (first_x - low_x + a) * shape[1] + (first_y - low_y + b)
-            total += np.bincount(index, q * w_x[:, a] * w_y[:, b], total.size)
-    lines = (
-        spacing * (low + np.arange(count)) for low, count in zip((low_x, low_y), shape, strict=True)
-    )
-    at_x, at_y = np.meshgrid(*lines, indexing="ij")
-    return at_x, at_y, total.reshape(shape)
 
 
 def _warn(
@@ -285,27 +257,6 @@ def _warn(
             AccuracyWarning,
             stacklevel=3,
         )
-
-
-def _split(cell: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """The first of the four lattice points of each particle, and the weights."""
-    nearest = np.rint(cell)
-    # p h / h may miss p by an ulp, which would leak a little to the neighbours of p each time.
-    cell = np.where(np.abs(cell - nearest) <= _ULPS * np.abs(cell), nearest, cell)
-    left = np.floor(cell)
-    distance = (cell - left)[:, None] - np.arange(-1.0, 3.0)
-    return left.astype(np.int64) - 1, interpolation_function(name, distance)
-
-
-def _on_lattice(
-    x: np.ndarray, y: np.ndarray, strength: np.ndarray, spacing: float, n: int
-) -> np.ndarray:
-    """The strengths of -n .. n in both coordinates; what lies beyond is left out."""
-    out = np.zeros((2 * n + 1, 2 * n + 1))
-    index = [np.rint(v / spacing).astype(int) + n for v in (x[:, 0], y[0])]
-    inside = [(i >= 0) & (i <= 2 * n) for i in index]
-    out[np.ix_(index[0][inside[0]], index[1][inside[1]])] = strength[np.ix_(*inside)]
-    return out
 
 
 def _flat(arrays: Particles) -> Particles:

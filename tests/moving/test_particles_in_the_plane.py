@@ -10,8 +10,9 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
-from fracparticles.moving.dvm_plane import PlaneVelocity, remesh_plane, run_in_plane
+from fracparticles.moving.dvm_plane import PlaneVelocity, run_in_plane
 from fracparticles.moving.lagrangian import FieldNotPositive
+from fracparticles.moving.plane_remeshing import remesh_plane
 from fracparticles.moving.plane_sums import PlaneSums, naive_sums
 from fracparticles.moving.plane_tail import PlaneTail, far_flux
 from fracparticles.moving.remeshing import REMESHINGS, remesh

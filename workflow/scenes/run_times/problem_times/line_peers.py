@@ -1,0 +1,110 @@
+"""Peers on the line: rates of u_t + (a u)_x = (D grad^beta u)_x + f, and a Runge-Kutta method of order 8.
+
+Fourier, on a circle of length 2 L, the products at the points (Trefethen, Spectral Methods in MATLAB, 2000):
+
+    R(u) = F^-1 [i k F(D F^-1(i k |k|^(beta-1) F u) - a u)] + f.
+
+Fractional centred differences (Ortigueira 2006; Celik & Duman, J. Comput. Phys. 231 (2012) 1743), the flux half-way
+between the points, u = 0 beyond the lattice:
+
+    q_(i+1/2) = D_(i+1/2) h^(-beta) sum_m g_m (u_(i+1-m) - u_(i-m)) - (a u)_(i+1/2),
+    R_i = (q_(i+1/2) - q_(i-1/2)) / h,
+
+sum_m g_m e^(i m theta) = |2 sin(theta/2)|^(beta-1). With D = 1 that is -(2 sin(theta/2) / h)^alpha, of second order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import gamma
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+from scipy.integrate import solve_ivp
+
+__all__ = ["centred_weights", "differences", "integrated", "pseudo_spectral"]
+
+Field = Callable[[np.ndarray], np.ndarray]
+Rate = Callable[[float, np.ndarray], np.ndarray]
+
+
+def centred_weights(power: float, count: int) -> np.ndarray:
+    """Return g_0 .. g_(count-1) of sum_m g_m e^(i m theta) = |2 sin(theta/2)|^power, power > -1.
+
+    g_m = (-1)^m Gamma(p + 1) / (Gamma(p/2 - m + 1) Gamma(p/2 + m + 1)), by the ratio of neighbours.
+    """
+    half, m = 0.5 * power, np.arange(count - 1.0)
+    first = gamma(power + 1.0) / gamma(half + 1.0) ** 2
+    return np.asarray(first * np.cumprod(np.append(1.0, (m - half) / (m + 1.0 + half))))
+
+
+def pseudo_spectral(
+    alpha: float,
+    half_width: float,
+    spacing: float,
+    diffusivity: Field | None,
+    velocity: Field | None,
+) -> tuple[np.ndarray, Rate]:
+    """Return the points of the circle and R(t, u) without a source."""
+    n = round(half_width / spacing)
+    h = half_width / n
+    x = h * np.arange(-n, n)
+    k = np.pi / half_width * np.arange(n + 1.0)
+    derivative = 1j * k
+    derivative[-1] = 0.0  # the wave of two points has no slope at them
+    gradient = derivative * np.append(0.0, k[1:] ** (alpha - 2.0))
+    d = None if diffusivity is None else diffusivity(x)
+    a = None if velocity is None else velocity(x)
+    laplacian = -(k**alpha)
+
+    def rate(t: float, u: np.ndarray) -> np.ndarray:
+        waves = rfft(u)
+        total = laplacian * waves
+        if d is not None:
+            total = derivative * rfft(d * irfft(gradient * waves, 2 * n))
+        if a is not None:
+            total = total - derivative * rfft(a * u)
+        return np.asarray(irfft(total, 2 * n))
+
+    return x, rate
+
+
+def differences(
+    alpha: float,
+    half_width: float,
+    spacing: float,
+    diffusivity: Field | None,
+    velocity: Field | None,
+    upwind: bool = False,
+) -> tuple[np.ndarray, Rate]:
+    """Return the points of the lattice and R(t, u) without a source; carried is the mean or the upwind value."""
+    n = round(half_width / spacing)
+    h = half_width / n
+    x, middles = h * np.arange(-n, n + 1), h * (np.arange(-n - 1, n + 1) + 0.5)
+    length = next_fast_len(2 * middles.size, real=True)
+    weights = centred_weights(alpha - 2.0, middles.size)
+    circle = np.zeros(length)
+    circle[: weights.size] = weights
+    circle[: -weights.size : -1] = weights[1:]
+    multiplier = rfft(circle) * h ** (1.0 - alpha)
+    d = 1.0 if diffusivity is None else diffusivity(middles)
+    a = None if velocity is None else velocity(middles)
+
+    def rate(t: float, u: np.ndarray) -> np.ndarray:
+        wide = np.concatenate(([0.0], u, [0.0]))
+        left, right = wide[:-1], wide[1:]
+        flux = d * irfft(multiplier * rfft(right - left, length), length)[: middles.size]
+        if a is not None:
+            flux -= a * (np.where(a > 0.0, left, right) if upwind else 0.5 * (left + right))
+        return np.asarray(np.diff(flux) / h)
+
+    return x, rate
+
+
+def integrated(
+    rate: Rate, u: np.ndarray, times: tuple[float, float], tolerance: float
+) -> np.ndarray:
+    """Return u at the second time, by scipy's DOP853."""
+    atol = tolerance * float(np.abs(u).max())
+    run = solve_ivp(rate, times, u, method="DOP853", t_eval=times[1:], rtol=tolerance, atol=atol)
+    return np.asarray(run.y[:, -1])
