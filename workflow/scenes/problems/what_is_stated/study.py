@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from fracparticles.errors import InvalidInput
 from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
@@ -30,6 +31,10 @@ def _judged(
 ) -> dict[str, Any]:
     """The value that is farthest on the wrong side, of all rows that the statement speaks of."""
     rows = tables[scene]
+    for name in (column, *where):
+        if name not in rows:
+            remedy = f"Mend the statement {says!r}."
+            raise InvalidInput("column", name, f"a column of the table of {scene}", remedy)
     for name, value in where.items():
         rows = rows[rows[name] == value]
     values = rows[column].dropna()
