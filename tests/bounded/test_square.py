@@ -226,7 +226,7 @@ def test_a_manufactured_solution(alpha, exterior):
         u, source = bump(one), applied(one, alpha)
         if exterior == "reflecting":
             source = source - outward_rate(one.x, one.y, 1.0, alpha) * u
-        errors.append(np.abs(one.solve(u, 0.3, source) - u).max())
+        errors.append(np.abs(one.evolve(u, 0.3, source) - u).max())
     # At edges that nothing leaves the order is 2; the fourth power at r = 1 does not let it be 6 - alpha inside.
     assert errors[-1] < (1e-5 if exterior == "absorbing" else 6e-5)
     assert orders(errors)[-1] > (3.3 if exterior == "absorbing" else 1.9)
@@ -246,7 +246,7 @@ def test_a_field_given_outside_is_continued_inside(alpha):
     errors = []
     for side in (16, 32):
         one = Square(alpha, side, "given", given=u)
-        errors.append(np.abs(one.steady(source) - u(one.x, one.y)).max())
+        errors.append(np.abs(one.stationary(source) - u(one.x, one.y)).max())
     # Of order 6 - alpha by the lattice, of order 2 by the end of the wider one, far away.
     assert errors[-1] < 3e-5
     assert orders(errors)[-1] > 1.9
@@ -291,16 +291,16 @@ def test_the_reflecting_total_stays(alpha):
     one = square(alpha, 32, "reflecting")
     u = np.exp(-8.0 * ((one.x - 0.5) ** 2 + one.y**2))
     for t in (1e-3, 1.0):
-        assert one.total(one.solve(u, t)) == pytest.approx(one.total(u), rel=1e-13)
-    assert np.ptp(one.solve(u, 10.0)) < 3.0 * np.exp(-10.0 * one.eigenvalues(2)[1])
+        assert one.total(one.evolve(u, t)) == pytest.approx(one.total(u), rel=1e-13)
+    assert np.ptp(one.evolve(u, 10.0)) < 3.0 * np.exp(-10.0 * one.eigenvalues(2)[1])
     assert one.eigenvalues(1)[0] == 0.0
-    assert one.total(one.solve(0.0, 2.0, 3.0)) == pytest.approx(24.0, rel=1e-13)
+    assert one.total(one.evolve(0.0, 2.0, 3.0)) == pytest.approx(24.0, rel=1e-13)
 
 
 def test_a_constant_stays_if_it_is_given():
     one = Square(1.8, 16, "given", given=lambda x, y: 0.0 * x + 2.0)
-    assert np.abs(one.solve(2.0, 5.0) - 2.0).max() < 1e-14
-    assert np.abs(one.solve(0.0, 60.0) - 2.0).max() < 1e-9
+    assert np.abs(one.evolve(2.0, 5.0) - 2.0).max() < 1e-14
+    assert np.abs(one.evolve(0.0, 60.0) - 2.0).max() < 1e-9
 
 
 @pytest.mark.parametrize("exterior", ["absorbing", "reflecting"])
@@ -308,15 +308,15 @@ def test_the_symmetries_of_the_square(exterior):
     one = square(1.5, 16, exterior)
     u = np.random.default_rng(3).random((16, 16))
     for turned in (np.rot90, np.transpose, np.flipud):
-        assert one.solve(turned(u), 0.1) == pytest.approx(turned(one.solve(u, 0.1)), abs=1e-11)
+        assert one.evolve(turned(u), 0.1) == pytest.approx(turned(one.evolve(u, 0.1)), abs=1e-11)
     assert np.ptp(one.eigenvalues(3)[1:]) < 1e-9  # x and y
 
 
 def test_a_long_decay_is_that_of_the_first_eigenvalue():
     one = square(1.5, 16)
-    first = one.total(one.solve(1.0, 6.0)) / one.total(one.solve(1.0, 7.0))
+    first = one.total(one.evolve(1.0, 6.0)) / one.total(one.evolve(1.0, 7.0))
     assert np.log(first) == pytest.approx(one.eigenvalues(1)[0], rel=1e-8)
-    assert one.solve(1.0, 1.0).min() > 0.0
+    assert one.evolve(1.0, 1.0).min() > 0.0
 
 
 def test_half_width_and_diffusivity_are_units():
@@ -324,17 +324,17 @@ def test_half_width_and_diffusivity_are_units():
     factor = 2.0 * 3.0**-1.5
     assert large.eigenvalues(2) == pytest.approx(factor * small.eigenvalues(2), rel=1e-10)
     u = bump(small)
-    assert large.solve(u, 0.5) == pytest.approx(small.solve(u, 0.5 * factor), rel=1e-9)
-    assert large.steady(1.0) == pytest.approx(small.steady(1.0 / factor), rel=1e-9)
+    assert large.evolve(u, 0.5) == pytest.approx(small.evolve(u, 0.5 * factor), rel=1e-9)
+    assert large.stationary(1.0) == pytest.approx(small.stationary(1.0 / factor), rel=1e-9)
     assert large.rate(u) == pytest.approx(factor * small.rate(u), rel=1e-9)
 
 
 def test_a_field_that_the_particles_do_not_see_is_said():
     with pytest.warns(AccuracyWarning, match="the particles do not resolve initial"):
-        square(1.5, 8).solve(lambda x, y: 1.0 + np.cos(8.0 * pi * x), 1.0)
+        square(1.5, 8).evolve(lambda x, y: 1.0 + np.cos(8.0 * pi * x), 1.0)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        square(1.5, 32).solve(lambda x, y: 1.0 + np.cos(8.0 * pi * x), 1.0)
+        square(1.5, 32).evolve(lambda x, y: 1.0 + np.cos(8.0 * pi * x), 1.0)
 
 
 # --- what is refused ------------------------------------------------------------------------------
@@ -364,13 +364,13 @@ def test_bad_squares_are_refused(bad, field):
 def test_bad_fields_are_refused():
     one = square(1.5, 8)
     for name, call in {
-        "initial": lambda: one.solve(np.ones(3), 1.0),
-        "t": lambda: one.solve(1.0, np.nan),
-        "source": lambda: one.solve(1.0, 1.0, lambda x, y: x / 0.0),
+        "initial": lambda: one.evolve(np.ones(3), 1.0),
+        "time": lambda: one.evolve(1.0, np.nan),
+        "source": lambda: one.evolve(1.0, 1.0, lambda x, y: x / 0.0),
         "u": lambda: one.total(np.full((8, 8), np.inf)),
         "count": lambda: one.eigenvalues(21),
     }.items():
         with pytest.raises(InvalidInput, match=rf"^{name} = "):
             call()
     with pytest.raises(InvalidInput, match=r"^source = .* total 0"):
-        square(1.5, 8, "reflecting").steady(1.0)
+        square(1.5, 8, "reflecting").stationary(1.0)

@@ -117,22 +117,22 @@ class Disc:
             out += self._inflow
         return self._rate * self._back(out)
 
-    def solve(self, initial: Field, t: float, source: Field = 0.0) -> FloatArray:
-        """Return u at time t, exact in time, shape (radial, angular).
+    def evolve(self, initial: Field, time: float, source: Field = 0.0) -> FloatArray:
+        """Return u a time after `initial`, exact in time, shape (radial, angular).
 
         Parameters
         ----------
         initial, source : array, number or callable
             u at time 0, and f: arrays of the shape of `x`, or functions of (x, y).
-        t : float
-            Time, 0 or more.
+        time : float
+            0 or more.
 
         Warns
         -----
         AccuracyWarning
             If the particles do not resolve one of these functions.
         """
-        t = self._rate * check.not_negative("t", t)
+        t = self._rate * check.not_negative("time", time)
         u = self._transformed(self._field("initial", initial) - self._level)
         f = self._transformed(self._field("source", source)) / self._rate
         if self._inflow is not None:
@@ -140,7 +140,7 @@ class Disc:
         done = self._combined(u, f, lambda z: np.exp(-z * t), lambda z: _phi(z, t))
         return self._level + self._back(done)
 
-    def steady(self, source: Field) -> FloatArray:
+    def stationary(self, source: Field) -> FloatArray:
         """Return the u that does not change, D L u + f = 0; of the exterior "reflecting" the one of total 0.
 
         Raises

@@ -58,9 +58,11 @@ class AbsorbingDisc:
         self._mass = 2.0**-s * self._gram(alpha)
         self.eigenvalues, self._vectors = eigh(0.5 * (form + form.T), self._mass)
 
-    def solve(self, profile: Callable[[FloatArray], Any], t: float, r: FloatArray) -> FloatArray:
-        """Return u(r, t) of the initial field (1 - r^2)^(alpha/2) r^l p(r), at distances r from the centre."""
-        t = check.not_negative("t", t)
+    def evolve(
+        self, profile: Callable[[FloatArray], Any], time: float, r: FloatArray
+    ) -> FloatArray:
+        """Return u(r, time) of the initial field (1 - r^2)^(alpha/2) r^l p(r), at distances r from the centre."""
+        t = check.not_negative("time", time)
         nodes, weights = roots_jacobi(2 * self._n.size + 8, 2.0 * self._s, self._wave)
         at = np.sqrt(0.5 * (1.0 + nodes))
         moments = self._polynomials(nodes) @ (weights * profile(at)) * 2.0**-self._s

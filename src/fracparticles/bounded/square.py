@@ -144,15 +144,15 @@ class Square:
         v = self._inner(self._field("u", u) - self._base)
         return self._rate * (self._outer(self._operator.apply(v)) + self._inflow)
 
-    def solve(self, initial: Field, t: float, source: Field = 0.0) -> FloatArray:
-        """Return u at time t, exact in time, shape (N, N).
+    def evolve(self, initial: Field, time: float, source: Field = 0.0) -> FloatArray:
+        """Return u a time after `initial`, exact in time, shape (N, N).
 
         Parameters
         ----------
         initial, source : array, number or callable
             u at time 0, and f: arrays of the shape of `x`, or functions of (x, y).
-        t : float
-            Time, 0 or more.
+        time : float
+            0 or more.
 
         Raises
         ------
@@ -164,7 +164,7 @@ class Square:
         AccuracyWarning
             If the particles do not resolve one of these functions.
         """
-        t = self._rate * check.not_negative("t", t)
+        t = self._rate * check.not_negative("time", time)
         v = self._inner(self._field("initial", initial) - self._base)
         f = self._inner(self._field("source", source) / self._rate + self._inflow)
         mean = grown = np.zeros_like(v)
@@ -179,7 +179,7 @@ class Square:
             v = v - v.mean()  # round-off
         return self._base + self._outer(v + at_rest + mean + t * grown)
 
-    def steady(self, source: Field) -> FloatArray:
+    def stationary(self, source: Field) -> FloatArray:
         """Return the u that does not change, D L u + f = 0; of the exterior "reflecting" the one of total 0.
 
         Raises

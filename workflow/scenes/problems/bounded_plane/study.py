@@ -64,7 +64,7 @@ def _disc(alpha: float, rings: list[int], panels: Panels) -> list[dict[str, Any]
     for n in rings:
         one = Disc(alpha, n, 1)
         exact = np.maximum(1.0 - one.x**2 - one.y**2, 0.0) ** (0.5 * alpha)
-        errors.append(one.total(np.abs(one.steady(size) - exact)) / one.total(exact))
+        errors.append(one.total(np.abs(one.stationary(size) - exact)) / one.total(exact))
         eigenvalues.append(float(one.eigenvalues(1)[0]))
     panels.add("getoor", f"{alpha:g}", rings, errors, order=4.0 - alpha)
     relative = [abs(v / first - 1.0) for v in eigenvalues]
@@ -95,7 +95,7 @@ def _totals(alpha: float) -> list[dict[str, Any]]:
         ("square", Square(alpha, 32, "reflecting")),
     ):
         u = np.exp(-8.0 * ((one.x - 0.5) ** 2 + one.y**2))
-        drift = abs(one.total(one.solve(u, 1.0)) / one.total(u) - 1.0)
+        drift = abs(one.total(one.evolve(u, 1.0)) / one.total(u) - 1.0)
         rows.append(
             {"part": "drift of the total, reflecting", "case": case, "alpha": alpha, "exact": 0.0,
              "error": _power_of_ten(drift)}
@@ -113,8 +113,8 @@ def _decay(alpha: float, rings: int, times: list[float], panels: Panels) -> list
     one, spectral = Disc(alpha, rings, 1), AbsorbingDisc(alpha)
     start = (1.0 - one.x**2 - one.y**2) ** (0.5 * alpha)
     r = np.hypot(one.x, one.y)[:1, 0]
-    ours = [float(one.solve(start, t)[0, 0]) for t in times]
-    exact = [float(spectral.solve(np.ones_like, t, r)[0]) for t in times]
+    ours = [float(one.evolve(start, t)[0, 0]) for t in times]
+    exact = [float(spectral.evolve(np.ones_like, t, r)[0]) for t in times]
     panels.add("decay", "rings of particles", times, ours, exact=exact)
     return [
         {"part": "decay", "case": "disc", "alpha": alpha, "count": rings, "at": t, "ours": a,
