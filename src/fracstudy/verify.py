@@ -87,9 +87,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 "-m",
                 "snakemake",
                 "-j2",
+                *names,  # before the options that take several values
                 "--quiet",
                 "all",
-                *names,
                 "--config",
                 *places,
             ],
