@@ -15,7 +15,7 @@ from scipy.special import gamma
 
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
 from fracparticles.run.orders import observed_order
-from fracparticles.variable.closed_forms import Gaussian
+from fracparticles.variable.closed_forms import Cauchy, Gaussian
 from fracstudy.inputs import Inputs
 from fracstudy.ledger_text import COLUMNS
 from fracstudy.lookup import LookUps
@@ -36,6 +36,7 @@ from scenes.run_times.problem_times.line_peers import (
     differences,
     integrated,
     pseudo_spectral,
+    rational,
 )
 from scenes.run_times.problem_times.study import FIRST, study
 
@@ -132,6 +133,28 @@ def test_both_ways_carry_alike():
     exact = Gaussian.laplacian([x], ALPHA) + (1.0 - 2.0 * x * x) * bell
     # The images of a bell of mass sqrt(pi), C = 0.3, at 80: 0.3 * 1.8 * 2 zeta(2.5) * 80^-2.5.
     assert np.abs(rate(0.0, bell) - exact)[np.abs(x) < 4.0].max() < 3e-5
+
+
+def test_rational_functions_differentiate_their_own_and_converge_like_the_tail():
+    """1 / (1 + x^2) is one of them; its fractional Laplacian, which falls like |x|^(-1-alpha), takes N^(-1-alpha)."""
+    nothing = np.zeros_like
+    x, rate = rational(ALPHA, 32, 1.0, nothing, lambda x: np.full_like(x, -0.7))
+    assert_allclose(rate(0.0, Cauchy.value([x])), -1.4 * x / (1.0 + x * x) ** 2, atol=1e-12)
+    counts, found = np.array([32, 64, 128]), []
+    for n in counts:
+        x, rate = rational(ALPHA, n, 1.0, None, None)
+        exact = Cauchy.laplacian([x], ALPHA)
+        found.append(np.abs(rate(0.0, Cauchy.value([x])) - exact).max())
+    assert_allclose(observed_order(1.0 / counts, found)[-1], 1.0 + ALPHA, atol=0.1)
+
+
+def test_rational_functions_converge_with_a_diffusivity_that_varies():
+    """The flux falls like |x|^(-alpha): their order is low, but there is no other limit to it."""
+    found = []
+    for n in (48, 192):
+        x, rate = rational(ALPHA, n, 4.0, diffusivity, None)
+        found.append(np.abs(rate(0.0, np.exp(-x * x)) - right_hand_side(x)).max())
+    assert found[1] < found[0] / 4.0 < 1e-3
 
 
 def test_the_integrator_keeps_its_tolerance():

@@ -34,6 +34,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "evolve, one lattice": {"color": "#000000", "marker": "*"},
     "evolve, two lattices": {"color": "#000000", "marker": "X", "linestyle": ":"},
     "Fourier, circle": {"color": "#666666", "marker": "o"},
+    "rational functions": {"color": "#2E6E6E", "marker": "p"},
     "differences": {"color": "#A0522D", "marker": "v"},
     "differences, upwind": {"color": "#A0522D", "marker": "<"},
     "elements, equal": {"color": "#8A6D3B", "marker": "s"},

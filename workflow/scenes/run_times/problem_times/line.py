@@ -16,6 +16,7 @@ from scenes.run_times.problem_times.line_peers import (
     differences,
     integrated,
     pseudo_spectral,
+    rational,
 )
 
 __all__ = ["drawn_back", "variable_diffusivity"]
@@ -75,6 +76,7 @@ def variable_diffusivity(alpha: float) -> Contest:
         {
             **{name: Contender(OURS, partial(ours, *which)) for name, which in _OURS.items()},
             "Fourier, circle": Contender(PEER, partial(peer, pseudo_spectral)),
+            "rational functions": Contender(PEER, partial(peer, rational)),
             "differences": Contender(PEER, partial(peer, differences)),
         },
     )
@@ -114,6 +116,7 @@ def drawn_back(alpha: float) -> Contest:
         {
             **{name: Contender(OURS, partial(ours, *which)) for name, which in _OURS.items()},
             "Fourier, circle": Contender(PEER, partial(peer, pseudo_spectral)),
+            "rational functions": Contender(PEER, partial(peer, rational)),
             "differences": Contender(PEER, partial(peer, differences)),
             "differences, upwind": Contender(
                 PEER, partial(peer, partial(differences, upwind=True))

@@ -11,6 +11,14 @@ between the points, u = 0 beyond the lattice:
     R_i = (q_(i+1/2) - q_(i-1/2)) / h,
 
 sum_m g_m e^(i m theta) = |2 sin(theta/2)|^(beta-1). With D = 1 that is -(2 sin(theta/2) / h)^alpha, of second order.
+
+Rational functions (Christov 1982; Iserles & Webb, J. Fourier Anal. Appl. 26 (2020) 19), x = L tan(theta/2), no end:
+
+    phi_n = (1 + i x/L)^n / (1 - i x/L)^(n+1),   (i k |k|^(p-1) u)_m = i sum_n M_mn u_n,
+    M_mn = (-1)^(m+n) int_0^inf e^(-s) L_m(s) L_n(s) (s / 2 L)^p ds, by Gauss' rule for the weight s^p e^(-s), exact.
+
+The diffusion is D div grad^beta u + D' grad^beta u there: the flux itself falls like |x|^(-alpha), which the functions
+hold badly, and its derivative worse.
 """
 
 from __future__ import annotations
@@ -19,10 +27,11 @@ from collections.abc import Callable
 from math import gamma
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
 from scipy.integrate import solve_ivp
+from scipy.special import eval_laguerre, roots_genlaguerre
 
-__all__ = ["centred_weights", "differences", "integrated", "pseudo_spectral"]
+__all__ = ["centred_weights", "differences", "integrated", "pseudo_spectral", "rational"]
 
 Field = Callable[[np.ndarray], np.ndarray]
 Rate = Callable[[float, np.ndarray], np.ndarray]
@@ -99,6 +108,49 @@ def differences(
         return np.asarray(np.diff(flux) / h)
 
     return x, rate
+
+
+def rational(
+    alpha: float,
+    points: int,
+    scale: float,
+    diffusivity: Field | None,
+    velocity: Field | None,
+) -> tuple[np.ndarray, Rate]:
+    """Return the points, an even number of them on the whole line, and R(t, u) without a source; `scale` is L."""
+    half = points // 2
+    theta = (np.arange(points) + 0.5) * (2.0 * np.pi / points) - np.pi
+    x = scale * np.tan(0.5 * theta)
+    pole, shift = 1.0 - 1j * x / scale, np.exp(-1j * np.arange(half) * theta[0])
+    derivative = _power_matrix(1.0, half, scale)
+    gradient = _power_matrix(alpha - 1.0, half, scale)
+    laplacian = _power_matrix(alpha, half, scale)
+    d = np.ones(points) if diffusivity is None else diffusivity(x)
+    a = None if velocity is None else velocity(x)
+
+    def waves(v: np.ndarray) -> np.ndarray:
+        return np.asarray(fft(v * pole, norm="forward")[:half] * shift)
+
+    def values(c: np.ndarray) -> np.ndarray:
+        return np.asarray(2.0 * (ifft(c * shift.conj(), points, norm="forward") / pole).real)
+
+    slope = values(1j * (derivative @ waves(d - d[-1])))
+
+    def rate(t: float, u: np.ndarray) -> np.ndarray:
+        c = waves(u)
+        total = slope * values(1j * (gradient @ c)) - d * values(laplacian @ c)
+        if a is not None:
+            total -= values(1j * (derivative @ waves(a * u)))
+        return np.asarray(total)
+
+    return x, rate
+
+
+def _power_matrix(power: float, count: int, scale: float) -> np.ndarray:
+    s, weights = roots_genlaguerre(count, power)
+    n = np.arange(count)[:, None]
+    functions = (-1.0) ** n * eval_laguerre(n, s) * np.sqrt(weights)
+    return np.asarray((0.5 / scale) ** power * functions @ functions.T)
 
 
 def integrated(
