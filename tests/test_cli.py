@@ -393,6 +393,11 @@ def test_progress_reaches_the_end_and_never_goes_back(flags):
     assert seen[-1] == 1.0
 
 
+def test_what_progress_is_told_to_must_be_a_function():
+    with pytest.raises(fp.InvalidInput, match="progress = 'yes'"):
+        fp.solve(CASE, progress="yes")
+
+
 def test_progress_of_particles_that_move():
     seen = []
     case = Case(scheme="DVM", beta=0.5, half_width=10.0, spacing=0.5, dt=0.05)

@@ -22,6 +22,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -36,7 +37,7 @@ MOST = 3000  # particles: all eigenvalues of a matrix of that size are wanted
 _CURVATURE = 0.2  # c: of a stable density, whose |u''| M^-1 w^3 in the middle is 0.2 to 0.3
 _POWER = 4.0  # p
 _GROWTH = 1.0  # g
-_TOLERANCE = 1e-10  # of the positions, relative to l
+_TOLERANCE = 1e-10  # of the positions, relative to the least l
 
 
 @dataclass(frozen=True)
@@ -126,11 +127,15 @@ def place_particles(
         return float(x[0] - high)
 
     beyond.terminal = True  # type: ignore[attr-defined]
-    run = solve_ivp(
-        lambda _, x: [length(x[0])], (0.0, step * MOST), [low],
-        method="DOP853", dense_output=True, events=beyond,
-        rtol=_TOLERANCE, atol=_TOLERANCE * length(0.5 * (low + high)),
-    )  # fmt: skip
+
+    def positions(least: float, digits: float) -> Any:
+        return solve_ivp(
+            lambda _, x: [length(x[0])], (0.0, step * MOST), [low],
+            method="DOP853", dense_output=True, events=beyond, rtol=1e-3 * digits, atol=digits * least,
+        )  # fmt: skip
+
+    roughly = positions(length(0.5 * (low + high)), 1e-4)
+    run = positions(min(map(length, roughly.y[0])), _TOLERANCE)
     if run.status != 1:
         allowed = f"a step that leaves at most {MOST} particles"
         raise InvalidInput("step", step, allowed, "Take a longer one, or a shorter reach.")

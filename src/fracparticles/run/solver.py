@@ -83,6 +83,8 @@ def compute(
 ) -> Solution:
     """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
     check.instance("case", case, Case)
+    if progress is not None:
+        check.function("progress", progress)
     source = resolved(case, initial)
     u0, origin = initial_strengths(case, source)
     particles = outputs = None
