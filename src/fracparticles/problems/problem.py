@@ -79,7 +79,10 @@ class Problem(BaseModel):
         description="Order of the kernels. FPSE in the plane has 2 and 4 where the diffusivity is the same everywhere.",
     )
     overlap: float = Field(
-        default=2.0, ge=OVERLAPS[0], le=OVERLAPS[1], description="Overlap epsilon / h."
+        default=2.0,
+        ge=OVERLAPS[0],
+        le=OVERLAPS[1],
+        description="Overlap epsilon / h. For the last digits of order 10 and 12 take 2.5 or more.",
     )
     form: Literal["FPSE", "DD", "exchange"] = Field(
         default="FPSE",
