@@ -160,6 +160,23 @@ def test_quantiles_invert_the_cumulative(part, t):
         assert profile.cumulative(profile.quantile(g, t), t) == pytest.approx(g, abs=1e-13)
 
 
+@pytest.mark.parametrize("t", [1.0, 1e3, 1e6, 1e12])
+@pytest.mark.parametrize("g", [1e-200, 1e-12, 1e-3, 0.5])
+def test_quantiles_of_a_square_that_has_spread_far(g, t):
+    """The cumulative at them, in digits enough for the difference of its terms."""
+    x = float(Square().quantile(np.array([g]), t)[0])
+    with mp.workdps(300):
+        s = 2 * mp.sqrt(mp.mpf(t))
+
+        def antiderivative(y):
+            return y * mp.erf(y / s) + s / mp.sqrt(mp.pi) * mp.exp(-((y / s) ** 2))
+
+        exact = 1 + (antiderivative(mp.mpf(x) + 1) - antiderivative(mp.mpf(x) - 1)) / 2
+    # An ulp of x changes g by x f / g, some 1 + x^2 / (2 t) ulp.
+    room = 2.0**-52 * (8.0 + 4.0 * (x * x / t))
+    assert float(exact) == pytest.approx(g, rel=8.0 * room)
+
+
 def test_the_exact_markers_move_with_the_exact_velocity():
     # dx/dt = -f_x / f along quantile(g, t).
     square, g, t, step = Square(), np.array([0.1, 0.7, 1.5]), 2.0, 1e-4
