@@ -114,6 +114,20 @@ def test_where_digits_would_be_lost_the_recurrence_is_cut():
     u0 = np.exp(-(case.x**2))
     assert short.operator_applications > long.operator_applications
     assert np.abs(long.run(u0)[0] - short.run(u0)[0]).max() < 1e-13
+    assert np.array_equal(short(u0), short.run(u0)[0])
+
+
+def test_a_part_starts_where_the_last_one_has_come_to():
+    """Ten outputs in parts of several: each part from the last output of the one before."""
+    case = fp.Case(**{**GIVEN, **EXPONENTIAL, "spacing": 0.1}, t_final=200.5)
+    ready = fp.prepare(case)
+    times = np.linspace(20.0, 200.0, 10)
+    low = -2.2 * case.setting.rate
+    long = exponential_snapshots(ready.operator, times, low, 0.0)
+    most = int(0.8 * long.operator_applications)
+    short = exponential_snapshots(ready.operator, times, low, 0.0, largest_degree=most)
+    u0 = np.exp(-(case.x**2))
+    assert np.abs(long(u0) - short(u0)).max() < 1e-13
 
 
 class Decay:

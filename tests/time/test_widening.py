@@ -93,6 +93,15 @@ def test_units_do_not_matter(alpha, later, length, diffusivity):
         assert np.abs(u - v).max() <= 1e-9 * u.max()
 
 
+@pytest.mark.parametrize("h", [1e-3, 1e3])
+def test_the_lattice_widens_as_often_in_any_unit(h):
+    u = blob(400, 1.0, 30.0, 1.5, 1, 0.0)
+    in_spacings = evolve_long(u, 1.0, 1.5, 1e4)
+    again = evolve_long(u, h, 1.5, 1e4 * h**1.5)
+    assert again[1] == pytest.approx(h * in_spacings[1], rel=1e-15)
+    assert again[0] == pytest.approx(in_spacings[0], rel=1e-9)
+
+
 def test_a_million_units_of_time_cost_a_few_times_what_ten_do():
     """Doublings and not units of time are paid for. Side by side, the least of some repeats."""
     u0, least = blob(800, 0.1, 0.2, 1.5, 1, 0.0), {10.0: np.inf, 1e6: np.inf}
