@@ -26,12 +26,12 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import Rings, exterior_rate
+from fracparticles.bounded.exteriors import EXTERIORS
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.errors import InvalidInput
 
-__all__ = ["EXTERIORS", "Disc"]
+__all__ = ["Disc"]
 
-EXTERIORS = ("absorbing", "reflecting", "given")
 _MOST_RINGS = (
     128  # beyond, the innermost digits of 1 - r ~ N^-3 are worth less than the order gains
 )

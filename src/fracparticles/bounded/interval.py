@@ -34,15 +34,15 @@ from fracparticles.adaptive.maps import graded_on_interval
 from fracparticles.adaptive.samples import unseen_share
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
+from fracparticles.bounded.exteriors import EXTERIORS
 from fracparticles.bounded.interval_outside import OutsideValues, given_outside, loss_rates
 from fracparticles.bounded.interval_time import forced_modes, slopes_in_time
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 
-__all__ = ["EXTERIORS", "Interval"]
+__all__ = ["Interval"]
 
 _Load = Callable[[float], FloatArray]
 
-EXTERIORS = ("absorbing", "reflecting", "given")
 _SHORTEST = 1e-9  # time times the slowest rate: before, modes matter that are not told apart
 _UNRESOLVED = 0.01  # of int |u|, what initial data may hold that the particles do not see
 _EACH = 8  # particles for a mode; higher ones are off by more than 0.1 per cent

@@ -26,6 +26,7 @@ from scipy.sparse.linalg import LinearOperator, cg, eigsh
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
+from fracparticles.bounded.exteriors import EXTERIORS
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.bounded.square_lattice import (
     edge_exchange,
@@ -40,9 +41,8 @@ from fracparticles.lattice.box import BoxConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.time.pieces import exponential_flow
 
-__all__ = ["EXTERIORS", "Square"]
+__all__ = ["Square"]
 
-EXTERIORS = ("absorbing", "reflecting", "given")
 _MOST = 512  # particles along a side
 _SOLVED = 1e-12  # the residual of a steady field, relative
 _MOST_STEPS = 20000

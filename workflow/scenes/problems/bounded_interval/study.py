@@ -18,6 +18,7 @@ from fracparticles.run.orders import observed_order
 from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.variable.closed_forms import Cauchy
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
@@ -133,14 +134,12 @@ def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
     after = reflecting.evolve(start, 0.1)
     yield row("reflecting", "mass at t = 0.1", reflecting.volumes @ after / mass - 1.0)
     yield row("reflecting", "a constant at t = 0.1", np.abs(reflecting.evolve(1.0, 0.1) - 1).max())
-    power = 1.0 + alpha
-    source = gamma(power) * (1 + x * x) ** (-0.5 * power) * np.cos(power * np.arctan(x))
-    bell = 1.0 / (1.0 + x * x)
+    bell, source = Cauchy.value([x]), Cauchy.riesz([x], alpha)
     u = given.evolve(
         bell,
         1.0,
         source=lambda x, t: np.cos(t) * source - np.sin(t) * bell,
-        outside=lambda y, t: np.cos(t) / (1.0 + y * y),
+        outside=lambda y, t: np.cos(t) * Cauchy.value([y]),
     )
     yield row("given", "cos(t) / (1 + x^2) at t = 1", np.abs(u - np.cos(1.0) * bell).max())
     held = given.evolve(1.0, 0.1, outside=1.0)

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.special import gamma, hyp1f1
 
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.orders import observed_order
 from fracparticles.special import green
+from fracparticles.variable.closed_forms import Gaussian
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
@@ -128,8 +128,7 @@ def _manufactured(spacings: list[float]) -> Iterator[dict[str, Any]]:
     """u = cos(t) exp(-x^2): the source that makes it, and the order in the spacing."""
 
     def source(x: np.ndarray, t: float) -> np.ndarray:
-        half, bell = 1.25, np.exp(-x * x)
-        rate = 2.0**1.5 * gamma(half) / np.sqrt(np.pi) * hyp1f1(half, 0.5, -x * x)
+        bell, rate = Gaussian.value([x]), Gaussian.riesz([x], 1.5)
         return np.asarray(-np.sin(t) * bell + np.cos(t) * rate)
 
     for order in (4, 6):
