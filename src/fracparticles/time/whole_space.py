@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -103,7 +104,7 @@ def evolve(
     scaled_time = min(max(span * h**-alpha, _TIMES[0]), _TIMES[1])
     run = WholeSpace(points, dim, alpha, scaled_time, terms=terms, tail=tail, stretch=stretch)
     with np.errstate(over="ignore", invalid="ignore"):
-        result, miss = run.solve_and_compare(u)
+        result, miss, short = run.solve_and_look(u)
     check.finite_result("u", result)
     if miss > _NOTICED:
         warnings.warn(
@@ -112,9 +113,7 @@ def evolve(
             AccuracyWarning,
             stacklevel=2,
         )
-    lacking = _unresolved(u.reshape(_count(u, dim), *(points,) * dim)) * min(
-        1.0, scaled_time * np.pi**alpha
-    )
+    lacking = short * min(1.0, scaled_time * np.pi**alpha)
     if lacking > _NOTICED:
         warnings.warn(
             f"the lattice does not resolve the data: {lacking:.2g} of the solution may be of waves shorter than two "
@@ -123,23 +122,6 @@ def evolve(
             stacklevel=2,
         )
     return result
-
-
-def _unresolved(u: np.ndarray) -> float:
-    """Return what the data, shape (data, N, .., N), may have at the wavenumber 2 K, K = pi / h, over their greatest.
-
-    That looks like a constant. u^ is known up to K along each axis, from the sums over the others; at 2 K it is the
-    square of that at K if it falls like an exponential, and less if it falls like a Gaussian.
-    """
-    total = np.zeros(len(u))
-    for axis in range(1, u.ndim):
-        line = u.sum(axis=tuple(other for other in range(1, u.ndim) if other != axis))
-        size = np.abs(rfft(line))
-        greatest = size.max(axis=1)
-        # Of some waves: at K itself the two aliases of data centred between two points cancel.
-        last = size[:, int(0.8 * (size.shape[1] - 1)) :].max(axis=1)
-        total += 2.0 * np.divide(last, greatest, where=greatest > 0.0, out=np.zeros(len(u))) ** 2
-    return min(1.0, float(total.max(initial=0.0)))
 
 
 class WholeSpace:
@@ -198,7 +180,7 @@ class WholeSpace:
         start = circle // 2 - points // 2
         self._shape, self._circle = (points,) * dim, (circle,) * dim
         self._axes = tuple(range(-dim, 0))
-        self._start = start
+        self._start, self._size = start, points**dim
         self._inside: tuple[Any, ...] = (..., *(slice(start, start + points),) * dim)
         self._shown = self._inside
         if shown is not None:
@@ -220,48 +202,73 @@ class WholeSpace:
         """
         return self._run(u)[0]
 
-    def solve_and_compare(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """Return the solution, and how far its tail is from it at the faces of the lattice, over its maximum.
+    def solve_and_look(self, u: np.ndarray) -> tuple[np.ndarray, float, float]:
+        """Return the solution, how far its tail is from it at the faces, and what the data may have of short waves.
 
-        Of several data, the worst.
+        The second is over the maximum of the solution, the third that of `short_waves`; of several data, the worst.
         """
-        result, numbers = self._run(u)
-        each = result.reshape(_count(u, len(self._axes)), *self._shape)
-        size = np.abs(each).max(axis=tuple(self._axes), keepdims=True).reshape(-1, 1)
-        found = each[(slice(None), *self._faces(0).T)]
+        result, numbers, short = self._run(u, look=True)
+        count, dim = _count(u, len(self._axes)), len(self._axes)
+        size = np.abs(result.reshape(count, self._size)).max(axis=1)
+        faces = _faces(self._shape[0], dim)
+        found = result.reshape(count, *self._shape)[(slice(None), *faces.T)]
         tail: np.ndarray | float = 0.0
         if self._tails is not None:
-            tail = self._tails.result_at(self._faces(self._start), numbers)
-        miss = np.abs(found - tail) / np.where(size > 0.0, size, 1.0)
-        return result, float(miss.max(initial=0.0))
+            tail = self._tails.result_at(faces + self._start, numbers)
+        size[size == 0.0] = 1.0
+        miss = np.abs(found - tail).max(axis=1) / size
+        return result, float(miss.max(initial=0.0)), short
 
-    def _faces(self, start: int) -> np.ndarray:
-        """The indices of the middles of the faces, shape (2 n, n); of the lattice, or in a circle where it starts."""
-        dim, points = len(self._axes), self._shape[0]
-        faces = np.full((2, dim, dim), points // 2)
-        faces[0][np.diag_indices(dim)], faces[1][np.diag_indices(dim)] = 0, points - 1
-        return faces.reshape(-1, dim) + start
-
-    def _run(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _run(self, u: np.ndarray, look: bool = False) -> tuple[np.ndarray, np.ndarray, float]:
         dim = len(self._axes)
         if u.ndim < dim or u.shape[u.ndim - dim :] != self._shape:
             allowed = f"the shape {self._shape}, after what counts the data"
             raise InvalidInput("u", u.shape, allowed, "Give a value at each lattice point.")
         if self._tails is None and self._shape == self._circle:
-            return self._periodic(u), np.zeros(0)
+            whole, short = self._periodic(u, look)
+            return whole, np.zeros(0), short
         longer = np.zeros((*u.shape[: u.ndim - dim], *self._circle))
         longer[self._inside] = u
         if self._tails is None:
-            return self._periodic(longer)[self._inside], np.zeros(0)
+            whole, short = self._periodic(longer, look)
+            return whole[self._inside], np.zeros(0), short
         images, numbers = self._tails.complete(longer.reshape(_count(u, dim), *self._circle))
-        return (self._periodic(longer) - images.reshape(longer.shape))[self._shown], numbers
+        whole, short = self._periodic(longer, look)
+        return (whole - images.reshape(longer.shape))[self._shown], numbers, short
 
-    def _periodic(self, u: np.ndarray) -> np.ndarray:
-        if len(self._axes) == 1:
-            return np.asarray(irfft(rfft(u) * self._amplification, u.shape[-1]))
-        spectrum = rfftn(u, axes=self._axes)
+    def _periodic(self, u: np.ndarray, look: bool) -> tuple[np.ndarray, float]:
+        spectrum = rfft(u) if len(self._axes) == 1 else rfftn(u, axes=self._axes)
+        short = short_waves(spectrum, len(self._axes)) if look else 0.0
         spectrum *= self._amplification
-        return np.asarray(irfftn(spectrum, self._circle, axes=self._axes))
+        if len(self._axes) == 1:
+            return irfft(spectrum, u.shape[-1]), short
+        return irfftn(spectrum, self._circle, axes=self._axes), short
+
+
+def short_waves(spectrum: np.ndarray, dim: int) -> float:
+    """Return what data with this transform may have at the wavenumber 2 K, K = pi / h, over their greatest.
+
+    That looks like a constant. u^ is known up to K along each axis, where the others are at zero; at 2 K it is the
+    square of that at K if it falls like an exponential, and less if it falls like a Gaussian. The transform is a real
+    one of shape (.., N, .., N / 2 + 1); of several data, the worst.
+    """
+    waves, total = spectrum.shape[-1], np.zeros(1)
+    for axis in range(dim):
+        along: tuple[Any, ...] = (0,) * axis + (slice(waves),) + (0,) * (dim - 1 - axis)
+        size = np.abs(spectrum[(..., *along)]).reshape(-1, waves)
+        # Of some waves: at K itself the two aliases of data centred between two points cancel.
+        greatest, last = size.max(axis=1), size[:, int(0.8 * (waves - 1)) :].max(axis=1)
+        greatest[greatest == 0.0] = 1.0
+        total = total + 2.0 * (last / greatest) ** 2
+    return min(1.0, float(total.max(initial=0.0)))
+
+
+@cache
+def _faces(points: int, dim: int) -> np.ndarray:
+    """Return the indices of the middles of a lattice's faces, shape (2 n, n)."""
+    faces = np.full((2, dim, dim), points // 2)
+    faces[0][np.diag_indices(dim)], faces[1][np.diag_indices(dim)] = 0, points - 1
+    return faces.reshape(-1, dim)
 
 
 def _on_circle(
