@@ -141,7 +141,7 @@ class Coefficient:
         if not callable(self.given):
             return self.given
         try:
-            return self.given(*(values[name] for name in self.variables[: self._takes]))
+            return self.given(*(_read_only(values[name]) for name in self.variables[: self._takes]))
         except InvalidInput:
             raise
         except Exception as error:  # whatever it may raise
@@ -176,6 +176,13 @@ class Coefficient:
             f"a coefficient that is {allowed} everywhere, and it is {result[index]:.6g} at {where}",
             "Mend the coefficient, or the domain.",
         )
+
+
+def _read_only(value: Any) -> Any:
+    """A view that the function cannot change: the array is the integrator's, or the lattice."""
+    view = np.asarray(value).view()
+    view.flags.writeable = False
+    return view
 
 
 def _parsed(field: str, text: str, variables: Sequence[str]) -> ast.expr:

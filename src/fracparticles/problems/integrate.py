@@ -12,11 +12,13 @@ from fracparticles.problems.krylov import KrylovStep
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates
 from fracparticles.problems.stabilised import StabilisedStep, spectral_radius
-from fracparticles.problems.steps import STAGES, EighthOrderStep, Steps
+from fracparticles.problems.steps import STAGES, Absolute, EighthOrderStep, Steps
+from fracparticles.problems.sudden import sudden_times
 
 __all__ = ["Integration", "integrate"]
 
 _FINEST = 1e-9  # rtol of RKC2; below, the estimate of its error is round-off
+_LOOKS = 17  # at a source that starts from nothing
 _REAL_AXIS = 5.5  # |lambda| dt that a step of DOP853 bears
 
 
@@ -66,7 +68,10 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
     # The error is to be small where the solution is, not in the mean over a lattice that it hardly fills.
     shares = np.sqrt(_filled(u0))
     rtol = problem.rtol * shares
-    atol = problem.atol * shares if problem.atol else rtol * _size(problem, rates, u0)
+    size = _size(problem, rates, u0)
+    atol: Absolute = lambda u: rtol * (float(np.abs(u).max()) or size)  # noqa: E731
+    if problem.atol:
+        atol = problem.atol * shares
     start, span = problem.t_initial, problem.span
     method: str = problem.integrator
     largest = 0.0
@@ -83,10 +88,14 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
         steps = StabilisedStep(rates, rtol, atol)
     else:
         steps = EighthOrderStep(rates, rtol, atol)
+    sudden, times = sudden_times(problem, u0.reshape(rates.shape)), problem.output_times
     outputs, u = [], u0
-    for before, after in pairwise((start, *problem.output_times)):
+    for before, after in pairwise(sorted({start, *sudden, *times})):
+        if before in sudden:
+            steps.forget()
         u = steps.advance(u, after - before, before)
-        outputs.append(u)
+        if after in times:
+            outputs.append(u)
     if not steps.largest and not largest:
         largest = spectral_radius(rates, problem.t_final, u, rates(problem.t_final, u))[0]
     return Integration(
@@ -96,10 +105,11 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
 
 
 def _size(problem: Problem, rates: Rates, u0: np.ndarray) -> float:
-    """The greatest |u| at t_initial, or what the source makes of it where that is zero."""
+    """The greatest |u| at t_initial, or what the source may make of it where that is zero."""
     size = float(np.abs(u0).max())
     if size == 0.0:
-        size = problem.span * float(np.abs(rates(problem.t_initial, u0)).max())
+        times = problem.t_initial + problem.span * np.linspace(0.0, 1.0, _LOOKS)
+        size = problem.span * max(float(np.abs(rates(t, u0)).max()) for t in times)
     return size if 0.0 < size < np.inf else 1.0
 
 

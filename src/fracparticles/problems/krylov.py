@@ -18,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import expm
 
-from fracparticles.problems.steps import blown_up, norm
+from fracparticles.problems.steps import Absolute, absolute, blown_up, norm
 
 __all__ = ["KrylovStep"]
 
@@ -27,6 +27,7 @@ _NUMBERS = 4_000_000  # that they hold
 _FEWEST = 12
 _SHORTER, _LONGER = 0.2, 4.0  # of one step to the next
 _SAFETY = 0.85
+_FADED = 1e-3  # what a step leaves of u at least: more would cost digits, and be judged by the size before
 _NOTHING = 1e-14  # a vector that is left of one of norm one
 
 
@@ -39,8 +40,10 @@ class KrylovStep:
         R.
     size : int
         Of u.
-    rtol, atol : float
-        The error of the run in the 2-norm is to be below rtol |u| + atol sqrt(N), each step's share by its length.
+    rtol : float
+    atol : float, or function of u
+        The error of the run in the 2-norm is to be below rtol |u| + atol sqrt(N), each step's share by its length; u is
+        the smaller of those before and after it.
     run : float
         The time of the run.
 
@@ -57,7 +60,7 @@ class KrylovStep:
         rate: Callable[[np.ndarray], np.ndarray],
         size: int,
         rtol: float,
-        atol: float,
+        atol: Absolute,
         run: float,
     ) -> None:
         self._rate, self._rtol, self._atol, self._run = rate, rtol, atol, run
@@ -77,6 +80,9 @@ class KrylovStep:
         with np.errstate(over="ignore", invalid="ignore"):
             return self._advanced(u, span, start)
 
+    def forget(self) -> None:
+        """Nothing: there is no time in the right-hand side, and a step finds its length anew for each span."""
+
     def _advanced(self, u: np.ndarray, span: float, start: float) -> np.ndarray:
         if self._origin is None:
             self._origin = self._rate(np.zeros_like(u))
@@ -89,16 +95,21 @@ class KrylovStep:
             if size == 0.0:
                 return u
             basis, h = self._arnoldi(r / size)
-            scale = self._rtol * norm(u) + self._atol * np.sqrt(u.size)
             tau = min(tau, left)
             while True:
                 weights, error = _phi(h, basis.shape[0], tau)
+                new = u + size * np.einsum("i,ij->j", weights, basis)
+                scale = min(self._allowed(u), self._allowed(new))
                 allowed, error = scale * tau / self._run, size * error
-                if error <= allowed:
+                faded = 0.0 < norm(new) < _FADED * norm(u)
+                if error <= allowed and not faded:
                     break
                 self.rejected += 1
-                tau *= max(_SHORTER, _SAFETY * (allowed / error) ** (1.0 / basis.shape[0]))
-            u = u + size * np.einsum("i,ij->j", weights, basis)
+                shorter = _SAFETY * (allowed / error) ** (1.0 / basis.shape[0]) if error else 0.5
+                tau *= max(_SHORTER, min(0.5, shorter) if faded else shorter)
+            u = new
+            if not np.isfinite(u).all():
+                raise blown_up(start + span - left + tau, u)
             left = left - tau if left - tau > 1e-14 * span else 0.0
             self.accepted += 1
             if error > 0.0:
@@ -106,6 +117,9 @@ class KrylovStep:
             else:
                 tau = left
         return u
+
+    def _allowed(self, u: np.ndarray) -> float:
+        return self._rtol * norm(u) + absolute(self._atol, u) * float(np.sqrt(u.size))
 
     def _arnoldi(self, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """V_m, shape (m, N), and H of shape (m + 1, m); m smaller where the space is full."""
@@ -135,9 +149,8 @@ class KrylovStep:
 def _phi(h: np.ndarray, m: int, tau: float) -> tuple[np.ndarray, float]:
     """tau phi_1(tau H) e_1, and h_(m+1,m) |e_m^T tau^2 phi_2(tau H) e_1|."""
     longer = np.zeros((m + 2, m + 2))
-    longer[:m, :m] = h[:m]
-    longer[0, m] = 1.0
-    longer[m, m + 1] = 1.0
-    e = expm(tau * longer)
-    error = h[m, m - 1] * abs(e[m - 1, m + 1])
-    return e[:m, m], float(error) if np.isfinite(e).all() else np.inf
+    longer[:m, :m] = tau * h[:m]
+    longer[0, m] = longer[m, m + 1] = 1.0  # not times tau, whose unit may be any
+    e = expm(longer)
+    error = tau * h[m, m - 1] * tau * abs(e[m - 1, m + 1])
+    return tau * e[:m, m], float(error) if np.isfinite(e).all() else np.inf

@@ -8,15 +8,18 @@ The particles start on the lattice, move for one step by the classical Runge-Kut
 back on the lattice (`moving.remeshing`). Beyond its ends are as many more as may move in, whose u goes on like
 |x|^(-1-alpha) from the last. Mass is conserved but for what passes the ends. The error is of second
 order in dt, from the splitting, and each remeshing adds one of its own, of an order in h: more steps, more of it.
+Half as many steps say how large it is, and the strengths that pass the ends are counted.
 """
 
 from __future__ import annotations
+
+import warnings
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fracparticles import arguments as check
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.moving.remeshing import REMESHINGS, remesh
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
@@ -25,6 +28,7 @@ from fracparticles.time.whole_space import WholeSpace
 __all__ = ["solve_with_moving_particles"]
 
 
+_NOTICED = 0.05  # of the peak, what half as many steps may differ by; of sum |U|, what may leave
 _ROOM = 8  # particles beyond the ends, and as many as the ends move
 
 
@@ -48,6 +52,11 @@ def solve_with_moving_particles(
     ------
     InvalidInput
         If the problem is another, or a particle runs away.
+
+    Warns
+    -----
+    AccuracyWarning
+        If half as many steps (of one: two) differ by a twentieth of the peak, or as much of the strengths has left.
     """
     problem = check.instance("problem", problem, Problem)
     steps = check.positive_integer("steps", steps)
@@ -58,8 +67,25 @@ def solve_with_moving_particles(
         what = "one on the line with a velocity, a constant order and diffusivity, and no source"
         raise InvalidInput("problem", problem.to_json(), what, "Use solve_problem.")
     assert d is not None
-    u, h = check.vector("initial", initial, case.particles), case.particle_spacing
-    dt = problem.span / steps
+    u0 = check.vector("initial", initial, case.particles)
+    u, left = _run(problem, u0, steps, d, remeshing)
+    other, _ = _run(problem, u0, steps // 2 or 2, d, remeshing)
+    peak = float(np.abs(u).max())
+    if (off := float(np.abs(u - other).max())) > _NOTICED * peak:
+        text = f"another number of steps gives another solution, by {off / peak:.2g} of its peak. Take more."
+        warnings.warn(text, AccuracyWarning, stacklevel=2)
+    if left > _NOTICED:
+        text = f"{left:.2g} of the strengths have left the lattice. Take a wider one."
+        warnings.warn(text, AccuracyWarning, stacklevel=2)
+    return np.asarray(check.finite_result("u", u))
+
+
+def _run(
+    problem: Problem, u: np.ndarray, steps: int, d: float, remeshing: str
+) -> tuple[np.ndarray, float]:
+    """U at t_final, and the share of sum |U| that has left."""
+    case, h, dt = problem.case, problem.case.particle_spacing, problem.span / steps
+    left, start = 0.0, float(np.abs(u).sum()) or 1.0
     half = WholeSpace(case.particles, 1, case.alpha, 0.5 * d * dt * h**-case.alpha)
     velocity = problem.transport[0]
     for n in range(steps):
@@ -68,8 +94,9 @@ def solve_with_moving_particles(
         x = np.arange(-case.n - pad, case.n + pad + 1) * h
         places = _moved(velocity, x, t, dt)
         strength = h * _continued(half.solve(u), pad, case.n, case.alpha)
-        u = half.solve(_on_lattice(*remesh(places, strength, h, remeshing), h, case.n))
-    return np.asarray(check.finite_result("u", u))
+        moved, beyond = _on_lattice(*remesh(places, strength, h, remeshing), h, case.n)
+        left, u = left + beyond / start, half.solve(moved)
+    return u, left
 
 
 def _continued(u: np.ndarray, pad: int, n: int, alpha: float) -> np.ndarray:
@@ -91,9 +118,11 @@ def _moved(velocity: Coefficient, x: np.ndarray, t: float, dt: float) -> np.ndar
     return x + dt / 6.0 * (first + 2.0 * (second + third) + fourth)
 
 
-def _on_lattice(places: np.ndarray, strength: np.ndarray, h: float, n: int) -> np.ndarray:
-    """u on -n .. n; what lies beyond has left."""
+def _on_lattice(
+    places: np.ndarray, strength: np.ndarray, h: float, n: int
+) -> tuple[np.ndarray, float]:
+    """u on -n .. n, and the sum of |u| that lies beyond and has left."""
     u, index = np.zeros(2 * n + 1), np.rint(places / h).astype(int) + n
     inside = (index >= 0) & (index < u.size)
     u[index[inside]] = strength[inside] / h
-    return u
+    return u, float(np.abs(strength[~inside]).sum()) / h

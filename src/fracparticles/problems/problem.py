@@ -108,7 +108,7 @@ class Problem(BaseModel):
     )
     atol: float | None = Field(
         default=None, ge=1e-300, le=SIZES[1],
-        description="Absolute tolerance of the time integration. rtol times the greatest |u| at t_initial if left out. "
+        description="Absolute tolerance of the time integration. rtol times the greatest |u| of the time if left out. "
         "Both are of the root mean square over the part of the lattice that the data fill.",
     )  # fmt: skip
     integrator: Literal["auto", "exponential", "rkc2", "dop853"] = Field(
@@ -207,7 +207,8 @@ class Problem(BaseModel):
         return Coefficient("source", self.source, (*_AXES[: self.dim], "t", "u"))
 
     @property
-    def _coefficients(self) -> list[Coefficient]:
+    def coefficients(self) -> list[Coefficient]:
+        """Those that there are."""
         every = [self.order_coefficient, self.diffusion, *self.transport, self.reaction]
         return [one for one in every if one is not None]
 
@@ -219,12 +220,12 @@ class Problem(BaseModel):
     @property
     def is_autonomous(self) -> bool:
         """Whether no coefficient says anything of t."""
-        return all("t" not in one.depends_on for one in self._coefficients)
+        return all("t" not in one.depends_on for one in self.coefficients)
 
     @property
     def reproducible(self) -> bool:
         """Whether the JSON text holds all of it: not if a coefficient is a function."""
-        return all(one.reproducible for one in self._coefficients)
+        return all(one.reproducible for one in self.coefficients)
 
     # --- the lattice ----------------------------------------------------------------------------------------
 

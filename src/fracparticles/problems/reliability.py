@@ -9,17 +9,34 @@ far_field_error
     that share, times the share that travels from the outside well into the lattice during the run.
 resolution
     s theta, the overlap (but at least 1.1) times the wavenumber of u in units of 1 / h.
+between_particles
+    What initial data that are a function hide between the particles.
+coefficient_misfit
+    sum |c - I| / sum (|c| + |I|) between the particles, I the cubic through the four that are next, c the coefficient
+    less its least value. Of a source, c itself, and of the sum and that of 2 |u| / (t_final - t_initial) the larger.
+    That of the worst coefficient: what the particles do not see of it.
+atol_share
+    The absolute tolerance that was asked for over the greatest |u|.
 """
 
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
-from fracparticles.run.reliability import LIMITS, outside_share, tail_misfit, wavenumber
+from fracparticles.run.reliability import (
+    LIMITS,
+    between_four,
+    between_particles,
+    outside_share,
+    tail_misfit,
+    wavenumber,
+)
 from fracparticles.special.stable import central_mass
 
 __all__ = ["estimates", "warn_if_doubtful"]
@@ -27,9 +44,12 @@ __all__ = ["estimates", "warn_if_doubtful"]
 Estimates = dict[str, tuple[list[float], str]]
 
 _LEAST_SMOOTHING = 1.1  # as there
+_LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": 0.01}
+_PARTS = 0.5, 0.381966  # of the spacing: half-way, waves of period h may have their zeros, too
+_CONSTANT = 1e-9  # of a coefficient, a variation that is round-off
 
 
-def estimates(problem: Problem, solutions: list[np.ndarray]) -> Estimates:
+def estimates(problem: Problem, solutions: list[np.ndarray], initial: Any = None) -> Estimates:
     """Return each estimate by name: a value for each output time, the worse of it and t_initial, and what it is.
 
     Parameters
@@ -37,6 +57,8 @@ def estimates(problem: Problem, solutions: list[np.ndarray]) -> Estimates:
     problem : Problem
     solutions : list of arrays, shape (N, .., N)
         At t_initial and at each output time.
+    initial : any, optional
+        What the initial data were given as.
     """
     case = problem.case
     smoothing = max(_LEAST_SMOOTHING, case.resolved_overlap)
@@ -48,6 +70,23 @@ def estimates(problem: Problem, solutions: list[np.ndarray]) -> Estimates:
             "epsilon times the wavenumber of u",
         ),
     }
+    if callable(initial):
+        hidden = between_particles(case, solutions[0], initial)
+        found["between_particles"] = (
+            [hidden] * len(problem.output_times), "misfit of initial data between the particles",
+        )  # fmt: skip
+    varying = [one for one in problem.coefficients if one.depends_on & {"x", "y"}]
+    if varying:
+        times = (problem.t_initial, *problem.output_times)
+        misfits = [
+            max(_coefficient_misfit(problem, one, t, u, part) for one in varying for part in _PARTS)
+            for t, u in zip(times, solutions, strict=True)
+        ]
+        meaning = "misfit of a coefficient between the particles"
+        found["coefficient_misfit"] = (_since_start(misfits), meaning)
+    if problem.atol:
+        shares = [problem.atol / max(float(np.abs(u).max()), 1e-300) for u in solutions[1:]]
+        found["atol_share"] = (shares, "absolute tolerance over the greatest |u|")
     if problem.exterior == "open":
         travels = 1.0 - float(
             central_mass(0.5 * case.reach, case.diffusivity * problem.span, case.alpha, case.dim)
@@ -59,6 +98,38 @@ def estimates(problem: Problem, solutions: list[np.ndarray]) -> Estimates:
         meaning = "estimated relative error of the far field"
         found["far_field_error"] = (_since_start(misfits), meaning)
     return found
+
+
+def _coefficient_misfit(
+    problem: Problem, one: Coefficient, t: float, u: np.ndarray, part: float
+) -> float:
+    """Between the particles along all axes at once, as far from the ends as the cubic asks for."""
+    case, h = problem.case, problem.case.particle_spacing
+    at = dict(zip(("x", "y"), case.positions, strict=False))
+    apart = np.meshgrid(*(case.x[1:-2] + part * h,) * case.dim, indexing="ij", sparse=True)
+    there = dict(zip(("x", "y"), apart, strict=False))
+    v = _between(u, part)
+    every = {**at, "t": np.array(t), "u": u}, {**there, "t": np.array(t), "u": v}
+    try:
+        values, found = (one({name: each[name] for name in one.variables}) for each in every)
+    except InvalidInput:  # a function that knows the particles alone
+        return 0.0
+    guess = _between(np.asarray(np.broadcast_to(values, u.shape)), part)
+    is_source = one.field == "source"
+    least = 0.0 if is_source else min(guess.min(), found.min())
+    size = float((np.abs(found - least) + np.abs(guess - least)).sum())
+    if is_source:
+        size = max(size, 2.0 * float(np.abs(v).sum()) / problem.span)
+    greatest = float(np.abs(found).max()) * found.size
+    if not _CONSTANT * greatest < size < np.inf:
+        return 0.0
+    return float(np.abs(found - guess).sum()) / size
+
+
+def _between(values: np.ndarray, part: float) -> np.ndarray:
+    for axis in range(values.ndim):
+        values = between_four(values, axis, part)
+    return values
 
 
 def _since_start(values: list[float]) -> list[float]:
@@ -78,12 +149,18 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "left. Take a wider lattice, or an earlier end",
         "resolution": f"particles of spacing {problem.spacing:.3g} do not resolve the solution: epsilon times its "
         "wavenumber is {:.2g}. Take a smaller spacing",
+        "between_particles": "the initial data differ between the particles by {:.2g} from what those at the particles "
+        "say. Take a smaller spacing, or wider data",
+        "coefficient_misfit": "a coefficient differs between the particles by {:.2g} from what they see of it. Take a "
+        "smaller spacing, or a smoother coefficient",
+        "atol_share": "the solution is of the size of atol, which is {:.2g} of its greatest value: its digits are not "
+        "under control. Take a smaller atol, or leave it out",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
     }
     times = problem.output_times
     for name, (values, _) in found.items():
-        late = [(t, value) for t, value in zip(times, values, strict=True) if value > LIMITS[name]]
+        late = [(t, value) for t, value in zip(times, values, strict=True) if value > _LIMITS[name]]
         if late:
             t, value = late[0]
             text = f"by t = {t:.4g} {says[name].format(value)}."

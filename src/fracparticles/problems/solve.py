@@ -46,7 +46,8 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
     Warns
     -----
     AccuracyWarning
-        If the solution has reached the ends of the lattice, or the lattice does not resolve it.
+        If the solution has reached the ends of the lattice, the lattice does not resolve it, the initial data or a
+        coefficient, or the solution is of the size of `atol`.
 
     Examples
     --------
@@ -64,7 +65,7 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
     u0, origin = initial_strengths(case, initial)
     _probe_source(problem, u0)
     result = integrate(problem, Rates(problem), u0.reshape(-1))
-    found = estimates(problem, [u0, *(one.reshape(u0.shape) for one in result.u)])
+    found = estimates(problem, [u0, *(one.reshape(u0.shape) for one in result.u)], initial)
     warn_if_doubtful(problem, found)
     return to_dataset(problem, u0, result, found, origin)
 

@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from fracparticles.problems.steps import Rate, blown_up, norm
+from fracparticles.problems.steps import Absolute, Rate, absolute, blown_up, norm
 from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["StabilisedStep", "spectral_radius"]
@@ -36,7 +36,8 @@ class StabilisedStep:
     ----------
     rate : callable
         R(t, u).
-    rtol, atol : float
+    rtol : float
+    atol : float, or function of u
         The root mean square of Est / (atol + rtol |u|) is at most sqrt(rtol) in each step.
 
     Attributes
@@ -46,7 +47,7 @@ class StabilisedStep:
         The largest rho that was estimated.
     """
 
-    def __init__(self, rate: Rate, rtol: float, atol: float) -> None:
+    def __init__(self, rate: Rate, rtol: float, atol: Absolute) -> None:
         self._rate, self._rtol, self._atol = rate, rtol, atol
         self.accepted = self.rejected = 0
         self.largest, self._rho = 0.0, 0.0
@@ -95,6 +96,10 @@ class StabilisedStep:
         self._dt = max(self._dt or 0.0, dt)
         return u
 
+    def forget(self) -> None:
+        """Let the next step find its length anew."""
+        self._dt = self._before = None
+
     def _growth(self, dt: float, error: float) -> float:
         """The next step over this one, of a controller that remembers one step."""
         factor = 0.8 * error ** (-1.0 / 3.0)
@@ -112,7 +117,7 @@ class StabilisedStep:
             return self._norm(estimate, u, new)
 
     def _norm(self, what: np.ndarray, *of: np.ndarray) -> float:
-        scale = self._atol + self._rtol * np.max(np.abs(of), axis=0)
+        scale = absolute(self._atol, of[0]) + self._rtol * np.max(np.abs(of), axis=0)
         return float(np.sqrt(np.mean(np.square(what / scale)) / self._rtol))
 
     def _first(self, t: float, u: np.ndarray, r: np.ndarray, span: float) -> float:

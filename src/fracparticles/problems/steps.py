@@ -10,10 +10,13 @@ from scipy.integrate import DOP853
 
 from fracparticles.errors import NonFiniteSolution
 
-__all__ = ["STAGES", "EighthOrderStep", "Rate", "Steps", "blown_up", "norm"]
+__all__ = ["STAGES", "Absolute", "EighthOrderStep", "Rate", "Steps", "absolute", "blown_up", "norm"]
 
 Rate = Callable[[float, np.ndarray], np.ndarray]
 """R(t, u)."""
+
+Absolute = float | Callable[[np.ndarray], float]
+"""An absolute tolerance: a number, or a function of the u of the time."""
 
 STAGES = 12  # evaluations that a step of order 8 takes
 
@@ -36,11 +39,14 @@ class Steps(Protocol):
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u, shape (N,), at the time `start + span`; raises `NonFiniteSolution` if it blows up."""
 
+    def forget(self) -> None:
+        """Let the next step find its length anew: the right-hand side has changed suddenly."""
+
 
 class EighthOrderStep:
     """Steps of order 8 with an estimate of their error, in the root mean square of atol + rtol |u|."""
 
-    def __init__(self, rate: Rate, rtol: float, atol: float) -> None:
+    def __init__(self, rate: Rate, rtol: float, atol: Absolute) -> None:
         self._rate, self._rtol, self._atol = rate, rtol, atol
         self.accepted = self.rejected = 0
         self.largest = 0.0
@@ -55,11 +61,12 @@ class EighthOrderStep:
             If it grows without bound: the step has shrunk to nothing; says when.
         """
         first = None if self._dt is None else min(self._dt, span)
-        tolerances = {"rtol": self._rtol, "atol": self._atol}
+        tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, u)}
         with np.errstate(over="ignore", invalid="ignore"):
             solver = DOP853(self._rate, start, u, start + span, first_step=first, **tolerances)
             began, taken = solver.nfev, 0
             while solver.status == "running":
+                solver.atol = absolute(self._atol, solver.y)
                 solver.step()
                 taken += 1
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
@@ -68,6 +75,15 @@ class EighthOrderStep:
         self.rejected += round((solver.nfev - began) / STAGES) - taken
         self._dt = solver.h_abs
         return np.asarray(solver.y)
+
+    def forget(self) -> None:
+        """Let the next step find its length anew."""
+        self._dt = None
+
+
+def absolute(atol: Absolute, u: np.ndarray) -> float:
+    """Return the absolute tolerance where the solution is u."""
+    return atol(u) if callable(atol) else atol
 
 
 def blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:
@@ -79,5 +95,9 @@ def blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:
 
 
 def norm(u: np.ndarray) -> float:
-    """Return the 2-norm, summed in one order whatever the number of threads."""
-    return float(np.sqrt(np.sum(u * u)))
+    """Return the 2-norm, summed in one order whatever the number of threads, of numbers of any size."""
+    largest = float(np.abs(u).max(initial=0.0))
+    if not 0.0 < largest < np.inf:
+        return largest
+    part = u / largest
+    return largest * float(np.sqrt(np.sum(part * part)))

@@ -61,7 +61,7 @@ from fracparticles.time import STEP_POLYNOMIALS
 if TYPE_CHECKING:
     from fracparticles.run.case import Case
 
-__all__ = ["LIMITS", "Estimates", "estimates", "warn_if_doubtful"]
+__all__ = ["LIMITS", "Estimates", "between_four", "estimates", "warn_if_doubtful"]
 
 Estimates = dict[str, tuple[float, str]]
 
@@ -291,7 +291,7 @@ def between_particles(case: Case, u0: np.ndarray, initial: Any) -> float:
         return 0.0
     interpolated, u = u0 / greatest, u / greatest
     for axis in range(case.dim):
-        interpolated = _between_four(interpolated, axis)
+        interpolated = between_four(interpolated, axis)
     difference, size = np.abs(interpolated - u), np.abs(interpolated) + np.abs(u)
     return _ratio((volumes * difference).sum(), (volumes * size).sum())
 
@@ -304,10 +304,13 @@ def _half_way(case: Case) -> tuple[np.ndarray, np.ndarray | float]:
     return x[3:-3:2], volumes[3:-3:2] / case.reach
 
 
-def _between_four(u: np.ndarray, axis: int) -> np.ndarray:
-    """The values half-way between neighbours along an axis of a cubic through four."""
-    first, second, third, fourth = (u.take(range(k, u.shape[axis] - 3 + k), axis) for k in range(4))
-    return np.asarray((9.0 * (second + third) - (first + fourth)) / 16.0)
+def between_four(u: np.ndarray, axis: int, part: float = 0.5) -> np.ndarray:
+    """Return the values a part of the way from each to the next along an axis, of a cubic through four."""
+    offsets = np.arange(-1.0, 3.0)
+    others = [np.delete(offsets, k) for k in range(4)]
+    weights = [np.prod((part - o) / (offsets[k] - o)) for k, o in enumerate(others)]
+    count = u.shape[axis] - 3
+    return np.asarray(sum(w * u.take(range(k, count + k), axis) for k, w in enumerate(weights)))
 
 
 def outside_share(case: Case, u: np.ndarray) -> float:

@@ -1,0 +1,169 @@
+"""Numbers that were wrong without a word: each now right, or warned of, or refused."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.problems import Problem, solve_problem
+from fracparticles.problems.krylov import KrylovStep
+from fracparticles.problems.moving_particles import solve_with_moving_particles
+from fracparticles.problems.steps import norm
+from fracparticles.problems.sudden import sudden_times
+from fracparticles.special import green
+
+LINE = {"alpha": 1.5, "half_width": 40.0, "spacing": 0.1, "t_final": 1.0}
+TOLERANCE = 1e-6  # the default of rtol
+
+
+def bell(x: np.ndarray) -> np.ndarray:
+    return np.exp(-(x**2))
+
+
+def solved(initial=bell, **fields) -> np.ndarray:
+    return solve_problem(Problem(**{**LINE, **fields}), initial).u.values
+
+
+@pytest.fixture(scope="module")
+def plain() -> np.ndarray:
+    return solved()
+
+
+@pytest.mark.parametrize(("rate", "integrator"), [(20, "dop853"), (100, "dop853"), (20, "rkc2")])
+def test_what_decays_by_many_decades_keeps_its_digits(plain, rate, integrator):
+    """The tolerance is of the size of u at the time; each of some `rate` units of time may add one rtol."""
+    u = solved(source=f"-{rate}*u", integrator=integrator)
+    assert np.abs(u * np.exp(rate) - plain).max() < rate * TOLERANCE * plain.max()
+
+
+def test_what_fades_in_a_krylov_space_keeps_its_digits():
+    rates = np.linspace(30.0, 90.0, 40)
+    u = KrylovStep(lambda u: -rates * u, 40, 1e-8, lambda u: 1e-8 * np.abs(u).max(), 1.0).advance(
+        np.ones(40), 1.0
+    )
+    # The fastest are far below the slowest, which make the norm.
+    assert_allclose(u, np.exp(-rates), atol=1e-7 * np.exp(-30.0))
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-200])
+def test_a_source_that_starts_from_nothing_has_no_unit(size):
+    one, small = (solved(lambda x: 0.0 * x, source=f"{s}*t*exp(-x**2)") for s in (1.0, size))
+    assert_allclose(small / size, one, rtol=1e-12, atol=1e-12 * one.max())
+
+
+@pytest.mark.parametrize("integrator", ["dop853", "rkc2"])
+@pytest.mark.parametrize("width", [0.1, 0.01, 0.001])
+def test_a_pulse_is_not_stepped_over(integrator, width):
+    fields = {"source": f"where((t > 0.5) & (t < 0.5 + {width}), 1/{width}, 0.0)*exp(-x**2)"}
+    u = solved(**fields, integrator=integrator)
+    alone, late = solved(), solved(t_final=0.5 - 0.5 * width)  # what came in half-way of the pulse
+    # The pulse has a width: of second order in it, and what the rule of its middle leaves at the tolerance.
+    assert np.abs(u - alone - late).max() < (0.1 * width**2 + 10.0 * TOLERANCE) * u.max()
+
+
+def test_a_pulse_of_the_diffusivity_and_one_of_a_function():
+    moved = solved(diffusivity="where((t > 0.3) & (t < 0.31), 100.0, 0.0)")
+    assert np.abs(moved - solved()).max() < 10.0 * TOLERANCE
+    by_function = solved(diffusivity=lambda x, t: 100.0 * ((t > 0.3) & (t < 0.31)) + 0.0 * x)
+    assert np.abs(moved - by_function).max() < 10.0 * TOLERANCE
+
+
+def test_sudden_times_are_those_before_and_after_a_jump():
+    problem = Problem(**LINE, source="where(t > 0.3, 1.0, 0.0)*exp(-x**2)", velocity="sin(7*t)")
+    before, after = sudden_times(problem, bell(problem.case.x))
+    assert before <= 0.3 < after < before + 1e-10
+    quick = Problem(**LINE, source="where(sin(500*t) > 0, 1.0, 0.0)*exp(-x**2)")
+    assert 32 < len(sudden_times(quick, bell(quick.case.x))) <= 256
+    assert sudden_times(Problem(**LINE, source="cos(9*t)"), bell(problem.case.x)) == []
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"diffusivity": "1 + 0.9*sin(20*pi*x)"},
+        {"diffusivity": "1 + 0.9*cos(20*pi*x)"},
+        {"velocity": "cos(20*pi*x)"},
+        {"source": "cos(20*pi*x)*exp(-x**2)"},
+        {"source": lambda x: 1e4 * np.exp(-(((x - 0.05) / 0.005) ** 2))},
+        {"beta": "0.5 + 0.1*sin(20*pi*x)", "alpha": None, "form": "DD"},
+    ],
+)
+def test_a_coefficient_finer_than_the_particles_warns(fields):
+    given = {name: value for name, value in {**LINE, **fields}.items() if value is not None}
+    with pytest.warns(AccuracyWarning, match="coefficient differs between the particles"):
+        solve_problem(Problem(**given), bell)
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"diffusivity": "1 + 0.5*tanh(x)"},
+        {"source": "exp(-x**2) - u"},
+        {"diffusivity": "1 + 0*x"},
+        {"source": lambda x, t: np.ones(801) * bell(np.linspace(-40.0, 40.0, 801))},
+    ],
+)
+def test_one_that_they_resolve_does_not(fields):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", AccuracyWarning)
+        warnings.filterwarnings("ignore", message=".*varies by")  # of the ends of the lattice
+        solved(**fields)
+
+
+def test_data_between_the_particles_warn():
+    with pytest.warns(AccuracyWarning, match="initial data differ between the particles"):
+        solved(lambda x: np.exp(-(((x - 0.05) / 0.005) ** 2)) + 1e-3 * bell(x))
+
+
+def test_a_tolerance_of_the_size_of_the_solution_warns():
+    with pytest.warns(AccuracyWarning, match="size of atol"):
+        solved(source="-20*u", atol=1e-6)
+
+
+def test_a_function_cannot_change_what_it_is_given():
+    def source(x, t, u):
+        u *= -1.0
+        return u
+
+    with pytest.raises(InvalidInput, match="read-only"):
+        solved(source=source)
+
+
+def test_units_of_time_length_and_strength_change_nothing(plain):
+    varied = solved(diffusivity="1 + 0.5*tanh(x)", velocity=0.5)
+    tiny, huge = 2.0**-70, 2.0**70  # powers of two: the same numbers to round-off of their powers
+    slow = solved(
+        diffusivity=f"{tiny!r}*(1 + 0.5*tanh(x))", velocity=0.5 * tiny, t_final=1.0 / tiny
+    )
+    wide = solved(
+        lambda x: bell(x / huge),
+        diffusivity=f"{huge**1.5!r}*(1 + 0.5*tanh(x/{huge!r}))",
+        velocity=0.5 * huge,
+        half_width=40.0 * huge,
+        spacing=0.1 * huge,
+    )
+    faint = solved(lambda x: 1e-200 * bell(x), diffusivity="1 + 0.5*tanh(x)", velocity=0.5)
+    for other in (slow, wide, faint * 1e200):
+        assert np.abs(other - varied).max() < 1e-10 * plain.max()
+
+
+def test_the_norm_has_no_unit():
+    u = np.array([3.0, 4.0])
+    for size in (1.0, 1e-200, 1e200):
+        assert norm(size * u) == pytest.approx(5.0 * size, rel=1e-15)
+    assert norm(np.zeros(3)) == 0.0
+    assert np.isnan(norm(np.array([1.0, np.nan])))
+
+
+@pytest.mark.parametrize(
+    ("velocity", "steps", "match"),
+    [("-x", 2, "another number of steps"), ("-5*x", 1, "have left"), (100.0, 5, "have left")],
+)
+def test_moving_particles_say_when_they_are_off(velocity, steps, match):
+    problem = Problem(**{**LINE, "t_initial": 1.0, "t_final": 2.0}, velocity=velocity)
+    with pytest.warns(AccuracyWarning, match=match):
+        solve_with_moving_particles(problem, green(problem.case.x, 1.0, 1.5), steps)
