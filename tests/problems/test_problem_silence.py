@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems import Problem, solve_problem
+from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.krylov import KrylovStep
 from fracparticles.problems.moving_particles import solve_with_moving_particles
 from fracparticles.problems.steps import norm
@@ -167,3 +168,32 @@ def test_moving_particles_say_when_they_are_off(velocity, steps, match):
     problem = Problem(**{**LINE, "t_initial": 1.0, "t_final": 2.0}, velocity=velocity)
     with pytest.warns(AccuracyWarning, match=match):
         solve_with_moving_particles(problem, green(problem.case.x, 1.0, 1.5), steps)
+
+
+def test_comparisons_are_numbers():
+    at = {"x": np.array([-2.0, 0.0, 2.0]), "t": np.array(0.0)}
+    for text, values in (
+        ("(x > -1) + (x < 1)", [1.0, 2.0, 1.0]),
+        ("-(x > 0)*2", [0.0, 0.0, -2.0]),
+        ("(x > -1) - (x > 1)", [0.0, 1.0, 0.0]),
+        ("(x > -1) & (x < 1) | (x > 1)", [0.0, 1.0, 1.0]),
+    ):
+        assert_allclose(Coefficient("source", text, ("x", "t"))(at), values)
+
+
+@pytest.mark.parametrize("spacing", [0.1, 0.4, 0.8])
+@pytest.mark.parametrize("velocity", [None, 1.0])
+def test_the_error_of_the_waves_is_that_of_the_peak(spacing, velocity):
+    """Of a uniform field the symbols say all; a lattice that is too coarse warns."""
+    problem = Problem(
+        **{**LINE, "spacing": spacing, "t_initial": 1.0, "t_final": 1.5}, velocity=velocity
+    )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run = solve_problem(problem)
+    exact = green(run.x.values - 0.5 * (velocity or 0.0), 1.5, 1.5)
+    error = np.abs(run.u.values - exact).max() / exact.max()
+    assert 0.5 * error < float(run.wave_error) < 2.0 * error
+    assert any("waves that the solution holds" in str(one.message) for one in caught) == (
+        run.wave_error > 0.05
+    )

@@ -12,6 +12,7 @@ import ast
 import inspect
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,13 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {name: getattr(np, name) for name in 
 }
 _TAKES = {"where": 3, "arctan2": 2, "minimum": 2, "maximum": 2}
 _CONSTANTS = {"pi": np.pi, "e": np.e}
+
+
+def _of_truth(test: Callable[..., Any], one: Any, other: Any) -> Any:
+    """Return 1 where it holds and 0 elsewhere: numbers, which add up."""
+    return test(one, other) * 1.0
+
+
 _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Add: np.add,
     ast.Sub: np.subtract,
@@ -41,12 +49,16 @@ _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Pow: np.power,
     ast.USub: np.negative,
     ast.UAdd: np.positive,
-    ast.BitAnd: np.logical_and,
-    ast.BitOr: np.logical_or,
-    ast.Lt: np.less,
-    ast.LtE: np.less_equal,
-    ast.Gt: np.greater,
-    ast.GtE: np.greater_equal,
+} | {
+    node: partial(_of_truth, test)
+    for node, test in (
+        (ast.BitAnd, np.logical_and),
+        (ast.BitOr, np.logical_or),
+        (ast.Lt, np.less),
+        (ast.LtE, np.less_equal),
+        (ast.Gt, np.greater),
+        (ast.GtE, np.greater_equal),
+    )
 }
 _INSTEAD = {
     ast.BitXor: "Write ** for a power.",

@@ -9,6 +9,9 @@ far_field_error
     that share, times the share that travels from the outside well into the lattice during the run.
 resolution
     s theta, the overlap (but at least 1.1) times the wavenumber of u in units of 1 / h.
+wave_error
+    sum |u^| |1 - exp(-T delta)| / sum |u^|, T the time since t_initial and delta the error of the symbol, of the
+    diffusion with the mean of D over |u|, and of the transport with that of |a|: the error of a peak over the peak.
 between_particles
     What initial data that are a function hide between the particles.
 coefficient_misfit
@@ -29,6 +32,7 @@ import numpy as np
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
+from fracparticles.problems.transport import Transport
 from fracparticles.run.reliability import (
     LIMITS,
     between_four,
@@ -36,7 +40,9 @@ from fracparticles.run.reliability import (
     outside_share,
     tail_misfit,
     wavenumber,
+    waves,
 )
+from fracparticles.schemes import SCHEMES
 from fracparticles.special.stable import central_mass
 
 __all__ = ["estimates", "warn_if_doubtful"]
@@ -46,6 +52,7 @@ Estimates = dict[str, tuple[list[float], str]]
 _LEAST_SMOOTHING = 1.1  # as there
 _LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": 0.01}
 _PARTS = 0.5, 0.381966  # of the spacing: half-way, waves of period h may have their zeros, too
+_MOST = 2.0  # of the error of a wave over it
 _CONSTANT = 1e-9  # of a coefficient, a variation that is round-off
 
 
@@ -70,6 +77,13 @@ def estimates(problem: Problem, solutions: list[np.ndarray], initial: Any = None
             "epsilon times the wavenumber of u",
         ),
     }
+    found["wave_error"] = (
+        [
+            _wave_error(problem, t, u)
+            for t, u in zip(problem.output_times, solutions[1:], strict=True)
+        ],
+        "estimated error of a peak, from the symbols of the scheme and the waves of u",
+    )
     if callable(initial):
         hidden = between_particles(case, solutions[0], initial)
         found["between_particles"] = (
@@ -98,6 +112,33 @@ def estimates(problem: Problem, solutions: list[np.ndarray], initial: Any = None
         meaning = "estimated relative error of the far field"
         found["far_field_error"] = (_since_start(misfits), meaning)
     return found
+
+
+def _wave_error(problem: Problem, t: float, u: np.ndarray) -> float:
+    case, theta, span = problem.case, waves(u), t - problem.t_initial
+    weight = np.abs(u)
+    if not theta.size or not np.isfinite(weight).all():
+        return 0.0
+    weight = weight / weight.max()
+    at = dict(zip(("x", "y"), case.positions, strict=False)) | {"t": np.array(t)}
+
+    def mean(one: Coefficient) -> float:
+        return float((np.abs(one(at)) * weight).sum() / weight.sum())
+
+    along = theta if case.dim == 1 else theta[:, None] * np.eye(case.dim)[0]
+    setting = case.setting
+    symbol = SCHEMES[case.scheme].symbol(along, setting) + theta**case.alpha
+    delta = mean(problem.diffusion) * (span * setting.rate / setting.diffusivity) * symbol
+    speed = (
+        float(np.hypot.reduce([mean(one) for one in problem.transport]))
+        if problem.transport
+        else 0.0
+    )
+    phase = np.zeros(1)
+    if speed:
+        phase = speed * span / setting.spacing * (Transport(setting).symbol(theta) - theta)
+    with np.errstate(over="ignore"):
+        return float(np.minimum(np.abs(1.0 - np.exp(-delta - 1j * phase)), _MOST).mean())
 
 
 def _coefficient_misfit(
@@ -149,6 +190,8 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "left. Take a wider lattice, or an earlier end",
         "resolution": f"particles of spacing {problem.spacing:.3g} do not resolve the solution: epsilon times its "
         "wavenumber is {:.2g}. Take a smaller spacing",
+        "wave_error": "the waves that the solution holds may be wrong by {:.2g} of a peak. Take a smaller spacing, "
+        "or a higher order",
         "between_particles": "the initial data differ between the particles by {:.2g} from what those at the particles "
         "say. Take a smaller spacing, or wider data",
         "coefficient_misfit": "a coefficient differs between the particles by {:.2g} from what they see of it. Take a "

@@ -10,15 +10,18 @@ Of a function on a large lattice there are fewer times, 64 at least.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
+from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
 
 __all__ = ["sudden_times"]
 
-Chosen = tuple[np.ndarray, ...]
+Index = tuple[Any, ...]
+Places = dict[str, np.ndarray]
 
 _LOOKS = 1024
 _NUMBERS, _FEWEST = (
@@ -48,10 +51,13 @@ def sudden_times(problem: Problem, u0: np.ndarray) -> list[float]:
     for one in problem.coefficients:
         if "t" not in one.depends_on:
             continue
-        at = lattice
-        if isinstance(one.given, str):  # a function may know no other points than the particles
-            at = {name: np.broadcast_to(x, u0.shape)[chosen] for name, x in lattice.items()}
-        values, times = _looked_at(one, at, chosen, start, problem.span)
+        at, pick = (
+            {name: np.broadcast_to(x, u0.shape)[chosen] for name, x in lattice.items()},
+            (...,),
+        )
+        if not _takes_any_points(one, at, lattice, chosen, np.array(start)):
+            at, pick = lattice, chosen
+        values, times = _looked_at(one, at, pick, start, problem.span)
         scale = np.ptp(values, axis=0)
         seen = scale > _NOTICED * np.abs(values).max()
         if not seen.any():
@@ -64,32 +70,43 @@ def sudden_times(problem: Problem, u0: np.ndarray) -> list[float]:
         for k in sudden:
             place = np.flatnonzero(seen)[change[k].argmax()]
             found |= set(
-                _narrowed(_at_place(one, at, chosen, place), times[k], times[k + 1], start, end)
+                _narrowed(_at_place(one, at, pick, place), times[k], times[k + 1], start, end)
             )
     return sorted(t for t in found if start < t < end)
 
 
+def _takes_any_points(
+    one: Coefficient, at: Places, lattice: Places, chosen: Index, t: np.ndarray
+) -> bool:
+    """Whether it can be evaluated at some of the particles alone: a function may know no other points than all."""
+    if isinstance(one.given, str):
+        return True
+    try:
+        return np.array_equal(
+            one(_of(one, at, t)), one(_of(one, lattice, t))[chosen], equal_nan=True
+        )
+    except InvalidInput:
+        return False
+
+
 def _looked_at(
-    one: Coefficient, at: dict[str, np.ndarray], chosen: Chosen, start: float, span: float
+    one: Coefficient, at: Places, pick: Index, start: float, span: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """The values at the chosen places, shape (times, places), and the times."""
-    is_text = isinstance(one.given, str)
-    looks = _LOOKS if is_text else max(_FEWEST, min(_LOOKS, _NUMBERS // at["u"].size))
+    looks = max(_FEWEST, min(_LOOKS, _NUMBERS // at["u"].size))
     k = np.arange(1.0, looks)
     within = (k + 0.5 * (k * _GOLDEN % 1.0)) / looks
     times = start + span * np.concatenate([[0.0], within, [1.0]])
-    if is_text:
+    if isinstance(one.given, str):
         return one.checked(_of(one, at, times[:, None])), times
-    return np.array([one.checked(_of(one, at, np.array(t)))[chosen] for t in times]), times
+    return np.array([one.checked(_of(one, at, np.array(t)))[pick] for t in times]), times
 
 
-def _at_place(
-    one: Coefficient, at: dict[str, np.ndarray], chosen: Chosen, place: int
-) -> Callable[[float], float]:
+def _at_place(one: Coefficient, at: Places, pick: Index, place: int) -> Callable[[float], float]:
     if isinstance(one.given, str):
         there = {name: x[place] for name, x in at.items()}
         return lambda t: float(one.checked(_of(one, there, np.array(t))))
-    return lambda t: float(one.checked(_of(one, at, np.array(t)))[chosen][place])
+    return lambda t: float(one.checked(_of(one, at, np.array(t)))[pick][place])
 
 
 def _narrowed(
@@ -108,7 +125,7 @@ def _narrowed(
     return low, high
 
 
-def _places(u0: np.ndarray) -> Chosen:
+def _places(u0: np.ndarray) -> Index:
     """The indices of some particles: equally spaced, by the mass of the data, and the middle."""
     u = np.abs(u0.reshape(-1))
     equally = np.linspace(0, u.size - 1, _PLACES).astype(int)
@@ -119,6 +136,6 @@ def _places(u0: np.ndarray) -> Chosen:
     return np.unravel_index(some, u0.shape)
 
 
-def _of(one: Coefficient, at: dict[str, np.ndarray], t: np.ndarray) -> dict[str, np.ndarray]:
+def _of(one: Coefficient, at: Places, t: np.ndarray) -> Places:
     every = {**at, "t": t}
     return {name: every[name] for name in one.variables}

@@ -50,9 +50,8 @@ class Transport:
         line = replace(setting, dim=1, kernel_table=None)
         c = divergence_weights(np.arange(reach + 1.0), line)
         self._divergence = BandedConvolution(c, parity=-1)
-        theta = np.linspace(0.0, np.pi, _WAVES)
-        symbol = 2.0 * np.abs(np.sin(theta[:, None] * np.arange(reach + 1)) @ c)
-        self._fastest = float(symbol.max()) / setting.spacing
+        self._weights = c
+        self._fastest = float(self.symbol(np.linspace(0.0, np.pi, _WAVES)).max()) / setting.spacing
         self._pad = reach if setting.is_open else 0
         self._diagonal = None
         if not setting.is_open:
@@ -75,6 +74,10 @@ class Transport:
             self._depth, self._falls[0] = self._powers(setting)
         elif self._pad:
             self._falls = [self._fall(d, setting.alpha) for d in range(setting.dim)]
+
+    def symbol(self, theta: np.ndarray) -> np.ndarray:
+        """Return what the wavenumber theta = k h is taken for: theta at small ones, zero at pi."""
+        return np.abs(2.0 * np.sin(theta[:, None] * np.arange(self._weights.size)) @ self._weights)
 
     def _powers(self, setting: Setting) -> tuple[np.ndarray, np.ndarray]:
         """Depths p from the end, and what u_(n-p) adds to the points beyond it, shape (terms, pad)."""
