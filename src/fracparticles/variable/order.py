@@ -31,7 +31,8 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.base import OnePass
 from fracparticles.schemes.setting import Setting
-from fracparticles.variable.exterior import tails_of, warn_unsettled
+from fracparticles.variable.exterior import tails_of
+from fracparticles.variable.resolution import warn_unsettled
 from fracparticles.variable.sums import EvenSum
 
 __all__ = ["VariableOrder", "interpolation_bound", "nodes_needed"]
