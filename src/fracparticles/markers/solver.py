@@ -105,9 +105,9 @@ class MarkerVelocity:
         fields = self.fields(x, weights)
         return quotient_velocity(self.flux(x, fields), fields[0], x, self._sums.accuracy)
 
-    def finer(self) -> MarkerVelocity:
-        """Return the same with half of epsilon, without derivatives: it says how much F depends on epsilon."""
-        return MarkerVelocity(self.shape, 0.5 * self.epsilon, self.flux, 0, self.period)
+    def field_alone(self, epsilon: float) -> MarkerVelocity:
+        """Return the same with another epsilon, without derivatives: it says how much F depends on epsilon."""
+        return MarkerVelocity(self.shape, epsilon, self.flux, 0, self.period)
 
     def _continued(self, x: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The markers of one period, and those that reach into it from the next."""
