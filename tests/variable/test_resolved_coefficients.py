@@ -8,7 +8,7 @@ import pytest
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning
 from fracparticles.schemes.setting import Setting
-from fracparticles.variable import FORMS, VariableDiffusivity
+from fracparticles.variable import FORMS, VariableDiffusivity, VariableOrder
 from fracparticles.variable.resolution import unresolved
 
 LINE = np.linspace(-4.0, 4.0, 81)
@@ -107,3 +107,16 @@ def test_a_run_is_within_three_per_cent_or_is_warned_of(width, below):
     assert warned or error < 0.03
     if width == 0.4:
         assert not warned
+
+
+@pytest.mark.parametrize("dim", [1, 2])
+def test_an_order_that_goes_up_and_down_between_the_particles_is_told(dim):
+    """A jump is not: each row has its own order, and a run across one from 1.2 to 1.8 is off by two per cent."""
+    setting = Setting(alpha=1.5, n=16, spacing=0.25, order=4, dim=dim)
+    x = np.broadcast_to(0.25 * np.arange(-16, 17), setting.shape)
+    jump, smooth = np.where(x > 0.1, 1.8, 1.2), 1.5 + 0.3 * np.tanh(x)
+    wave = 1.5 + 0.3 * np.cos(4.0 * np.pi * x)
+    assert said(lambda: VariableOrder(setting, jump)) == []
+    assert said(lambda: VariableOrder(setting, smooth)) == []
+    (text,) = said(lambda: VariableOrder(setting, wave))
+    assert "alpha - 1 varies faster than particles of spacing 0.25" in text

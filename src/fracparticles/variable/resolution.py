@@ -6,7 +6,8 @@ that the kernels see, and s = 1, for waves of the lattice:
     e_i = |D_i - (9 (D_(i-s) + D_(i+s)) - D_(i-3s) - D_(i+3s)) / 16| / max_(|j-i| <= 3s) D_j.
 
 At e = 0.1 a step of D leaves an error of one to three per cent of the peak of u, and more at larger ones
-(tests/variable/test_resolved_coefficients.py). Where D is below 1e-4 of its maximum nothing is asked of it.
+(tests/variable/test_resolved_coefficients.py). A single jump has at most 1/2, waves may have more. Where
+D is below 1e-4 of its maximum nothing is asked of it.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from scipy.ndimage import maximum_filter1d
 from fracparticles.errors import AccuracyWarning
 from fracparticles.schemes.setting import Setting
 
-__all__ = ["unresolved", "warn_unresolved", "warn_unsettled"]
+__all__ = ["UNRESOLVED", "unresolved", "warn_unresolved", "warn_unsettled"]
 
 _OUTER = 0.75  # of the half-width: beyond, a coefficient should be nearly constant,
 _UNSETTLED = 0.1  # within this share of its greatest value
-_UNRESOLVED = 0.1  # of e
+UNRESOLVED = 0.1  # of e
 _NEGLIGIBLE = 1e-4  # of the greatest D
 
 
@@ -45,10 +46,12 @@ def _missed(d: np.ndarray, s: int) -> float:
     return float((np.abs(middle - guess) / np.where(scale > 0.0, scale, 1.0)).max())
 
 
-def warn_unresolved(field: str, values: np.ndarray, setting: Setting) -> bool:
-    """Warn of a coefficient that varies too fast for the particles; say whether it did."""
+def warn_unresolved(
+    field: str, values: np.ndarray, setting: Setting, most: float = UNRESOLVED
+) -> bool:
+    """Warn of a coefficient that varies too fast for the particles, whose e is above `most`; say whether it did."""
     share = unresolved(values, setting.overlap)
-    if share <= _UNRESOLVED:
+    if share <= most:
         return False
     message = (
         f"{field} varies faster than particles of spacing {setting.spacing:.3g} and smoothing length "
