@@ -183,6 +183,28 @@ def test_weights_that_change_are_warned_of_too():
         )
 
 
+@pytest.mark.parametrize(
+    ("source", "served"),
+    [
+        (lambda x: np.exp(-x * x), True),
+        (lambda x: -np.exp(-4.0 * x * x), True),
+        (lambda x: 0.0 * x, True),
+        (lambda x: np.where(np.abs(x) < 3.5, x * np.exp(-x * x), np.inf), True),
+        (lambda x: np.exp(-((x - 6.0) ** 2)), False),
+        (lambda x: np.exp(-((x / 5.0) ** 2)), False),
+        (lambda x: np.exp(-(((x - 0.013) / 0.003) ** 2)), False),
+    ],
+)
+def test_a_source_that_the_markers_do_not_serve_is_warned_of(source, served):
+    """It is where they are not, or between two of them: the weights gain something else than int Q dx."""
+    x, w = uniform(lambda x: np.exp(-x * x), (-3.0, 3.0), 120)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        advance_weights(x, w, MarkerVelocity(SHAPES["S4"], 0.4), source, dt=1e-4, steps=1)
+    told = [one for one in caught if "the weights gain" in str(one.message)]
+    assert len(told) == (not served)
+
+
 def test_the_error_of_waves_does_not_depend_on_the_unit_of_length():
     x, w = gaussian(200)
     one = wave_error(MarkerVelocity(SHAPES["S8"], 0.3), x, w, 1e-3, 50)
