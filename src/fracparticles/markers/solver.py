@@ -19,6 +19,7 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
+from fracparticles.markers.derivatives import warn_of_derivatives
 from fracparticles.markers.reliability import warn_of_resolution, warn_of_waves
 from fracparticles.markers.shapes import Shape
 from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
@@ -169,7 +170,8 @@ def run(
         takes most of the markers farther from all others than the shape function reaches. F at such a marker is its
         own only.
     AccuracyWarning
-        If the markers are too far apart for epsilon, or epsilon or dt is too large for the field.
+        If the markers are too far apart for epsilon or for the derivatives of the flux, or epsilon or dt is too large
+        for the field.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x = check.positions("x", x)
@@ -182,6 +184,7 @@ def run(
         x, weights, velocity, dt=dt, steps=steps, start=start, observe=observe
     )
     warn_of_resolution(velocity, at_start, (x, weights))
+    warn_of_derivatives(velocity, *at_start)
     return MarkerRun(x, weights, history, velocity)
 
 
