@@ -378,6 +378,60 @@ def test_compare_what_is_the_same_and_what_cannot_be(cli):
     assert refused(cli("compare", "a.nc", "none.nc"), "none.nc", "an existing file")
 
 
+def test_compare_does_not_take_metres_for_millimetres(cli):
+    """The numbers are the same, and what they mean is not."""
+    for unit in ("m", "mm", None):
+        named = () if unit is None else ("--units", f"{unit},d,mg/L")
+        cli("solve", *SERIES, *named, "-o", f"{unit}.nc")
+    _, row, last = cli("compare", "m.nc", "mm.nc")[1].splitlines()
+    assert row.split() == ["unit", "of", "length", "m", "mm"]
+    assert last == "u: not in the same units, length is in m and in mm"
+    *rows, last = cli("compare", "m.nc", "None.nc")[1].splitlines()
+    assert ["unit", "of", "u", "mg/L", "1"] in [row.split() for row in rows]
+    assert last.endswith("no difference")
+
+
+def test_compare_names_the_coefficients_and_the_data(cli):
+    """Runs of other velocities have the same scalars; those of mirrored data the same results."""
+    fields = {"alpha": 1.5, "half_width": 10.0, "spacing": 0.5, "t_initial": 0.5, "t_final": 1.0}
+    for name, velocity in (("left", "-1"), ("right", "1"), ("own", lambda x: -1.0 + 0.0 * x)):
+        fp.write(fp.solve_problem(fp.Problem(velocity=velocity, **fields)), f"{name}.nc")
+    out = cli("compare", "left.nc", "right.nc")[1]
+    assert ["velocity", "-1", "1"] in [row.split() for row in out.splitlines()]
+    assert "no difference" not in out
+    assert "whether they differ is not known" in cli("compare", "own.nc", "own.nc")[1]
+    u0 = np.exp(-((CASE.x - 1.0) ** 2))
+    fp.write(fp.solve(CASE, u0), "one.nc")
+    fp.write(fp.solve(CASE, u0[::-1]), "other.nc")
+    names = [row.split()[0] for row in cli("compare", "one.nc", "other.nc")[1].splitlines()[1:-1]]
+    assert "initial_data" in names
+
+
+def test_compare_takes_times_to_round_off(cli):
+    for name, time in (("one", 0.3), ("other", 0.1 + 0.2)):
+        cli("solve", *SERIES, "--t-initial", 0.1, "--t-final", repr(time), "-o", f"{name}.nc")
+    out = cli("compare", "one.nc", "other.nc")[1]
+    assert "t_final" in out
+    assert "0.3  " in out
+    assert "0.30000000000000004" in out
+    assert "at 81 shared values of 81 and 81" in out
+
+
+@pytest.mark.parametrize(
+    ("flag", "text"),
+    [("--beta", "0_5"), ("--beta", "0.5_0"), ("--times", "1_0"), ("--spacing", "0_1")],
+)
+def test_a_number_has_no_underscore(cli, flag, text):
+    """Python reads 0_5 as five and 1_0 as ten."""
+    given = [*SERIES, flag, text]
+    if flag in SERIES:
+        given = list(SERIES)
+        given[given.index(flag) + 1] = text
+    assert refused(cli("solve", *given, "-o", "run.nc"), flag.removeprefix("--"), text)
+    if flag == "--spacing":
+        assert refused(cli("limit", "--scheme", "KPSE", "--beta", 0.5, flag, text), "spacing", text)
+
+
 # --- what a terminal shows ------------------------------------------------------------------------
 
 

@@ -324,7 +324,8 @@ CALLS = {
     "advance_weights": (
         source.advance_weights,
         {"x": (X, "particles"), "weights": (ONES, "line"), "velocity": (VELOCITY, "object"),
-         "source": (SOURCE.rate, "function"), "dt": (0.01, "positive"), "steps": (1, "count"), "stages": (2, "count")},
+         "source": (lambda x: np.exp(-100.0 * (x - 0.5) ** 2), "function"), "dt": (0.01, "positive"),
+         "steps": (1, "count"), "stages": (2, "count")},
     ),
     "GaussianSource": (source.GaussianSource, {"q": (1.0, "number"), "derivative": (0, "whole")}),
     "GaussianSource.rate": (SOURCE.rate, {"x": (X, "field")}),

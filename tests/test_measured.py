@@ -53,6 +53,25 @@ def test_the_stated_error_is_that_of_the_interpolation(name, points, uneven):
     assert 0.5 * true <= data.interpolation_error <= 20.0 * true + 1e-12
 
 
+@pytest.mark.parametrize("shift", [0.0, 1.3])
+@pytest.mark.parametrize("name", PROFILES)
+@pytest.mark.parametrize("points", [4, 5, 6, 7, 8, 10, 12, 15, 16, 18, 20, 24])
+@pytest.mark.parametrize("uneven", [False, True])
+def test_the_stated_error_of_few_points_is_no_accident(name, points, uneven, shift):
+    """A third of the true error, or 1, which says that nothing is known: few points may be met by chance."""
+    x = np.linspace(-3.0, 3.0, points)
+    x = np.sinh(x) if uneven else 10.0 * x / 3.0
+    data = fp.measured((x, PROFILES[name](x - shift)))
+    z = np.linspace(-10.0, 10.0, 4001)
+    true = np.abs(data(z) - PROFILES[name](z - shift)).sum() / PROFILES[name](z - shift).sum()
+    assert data.interpolation_error >= min(1.0, true / 3.0)
+
+
+def test_four_points_on_a_parabola_are_not_known_to_be_one():
+    assert fp.measured(([-3.0, -1.0, 1.0, 3.0], [0.0, 1.0, 1.0, 0.0])).interpolation_error >= 1.0
+    assert fp.measured((np.arange(4.0), np.zeros(4))).interpolation_error == 0.0
+
+
 def test_noise_is_stated_and_not_taken_for_a_smooth_profile():
     x, noise = np.linspace(-10.0, 10.0, 101), np.random.default_rng(3).standard_normal(101)
     data = fp.measured((x, profile(x) + 0.02 * noise))
@@ -120,6 +139,53 @@ def test_a_decimal_comma(tmp_path):
     assert np.array_equal(fp.measured(path).values, profile(X))
 
 
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_a_decimal_comma_in_some_rows_only(tmp_path, mark):
+    """The last row may have whole numbers."""
+    path = tmp_path / "p.csv"
+    rows = ["x, c", "0,5 1,5", "1 2", "2,5 2,25", "3 1"]
+    path.write_text("\n".join(row.replace(" ", mark) for row in rows).replace(f",{mark}", mark))
+    data = fp.measured(path)
+    assert data.axes[0].tolist() == [0.5, 1.0, 2.5, 3.0]
+    assert data.values.tolist() == [1.5, 2.0, 2.25, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("names", "axes"),
+    [
+        ("y,x,c", "yxc"), ("c,x,y", "cxy"), ("x,u,y", "xcy"), ("X,Y,c", "xyc"), ("x,y,z", "xyc"),
+        ("u,a,b", "cxy"), ("a,b,c", "xyc"),
+    ],
+)  # fmt: skip
+def test_columns_are_taken_by_their_names(tmp_path, names, axes):
+    """x comes before y, and u is the value, wherever they stand; `axes` says what stands in which column."""
+    points = [(x, y) for x in range(4) for y in range(10, 15)]
+    rows = [{"x": x, "y": y, "c": x + 100 * y} for x, y in points]
+    path = tmp_path / "p.csv"
+    lines = [",".join(str(row[axis]) for axis in axes) for row in rows]
+    path.write_text("\n".join([names, *lines]))
+    data = fp.measured(path)
+    assert [axis.tolist() for axis in data.axes] == [[0, 1, 2, 3], [10, 11, 12, 13, 14]]
+    assert np.array_equal(data.values, np.add.outer(np.arange(4), 100 * np.arange(10, 15)))
+    frame = pd.DataFrame(rows)[list(axes)].set_axis(names.split(","), axis=1)
+    assert np.array_equal(fp.measured(frame).values, data.values)
+
+
+def test_axes_of_two_units_are_refused(tmp_path):
+    """A lattice has one unit of length."""
+    points = [(x, y) for x in range(4) for y in range(5)]
+    path = tmp_path / "p.csv"
+    path.write_text("\n".join(["x [m],y [cm],c [g]", *(f"{x},{y},1" for x, y in points)]))
+    with pytest.raises(InvalidInput, match="in one unit, and these are in m and cm"):
+        fp.measured(path)
+    array = xr.DataArray(np.ones((4, 5)), {"x": np.arange(4.0), "y": np.arange(5.0)}, ("x", "y"))
+    array.x.attrs["units"], array.y.attrs["units"] = "m", "km"
+    with pytest.raises(InvalidInput, match="in one unit, and these are in m and km"):
+        fp.measured(array)
+    array.y.attrs["units"] = "m"
+    assert fp.measured(array).units == ("m", "")
+
+
 def test_order_does_not_matter_and_names_may_be_any(tmp_path):
     order = np.random.default_rng(1).permutation(X.size)
     right = fp.measured((X, profile(X)))
@@ -171,6 +237,8 @@ def test_what_is_refused(data, words):
         ("", "It is empty"),
         ("x,u\n1,2\n2,three\n3,4\n4,5\n", "row 2 of the numbers"),
         ("x,u\n1,2\n2\n3,4\n4,5\n", "row 2 of the numbers"),
+        ("x,u\n1,2\n2,1_0\n3,4\n4,5\n", "row 2 of the numbers"),
+        ("t,x,u\n1,1,2\n1,2,3\n1,3,4\n1,4,5\n", "Say which"),
         ("u,u\n1,2\n2,3\n3,4\n4,5\n", "columns of different names"),
     ],
 )

@@ -124,9 +124,28 @@ def test_too_large_an_epsilon_is_warned_of():
     with pytest.warns(AccuracyWarning, match="is too large for this field"):
         end = run(x, w, velocity, dt=0.1, steps=1)
     assert end.field([0.0])[0] < 0.5 * Gaussian().value(0.0, 0.1)
-    # f'' eps^2 / 14 of S4, of which half of epsilon leaves a quarter; f'' = -2 at the peak; then eps^4.
+    # f'' eps^2 / 14 of S4, f'' = -2 at the peak; then eps^4.
     fine = smoothing(MarkerVelocity(SHAPES["S4"], 0.2), *gaussian(2000, 4.0))
-    assert fine == pytest.approx(0.75 * 0.04 / 14.0 * 2.0, rel=0.03)
+    assert fine == pytest.approx(0.04 / 14.0 * 2.0, rel=0.03)
+
+
+@pytest.mark.parametrize("shape", ["S2", "S5"])
+def test_too_large_an_epsilon_is_warned_of_where_the_gaps_allow_no_smaller_one(shape):
+    """Markers one apart, a bell of that width, epsilon = 3: with 1.5 the gaps are seen; with 6 F is half as high."""
+    x, w = uniform(lambda x: np.exp(-x * x), (-20.0, 20.0), 41)
+    velocity = MarkerVelocity(SHAPES[shape], 3.0)
+    assert velocity.fields([0.0], [1.0])[0][0] > 0.0
+    assert np.abs(velocity.fields(x, w)[0] - np.exp(-x * x)).max() > 0.4
+    assert smoothing(velocity, x, w) > 0.1
+    with pytest.warns(AccuracyWarning, match="is too large for this field"):
+        run(x, w, velocity, dt=0.1, steps=1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_markers_alone_are_no_large_epsilon(seed):
+    """With a noise of a few per cent and an epsilon that resolves the bell nothing is said of epsilon."""
+    x, w = random(Gaussian(), 2000, np.random.default_rng(seed))
+    assert smoothing(MarkerVelocity(SHAPES["S8"], 0.4), x, w) < 0.1
 
 
 @pytest.mark.parametrize("count", [200, 1000])
@@ -162,6 +181,28 @@ def test_weights_that_change_are_warned_of_too():
             dt=0.1,
             steps=1,
         )
+
+
+@pytest.mark.parametrize(
+    ("source", "served"),
+    [
+        (lambda x: np.exp(-x * x), True),
+        (lambda x: -np.exp(-4.0 * x * x), True),
+        (lambda x: 0.0 * x, True),
+        (lambda x: np.where(np.abs(x) < 3.5, x * np.exp(-x * x), np.inf), True),
+        (lambda x: np.exp(-((x - 6.0) ** 2)), False),
+        (lambda x: np.exp(-((x / 5.0) ** 2)), False),
+        (lambda x: np.exp(-(((x - 0.013) / 0.003) ** 2)), False),
+    ],
+)
+def test_a_source_that_the_markers_do_not_serve_is_warned_of(source, served):
+    """It is where they are not, or between two of them: the weights gain something else than int Q dx."""
+    x, w = uniform(lambda x: np.exp(-x * x), (-3.0, 3.0), 120)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        advance_weights(x, w, MarkerVelocity(SHAPES["S4"], 0.4), source, dt=1e-4, steps=1)
+    told = [one for one in caught if "the weights gain" in str(one.message)]
+    assert len(told) == (not served)
 
 
 def test_the_error_of_waves_does_not_depend_on_the_unit_of_length():

@@ -26,6 +26,6 @@ class FourierMarkerVelocity(MarkerVelocity):
         kernels = [ScatteredKernel(profile, bandwidth=_BAND) for profile in profiles]
         self._sums = NonuniformFourierSum(kernels, self.epsilon)
 
-    def finer(self) -> FourierMarkerVelocity:
+    def field_alone(self, epsilon: float) -> FourierMarkerVelocity:
         """See `MarkerVelocity`."""
-        return FourierMarkerVelocity(0.5 * self.epsilon, self.flux, 0)
+        return FourierMarkerVelocity(epsilon, self.flux, 0)

@@ -13,7 +13,7 @@ Accuracy, by what the run can see of itself:
 - The gaps between the markers leave a ripple on F (`moving.reliability`).
 - Gaps d at random leave a noise of the relative variance (var d / d^2) (d / eps) int S^2. Between neighbours d F / W
   differs by (var d / (2 d^2))^(1/2).
-- F is smoother than the field: how much, is what half of epsilon changes.
+- F is smoother than the field: how much, is what a smaller epsilon changes, or a larger one (`smoothing`).
 - Waves of the field change at the rate sigma, where the equation has S^ = 1. The error of their amplitude over the run
   is found for the wavenumber of F, max |F_x| / (max F - min F), and for twice and half of it.
 Where the set of markers ends, F ends, and says nothing of the field.
@@ -28,7 +28,12 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from fracparticles.errors import AccuracyWarning, FracparticlesError, StabilityWarning
+from fracparticles.errors import (
+    AccuracyWarning,
+    FracparticlesError,
+    InvalidInput,
+    StabilityWarning,
+)
 from fracparticles.markers.shapes import Shape
 from fracparticles.moving.reliability import RIPPLE, cells, ripple, warn_of_ripple
 
@@ -49,6 +54,8 @@ _WAVE_ERROR = 0.1
 _NOISE = 0.15  # diffusion takes most of it away
 _WAVENUMBERS = np.linspace(0.0, 30.0, 601)[1:]  # eps q
 _HARMONICS = np.array([2.0, 1.0, 0.5])
+_PARTS = (2.0, 0.5, 0.25, 0.125)  # of epsilon
+_SIGMAS = 3.0  # of noise, the greatest of some hundred markers
 _CORE = 2.0  # epsilon: S8 is negligible for an end that is farther away
 _DIFFERENCE = 1e-4  # of a derivative of F, relative to F / eps^m: a flux quadratic in it has exact differences
 _TOO_LARGE = 1.0 + 1e-9
@@ -66,8 +73,8 @@ class Velocity(Protocol):
     def fields(self, x: Any, weights: Any) -> np.ndarray:
         """Return F and its derivatives at the markers."""
 
-    def finer(self) -> Velocity:
-        """Return the same with half of epsilon, without derivatives."""
+    def field_alone(self, epsilon: float) -> Velocity:
+        """Return the same with another epsilon, without derivatives."""
 
 
 def midpoint(z: np.ndarray) -> np.ndarray:
@@ -217,17 +224,28 @@ def _growth(
 
 
 def smoothing(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
-    """Return max |F - F'| / max |F'| over the markers away from the ends, F' with half of epsilon.
+    """Return an estimate of max |F - f| / max |f| over the markers away from the ends, f the field that F smooths.
 
-    With a shape function of moment order 2 three quarters of the error are seen. Zero where the markers are too far
-    apart for half of epsilon.
+    The greatest of what others say of it: F with twice of epsilon, whose error is larger by a factor that the order
+    tells; and in the place of f itself F with a half, a quarter and an eighth of epsilon, as far as the gaps between
+    the markers allow, and for the last two their noise.
     """
-    finer = velocity.finer()
-    if ripple(x, weights, finer.epsilon, finer.shape.transform) > RIPPLE:
-        return 0.0
     inner = _inner(velocity, x)
-    field, exacter = (one.fields(x, weights)[0][inner] for one in (velocity, finer))
-    return float(np.abs(field - exacter).max() / np.abs(exacter).max())
+    field, found = velocity.fields(x, weights)[0][inner], 0.0
+    for part in _PARTS:
+        try:
+            other = velocity.field_alone(part * velocity.epsilon)
+        except InvalidInput:  # wider than the period
+            continue
+        if part < 1.0 and ripple(x, weights, other.epsilon, other.shape.transform) > RIPPLE:
+            break
+        if part < 0.5 and _SIGMAS * noise(other, x, weights) > _SMOOTHED:
+            break
+        exacter = other.fields(x, weights)[0][inner]
+        apart, size = np.abs(field - exacter).max(), np.abs(exacter if part < 1.0 else field).max()
+        gained = part**velocity.shape.moment_order - 1.0 if part > 1.0 else 1.0
+        found = max(found, float(apart / (gained * size)))
+    return found
 
 
 def noise(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
@@ -275,7 +293,7 @@ def warn_of_resolution(velocity: Velocity, *markers: tuple[np.ndarray, np.ndarra
     smoothed = smoothing(velocity, *markers[0])
     if smoothed > _SMOOTHED:
         warnings.warn(
-            f"epsilon = {velocity.epsilon:.4g} is too large for this field: with half of it F changes by "
+            f"epsilon = {velocity.epsilon:.4g} is too large for this field: it changes F by about "
             f"{smoothed:.2g} of itself. Take a smaller epsilon.",
             AccuracyWarning,
             stacklevel=3,

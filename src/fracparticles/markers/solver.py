@@ -19,6 +19,7 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
+from fracparticles.markers.derivatives import warn_of_derivatives
 from fracparticles.markers.reliability import warn_of_resolution, warn_of_waves
 from fracparticles.markers.shapes import Shape
 from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
@@ -105,9 +106,9 @@ class MarkerVelocity:
         fields = self.fields(x, weights)
         return quotient_velocity(self.flux(x, fields), fields[0], x, self._sums.accuracy)
 
-    def finer(self) -> MarkerVelocity:
-        """Return the same with half of epsilon, without derivatives: it says how much F depends on epsilon."""
-        return MarkerVelocity(self.shape, 0.5 * self.epsilon, self.flux, 0, self.period)
+    def field_alone(self, epsilon: float) -> MarkerVelocity:
+        """Return the same with another epsilon, without derivatives: it says how much F depends on epsilon."""
+        return MarkerVelocity(self.shape, epsilon, self.flux, 0, self.period)
 
     def _continued(self, x: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The markers of one period, and those that reach into it from the next."""
@@ -169,7 +170,8 @@ def run(
         takes most of the markers farther from all others than the shape function reaches. F at such a marker is its
         own only.
     AccuracyWarning
-        If the markers are too far apart for epsilon, or epsilon or dt is too large for the field.
+        If the markers are too far apart for epsilon or for the derivatives of the flux, or epsilon or dt is too large
+        for the field.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x = check.positions("x", x)
@@ -182,6 +184,7 @@ def run(
         x, weights, velocity, dt=dt, steps=steps, start=start, observe=observe
     )
     warn_of_resolution(velocity, at_start, (x, weights))
+    warn_of_derivatives(velocity, *at_start)
     return MarkerRun(x, weights, history, velocity)
 
 

@@ -17,6 +17,7 @@ r"""Diffusion with a source, f_t = f_xx + Q(x), Sec. 2.1, in two ways.
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -25,7 +26,7 @@ import numpy as np
 from scipy.special import erf, erfc
 
 from fracparticles import arguments as check
-from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 from fracparticles.markers.profiles import Gaussian
 from fracparticles.markers.reliability import warn_of_resolution, warn_of_waves
 from fracparticles.markers.solver import Flux, MarkerVelocity
@@ -34,6 +35,9 @@ from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["GaussianSource", "advance_weights", "source_flux"]
 
+_AROUND = 1  # how far the source is looked for beyond the markers, in spans of theirs
+_BETWEEN = 4  # points from a marker to the next, and as many more where they are dense
+_MISSED = 0.1  # of int |Q|
 _FAR = 10.0  # |x|: beyond, what cancels in the solution is taken out by hand
 
 Function = Callable[[np.ndarray], np.ndarray]
@@ -78,7 +82,8 @@ def advance_weights(
     StabilityWarning
         If dt is too large for these stages, or waves of the markers' places grow: see `reliability`.
     AccuracyWarning
-        If the markers are too far apart for epsilon, or epsilon is too large for the field.
+        If the markers are too far apart for epsilon, or epsilon is too large for the field; or if the weights do not
+        gain int |Q| dx: the source is where no markers are, or narrower than their distance.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x, source = check.positions("x", x), check.function("source", source)
@@ -102,9 +107,36 @@ def advance_weights(
                 "which dW/dt = W Q / F never does. Take a smaller dt."
             )
 
+    _warn_of_what_is_missed(velocity, x, weights, source)
     state = step.advance(rate, np.stack([x, weights]), dt=dt, steps=steps, observe=observe)
     warn_of_resolution(velocity, (x, weights), (state[0], state[1]))
     return state[0], state[1]
+
+
+def _warn_of_what_is_missed(
+    velocity: MarkerVelocity, x: np.ndarray, weights: np.ndarray, source: Function
+) -> None:
+    """Warn if sum_j |W_j Q_j / F_j| is not int |Q| dx, around the markers and by some points from one to the next."""
+    field = velocity.fields(x, weights)[0]
+    if not (field > 0.0).all():
+        return  # the run will say so
+    low, high = float(x.min()), float(x.max())
+    around = (high - low) * _AROUND
+    if velocity.period is not None:
+        low, high, around = 0.0, velocity.period, 0.0
+    line = np.linspace(low - around, high + around, 2 * x.size * (1 + 2 * _AROUND) * _BETWEEN + 1)
+    with np.errstate(all="ignore"):
+        q = np.nan_to_num(np.broadcast_to(np.abs(source(line)), line.shape), posinf=0.0)
+        given = float(np.sum(np.abs(weights * source(x)) / field))
+    total = float(np.trapezoid(q, line))
+    missed = abs(given - total) / max(given, total) if max(given, total) > 0.0 else 0.0
+    if missed > _MISSED:
+        warnings.warn(
+            f"the weights gain {given:.3g} a unit of time of the {total:.3g} that the source has in and around the "
+            "markers: it is where they are not, or narrower than their distance. Take markers there, or more.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 @dataclass(frozen=True)

@@ -132,8 +132,11 @@ def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
 
 
 def number_or_text(text: str) -> Any:
-    """Return the number that the text stands for, or the text if it stands for none."""
-    for number in (int, float):
+    """Return the number that the text stands for, or the text if it stands for none.
+
+    1_0, which Python reads as ten, stands for none: it may be a slip of 1.0.
+    """
+    for number in (int, float) if "_" not in text else ():
         try:
             return number(text)
         except ValueError:

@@ -9,6 +9,7 @@ u of the first run and v of the second.
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["compare", "comparison", "distance"]
 
-_SAME_PLACE = 1e-9  # of a spacing
+_SAME_PLACE = 1e-9  # of a spacing, and of the last time
+_NO_UNIT = "1"
+_UNITS = {"x": "length", "t_final": "time", "u": "u"}  # the variables that have them
+_NOT_TOLD = ("initial", "store", "times")  # of a case: in `initial_data`, and seen from u
 
 Row = tuple[str, str, str]
 
@@ -41,17 +45,19 @@ def compare(first: str, second: str) -> None:
         print(f"{name:{widths[0]}}  {one:{widths[1]}}  {other}".rstrip())
     if len(rows) == 1:
         print("no difference in parameters and results")
+    if any(run.attrs.get("reproducible", "yes") != "yes" for run in runs):
+        print("coefficients that are functions are in no file: whether they differ is not known")
     print(distance(*runs))
 
 
 def comparison(first: xr.Dataset, second: xr.Dataset) -> list[Row]:
-    """Return the parameters and scalar results in which two runs differ: name, value in the first and in the second."""
-    rows: list[Row] = []
-    for name in dict.fromkeys([*_scalars(first), *_scalars(second)]):
-        values = [_scalars(run).get(name) for run in (first, second)]
-        if not _equal(*values):
-            rows.append((name, _shown(values[0]), _shown(values[1])))
-    return rows
+    """Return in what two runs differ: name, value in the first and in the second.
+
+    These are the parameters and scalar results, what the initial data were, coefficients that are texts, and units.
+    """
+    one, other = _told(first), _told(second)
+    each = [(name, one.get(name), other.get(name)) for name in dict.fromkeys([*one, *other])]
+    return [(name, *_shown(a, b)) for name, a, b in each if not _equal(a, b)]
 
 
 def distance(first: xr.Dataset, second: xr.Dataset) -> str:
@@ -61,8 +67,11 @@ def distance(first: xr.Dataset, second: xr.Dataset) -> str:
     u, v = _with_times(first), _with_times(second)
     if u.dims != v.dims:
         return f"u: not on the same axes, {spelled(u.dims, ', ')} and {spelled(v.dims, ', ')}"
+    for name, one, other in zip(_UNITS, _units(first), _units(second), strict=True):
+        if one != other and _NO_UNIT not in (one, other):
+            return f"u: not in the same units, {_UNITS[name]} is in {one} and in {other}"
     tolerance = _SAME_PLACE * float(first.particle_spacing)
-    v = v.reindex(t=u.t)
+    v = v.reindex(t=u.t, method="nearest", tolerance=_SAME_PLACE * float(np.abs(u.t).max()))
     for axis in u.dims[1:]:
         v = v.reindex({axis: u[axis]}, method="nearest", tolerance=tolerance)
     shared = np.isfinite(v.values)
@@ -87,6 +96,27 @@ def _with_times(run: xr.Dataset) -> xr.DataArray:
     return run.u if "t" in run.u.dims else run.u.expand_dims(t=[float(run.t_final)])
 
 
+def _told(run: xr.Dataset) -> dict[str, Any]:
+    """The scalars of a run, what its case or problem says beside them, its initial data and its units."""
+    told = _scalars(run)
+    stored = json.loads(run.attrs.get("case") or run.attrs.get("problem") or "{}")
+    told |= {
+        name: value for name, value in stored.items() if name not in (*run.variables, *_NOT_TOLD)
+    }
+    told["initial_data"] = run.attrs.get("initial_data")
+    return told | {
+        f"unit of {_UNITS[name]}": unit for name, unit in zip(_UNITS, _units(run), strict=True)
+    }
+
+
+def _units(run: xr.Dataset) -> list[str]:
+    """The units of the variables of `_UNITS`."""
+    return [
+        str(run[name].attrs.get("units", _NO_UNIT)) if name in run.variables else _NO_UNIT
+        for name in _UNITS
+    ]
+
+
 def _scalars(run: xr.Dataset) -> dict[str, Any]:
     scalars = [*run.coords.values(), *run.data_vars.values()]
     return {str(one.name): one.item() for one in scalars if one.ndim == 0}
@@ -96,7 +126,10 @@ def _equal(one: Any, other: Any) -> bool:
     return one == other or (one != one and other != other)  # nan is a value like another
 
 
-def _shown(value: Any) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _shown(one: Any, other: Any) -> tuple[str, str]:
+    """Six digits of each, or all where six are the same."""
+    first, second = (
+        "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
+        for value in (one, other)
+    )
+    return (first, second) if first != second else (repr(one), repr(other))

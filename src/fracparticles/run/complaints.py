@@ -47,7 +47,7 @@ def _remedy(field: FieldInfo) -> str:
 
 
 def allowed(field: FieldInfo) -> str:
-    """Return in words what a field takes: its choices, or a number and its bounds."""
+    """Return in words what a field takes: its choices, a number and its bounds, or what its description says."""
     choices = choices_of(field.annotation)
     if choices:
         return f"one of {spelled(choices, ', ')}"
@@ -62,6 +62,9 @@ def allowed(field: FieldInfo) -> str:
         if hasattr(bound, name)
     }
     low, high = bounds.get("gt", bounds.get("ge")), bounds.get("lt", bounds.get("le"))
+    if low is None or high is None:  # a coefficient, of which a sentence says what it may be
+        _, *said = (field.description or "").split(". ")
+        return said[0].rstrip(".")[:1].lower() + said[0].rstrip(".")[1:] if said else "a value"
     return f"a number between {low:g} and {high:g}{' (exclusive)' if 'lt' in bounds else ''}"
 
 

@@ -7,16 +7,17 @@ missed with all of them:
 
     e = e_2 / r,   r = e_4 / e_2,  1 <= r <= 16,   the relative 1-norm of what is missed.
 
-Noise has r = 1. Beyond the outermost points the data are zero; what may have been there, if it falls like
-|x|^(-1-alpha) or faster, is at most the sum of |u| d at the ends, d the distance to the middle of the data, and is
-stated as well.
+Noise has r = 1, and so have fewer than sixteen points along an axis. The few that are left out of fewer than 32 may be
+met by chance: e is then at least the distance of the two cubics; of fewer than eight nothing is known, and e is at
+least 1. Beyond the outermost points the data are zero; what may have been there, if it falls like |x|^(-1-alpha) or
+faster, is at most the sum of |u| d at the ends, d the distance to the middle of the data, and is stated as well.
 """
 
 from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -36,9 +37,11 @@ __all__ = ["MEASURED", "Measured", "measured"]
 
 MEASURED = "measured:"  # before a path: what it holds is interpolated
 _FEWEST = 4
+_TOO_FEW, _SOME, _MANY = 8, 16, 32  # points along an axis, see the module
 _NOTICED = 0.05
 _MOST_GAIN = 16.0  # of half the spacing: the order of both cubics is four at most
 _FIELD = "initial"
+_AXES = ("x", "y", "z")
 
 Interpolant = Callable[[Sequence[np.ndarray], np.ndarray, list[np.ndarray]], np.ndarray]
 
@@ -90,10 +93,13 @@ class Measured:
         """Which interpolation: "cubic spline" or "monotone cubic"."""
         return min(_INTERPOLANTS, key=lambda name: self._errors[name])
 
-    @property
+    @cached_property
     def interpolation_error(self) -> float:
         """The relative error in the 1-norm between the points; see the module."""
-        return self._errors[self.method]
+        few, found = min(axis.size for axis in self.axes), self._errors[self.method]
+        if few < _TOO_FEW:
+            return max(found, float(np.any(self.values)))
+        return max(found, self._apart) if few < _MANY else found
 
     @cached_property
     def beyond(self) -> float:
@@ -115,10 +121,7 @@ class Measured:
     @cached_property
     def integral(self) -> float:
         """The integral of the interpolated data, by the trapezoidal rule on a grid eight times as fine."""
-        fine = [
-            np.interp(np.arange(8 * axis.size - 7) / 8.0, np.arange(axis.size), axis)
-            for axis in self.axes
-        ]
+        fine = _finer(self.axes)
         return float(_integral(fine, self(*np.meshgrid(*fine, indexing="ij", sparse=True))))
 
     @property
@@ -164,6 +167,17 @@ class Measured:
         for name, interpolant in _INTERPOLANTS.items():
             found[name] = _left_out(interpolant, self.axes, self.values)
         return found
+
+    @property
+    def _apart(self) -> float:
+        """How far the two cubics are apart, in the relative 1-norm."""
+        fine = _finer(self.axes)
+        one, other = (
+            of(self.axes, self.values, list(np.meshgrid(*fine, indexing="ij", sparse=True)))
+            for of in _INTERPOLANTS.values()
+        )
+        size = float(_integral(fine, np.abs(one)))
+        return float(_integral(fine, np.abs(one - other))) / size if size > 0.0 else 0.0
 
 
 def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None = None) -> Measured:
@@ -237,14 +251,13 @@ def _of_columns(
         if name not in columns:
             raise one_of("x and u", name, columns, source)
     known = list(columns)
-    if x is None and u is not None:
-        x = tuple(name for name in known if name != u)
-    if x is not None and u is None:
+    if x is None and u is None:
+        x, u = _by_their_names(known)
+    elif x is None:
+        x = _in_order(name for name in known if name != u)
+    elif u is None:
         rest = [name for name in known if name not in x]
         u = rest[0] if len(rest) == 1 else None
-    if x is None and u is None and len(known) in (2, 3, 4):
-        *head, u = known
-        x = tuple(head)
     if x is None or u is None or len(x) not in (1, 2, 3):
         allowed = f"one to three columns of places and one of values, and it has {spelled(known, ' and ')}"
         raise InvalidInput(_FIELD, source, allowed, "Say which: fp.measured(data, x=..., u=...).")
@@ -263,8 +276,36 @@ def _of_columns(
         sides = " x ".join(map(str, shape))
         allowed = f"a rectangular grid, here of {sides} points, and there are {values.size} values"
         raise InvalidInput(_FIELD, source, allowed, "Put scattered points onto a grid first.")
-    unit = next((units.get(name, "") for name in x if units.get(name)), "")
+    unit = _one_unit([units.get(name, "") for name in x], source)
     return _checked(axes, grid, (unit, units.get(u, "")), source)
+
+
+def _by_their_names(known: list[str]) -> tuple[tuple[str, ...] | None, str | None]:
+    """Return which columns are places and which are values, if nobody said: x, y, z and the other one; or the last."""
+    axes = [name for name in known if name.lower() in _AXES]
+    others = [name for name in known if name not in axes]
+    if axes and others:
+        return _in_order(axes), others[0] if len(others) == 1 else None
+    if len(known) not in (2, 3, 4):
+        return None, None
+    values = next((name for name in known if name.lower() == "u"), known[-1])
+    return _in_order(name for name in known if name != values), values
+
+
+def _in_order(names: Iterable[str]) -> tuple[str, ...]:
+    """Return x, y, z in this order, and others as they come."""
+    names = tuple(names)
+    known = all(name.lower() in _AXES for name in names)
+    return tuple(sorted(names, key=str.lower)) if known else names
+
+
+def _one_unit(units: list[str], source: str) -> str:
+    """The unit of all axes: a lattice has one."""
+    named = list(dict.fromkeys(unit for unit in units if unit and unit != "1"))
+    if len(named) > 1:
+        one = f"places in one unit, and these are in {spelled(named, ' and ')}"
+        raise InvalidInput(_FIELD, source, one, "Convert the data first.")
+    return named[0] if named else ""
 
 
 def _of_labels(data: xr.Dataset, x: tuple[str, ...] | None, u: str | None, source: str) -> Measured:
@@ -287,7 +328,7 @@ def _of_labels(data: xr.Dataset, x: tuple[str, ...] | None, u: str | None, sourc
         )
     if not 1 <= len(dims) <= 3:
         raise InvalidInput(_FIELD, source, f"{u} on one to three axes", f"It has {len(dims)}.")
-    order = list(x) if x is not None else sorted(dims) if set(dims) <= set("xyz") else dims
+    order = list(x) if x is not None else list(_in_order(dims))
     missing = [dim for dim in dims if dim not in data.coords]
     if missing:
         raise InvalidInput(_FIELD, source, f"coordinates of {u} along {missing[0]}", "Store them.")
@@ -300,8 +341,11 @@ def _of_labels(data: xr.Dataset, x: tuple[str, ...] | None, u: str | None, sourc
             raise InvalidInput(
                 _FIELD, source, f"each point once along {order[k]}", "Mend the data."
             )
-    units = [str(data[name].attrs.get("units", "")) for name in (order[0], u)]
-    return _checked(axes, array, tuple("" if one == "1" else one for one in units), source)
+    unit, unit_of_u = (
+        _one_unit([str(data[name].attrs.get("units", "")) for name in names], source)
+        for names in (order, [u])
+    )
+    return _checked(axes, array, (unit, unit_of_u), source)
 
 
 def _checked(axes: list[np.ndarray], values: np.ndarray, units: Any, source: str) -> Measured:
@@ -368,9 +412,16 @@ def _left_out(interpolant: Interpolant, axes: Sequence[np.ndarray], values: np.n
         return 0.0 if size == 0.0 else 1.0
     # Half of the points were not left out, where nothing is missed: the others stand for all.
     error = 2.0 * missed[0] / size
-    enough = len(missed) == 2 and min(axis.size for axis in axes) >= 4 * _FEWEST
+    enough = len(missed) == 2 and min(axis.size for axis in axes) >= _SOME
     gain = missed[1] / missed[0] if enough and missed[0] > 0.0 else 1.0
     return error / min(max(gain, 1.0), _MOST_GAIN)
+
+
+def _finer(axes: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Return eight times as many points along each axis."""
+    return [
+        np.interp(np.arange(8 * axis.size - 7) / 8.0, np.arange(axis.size), axis) for axis in axes
+    ]
 
 
 def _integral(axes: Sequence[np.ndarray], values: np.ndarray) -> Any:

@@ -37,7 +37,8 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     if not lines:
         raise InvalidInput("file", str(path), "a table with numbers", "It is empty.")
     separator = next((mark for mark in ";\t," if mark in lines[-1]), None)
-    comma = separator == ";" and "," in lines[-1]  # the decimal mark
+    # The decimal mark: in some row of the numbers, the first line may be names.
+    comma = separator in (";", "\t") and any("," in line for line in lines[1:] or lines)
     if separator is None:
         rows = [line.split() for line in lines]
     else:
@@ -63,11 +64,12 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
 
 
 def _is_number(text: str, comma: bool) -> bool:
+    """Whether it is a number as tables have them: 1_0, which Python reads as ten, is none."""
     try:
         float(text.replace(",", ".") if comma else text)
     except ValueError:
         return False
-    return True
+    return "_" not in text
 
 
 def _name_and_unit(heading: str) -> tuple[str, str]:

@@ -32,8 +32,9 @@ from fracparticles.lattice.exterior import LineFarField
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.base import OnePass
 from fracparticles.schemes.setting import Setting
-from fracparticles.variable.exterior import tails_of, warn_unsettled
+from fracparticles.variable.exterior import tails_of
 from fracparticles.variable.gradient import ExchangeDivergence, FractionalGradient
+from fracparticles.variable.resolution import warn_unresolved, warn_unsettled
 from fracparticles.variable.sums import EvenSum
 
 __all__ = ["FORMS", "VariableDiffusivity"]
@@ -65,6 +66,11 @@ class VariableDiffusivity:
     ------
     InvalidInput
         If there is no such form, or not with this setting.
+
+    Warns
+    -----
+    AccuracyWarning
+        Once, when D is given, if it varies near the ends of an open exterior, or faster than the particles resolve.
     """
 
     def __init__(self, form: str, setting: Setting, tail: float | None = None) -> None:
@@ -74,7 +80,12 @@ class VariableDiffusivity:
         usual = setting.dim + setting.alpha
         tails = tails_of(setting, tail, (usual, usual))
         self.conservative = form != "DD"
-        self._pad, self._settled, self._lock = 0, not setting.is_open, Lock()
+        self._pad, self._lock = 0, Lock()
+        self._looked_at = np.zeros(0)  # the last D that was judged
+        self._settled, self._resolved = (
+            setting.is_open,
+            True,
+        )  # until a warning says otherwise: one is enough
         if form == "FPSE":
             self._pad = ExchangeDivergence.reach(setting) if setting.is_open else 0
             self._gradient = FractionalGradient(setting, self._pad, tails)
@@ -127,10 +138,17 @@ class VariableDiffusivity:
             raise InvalidInput(
                 "diffusivity", float(d.min()), "no negative number", "Give D(x, t) >= 0."
             )
-        if not self._settled:
-            self._settled = True  # one warning is enough
-            warn_unsettled("diffusivity", self._inner(d), self.setting.n)
+        if (self._settled or self._resolved) and not np.array_equal(d, self._looked_at):
+            self._judge(d)
         return d
+
+    def _judge(self, d: np.ndarray) -> None:
+        """Warn of a D that varies near the ends, or between the particles; of one that changes in time each time."""
+        self._looked_at = d.copy()
+        if self._settled:
+            self._settled = not warn_unsettled("diffusivity", self._inner(d), self.setting.n)
+        if self._resolved:
+            self._resolved = not warn_unresolved("diffusivity", d, self.setting)
 
     def _inner(self, d: np.ndarray) -> np.ndarray:
         """D at the particles."""

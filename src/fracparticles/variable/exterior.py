@@ -8,26 +8,21 @@ beyond that is left out. It is 4^(-2 p) of what the modes add, up to a constant.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 
 import numpy as np
 
 from fracparticles.arguments import pair, real_between
-from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.errors import InvalidInput
 from fracparticles.lattice.exterior import LineFarField, far_field
 from fracparticles.lattice.sums import BOX_SUMMATIONS
 from fracparticles.schemes.setting import Setting
 
-__all__ = ["PlaneGradientFarField", "line_far_field", "tails_of", "warn_unsettled"]
+__all__ = ["PlaneGradientFarField", "line_far_field", "tails_of"]
 
 Tails = tuple[float, float]
 
 _WIDER = 4
-_OUTER = (
-    0.75  # a coefficient is settled if it is nearly constant beyond this share of the half-width,
-)
-_UNSETTLED = 0.1  # within this share of its greatest value
 
 
 def tails_of(setting: Setting, tail: object, default: Tails) -> Tails:
@@ -122,20 +117,3 @@ class PlaneGradientFarField:
         """Add the contribution of the exterior to y, shape (components, points, points)."""
         amplitudes = self._fit @ u.reshape(-1)[self._boundary]
         y += np.tensordot(amplitudes, self._sums, 1)
-
-
-def warn_unsettled(field: str, values: np.ndarray, n: int) -> None:
-    """Warn of a coefficient on the lattice that still varies near the ends, where the tail takes it for constant."""
-    outer = round(_OUTER * n)
-    middle = values.shape[0] // 2
-    for axis in range(values.ndim):
-        along = np.moveaxis(values, axis, 0)
-        for part in (along[: middle - outer + 1], along[middle + outer :]):
-            varied = float(np.ptp(part, axis=0).max())
-            if varied > _UNSETTLED * float(np.abs(values).max()):
-                message = (
-                    f"{field} varies by {varied:.2g} in the outer quarter of the lattice, and the tail of the "
-                    "solution is continued as if it were constant there: widen the domain."
-                )
-                warnings.warn(message, AccuracyWarning, stacklevel=4)
-                return

@@ -31,13 +31,17 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.base import OnePass
 from fracparticles.schemes.setting import Setting
-from fracparticles.variable.exterior import tails_of, warn_unsettled
+from fracparticles.variable.exterior import tails_of
+from fracparticles.variable.resolution import warn_unresolved, warn_unsettled
 from fracparticles.variable.sums import EvenSum
 
 __all__ = ["VariableOrder", "interpolation_bound", "nodes_needed"]
 
 _TOLERANCE = 1e-12  # of the largest symbol, pi^alpha at most
 _ROWS = 33  # samples of alpha
+_UP_AND_DOWN = (
+    0.5  # of `resolution`: above, it is no single jump, which leaves two per cent at most
+)
 _MOST = 40  # nodes; alpha from 1.01 to 1.99 takes fewer
 
 
@@ -83,6 +87,11 @@ class VariableOrder:
     ------
     InvalidInput
         If an order is outside of (1, 2), or there is no such operator.
+
+    Warns
+    -----
+    AccuracyWarning
+        If alpha varies near the ends of an open exterior, or up and down between the particles.
     """
 
     conservative = False
@@ -107,6 +116,7 @@ class VariableOrder:
             wrong = least if least <= 1.0 else greatest
             raise InvalidInput("alpha", wrong, "1 < alpha < 2 everywhere", "Mend alpha(x).")
         varies = greatest > least
+        warn_unresolved("alpha - 1", alpha - 1.0, setting, _UP_AND_DOWN)
         if setting.is_open and varies:
             _check_ends(setting, alpha, tail is not None)
         tails = tails_of(setting, tail, _usual_tails(setting, alpha))

@@ -6,7 +6,7 @@ import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import frame
-from scenes.extremes.fuzzing import configuration, fields, flags, functions, runs
+from scenes.extremes.fuzzing import configuration, domains, fields, flags, functions, problems, runs
 from scenes.extremes.fuzzing.harness import row
 
 __all__ = ["PROPERTIES", "study"]
@@ -15,6 +15,8 @@ PROPERTIES = (
     *fields.PROPERTIES,
     *runs.PROPERTIES,
     *functions.PROPERTIES,
+    *problems.PROPERTIES,
+    *domains.PROPERTIES,
     *flags.PROPERTIES,
     *configuration.PROPERTIES,
 )

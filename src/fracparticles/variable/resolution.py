@@ -1,0 +1,83 @@
+r"""What a coefficient on the particles says of itself: is it constant near the ends, do the particles resolve it.
+
+A smooth coefficient is met at each particle by the cubic through those s and 3 s places away, s the overlap, the length
+that the kernels see, and s = 1, for waves of the lattice:
+
+    e_i = |D_i - (9 (D_(i-s) + D_(i+s)) - D_(i-3s) - D_(i+3s)) / 16| / max_(|j-i| <= 3s) D_j.
+
+At e = 0.1 a step of D leaves an error of one to three per cent of the peak of u, and more at larger ones
+(tests/variable/test_resolved_coefficients.py). A single jump has at most 1/2, waves may have more. Where
+D is below 1e-4 of its maximum nothing is asked of it.
+"""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d
+
+from fracparticles.errors import AccuracyWarning
+from fracparticles.schemes.setting import Setting
+
+__all__ = ["UNRESOLVED", "unresolved", "warn_unresolved", "warn_unsettled"]
+
+_OUTER = 0.75  # of the half-width: beyond, a coefficient should be nearly constant,
+_UNSETTLED = 0.1  # within this share of its greatest value
+UNRESOLVED = 0.1  # of e
+_NEGLIGIBLE = 1e-4  # of the greatest D
+
+
+def unresolved(values: np.ndarray, overlap: float) -> float:
+    """Return the greatest e over the particles and the axes; 0 on a lattice of fewer than 6 s + 1 along each."""
+    lines = [np.moveaxis(values, axis, -1) for axis in range(values.ndim)]
+    return max(_missed(d, s) for d in lines for s in {1, max(1, round(overlap))})
+
+
+def _missed(d: np.ndarray, s: int) -> float:
+    """The greatest e along the last axis."""
+    count = d.shape[-1] - 6 * s
+    if count < 1:
+        return 0.0
+    far, near, middle, after, beyond = (d[..., k * s : k * s + count] for k in (0, 2, 3, 4, 6))
+    guess = (9.0 * (near + after) - (far + beyond)) / 16.0
+    around = maximum_filter1d(d, 6 * s + 1, axis=-1)[..., 3 * s : 3 * s + count]
+    scale = np.maximum(around, _NEGLIGIBLE * float(d.max()))
+    return float((np.abs(middle - guess) / np.where(scale > 0.0, scale, 1.0)).max())
+
+
+def warn_unresolved(
+    field: str, values: np.ndarray, setting: Setting, most: float = UNRESOLVED
+) -> bool:
+    """Warn of a coefficient that varies too fast for the particles, whose e is above `most`; say whether it did."""
+    share = unresolved(values, setting.overlap)
+    if share <= most:
+        return False
+    message = (
+        f"{field} varies faster than particles of spacing {setting.spacing:.3g} and smoothing length "
+        f"{setting.overlap * setting.spacing:.3g} resolve, by {share:.2g} of itself: take a smaller spacing, or smooth "
+        "its jumps."
+    )
+    warnings.warn(message, AccuracyWarning, stacklevel=4)
+    return True
+
+
+def warn_unsettled(field: str, values: np.ndarray, n: int) -> bool:
+    """Warn of a coefficient on the lattice that still varies near the ends, where the tail takes it for constant.
+
+    Say whether it did.
+    """
+    outer = round(_OUTER * n)
+    middle = values.shape[0] // 2
+    for axis in range(values.ndim):
+        along = np.moveaxis(values, axis, 0)
+        for part in (along[: middle - outer + 1], along[middle + outer :]):
+            varied = float(np.ptp(part, axis=0).max())
+            if varied > _UNSETTLED * float(np.abs(values).max()):
+                message = (
+                    f"{field} varies by {varied:.2g} in the outer quarter of the lattice, and the tail of the "
+                    "solution is continued as if it were constant there: widen the domain."
+                )
+                warnings.warn(message, AccuracyWarning, stacklevel=4)
+                return True
+    return False
