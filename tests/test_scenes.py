@@ -282,3 +282,10 @@ def test_what_is_no_yaml_is_refused_in_one_line(tmp_path, text):
     config = write(tmp_path)
     (Path(config["scenes_dir"]) / "mine/one/scene.yaml").write_bytes(text)
     assert "scene.yaml" in refusal(config)
+
+
+def test_scenes_that_wait_for_each_other_are_refused(tmp_path):
+    write(tmp_path, "one", tables=["two"])
+    message = refusal(write(tmp_path, "two", tables=["one"]))
+    for word in ("scene.yaml: tables", "one of two of one", "Take what they share"):
+        assert word in message or "two of one of two" in message

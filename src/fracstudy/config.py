@@ -7,6 +7,7 @@ product. Cases that several scenes need are computed once.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
@@ -118,7 +119,22 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
         check_parameters(scene)
         _check_runs(scene)
         _check_grid(scene, grids)
+    _check_order(scenes)
     return study, scenes
+
+
+def _check_order(scenes: Mapping[str, Scene]) -> None:
+    """Refuse scenes that wait for each other's tables."""
+    try:
+        TopologicalSorter({name: scene.tables for name, scene in scenes.items()}).prepare()
+    except CycleError as error:
+        circle = error.args[1]
+        raise InvalidInput(
+            f"{scenes[circle[0]].folder / 'scene.yaml'}: tables",
+            " of ".join(reversed(circle)),
+            "tables of scenes that can be made before this one",
+            "Take what they share into a scene of its own.",
+        ) from None
 
 
 def _check_runs(scene: Scene) -> None:
@@ -186,17 +202,21 @@ def targets(scenes: Mapping[str, Scene]) -> dict[str, list[str]]:
 def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str]]:
     """Return the scenes that one job makes: one, so that nothing is done that was not asked for.
 
-    On the tiny grids of a smoke run, where the start of a job outweighs what it does, those that wait for runs only
-    go together.
+    On the tiny grids of a smoke run, where the start of a job outweighs what it does, those go together that wait for
+    the same: for runs only, for benchmarks, for tables of other scenes.
     """
-    together = [name for name, scene in scenes.items() if smoke and _waits_for_runs_only(scene)]
-    parts = {f"part_{k + 1}": together[k::_SMOKE_JOBS] for k in range(_SMOKE_JOBS)}
-    alone = {name: [name] for name in scenes if name not in together}
-    return {job: names for job, names in parts.items() if names} | alone
+    if not smoke:
+        return {name: [name] for name in scenes}
+    waves: dict[tuple[int, bool], list[str]] = {}
+    for name, scene in scenes.items():
+        waves.setdefault((_depth(name, scenes), bool(scene.all_benchmarks)), []).append(name)
+    parts = [names[k::_SMOKE_JOBS] for _, names in sorted(waves.items()) for k in range(_SMOKE_JOBS)]
+    return {f"part_{k}": names for k, names in enumerate(filter(None, parts), start=1)}
 
 
-def _waits_for_runs_only(scene: Scene) -> bool:
-    return not scene.tables and not scene.all_benchmarks
+def _depth(name: str, scenes: Mapping[str, Scene]) -> int:
+    """How many scenes must be made before this one, one after the other."""
+    return max((1 + _depth(other, scenes) for other in scenes[name].tables), default=0)
 
 
 def batches(

@@ -208,7 +208,7 @@ def save(figure: Figure, stem: str | Path) -> None:
     layout = figure.get_layout_engine()
     if layout is not None:
         layout.execute(figure)
-        figure.set_layout_engine("none")
+        figure.set_layout_engine(None)  # "none" does nothing, and has the figure drawn twice
     for suffix, options in ((".svg", {"metadata": {"Date": None}}), (".png", {"dpi": 160})):
         with replacing(stem.with_suffix(suffix)) as temporary:
             figure.savefig(temporary, format=suffix[1:], **options)

@@ -8,7 +8,7 @@ rule benchmark:
         RESULTS / "benchmarks/{scene}.nc",
     log:
         RESULTS / "logs/benchmark_{scene}.log",
-    threads: workflow.cores  # all: nothing else runs while the clock does
+    threads: 1 if STUDY.smoke else workflow.cores  # all: nothing else runs while the clock does
     resources:
         runtime=60,
         mem_mb=4000,

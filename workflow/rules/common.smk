@@ -12,6 +12,11 @@ from snakemake.exceptions import WorkflowError
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ[name] = "1"
 
+if workflow.scheduling_settings:
+    # A limit for the rate of jobs, which Snakemake always has, starts at each pass of the scheduler a timer for one more,
+    # for ever; each pass asks for the size of every input of every waiting job, and the last timer keeps the process.
+    workflow.scheduling_settings.max_jobs_per_timespan = None
+
 from fracparticles.errors import InvalidInput
 from fracstudy.config import batches, jobs, read_config, targets
 from fracstudy.criteria import CONVENTIONS
