@@ -232,7 +232,7 @@ def run_to_outputs(
         A time step, and how many of them.
     overlap : float
         epsilon / h.
-    remeshing : {"M4'", "Lambda3", "none"}
+    remeshing : {"M4'", "Lambda3", "Lambda6,4", "none"}
     lattice : {"initial", "extended"}
         Whether remeshing keeps to the initial lattice, as the paper's does, so that what has left it is lost, or
         goes on as far as the particles need, which conserves the total; not for an open exterior, which has no end.

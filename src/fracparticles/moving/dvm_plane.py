@@ -177,7 +177,7 @@ def run_in_plane(
         As on the line.
     overlap : float
         epsilon / h.
-    remeshing : {"M4'", "Lambda3", "none"}
+    remeshing : {"M4'", "Lambda3", "Lambda6,4", "none"}
     remesh_above : float, optional
         Distance of neighbours above which to remesh, in h; 1.5 if left out, 1.05 for an open exterior.
     exterior : {"truncated", "open"}

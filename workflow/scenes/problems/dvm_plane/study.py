@@ -17,7 +17,13 @@ from fracstudy.panels import Panels
 __all__ = ["study"]
 
 _STEP = 0.5  # D dt / h^alpha
-_WAYS = (("none", "open"), ("Lambda3", "open"), ("M4'", "truncated"))
+_WAYS = (
+    ("none", "open"),
+    ("Lambda3", "open"),
+    ("M4'", "truncated"),
+    ("Lambda6,4", "truncated"),
+    ("Lambda6,4", "open"),
+)
 
 
 def study(
@@ -59,7 +65,7 @@ def study(
                 errors = [row["error"] for row in part]
                 slopes = [np.nan, *observed_order(spacings, errors)]
                 name = f"{'plane' if dim == 2 else 'line'}, order {order}"
-                panels.add(remeshing, name, spacings, errors, dim=dim, order=order)
+                panels.add(f"{remeshing}, {exterior}", name, spacings, errors, dim=dim, order=order)
                 rows += [{**row, "observed order": s} for row, s in zip(part, slopes, strict=True)]
     return Result(pd.DataFrame(rows), (), panels.frame)
 
