@@ -39,6 +39,7 @@ from fracparticles.adaptive.samples import adapted_samples
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.special import tail_constant
 
 __all__ = ["Followed", "follow"]
 
@@ -129,8 +130,8 @@ def follow(
     near : int
         q, how many neighbours on either side have a weight, 0 to 6.
     reach : float, optional
-        How far the particles go beyond the window; by itself (1e7)^(1/alpha) times its width, or times the width of
-        the fundamental solution at the last time if that is more.
+        How far the particles go beyond the window; by itself to where a share of 1e-7 is beyond, at first or at the
+        last time, at most (1e7)^(1/alpha) times the width of the window.
     again : bool
         Whether particles are placed again.
 
@@ -154,13 +155,12 @@ def follow(
     if outputs.size > _MOST_TIMES or outputs[0] < 0.0 or (np.diff(outputs) <= 0.0).any():
         allowed = f"up to {_MOST_TIMES} ascending times from 0 on"
         raise InvalidInput("times", times, allowed, "Sort them, without doubles.")
+    samples = adapted_samples(check.function("initial", initial), low, high, seen)
     if reach is None:
-        widest = max(high - low, (diffusivity * outputs[-1]) ** (1.0 / alpha))
-        reach = widest * _BEYOND ** (-1.0 / alpha)
+        reach = _reach(initial, samples, alpha, diffusivity * float(outputs[-1]))
     reach = check.scale("reach", reach)
     ends = low - reach, high + reach
 
-    samples = adapted_samples(check.function("initial", initial), low, high, seen)
     field = LengthField(samples[0], wanted_lengths(*samples))
     particles = place_particles(field, *ends, step)
     u = check.sampled("initial", initial, particles.x)
@@ -201,6 +201,30 @@ class _Exact:
         y = self._modes @ (decay * (self._modes.T @ self._start))
         y += root * (root @ (self._start - y)) / (root @ root)  # sum V u to the last digit
         return Followed(time, state.particles, y / root, state.placements, state.corrected)
+
+
+def _reach(
+    initial: Callable[[FloatArray], FloatArray],
+    samples: tuple[FloatArray, FloatArray],
+    alpha: float,
+    spread: float,
+) -> float:
+    """How far beyond the samples a share of 1e-7 is, of what is there at first and of what D t has spread there.
+
+    A tail c |x|^(-1-alpha) holds |u| |x| / alpha beyond x, and D t has spread D t C |x|^(-alpha) / alpha. What falls
+    more slowly is followed as far as a tail as wide as the samples would go.
+    """
+    x, u = samples
+    width, mass = float(x[-1] - x[0]), float(np.trapezoid(np.abs(u), x))
+    farthest = width * _BEYOND ** (-1.0 / alpha)
+    out = np.geomspace(width / 16.0, farthest, 64)
+    sides = np.abs(check.sampled("initial", initial, np.array([x[0] - out, x[-1] + out])))
+    share = sides.max(axis=0) * (out + width) / (alpha * mass)
+    still = np.flatnonzero(share > _BEYOND)
+    at_first = out[min(still[-1] + 1, out.size - 1)] if still.size else out[0]
+    return float(
+        max(at_first, (spread * tail_constant(alpha) / (alpha * _BEYOND)) ** (1.0 / alpha))
+    )
 
 
 def _placed_again(state: Followed, ends: tuple[float, float], step: float) -> Followed:
