@@ -239,6 +239,28 @@ def test_a_lattice_that_is_too_small_is_said(exterior, words):
         assert all(one.category is AccuracyWarning for one in said)
 
 
+@pytest.mark.parametrize(
+    ("spacing", "overlap", "order", "words"),
+    [
+        (1.0, 2.0, 2, "is not u at the start"),
+        (1.0, 2.0, 4, "is not u at the start"),
+        (0.25, 5.0, 2, "is not u at the start"),
+        (0.25, 0.7, 2, "are too far apart"),
+        (0.25, 2.0, 2, None),
+        (0.25, 2.0, 4, None),
+    ],
+)
+def test_data_that_the_particles_do_not_hold_are_said(spacing, overlap, order, words):
+    x, y = lattice(spacing, 10.0 if spacing == 1.0 else 6.0)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run_in_plane(
+            exact(x, y), spacing=spacing, alpha=ALPHA, dt=0.01, steps=1, order=order, overlap=overlap, exterior="open"
+        )  # fmt: skip
+    assert len(caught) == (words is not None)
+    assert all(words in str(one.message) for one in caught)
+
+
 def test_a_field_is_not_asked_for_where_the_sums_do_not_hold_it():
     x, y = lattice(0.5, 4.0)
     run = run_in_plane(exact(x, y), spacing=0.5, alpha=ALPHA, dt=0.1, steps=1, exterior="open")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from fracparticles.errors import AccuracyWarning
 from fracparticles.moving import dvm
 from fracparticles.moving.dvm_plane import run_in_plane
 from fracparticles.run.orders import observed_order
@@ -49,8 +51,10 @@ def study(
                     "order": order, "remeshing": remeshing, "exterior": exterior,
                 }  # fmt: skip
                 r = np.hypot(lattice[:, None], lattice)
-                plane = run_in_plane(np.asarray(green(r, start, alpha, 2)), **common)
-                line = dvm.run(lattice, np.asarray(green(lattice, start, alpha)), **common)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore", AccuracyWarning)  # coarse ones are to be seen
+                    plane = run_in_plane(np.asarray(green(r, start, alpha, 2)), **common)
+                    line = dvm.run(lattice, np.asarray(green(lattice, start, alpha)), **common)
                 z = np.linspace(-2.0, 2.0, 41)
                 fields = plane.field(z, 0.0 * z), line.field(z)
                 drift = plane.total_final + plane.lost - plane.total_initial
