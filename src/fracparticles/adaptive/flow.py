@@ -4,8 +4,8 @@ With S of d(V^(1/2) u)/dt = S V^(1/2) u, which is symmetric,
 
     S_ij = V_i^(1/2) K_ij V_j^(1/2),   S_ii = -sum_j K_ij V_j,   u(t) = V^(-1/2) exp(t S) V^(1/2) u(0),
 
-by a Chebyshev series (`time.chebyshev`) or, if that were longer than eigenvectors take, by those. With a diffusivity
-that varies K_ij is times (D_i + D_j) / 2, as in `variable.diffusivity`: another equation than that of the flux,
+by a Chebyshev series (`time.chebyshev`) until all of them have been longer than eigenvectors take, then by those.
+With a diffusivity that varies K_ij is times (D_i + D_j) / 2, as in `variable.diffusivity`: another equation than that of the flux,
 
     u_t = C int (D(x) + D(y)) / 2 (u(y) - u(x)) |x - y|^(-1-alpha) dy = (D L u + L(D u) - u L D) / 2,
 
@@ -23,7 +23,7 @@ from fracparticles.time.chebyshev import evaluate, exponential
 
 __all__ = ["ExchangeFlow"]
 
-_PRODUCTS = 1.0  # per particle, of the matrix with a vector: as long as the eigenvectors take
+_PRODUCTS = 0.5  # per particle, of the matrix with a vector: as long as the eigenvectors take
 
 
 class ExchangeFlow:
@@ -53,13 +53,15 @@ class ExchangeFlow:
         self._form = exchange * self._root[:, None] * self._root
         np.fill_diagonal(self._form, -out)
         self._modes: tuple[FloatArray, FloatArray] | None = None
-        self.size = self._root.size
+        self.size, self._products = self._root.size, 0.0
 
     def __call__(self, u: FloatArray, time: float) -> FloatArray:
         """Return u after this time, shape (N,)."""
         root = self._root
         start = root * u
-        if 25.0 * time * self._bound < (_PRODUCTS * self.size) ** 2:
+        if self._modes is None:
+            self._products += float(np.sqrt(25.0 * time * self._bound))
+        if self._products < _PRODUCTS * self.size:
             y = evaluate((exponential(time, -self._bound, 0.0),), self, start)[0]
         else:
             if self._modes is None:
