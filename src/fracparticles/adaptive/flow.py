@@ -5,7 +5,8 @@ With S of d(V^(1/2) u)/dt = S V^(1/2) u, which is symmetric,
     S_ij = V_i^(1/2) K_ij V_j^(1/2),   S_ii = -sum_j K_ij V_j,   u(t) = V^(-1/2) exp(t S) V^(1/2) u(0),
 
 by a Chebyshev series (`time.chebyshev`) until all of them have been longer than eigenvectors take, then by those.
-With a diffusivity that varies K_ij is times (D_i + D_j) / 2, as in `variable.diffusivity`: another equation than that of the flux,
+With a diffusivity that varies K_ij is times (D_i + D_j) / 2, as in `variable.diffusivity`: another equation than that
+of the flux,
 
     u_t = C int (D(x) + D(y)) / 2 (u(y) - u(x)) |x - y|^(-1-alpha) dy = (D L u + L(D u) - u L D) / 2,
 
