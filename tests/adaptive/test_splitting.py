@@ -11,7 +11,7 @@ from fracparticles.adaptive.flow import ExchangeFlow
 from fracparticles.adaptive.follow import follow
 from fracparticles.adaptive.placement import place_particles
 from fracparticles.adaptive.splitting import Physics, Splitting
-from fracparticles.errors import NonFiniteSolution
+from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import exchange_limit
 
@@ -153,6 +153,29 @@ def test_the_extrapolated_splitting_meets_its_tolerance():
         _, found = Splitting(physics, tolerance)(particles, u, 0.0, 0.4)
         missed = particles.volumes @ np.abs(found - exact) / (particles.volumes @ np.abs(exact))
         assert missed < tolerance
+
+
+def bell(x):
+    return np.exp(-x * x)
+
+
+def test_a_source_that_the_particles_miss_is_said():
+    with pytest.warns(AccuracyWarning, match="of the source the particles miss"):
+        follow(
+            bell, 1e-3, alpha=1.5, window=(-5.0, 5.0),
+            source=lambda x, t, u: bell((x - 33.3) / 0.2),  # beyond the window
+        )  # fmt: skip
+
+
+def test_a_diffusivity_of_zero_leaves_all_as_it_is():
+    state = follow(bell, 1.0, alpha=1.5, window=(-5.0, 5.0), diffusivity=lambda x: 0.0 * x)[0]
+    assert state.u == pytest.approx(bell(state.particles.x), abs=1e-15)
+    assert state.placements == 1
+
+
+def test_particles_that_run_into_each_other_are_an_error():
+    with pytest.raises(NonFiniteSolution, match=r"near t = |before t = |after t = |at t = "):
+        follow(bell, 1.0, alpha=1.5, window=(-5.0, 5.0), velocity=lambda x, t: -np.sign(x))
 
 
 def test_what_blows_up_is_an_error_with_its_time():

@@ -22,7 +22,7 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.adaptive.placement import LineParticles
-from fracparticles.adaptive.placing import Place, reach_of
+from fracparticles.adaptive.placing import BETWEEN, Place, reach_of
 from fracparticles.adaptive.samples import adapted_samples
 from fracparticles.adaptive.splitting import Physics, Splitting
 from fracparticles.adaptive.transfer import between, conserving
@@ -33,9 +33,9 @@ from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolutio
 __all__ = ["Followed", "follow"]
 
 _EXCHANGE = 0.05  # what an exchange errs by, over h^order
-_PLACES = (np.arange(1, 9) * 0.6180339887498949) % 1.0  # between two particles beyond the window
 _BENT, _NOTHING = 0.1, 1e-7
 _UNRESOLVED = 1e-3  # of int |u|: what the particles may miss between them, or a placement be off
+_MOST_PLACEMENTS = 5000
 _MOST_TIMES = 1000
 
 
@@ -52,7 +52,7 @@ class Followed:
     placements : int
         How often particles have been placed.
     corrected : float
-        The largest share of sum V |u| that a placement has changed to keep mass and first moment.
+        The share of sum V |u| that placements have changed, all together, to keep mass and first moment.
     """
 
     time: float
@@ -116,7 +116,7 @@ def follow(
     velocity : callable, optional
         a(x, t), with which the particles move.
     source : callable, optional
-        f(x, t, u).
+        f(x, t, u). What is short in time, of a and f, is seen from the times near it: let one of `times` be there.
     step : float
         h, the distance of neighbours as a part of the length in which u changes. The error is like
         h^(2 near + 2 - alpha).
@@ -141,8 +141,8 @@ def follow(
     Warns
     -----
     AccuracyWarning
-        If the particles do not resolve `initial`, the step is too long for the exchange, a placement changed u, or u
-        reaches the last of them.
+        If the particles do not resolve `initial` or a coefficient, the step is too long for the exchange, a placement
+        changed u, or u reaches the last of them.
     """
     low, high = check.pair("window", window, rising=True)
     seen = check.finite_array("where", where).ravel() if np.size(where) else np.zeros(0)
@@ -175,18 +175,26 @@ def follow(
     advance = Splitting(physics, tolerance)
     results: list[Followed] = []
     until = place.valid_until(state.particles, state.u, state.time) if again else np.inf
+    missed = place.missed(state.particles, state.u, state.time)
     for output in outputs.tolist():
         while state.time < output:
             if until <= state.time:
                 ends = float(state.particles.x[0]), float(state.particles.x[-1])
                 state = _placed_again(state, ends, place)
                 until = place.valid_until(state.particles, state.u, state.time)
-                if not until > state.time:
-                    raise NonFiniteSolution(f"u changes infinitely fast at t = {state.time:.6g}")
+                for name, share in place.missed(state.particles, state.u, state.time).items():
+                    missed[name] = max(missed[name], share)
+                if not until > state.time or state.placements > _MOST_PLACEMENTS:
+                    raise NonFiniteSolution(
+                        f"u, its source or the velocity change so fast at t = {state.time:.6g} that particles would be "
+                        f"placed again every {until - state.time:.2g}. Smooth them, or take a shorter time."
+                    )
             time = min(until, output)
             moved, u = advance(state.particles, state.u, state.time, time)
             state = replace(state, time=time, particles=moved, u=u)
         results.append(state)
+    for name, share in missed.items():
+        _warn(share, f"of the {name} the particles miss", what="it")
     _warn(state.corrected, "the placements were off by")
     _warn(_at_the_ends(state, physics.alpha), "beyond the particles is", "Go farther out.")
     return results
@@ -198,7 +206,7 @@ def _placed_again(state: Followed, ends: tuple[float, float], place: Place) -> F
     new = place((old.x, state.u), ends, state.time)
     u = between(old.x, state.u, new.x)
     u, share = conserving(new, u, state.mass, float(old.volumes * old.x @ state.u))
-    return Followed(state.time, new, u, state.placements + 1, max(state.corrected, share))
+    return Followed(state.time, new, u, state.placements + 1, state.corrected + share)
 
 
 def _missed(
@@ -223,7 +231,7 @@ def _beyond(
     window is less than 1e-7 of int |u|.
     """
     x, gaps = particles.x[:-1, None], np.diff(particles.x)[:, None]
-    places = (x + gaps * _PLACES).ravel()
+    places = (x + gaps * BETWEEN).ravel()
     far = np.maximum(window[0] - places, places - window[1])
     places, far = places[far > 0.0], far[far > 0.0]
     exact, held = check.sampled("initial", initial, places), between(particles.x, u, places)
@@ -243,9 +251,10 @@ def _warn(
     share: float,
     text: str,
     advice: str = "Take a shorter step, or name `where` the narrow parts are.",
+    what: str = "int |u|",
 ) -> None:
     if not share < _UNRESOLVED:
-        warnings.warn(f"{text} {share:.1g} of int |u|. {advice}", AccuracyWarning, stacklevel=3)
+        warnings.warn(f"{text} {share:.1g} of {what}. {advice}", AccuracyWarning, stacklevel=3)
 
 
 def _warn_of_bends(share: float) -> None:

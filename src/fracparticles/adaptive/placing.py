@@ -25,13 +25,14 @@ from fracparticles.adaptive.placement import (
 )
 from fracparticles.adaptive.samples import varying_samples
 from fracparticles.adaptive.splitting import Physics
-from fracparticles.adaptive.transfer import slopes
+from fracparticles.adaptive.transfer import between, slopes
 from fracparticles.arguments import FloatArray
 from fracparticles.special import tail_constant
 
-__all__ = ["Place", "reach_of"]
+__all__ = ["BETWEEN", "Place", "reach_of"]
 
 _BEYOND = 1e-7
+BETWEEN = (np.arange(1, 9) * 0.6180339887498949) % 1.0  # irregular places between two particles
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,32 @@ class Place:
             if np.ptp(values) > 0.0:
                 yield LengthField(x, bent_lengths(x, values))
 
+    def missed(self, particles: LineParticles, u: FloatArray, time: float) -> dict[str, float]:
+        """Return what share of D, a and f the particles miss between them: of D and a where u is, of f anywhere."""
+        physics, x = self.physics, particles.x
+        gaps = np.diff(x)
+        at = (x[:-1, None] + gaps[:, None] * BETWEEN).ravel()
+        width = np.repeat(gaps, BETWEEN.size)
+        weight = width * np.abs(between(x, u, at))
+        found = {}
+        for name, varies, one, w in (
+            ("diffusivity", callable(physics.diffusivity), physics.diffusivity_at, weight),
+            ("velocity", physics.velocity, lambda at: physics.velocity_at(at, time), weight),
+            (
+                "source",
+                physics.source,
+                lambda at: physics.source_at(at, time, between(x, u, at)),
+                width,
+            ),
+        ):
+            if varies:
+                exact = one(at)
+                size = float(w @ np.abs(exact))
+                found[name] = (
+                    float(w @ np.abs(exact - between(x, one(x), at))) / size if size else 0.0
+                )
+        return found
+
     def valid_until(self, particles: LineParticles, u: FloatArray, time: float) -> float:
         """When particles that have this u are to be placed again."""
         physics, x, v = self.physics, particles.x, particles.volumes
@@ -77,7 +104,8 @@ class Place:
         a = physics.velocity_at(x, time)
         stretched = float(np.abs(slopes(a) / slopes(x)).max()) if physics.velocity else 0.0
         grown = float(v @ np.abs(physics.source_at(x, time, u)) / (v @ np.abs(u)))
-        return time + 1.0 / max(spread, 2.0 * stretched, 2.0 * grown)
+        fastest = max(spread, 2.0 * stretched, 2.0 * grown)
+        return time + 1.0 / fastest if fastest > 0.0 else np.inf
 
 
 def reach_of(

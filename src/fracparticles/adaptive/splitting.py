@@ -20,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import count
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -36,6 +37,7 @@ __all__ = ["Physics", "Splitting"]
 _MOST_STEPS = 6
 _HALVINGS = 12
 _PARTS = 2  # of the classical Runge-Kutta scheme, in each half of the source
+_MOST_CALLS = 5000  # of the velocity, from one placement to the next
 _ALONG = 1e-9  # of the volumes: how closely the paths of particles are followed
 
 
@@ -195,8 +197,17 @@ class _Path:
         self._known = {start: particles}
         self._particles, self._moves = particles, physics.velocity is not None
         if self._moves:
+            calls = count()
+
+            def velocity(t: float, x: FloatArray) -> FloatArray:
+                if next(calls) > _MOST_CALLS:
+                    raise NonFiniteSolution(
+                        f"the velocity is too rough to be followed near t = {t:.6g}"
+                    )
+                return physics.velocity_at(x, t)
+
             run = solve_ivp(
-                lambda t, x: physics.velocity_at(x, t), (start, end), particles.x,
+                velocity, (start, end), particles.x,
                 method="DOP853", dense_output=True, rtol=1e-13, atol=_ALONG * particles.volumes,
             )  # fmt: skip
             if run.status != 0:
