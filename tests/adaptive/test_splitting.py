@@ -184,3 +184,22 @@ def test_what_blows_up_is_an_error_with_its_time():
             lambda x: 5.0 * np.exp(-x * x), 1.0, alpha=1.5, window=(-5.0, 5.0), diffusivity=1e-3,
             source=lambda x, t, u: u * u,
         )  # fmt: skip
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e7])
+def test_units_do_not_matter(unit):
+    """x in another unit, and t in that of the diffusion: the same particles and strengths."""
+    alpha, power = 1.5, unit**1.5
+
+    def run(length, time):
+        return follow(
+            lambda x: blobs(x / length, 0.0, alpha), 0.3 * time, alpha=alpha, window=(-20.0 * length, 80.0 * length),
+            velocity=lambda x, t: length / time * np.sin(0.1 * x / length) * np.cos(t / time),
+            diffusivity=lambda x: 1.0 + 0.5 * np.tanh(x / length),
+            source=lambda x, t, u: (0.2 - u) * u / time,
+        )[0]  # fmt: skip
+
+    one, other = run(1.0, 1.0), run(unit, power)
+    assert other.particles.x == pytest.approx(unit * one.particles.x, rel=1e-6, abs=1e-6 * unit)
+    assert other.u == pytest.approx(one.u, abs=1e-6 * one.u.max())
+    assert other.placements == one.placements
