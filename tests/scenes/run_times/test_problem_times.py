@@ -266,7 +266,7 @@ def test_a_circle_loses_points_and_no_digits():
     counts = [count for count, _ in circle.halvings()]
     assert len(counts) == 5
     assert counts[0] > 14 * counts[-1]
-    most, (x, u, h) = on_circle(circle, lambda x: green(x, 0.05**ALPHA, ALPHA), 1.0, 1e-6)
+    most, ((_, x, u, h),) = on_circle(circle, lambda x: green(x, 0.05**ALPHA, ALPHA), [1.0], 1e-6)
     assert most == counts[0]
     exact = green(x, 0.05**ALPHA + 1.0, ALPHA)
     assert h * x.size == pytest.approx(400.0)
@@ -275,13 +275,13 @@ def test_a_circle_loses_points_and_no_digits():
 
 def test_a_circle_carries_and_decays():
     circle = Circle(ALPHA, 0.0, 100.0, 1.0, 8.0)
-    _, (x, u, _) = on_circle(
-        circle, lambda x: green(x, 1.0, ALPHA), 1.0, 0.02, velocity=lambda x: np.full(x.size, 0.5)
+    _, ((_, x, u, _),) = on_circle(
+        circle, lambda x: green(x, 1.0, ALPHA), [1.0], 0.02, velocity=lambda x: np.full(x.size, 0.5)
     )
     near = np.abs(x) < 5.0
     assert np.abs(u - green(x - 0.5, 2.0, ALPHA))[near].max() < 2e-5
-    _, (x, u, _) = on_circle(
-        circle, lambda x: green(x, 1.0, ALPHA), 1.0, 1e-7, source=lambda x, t, u: -u
+    _, (_, (_, x, u, _)) = on_circle(
+        circle, lambda x: green(x, 1.0, ALPHA), [0.1, 1.0], 1e-7, source=lambda x, t, u: -u
     )
     assert np.abs(u - np.exp(-1.0) * green(x, 2.0, ALPHA))[near].max() < 2e-5
 
@@ -290,7 +290,7 @@ def test_elements_that_decay_are_of_second_order():
     errors = []
     for count in (200, 400):
         nodes = np.sinh(np.linspace(-9.0, 9.0, count))
-        _, (x, u, volumes) = on_elements(
+        _, (_, (_, x, u, volumes)) = on_elements(
             ALPHA, lambda x: green(x, 1.0, ALPHA), nodes, [0.5, 1.0], 1e-8, lambda x, t, u: -u
         )
         errors.append(volumes @ np.abs(u - np.exp(-1.0) * green(x, 2.0, ALPHA)))

@@ -26,9 +26,11 @@ from scipy.linalg import eigh
 
 from scenes.run_times.problem_times.interval_peers import stiffness
 
-__all__ = ["Circle", "on_circle", "on_elements"]
+__all__ = ["Answer", "Circle", "State", "on_circle", "on_elements"]
 
-Answer = tuple[int, tuple[np.ndarray, np.ndarray, np.ndarray | float]]
+# A time, the points then, u, and what the points stand for.
+State = tuple[float, np.ndarray, np.ndarray, np.ndarray | float]
+Answer = tuple[int, list[State]]
 Source = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
 Rate = Callable[[float, np.ndarray], np.ndarray]
 
@@ -73,20 +75,26 @@ class Circle:
 def on_circle(
     circle: Circle,
     initial: Callable[[np.ndarray], np.ndarray],
-    time: float,
+    times: list[float],
     tolerance: float,
     velocity: Callable[[np.ndarray], np.ndarray] | None = None,
     source: Source | None = None,
 ) -> Answer:
-    """Return the greatest number of points, and at the end points, u and spacing."""
-    t, waves, most = 0.0, None, 0
-    for count, until in circle.halvings():
+    """Return the greatest number of points, and the states at these times, in ascending order."""
+    halvings = circle.halvings()
+    ends = sorted({*times, *(until for _, until in halvings if until < times[-1])})
+    t, most = 0.0, halvings[0][0]
+    states: list[State] = []
+    u, waves = np.zeros(0), np.zeros(0)
+    for end in ends:
+        count = next(count for count, until in halvings if end <= until)
         h = 2.0 * circle.half_width / count
         x = circle.middle + h * (np.arange(count) - count // 2)
         k = np.pi / circle.half_width * np.arange(count // 2 + 1.0)
-        most = max(most, count)
-        u = initial(x) if waves is None else _thinned(waves, count)
-        end = min(until, time)
+        if t == 0.0:
+            u = initial(x)
+        elif count != u.size:
+            u = _thinned(waves, count)
 
         def diffused(u: np.ndarray, dt: float, decay: np.ndarray = k**circle.alpha) -> np.ndarray:
             return np.asarray(irfft(np.exp(-dt * decay) * rfft(u), u.size))
@@ -98,9 +106,9 @@ def on_circle(
         else:
             u = diffused(u, end - t)
         t, waves = end, rfft(u)
-        if t >= time:
-            break
-    return most, (x, u, h)
+        if end in times:
+            states.append((end, x, u, h))
+    return most, states
 
 
 def _carried(
@@ -146,7 +154,7 @@ def on_elements(
     tolerance: float,
     source: Source,
 ) -> Answer:
-    """Return the number of inner nodes, and at the last of the times the nodes, u and what a hat function holds."""
+    """Return the number of inner nodes, and the states at these times, in ascending order, between which it steps."""
     x, h = nodes[1:-1], np.diff(nodes)
     mass = np.diag((h[1:] + h[:-1]) / 3.0) + np.diag(h[1:-1] / 6.0, 1) + np.diag(h[1:-1] / 6.0, -1)
     rates, modes = eigh(stiffness(np.abs(nodes[:, None] - nodes), alpha), mass)
@@ -156,9 +164,11 @@ def on_elements(
         return np.asarray(modes @ (np.exp(-dt * rates) * (back @ u)))
 
     u = initial(x)
+    states: list[State] = []
     for start, end in pairwise([0.0, *times]):
         u = _extrapolated(diffused, partial(source, x), u, start, end, tolerance)
-    return x.size, (x, u, 0.5 * (h[1:] + h[:-1]))
+        states.append((end, x, u, 0.5 * (h[1:] + h[:-1])))
+    return x.size, states
 
 
 def _thinned(waves: np.ndarray, count: int) -> np.ndarray:
