@@ -22,10 +22,10 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.adaptive.placement import LineParticles
-from fracparticles.adaptive.placing import BETWEEN, Place, reach_of
+from fracparticles.adaptive.placing import Place, reach_of
 from fracparticles.adaptive.samples import adapted_samples
 from fracparticles.adaptive.splitting import Physics, Splitting
-from fracparticles.adaptive.transfer import between, conserving
+from fracparticles.adaptive.transfer import among, between, conserving
 from fracparticles.adaptive.weights import MOST_NEAR, order_of
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
@@ -230,11 +230,10 @@ def _beyond(
     The wings of a narrow bump, where it falls on no place, are seen. Nothing is where |u| times the distance from the
     window is less than 1e-7 of int |u|.
     """
-    x, gaps = particles.x[:-1, None], np.diff(particles.x)[:, None]
-    places = (x + gaps * BETWEEN).ravel()
+    places, held = among(particles.x, u)
     far = np.maximum(window[0] - places, places - window[1])
-    places, far = places[far > 0.0], far[far > 0.0]
-    exact, held = check.sampled("initial", initial, places), between(particles.x, u, places)
+    places, held, far = places[far > 0.0], held[far > 0.0], far[far > 0.0]
+    exact = check.sampled("initial", initial, places)
     size = np.maximum(np.abs(exact), np.abs(held))
     there = size * far > _NOTHING * (particles.volumes @ np.abs(u))
     return float((np.abs(exact - held)[there] / size[there]).max(initial=0.0))

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -25,14 +26,13 @@ from fracparticles.adaptive.placement import (
 )
 from fracparticles.adaptive.samples import varying_samples
 from fracparticles.adaptive.splitting import Physics
-from fracparticles.adaptive.transfer import between, slopes
+from fracparticles.adaptive.transfer import among, slopes
 from fracparticles.arguments import FloatArray
 from fracparticles.special import tail_constant
 
-__all__ = ["BETWEEN", "Place", "reach_of"]
+__all__ = ["Place", "reach_of"]
 
 _BEYOND = 1e-7
-BETWEEN = (np.arange(1, 9) * 0.6180339887498949) % 1.0  # irregular places between two particles
 
 
 @dataclass(frozen=True)
@@ -73,27 +73,21 @@ class Place:
     def missed(self, particles: LineParticles, u: FloatArray, time: float) -> dict[str, float]:
         """Return what share of D, a and f the particles miss between them: of D and a where u is, of f anywhere."""
         physics, x = self.physics, particles.x
-        gaps = np.diff(x)
-        at = (x[:-1, None] + gaps[:, None] * BETWEEN).ravel()
-        width = np.repeat(gaps, BETWEEN.size)
-        weight = width * np.abs(between(x, u, at))
+        acts: dict[str, tuple[Any, Callable[[FloatArray, FloatArray], FloatArray]]] = {
+            "diffusivity": (callable(physics.diffusivity), lambda x, u: physics.diffusivity_at(x)),
+            "velocity": (physics.velocity, lambda x, u: physics.velocity_at(x, time)),
+            "source": (physics.source, lambda x, u: physics.source_at(x, time, u)),
+        }
         found = {}
-        for name, varies, one, w in (
-            ("diffusivity", callable(physics.diffusivity), physics.diffusivity_at, weight),
-            ("velocity", physics.velocity, lambda at: physics.velocity_at(at, time), weight),
-            (
-                "source",
-                physics.source,
-                lambda at: physics.source_at(at, time, between(x, u, at)),
-                width,
-            ),
-        ):
+        for name, (varies, one) in acts.items():
             if varies:
-                exact = one(at)
-                size = float(w @ np.abs(exact))
-                found[name] = (
-                    float(w @ np.abs(exact - between(x, one(x), at))) / size if size else 0.0
-                )
+                at, there, held = among(x, u, one(x, u))
+                weight = np.repeat(np.diff(x), at.size // (x.size - 1))
+                if name != "source":
+                    weight *= np.abs(there)
+                exact = one(at, there)
+                size = float(weight @ np.abs(exact))
+                found[name] = float(weight @ np.abs(exact - held)) / size if size else 0.0
         return found
 
     def valid_until(self, particles: LineParticles, u: FloatArray, time: float) -> float:

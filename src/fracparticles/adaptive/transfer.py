@@ -17,10 +17,11 @@ from scipy.interpolate import make_interp_spline
 from fracparticles.adaptive.placement import LineParticles
 from fracparticles.arguments import FloatArray
 
-__all__ = ["between", "conserving", "slopes"]
+__all__ = ["among", "between", "conserving", "slopes"]
 
 _DEGREE = 7
 _NEWTON = 8
+_PARTS = (np.arange(1, 9) * 0.6180339887498949) % 1.0
 _MOST_CHANGE = 0.5
 
 
@@ -33,6 +34,13 @@ def between(x: FloatArray, u: FloatArray, at: FloatArray) -> FloatArray:
     for _ in range(_NEWTON):
         found = np.clip(found - (place(found) - at) / slope(found), 0.0, s[-1])
     return np.asarray(make_interp_spline(s, u, _DEGREE)(found))
+
+
+def among(x: FloatArray, *values: FloatArray) -> list[FloatArray]:
+    """Return irregular places between the particles x, eight to each gap, and what has these values at them there."""
+    s = (np.arange(x.size - 1.0)[:, None] + _PARTS).ravel()
+    knots = np.arange(x.size, dtype=float)
+    return [np.asarray(make_interp_spline(knots, v, _DEGREE)(s)) for v in (x, *values)]
 
 
 def slopes(values: FloatArray) -> FloatArray:
