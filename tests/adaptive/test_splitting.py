@@ -167,6 +167,15 @@ def test_a_source_that_the_particles_miss_is_said():
         )  # fmt: skip
 
 
+def test_a_solution_that_the_particles_do_not_resolve_is_said():
+    """A steep front, which the velocity makes of smooth data between two placements that are not asked for."""
+    with pytest.warns(AccuracyWarning, match="later, between the particles is"):
+        follow(
+            bell, 1.0, alpha=1.9, window=(-5.0, 5.0), step=0.3, again=False, diffusivity=1e-3,
+            source=lambda x, t, u: 20.0 * u * (1.0 - u) * (u - 0.5),
+        )  # fmt: skip
+
+
 def test_a_diffusivity_of_zero_leaves_all_as_it_is():
     state = follow(bell, 1.0, alpha=1.5, window=(-5.0, 5.0), diffusivity=lambda x: 0.0 * x)[0]
     assert state.u == pytest.approx(bell(state.particles.x), abs=1e-15)
@@ -183,6 +192,15 @@ def test_what_blows_up_is_an_error_with_its_time():
         follow(
             lambda x: 5.0 * np.exp(-x * x), 1.0, alpha=1.5, window=(-5.0, 5.0), diffusivity=1e-3,
             source=lambda x, t, u: u * u,
+        )  # fmt: skip
+
+
+def test_a_source_that_overflows_on_the_way_blows_up():
+    """u' = exp(u) from 1 ends at 1 / e; exp(u) is infinite before u is."""
+    with pytest.raises(NonFiniteSolution, match=r"near t = 0\.3[67]"):
+        follow(
+            bell, 1.0, alpha=1.9, window=(-5.0, 5.0), diffusivity=1e-6,
+            source=lambda x, t, u: bell(x / 3.0) * np.exp(u),
         )  # fmt: skip
 
 

@@ -25,7 +25,7 @@ from fracparticles.adaptive.placement import LineParticles
 from fracparticles.adaptive.placing import Place, reach_of
 from fracparticles.adaptive.samples import adapted_samples
 from fracparticles.adaptive.splitting import Physics, Splitting
-from fracparticles.adaptive.transfer import among, between, conserving
+from fracparticles.adaptive.transfer import among, between, conserving, uncertain
 from fracparticles.adaptive.weights import MOST_NEAR, order_of
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
@@ -141,7 +141,7 @@ def follow(
     Warns
     -----
     AccuracyWarning
-        If the particles do not resolve `initial` or a coefficient, the step is too long for the exchange, a placement
+        If the particles do not resolve `initial`, u or a coefficient, the step is too long for the exchange, placements
         changed u, or u reaches the last of them.
     """
     low, high = check.pair("window", window, rising=True)
@@ -174,6 +174,7 @@ def follow(
     state = Followed(0.0, particles, u, 1, 0.0)
     advance = Splitting(physics, tolerance)
     results: list[Followed] = []
+    coarse = 0.0
     until = place.valid_until(state.particles, state.u, state.time) if again else np.inf
     missed = place.missed(state.particles, state.u, state.time)
     for output in outputs.tolist():
@@ -192,9 +193,11 @@ def follow(
             time = min(until, output)
             moved, u = advance(state.particles, state.u, state.time, time)
             state = replace(state, time=time, particles=moved, u=u)
+            coarse = max(coarse, uncertain(moved.x, u))
         results.append(state)
     for name, share in missed.items():
         _warn(share, f"of the {name} the particles miss", what="it")
+    _warn(coarse, "later, between the particles is")
     _warn(state.corrected, "the placements were off by")
     _warn(_at_the_ends(state, physics.alpha), "beyond the particles is", "Go farther out.")
     return results
@@ -234,9 +237,8 @@ def _beyond(
     far = np.maximum(window[0] - places, places - window[1])
     places, held, far = places[far > 0.0], held[far > 0.0], far[far > 0.0]
     exact = check.sampled("initial", initial, places)
-    size = np.maximum(np.abs(exact), np.abs(held))
-    there = size * far > _NOTHING * (particles.volumes @ np.abs(u))
-    return float((np.abs(exact - held)[there] / size[there]).max(initial=0.0))
+    there = np.abs(exact) * far > _NOTHING * (particles.volumes @ np.abs(u))
+    return float((np.abs(exact - held)[there] / np.abs(exact[there])).max(initial=0.0))
 
 
 def _at_the_ends(state: Followed, alpha: float) -> float:

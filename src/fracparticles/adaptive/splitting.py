@@ -30,7 +30,7 @@ from fracparticles.adaptive.flow import ExchangeFlow
 from fracparticles.adaptive.placement import LineParticles
 from fracparticles.adaptive.transfer import slopes
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import NonFiniteSolution
+from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = ["Physics", "Splitting"]
 
@@ -148,6 +148,8 @@ class Splitting:
         times = np.linspace(path.start, path.end, 2 * count + 1).tolist()
         for before, half, after in zip(times[:-2:2], times[1::2], times[2::2], strict=True):
             strength = self._sourced(path, strength, before, half)
+            if not np.isfinite(strength).all():
+                return strength
             middle = path(half)
             strength = middle.volumes * self._flow(middle)(
                 strength / middle.volumes, after - before
@@ -166,7 +168,10 @@ class Splitting:
             if not np.isfinite(strength).all():
                 return np.full(strength.size, np.nan)
             at = path(t)
-            return at.volumes * self.physics.source_at(at.x, t, strength / at.volumes)
+            try:
+                return at.volumes * self.physics.source_at(at.x, t, strength / at.volumes)
+            except InvalidInput:  # it is finite at the start: the step is too long, or u blows up
+                return np.full(strength.size, np.nan)
 
         for before, half, after in zip(times[:-2:2], times[1::2], times[2::2], strict=True):
             first = rate(before, strength)
