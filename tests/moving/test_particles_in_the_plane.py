@@ -70,7 +70,7 @@ def test_sums_at_other_points(scattered):
 def test_remeshing_keeps_the_moments(scattered, name):
     x, y, q = scattered
     at_x, at_y, total = remesh_plane(x, y, q, 0.3, name)
-    highest = 2 if name == "M4'" else 3
+    highest = {"M4'": 2, "Lambda3": 3, "Lambda6,4": 6}[name]
     for a in range(highest + 1):
         for b in range(highest + 1):
             before, size = (q * x**a * y**b).sum(), (np.abs(q) * np.abs(x**a * y**b)).sum()
@@ -163,6 +163,24 @@ def test_a_run_against_the_exact_solution_with_the_order_of_its_kernels():
 
 
 @pytest.mark.parametrize("exterior", ["truncated", "open"])
+def test_remeshing_by_a_smooth_function_leaves_the_error_of_the_kernels(exterior):
+    x, y = lattice(0.2, 4.0)
+    errors = []
+    for remeshing, at_edge in (("none", "open"), ("Lambda6,4", exterior), ("Lambda3", exterior)):
+        run = run_in_plane(
+            exact(x, y, 0.5), spacing=0.2, alpha=ALPHA, dt=0.04, steps=6, start=0.5, order=4,
+            remeshing=remeshing, exterior=at_edge,
+        )  # fmt: skip
+        assert (len(run.remeshing_times) > 2) == (remeshing != "none")
+        inside, end = np.hypot(x, y) < 2.0, exact(x, y, 0.74)
+        errors.append(np.abs(run.field(x, y) - end)[inside].max() / end.max())
+        assert run.total_final + run.lost == pytest.approx(run.total_initial, rel=1e-13)
+    kernels, smooth, rough = errors
+    assert smooth < 1.1 * kernels
+    assert rough > 5.0 * smooth
+
+
+@pytest.mark.parametrize("exterior", ["truncated", "open"])
 @pytest.mark.parametrize("remeshing", REMESHINGS)
 def test_what_remeshing_leaves_out_is_counted(exterior, remeshing):
     x, y = lattice(0.4, 5.0)
@@ -219,6 +237,28 @@ def test_a_lattice_that_is_too_small_is_said(exterior, words):
             )
         assert sum(words in str(one.message) for one in said) == expected
         assert all(one.category is AccuracyWarning for one in said)
+
+
+@pytest.mark.parametrize(
+    ("spacing", "overlap", "order", "words"),
+    [
+        (1.0, 2.0, 2, "is not u at the start"),
+        (1.0, 2.0, 4, "is not u at the start"),
+        (0.25, 5.0, 2, "is not u at the start"),
+        (0.25, 0.7, 2, "are too far apart"),
+        (0.25, 2.0, 2, None),
+        (0.25, 2.0, 4, None),
+    ],
+)
+def test_data_that_the_particles_do_not_hold_are_said(spacing, overlap, order, words):
+    x, y = lattice(spacing, 10.0 if spacing == 1.0 else 6.0)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run_in_plane(
+            exact(x, y), spacing=spacing, alpha=ALPHA, dt=0.01, steps=1, order=order, overlap=overlap, exterior="open"
+        )  # fmt: skip
+    assert len(caught) == (words is not None)
+    assert all(words in str(one.message) for one in caught)
 
 
 def test_a_field_is_not_asked_for_where_the_sums_do_not_hold_it():

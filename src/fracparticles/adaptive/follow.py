@@ -1,54 +1,41 @@
-"""Particles that follow a solution of u_t = -D (-Laplacian)^(alpha/2) u on the line: placed, exchanged, placed again.
+"""Particles that follow a solution on the line: placed, moved and exchanged, placed again.
 
-On one placement the exchange is solved exactly in time: with the symmetric S of d(V^(1/2) u)/dt = -D S V^(1/2) u,
+    u_t + (a u)_x = C int (D(x) + D(y)) / 2 (u(y) - u(x)) |x - y|^(-1-alpha) dy + f(x, t, u),
 
-    u(t) = V^(-1/2) Q exp(-D t diag(lambda)) Q^T V^(1/2) u(0),   S = Q diag(lambda) Q^T.
-
-After the time l^alpha / D, l the shortest length, in which the narrowest part about doubles its width, particles are
-placed again by the lengths of what u has become: many that were close are merged to few. Their strengths are those of a
-spline of degree 7 in the variable of the map, in which the solution is smooth. Then sum V u and sum V x u are made what
-they were,
-
-    u_i <- u_i + |u_i| (a + b (x_i - c)),
-
-c the middle of the particles. The first moment of a heavy tail is far out, where round-off is largest beside u: there b
-mends it, and leaves the rest alone. The share of sum V |u| that a and b change is kept. The particles reach so far that
-a share of 1e-7 is beyond; nothing leaves there.
+which is u_t = -D (-Laplacian)^(alpha/2) u for a constant D and nothing else. Between placements the exchange is solved
+exactly in time (`flow`), and split from what else acts (`splitting`). When the narrowest part has about doubled its
+width by diffusion, the velocity has stretched the particles by half, or the source has made half of what was there,
+particles are placed again by the lengths of what u has become: many that were close are merged to few. Their strengths
+are those of a spline in the variable of the map, in which the solution is smooth, and sum V u and sum V x u are kept
+(`transfer`). Coefficients that vary have their lengths, too: the particles resolve them as they resolve u. The
+particles reach so far that a share of 1e-7 is beyond; nothing leaves there.
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
-from scipy.linalg import eigh
 
 from fracparticles import arguments as check
-from fracparticles.adaptive.exchange import exchange_matrix, rate_matrix
-from fracparticles.adaptive.placement import (
-    LengthField,
-    LineParticles,
-    place_particles,
-    wanted_lengths,
-)
+from fracparticles.adaptive.placement import LineParticles
+from fracparticles.adaptive.placing import Place, reach_of
 from fracparticles.adaptive.samples import adapted_samples
-from fracparticles.adaptive.weights import MOST_NEAR
+from fracparticles.adaptive.splitting import Physics, Splitting
+from fracparticles.adaptive.transfer import among, between, conserving, uncertain
+from fracparticles.adaptive.weights import MOST_NEAR, order_of
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 
 __all__ = ["Followed", "follow"]
 
-_DEGREE = 7
-_NEWTON = 8
-_BEYOND = 1e-7
+_EXCHANGE = 0.05  # what an exchange errs by, over h^order
+_BENT, _NOTHING = 0.1, 1e-7
 _UNRESOLVED = 1e-3  # of int |u|: what the particles may miss between them, or a placement be off
-_MOST_CHANGE = (
-    0.5  # of a strength far out, for the first moment; if it took more, the moment is let go
-)
+_MOST_PLACEMENTS = 5000
 _MOST_TIMES = 1000
 
 
@@ -65,7 +52,7 @@ class Followed:
     placements : int
         How often particles have been placed.
     corrected : float
-        The largest share of sum V |u| that a placement has changed to keep mass and first moment.
+        The share of sum V |u| that placements have changed, all together, to keep mass and first moment.
     """
 
     time: float
@@ -91,7 +78,7 @@ class Followed:
         low, high = self.particles.x[[0, -1]]
         if x.size and not (low <= x.min() and x.max() <= high):
             raise InvalidInput("x", x, f"from {low:g} to {high:g}", "There are no particles.")
-        return _between(self.particles.x, self.u, x.ravel()).reshape(x.shape)
+        return between(self.particles.x, self.u, x.ravel()).reshape(x.shape)
 
 
 def follow(
@@ -101,11 +88,14 @@ def follow(
     alpha: float,
     window: tuple[float, float],
     where: Any = (),
-    diffusivity: float = 1.0,
+    diffusivity: float | Callable[[FloatArray], FloatArray] = 1.0,
+    velocity: Callable[[FloatArray, float], FloatArray] | None = None,
+    source: Callable[[FloatArray, float, FloatArray], FloatArray] | None = None,
     step: float = 0.25,
     near: int = 6,
     reach: float | None = None,
     again: bool = True,
+    tolerance: float = 1e-8,
 ) -> list[Followed]:
     """Return the particles at these times, from `initial` at the time zero.
 
@@ -118,125 +108,108 @@ def follow(
     alpha : float
         Fractional order, 1 < alpha < 2.
     window : (float, float)
-        Where `initial` is sampled for its bends.
+        Where `initial` is sampled for its bends; beyond, it should fall off without any.
     where : array_like, optional
         Places that are sampled in any case: of what is narrower than some hundredth of the window.
-    diffusivity : float
-        D.
+    diffusivity : float or callable
+        D, or D(x), which is not negative.
+    velocity : callable, optional
+        a(x, t), with which the particles move.
+    source : callable, optional
+        f(x, t, u). What is short in time, of a and f, is seen from the times near it: let one of `times` be there.
     step : float
         h, the distance of neighbours as a part of the length in which u changes. The error is like
         h^(2 near + 2 - alpha).
     near : int
-        q, how many neighbours on either side have a weight, 0 to 6.
+        q, how many neighbours on either side have a weight, 1 to 6.
     reach : float, optional
-        How far the particles go beyond the window; by itself (1e7)^(1/alpha) times its width, or times the width of
-        the fundamental solution at the last time if that is more.
+        How far the particles go beyond the window; by itself to where a share of 1e-7 is beyond, at first or at the
+        last time, at most (1e7)^(1/alpha) times the width of the window.
     again : bool
         Whether particles are placed again.
+    tolerance : float
+        Of the splitting from one placement to the next, a share of sum V |u|; with neither velocity nor source there is
+        none.
 
     Raises
     ------
     InvalidInput
         If an argument is outside its range, or more particles would be needed than a matrix is for.
+    NonFiniteSolution
+        If u becomes infinite, or particles meet.
 
     Warns
     -----
     AccuracyWarning
-        If the particles do not resolve `initial`, a placement changed u, or u reaches the last of them.
+        If the particles do not resolve `initial`, u or a coefficient, the step is too long for the exchange, placements
+        changed u, or u reaches the last of them.
     """
-    alpha = check.fractional_order(alpha)
     low, high = check.pair("window", window, rising=True)
     seen = check.finite_array("where", where).ravel() if np.size(where) else np.zeros(0)
-    diffusivity = check.scale("diffusivity", diffusivity)
-    near = check.whole_number("near", near, 0, MOST_NEAR)
+    physics = Physics(
+        check.fractional_order(alpha),
+        check.whole_number("near", near, 1, MOST_NEAR),
+        diffusivity if callable(diffusivity) else check.scale("diffusivity", diffusivity),
+        None if velocity is None else check.function("velocity", velocity),
+        None if source is None else check.function("source", source),
+    )
+    tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
     again = check.flag("again", again)
     outputs = check.vector("times", np.atleast_1d(times))
     if outputs.size > _MOST_TIMES or outputs[0] < 0.0 or (np.diff(outputs) <= 0.0).any():
         allowed = f"up to {_MOST_TIMES} ascending times from 0 on"
         raise InvalidInput("times", times, allowed, "Sort them, without doubles.")
-    if reach is None:
-        widest = max(high - low, (diffusivity * outputs[-1]) ** (1.0 / alpha))
-        reach = widest * _BEYOND ** (-1.0 / alpha)
-    reach = check.scale("reach", reach)
-    ends = low - reach, high + reach
-
     samples = adapted_samples(check.function("initial", initial), low, high, seen)
-    field = LengthField(samples[0], wanted_lengths(*samples))
-    particles = place_particles(field, *ends, step)
+    if reach is None:
+        most = float(physics.diffusivity_at(samples[0]).max())
+        reach = reach_of(initial, samples, physics.alpha, most * float(outputs[-1]))
+    reach = check.scale("reach", reach)
+
+    place = Place(physics, (low, high), seen, step)
+    particles = place(samples, (low - reach, high + reach), 0.0)
     u = check.sampled("initial", initial, particles.x)
     _warn(_missed(initial, particles, u), "between the particles is")
+    _warn_of_bends(_beyond(initial, particles, u, (low, high)))
+    _warn(_EXCHANGE * step ** order_of(physics.alpha, physics.near), "the exchange is off by some")
     state = Followed(0.0, particles, u, 1, 0.0)
-    results = []
-    left = outputs.tolist()
-    while True:
-        evolved = _Exact(state, alpha, diffusivity, near)
-        until = state.time + evolved.shortest**alpha / diffusivity if again else np.inf
-        while left and left[0] <= until:
-            results.append(evolved.at(left.pop(0)))
-        if not left:
-            _warn(state.corrected, "the placements were off by")
-            _warn(_at_the_ends(results[-1], alpha), "beyond the particles is", "Go farther out.")
-            return results
-        state = _placed_again(evolved.at(until), ends, step)
+    advance = Splitting(physics, tolerance)
+    results: list[Followed] = []
+    coarse = 0.0
+    until = place.valid_until(state.particles, state.u, state.time) if again else np.inf
+    missed = place.missed(state.particles, state.u, state.time)
+    for output in outputs.tolist():
+        while state.time < output:
+            if until <= state.time:
+                ends = float(state.particles.x[0]), float(state.particles.x[-1])
+                state = _placed_again(state, ends, place)
+                until = place.valid_until(state.particles, state.u, state.time)
+                for name, share in place.missed(state.particles, state.u, state.time).items():
+                    missed[name] = max(missed[name], share)
+                if not until > state.time or state.placements > _MOST_PLACEMENTS:
+                    raise NonFiniteSolution(
+                        f"u, its source or the velocity change so fast at t = {state.time:.6g} that particles would be "
+                        f"placed again every {until - state.time:.2g}. Smooth them, or take a shorter time."
+                    )
+            time = min(until, output)
+            moved, u = advance(state.particles, state.u, state.time, time)
+            state = replace(state, time=time, particles=moved, u=u)
+            coarse = max(coarse, uncertain(moved.x, u))
+        results.append(state)
+    for name, share in missed.items():
+        _warn(share, f"of the {name} the particles miss", what="it")
+    _warn(coarse, "later, between the particles is")
+    _warn(state.corrected, "the placements were off by")
+    _warn(_at_the_ends(state, physics.alpha), "beyond the particles is", "Go farther out.")
+    return results
 
 
-class _Exact:
-    """The exchange on one placement, for any later time."""
-
-    def __init__(self, state: Followed, alpha: float, diffusivity: float, near: int) -> None:
-        self._state, self._diffusivity = state, diffusivity
-        particles = state.particles
-        self._root = np.sqrt(particles.volumes)
-        rates = rate_matrix(exchange_matrix(particles, alpha, near), particles.volumes, None)
-        form = -rates * self._root[:, None] / self._root
-        self._rates, self._modes = eigh(0.5 * (form + form.T))
-        self._start = self._root * state.u
-        self.shortest = float(wanted_lengths(particles.x, state.u).min())
-
-    def at(self, time: float) -> Followed:
-        state, root = self._state, self._root
-        if time == state.time:
-            return state
-        decay = np.exp(-self._diffusivity * (time - state.time) * np.maximum(self._rates, 0.0))
-        y = self._modes @ (decay * (self._modes.T @ self._start))
-        y += root * (root @ (self._start - y)) / (root @ root)  # sum V u to the last digit
-        return Followed(time, state.particles, y / root, state.placements, state.corrected)
-
-
-def _placed_again(state: Followed, ends: tuple[float, float], step: float) -> Followed:
+def _placed_again(state: Followed, ends: tuple[float, float], place: Place) -> Followed:
     """The same u on particles that are placed by it."""
     old = state.particles
-    field = LengthField(old.x, wanted_lengths(old.x, state.u))
-    new = place_particles(field, *ends, step)
-    u = _between(old.x, state.u, new.x)
-    u, share = _conserving(new, u, state.mass, float(old.volumes * old.x @ state.u))
-    return Followed(state.time, new, u, state.placements + 1, max(state.corrected, share))
-
-
-def _between(x: FloatArray, u: FloatArray, at: FloatArray) -> FloatArray:
-    """u at other places, by a spline in the variable of the map, whose places are found by Newton's method."""
-    s = np.arange(x.size, dtype=float)
-    place = make_interp_spline(s, x, _DEGREE)
-    slope = place.derivative()
-    found = np.interp(at, x, s)
-    for _ in range(_NEWTON):
-        found = np.clip(found - (place(found) - at) / slope(found), 0.0, s[-1])
-    return np.asarray(make_interp_spline(s, u, _DEGREE)(found))
-
-
-def _conserving(
-    particles: LineParticles, u: FloatArray, mass: float, moment: float
-) -> tuple[FloatArray, float]:
-    """Return u with this mass and first moment, and the share of it that has changed."""
-    x, weights = particles.x, particles.volumes * np.abs(u)
-    r = (2.0 * x - x[0] - x[-1]) / (x[-1] - x[0])
-    rows = np.array([[weights.sum(), weights @ r], [weights @ x, weights @ (x * r)]])
-    missing = mass - particles.volumes @ u, moment - particles.volumes * x @ u
-    a, b = np.linalg.solve(rows, missing)
-    if abs(b) > _MOST_CHANGE:
-        a, b = missing[0] / weights.sum(), 0.0
-    change = a + b * r
-    return u + np.abs(u) * change, float(weights @ np.abs(change) / weights.sum())
+    new = place((old.x, state.u), ends, state.time)
+    u = between(old.x, state.u, new.x)
+    u, share = conserving(new, u, state.mass, float(old.volumes * old.x @ state.u))
+    return Followed(state.time, new, u, state.placements + 1, state.corrected + share)
 
 
 def _missed(
@@ -246,9 +219,26 @@ def _missed(
     x = particles.x
     middles = 0.5 * (x[1:] + x[:-1])
     exact = check.sampled("initial", initial, middles)
-    return float(
-        np.diff(x) @ np.abs(_between(x, u, middles) - exact) / (np.diff(x) @ np.abs(exact))
-    )
+    return float(np.diff(x) @ np.abs(between(x, u, middles) - exact) / (np.diff(x) @ np.abs(exact)))
+
+
+def _beyond(
+    initial: Callable[[FloatArray], FloatArray],
+    particles: LineParticles,
+    u: FloatArray,
+    window: tuple[float, float],
+) -> float:
+    """The share by which a spline misses `initial` beyond the window, at the worst of many places.
+
+    The wings of a narrow bump, where it falls on no place, are seen. Nothing is where |u| times the distance from the
+    window is less than 1e-7 of int |u|.
+    """
+    places, held = among(particles.x, u)
+    far = np.maximum(window[0] - places, places - window[1])
+    places, held, far = places[far > 0.0], held[far > 0.0], far[far > 0.0]
+    exact = check.sampled("initial", initial, places)
+    there = np.abs(exact) * far > _NOTHING * (particles.volumes @ np.abs(u))
+    return float((np.abs(exact - held)[there] / np.abs(exact[there])).max(initial=0.0))
 
 
 def _at_the_ends(state: Followed, alpha: float) -> float:
@@ -262,6 +252,17 @@ def _warn(
     share: float,
     text: str,
     advice: str = "Take a shorter step, or name `where` the narrow parts are.",
+    what: str = "int |u|",
 ) -> None:
     if not share < _UNRESOLVED:
-        warnings.warn(f"{text} {share:.1g} of int |u|. {advice}", AccuracyWarning, stacklevel=3)
+        warnings.warn(f"{text} {share:.1g} of {what}. {advice}", AccuracyWarning, stacklevel=3)
+
+
+def _warn_of_bends(share: float) -> None:
+    if not share < _BENT:
+        warnings.warn(
+            f"beyond the window `initial` is not what the particles hold, by {share:.1g} of it. Widen the window: what "
+            "lies beyond is not searched for bends.",
+            AccuracyWarning,
+            stacklevel=3,
+        )

@@ -14,12 +14,13 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 
-__all__ = ["adapted_samples", "unseen_share"]
+__all__ = ["adapted_samples", "unseen_share", "varying_samples"]
 
 _FIRST = 129
 _SHARE = 1e-4  # of int |u|: samples are then a fifth of l apart
 _MOST = 20_000
 _LEVELS = 80
+_CONSTANT = 1e-12  # of the values: round-off
 
 
 def adapted_samples(
@@ -70,6 +71,18 @@ def adapted_samples(
             "initial", "zero at all samples", "values that are not zero", "Name where they are."
         )
     return x, u
+
+
+def varying_samples(
+    f: Callable[[FloatArray], FloatArray], low: float, high: float, seen: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return places and f there, as `adapted_samples` does for f less its median, which may be zero everywhere."""
+    x = np.unique(np.concatenate([np.linspace(low, high, _FIRST), np.clip(seen, low, high)]))
+    values = f(x)
+    middle = float(np.median(values))
+    if np.ptp(values) <= _CONSTANT * np.abs(values).max():
+        return x, np.full(x.size, middle)
+    return adapted_samples(lambda x: f(x) - middle, low, high, seen)
 
 
 def unseen_share(f: Callable[[FloatArray], FloatArray], x: FloatArray, u: FloatArray) -> float:

@@ -60,7 +60,7 @@ class Remeshing:
 
     Attributes
     ----------
-    name : {"M4'", "Lambda3"}
+    name : {"M4'", "Lambda3", "Lambda6,4"}
         See `moving.remeshing`.
     spacing : float
         Lattice spacing h.

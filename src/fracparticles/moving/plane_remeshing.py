@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from fracparticles import arguments as check
-from fracparticles.moving.remeshing import interpolation_function
+from fracparticles.moving.remeshing import REACH, interpolation_function
 
 __all__ = ["Particles", "on_square", "remesh_plane"]
 
@@ -25,17 +25,18 @@ def remesh_plane(
 ) -> Particles:
     """Return positions and strengths on the lattice (p h, q h), a rectangle that holds what the particles give.
 
-    Every particle is split among four by four points, by the interpolation function `name` in each coordinate.
+    Every particle is split among as many points as the interpolation function `name` reaches, in each coordinate.
 
     Raises `InvalidInput` if a particle has run away.
     """
     (first_x, w_x), (first_y, w_y) = (_split(v.reshape(-1) / spacing, name) for v in (x, y))
     low_x, low_y = first_x.min(), first_y.min()
-    shape = int(first_x.max() - low_x) + 4, int(first_y.max() - low_y) + 4
+    points = w_x.shape[1]
+    shape = int(first_x.max() - low_x) + points, int(first_y.max() - low_y) + points
     check.whole_number("lattice points along an axis", max(shape), 1, _MOST)
     q, total = strength.reshape(-1), np.zeros(shape[0] * shape[1])
-    for a in range(4):
-        for b in range(4):
+    for a in range(points):
+        for b in range(points):
             index = (first_x - low_x + a) * shape[1] + (first_y - low_y + b)
             total += np.bincount(index, q * w_x[:, a] * w_y[:, b], total.size)
     lines = (
@@ -57,10 +58,10 @@ def on_square(
 
 
 def _split(cell: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """The first of the four lattice points of each particle, and the weights."""
+    """The first of the lattice points of each particle, and the weights of all."""
     nearest = np.rint(cell)
     # p h / h may miss p by an ulp, which would leak a little to the neighbours of p each time.
     cell = np.where(np.abs(cell - nearest) <= _ULPS * np.abs(cell), nearest, cell)
-    left = np.floor(cell)
-    distance = (cell - left)[:, None] - np.arange(-1.0, 3.0)
-    return left.astype(np.int64) - 1, interpolation_function(name, distance)
+    left, reach = np.floor(cell), REACH[name]
+    distance = (cell - left)[:, None] - np.arange(1.0 - reach, reach + 1.0)
+    return left.astype(np.int64) + 1 - reach, interpolation_function(name, distance)

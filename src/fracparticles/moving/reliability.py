@@ -4,6 +4,9 @@ ripple
     Particles a distance d apart make of a uniform field one that ripples by 2 K^(2 pi eps / d) of itself, K^ the
     Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths, of
     the greatest value that a gap of this size or a smaller one can give.
+
+smoothing
+    The field of the particles at the start is the data smoothed by the kernel: it differs from them, over their peak.
 """
 
 from __future__ import annotations
@@ -15,9 +18,10 @@ import numpy as np
 
 from fracparticles.errors import AccuracyWarning
 
-__all__ = ["RIPPLE", "cells", "ripple", "warn_of_ripple"]
+__all__ = ["RIPPLE", "cells", "ripple", "warn_of_ripple", "warn_of_smoothing"]
 
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
+_SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 
 Transform = Callable[[np.ndarray], np.ndarray]
@@ -72,4 +76,21 @@ def warn_of_ripple(found: float, epsilon: float, remedy: str, stacklevel: int) -
             f"{min(found, 1.0):.2g} of itself. {remedy}",
             AccuracyWarning,
             stacklevel=stacklevel + 1,
+        )
+
+
+def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
+    """Warn if the field `held` at the start is not the data u, of the same shape, by a tenth of their peak.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    missed, peak = float(np.abs(held - u).max()), float(np.abs(u).max())
+    if missed > _SMOOTHED * peak:
+        warnings.warn(
+            f"the field of the particles is not u at the start, by {missed / peak:.2g} of its peak: the kernels smooth "
+            "it. Take a smaller spacing, an overlap of 2, or order 4.",
+            AccuracyWarning,
+            stacklevel=3,
         )

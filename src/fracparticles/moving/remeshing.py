@@ -2,8 +2,8 @@ r"""Redistribution of scattered particles onto the lattice x_p = p h:
 
     U_p = sum_j U_j W((x_p - x_j) / h),
 
-with an interpolation function W of two spacings' reach, so that every particle is split among four lattice points.
-The lattice goes on as far as that takes, so that moments are conserved whatever the positions:
+with an interpolation function W of two spacings' reach, or four: every particle is split among four lattice points, or
+eight. The lattice goes on as far as that takes, so that moments are conserved whatever the positions:
 
 - `M4'`: 1 - 5/2 r^2 + 3/2 r^3 for r = |x| <= 1, (2 - r)^2 (1 - r) / 2 for 1 <= r <= 2. Continuous slope; keeps
   sum_j U_j x_j^m for m = 0, 1, 2. Monaghan, J. Comput. Phys. 60 (1985) 253.
@@ -12,11 +12,25 @@ The lattice goes on as far as that takes, so that moments are conserved whatever
   Cottet & Koumoutsakos, Vortex Methods (Cambridge University Press, 2000), Section 7.2; in the spirit of
   Schoenberg, Quart. Appl. Math. 4 (1946) 45, who asked which W reproduce polynomials.
 
-Both turn negative between one and two spacings: remeshed strengths can have either sign.
+- `Lambda6,4`: of degree 9 between the lattice points, four spacings to either side. There its derivatives up to the
+  fourth are those of the central differences of seven points, and so continuous; keeps m = 0, .., 6. Cottet,
+  Etancelin, Perignon & Picard, ESAIM: M2AN 48 (2014) 1029.
+
+All turn negative somewhere: remeshed strengths can have either sign.
+
+What a remeshing leaves behind: particles rho h apart that represent a constant come back with strengths that are not,
+
+    U_p / U = (1 / rho) sum_m W^(2 pi m / rho) exp(2 pi i p m / rho),
+
+and of these waves the long ones, m (1 - 1 / rho) << 1, stay. W^ vanishes at 2 pi m, of an order that its moments say,
+but far out only its smoothness makes it small: with a corner, W^ ~ m^-2, they add up to a defect of some per cent of
+the strengths wherever a particle meets a lattice point. For rho = 1.05 the greatest is 3 % with M4', 4 % with Lambda3
+and 1e-5 with Lambda6,4.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,7 +42,21 @@ from fracparticles.errors import InvalidInput
 
 __all__ = ["REMESHINGS", "Elimination", "eliminate", "interpolation_function", "remesh"]
 
-REMESHINGS = ("M4'", "Lambda3")
+REACH = {"M4'": 2, "Lambda3": 2, "Lambda6,4": 4}  # of W to either side, in spacings
+REMESHINGS = tuple(REACH)
+# Of Lambda6,4 between k and k + 1: the coefficients of the powers of r - k, times 720.
+_SIX_FOUR = [
+    [720, 0, -980, 0, 280, -17605, 60145, -78085, 45675, -10150],
+    [0, -540, 540, 195, -195, 10548, -36084, 46851, -27405, 6090],
+    [0, 108, -54, -120, 60, -3509, 12027, -15617, 9135, -2030],
+    [0, -12, 4, 15, -5, 500, -1718, 2231, -1305, 290],
+]
+# The same of the powers of k + 1 - r: about the nearer end no digits are lost.
+_BACKWARDS = [
+    [(-1) ** m * sum(math.comb(n, m) * row[n] for n in range(m, 10)) for m in range(10)]
+    for row in _SIX_FOUR
+]
+_NINTH = np.array([_SIX_FOUR, _BACKWARDS], dtype=float)
 _FARTHEST = 2**31  # lattice points from the origin: a particle beyond has run away
 _MOST_POINTS = 2**26
 _ULPS = 2.0 * float(np.finfo(float).eps)
@@ -99,7 +127,7 @@ def total_of(strength: np.ndarray) -> float:
 def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return positions and strengths on the lattice x_p = p h, as far as the particles reach.
 
-    From one lattice point before the first particle's cell to one after the last's, strengths of zero included.
+    From as far before the first particle's cell as W reaches to as far after the last's, strengths of zero included.
     Particles on the lattice keep their strengths to the last bit.
 
     Raises `InvalidInput` if there is no such function, the arrays are empty, not finite or do not fit together, or a
@@ -111,7 +139,7 @@ def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray
         Particles in any order; they may coincide.
     spacing : float
         Lattice spacing h.
-    name : {"M4'", "Lambda3"}
+    name : {"M4'", "Lambda3", "Lambda6,4"}
         Interpolation function.
     """
     which, spacing = _index(name), check.scale("spacing", spacing)
@@ -123,9 +151,10 @@ def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray
         shown = f"particles from {x.min():.6g} to {x.max():.6g}"
         allowed = f"finite positions less than {_MOST_POINTS * spacing:.4g} apart"
         raise InvalidInput("x", shown, allowed, "Look for a particle that ran away.")
-    first = int(np.floor(low)) - 1
-    total = np.zeros(int(np.floor(high)) + 3 - first)
-    _distribute(cell, strength, first, which, total)
+    reach = REACH[name]
+    first = int(np.floor(low)) + 1 - reach
+    total = np.zeros(int(np.floor(high)) + reach + 1 - first)
+    _distribute(cell, strength, first, which, reach, total)
     return np.arange(first, first + total.size) * spacing, check.finite_result("strength", total)
 
 
@@ -135,6 +164,15 @@ def _index(name: str) -> int:
 
 @njit(inline="always")
 def _weight(r, which):
+    if which == 2:
+        if r >= 4.0:
+            return 0.0
+        k = int(r)
+        side = int(r - k > 0.5)
+        distance, value = abs(r - (k + side)), 0.0
+        for power in range(9, -1, -1):
+            value = value * distance + _NINTH[side, k, power]
+        return value / 720.0
     if r >= 2.0:
         return 0.0
     if which == 0:
@@ -153,7 +191,7 @@ def _weights(r, which, out):
 
 
 @njit()
-def _distribute(cell, strength, first, which, total):
+def _distribute(cell, strength, first, which, reach, total):
     for j in range(cell.size):
         left = np.floor(cell[j])
         fraction = cell[j] - left
@@ -163,8 +201,7 @@ def _distribute(cell, strength, first, which, total):
             fraction = 0.0
         elif fraction >= 1.0 - slack:
             fraction = 1.0
-        p = int(left) - first - 1
-        total[p] += strength[j] * _weight(1.0 + fraction, which)
-        total[p + 1] += strength[j] * _weight(fraction, which)
-        total[p + 2] += strength[j] * _weight(1.0 - fraction, which)
-        total[p + 3] += strength[j] * _weight(2.0 - fraction, which)
+        p = int(left) - first
+        for a in range(reach):
+            total[p - a] += strength[j] * _weight(a + fraction, which)
+            total[p + 1 + a] += strength[j] * _weight((a + 1.0) - fraction, which)

@@ -45,7 +45,7 @@ def solve_with_moving_particles(
         Initial strengths u.
     steps : int
         How many steps of equal length.
-    remeshing : {"Lambda3", "M4'"}
+    remeshing : {"Lambda3", "M4'", "Lambda6,4"}
         Interpolation function.
 
     Raises

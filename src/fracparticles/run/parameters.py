@@ -180,7 +180,7 @@ class Parameters(BaseModel):
         "of the field between them, which need not resolve the Green's function; "
         "interpolated if left out.",
     )
-    remeshing: Literal["M4'", "Lambda3", "none"] | None = Field(
+    remeshing: Literal["M4'", "Lambda3", "Lambda6,4", "none"] | None = Field(
         default=None, description=f"Remeshing kernel of DVM. {REMESHING} if left out."
     )
     remesh_above: float | None = Field(

@@ -34,6 +34,12 @@ def test_without_remeshing_the_order_is_that_of_the_kernels(result):
     assert fourth.min() > 3.9  # on lattices as coarse as these it is more
 
 
+def test_a_smooth_remeshing_adds_nothing_to_the_error(result):
+    rows = pick(result.table, dim=2, order=4, h=0.2).set_index(["remeshing", "exterior"])["error"]
+    for exterior in ("truncated", "open"):
+        assert rows["Lambda6,4", exterior] < 1.1 * rows["none", "open"]
+
+
 def test_the_figure_can_be_drawn(scene, result):
     drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
-    assert len(drawn.axes) == 3
+    assert len(drawn.axes) == 4

@@ -15,12 +15,14 @@ from scipy.special import gamma
 
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
 from fracparticles.run.orders import observed_order
+from fracparticles.special import green
 from fracparticles.variable.closed_forms import Cauchy, Gaussian
 from fracstudy.inputs import Inputs
 from fracstudy.ledger_text import COLUMNS
 from fracstudy.lookup import LookUps
 from fracstudy.scene import call, read_scenes
 from scenes.run_times.problem_times.benchmark import CONTESTS
+from scenes.run_times.problem_times.blob_peers import Circle, on_circle, on_elements
 from scenes.run_times.problem_times.contest import OURS
 from scenes.run_times.problem_times.interval_peers import (
     difference_eigenvalue,
@@ -255,6 +257,46 @@ def test_getoor_has_the_integral_that_is_known():
     assert w @ getoor(x, ALPHA) == pytest.approx(exact, rel=1e-6)
 
 
+# --- peers for two blobs --------------------------------------------------------------------------
+
+
+def test_a_circle_loses_points_and_no_digits():
+    """A blob that spreads: the thinned waves are those that have decayed; the images remain, like L^-2.5."""
+    circle = Circle(ALPHA, 0.0, 200.0, 0.05, 8.0)
+    counts = [count for count, _ in circle.halvings()]
+    assert len(counts) == 5
+    assert counts[0] > 14 * counts[-1]
+    most, ((_, x, u, h),) = on_circle(circle, lambda x: green(x, 0.05**ALPHA, ALPHA), [1.0], 1e-6)
+    assert most == counts[0]
+    exact = green(x, 0.05**ALPHA + 1.0, ALPHA)
+    assert h * x.size == pytest.approx(400.0)
+    assert np.abs(u - exact)[np.abs(x) < 5.0].max() < 5e-7  # 0.3 * 2 zeta(2.5) * 400^-2.5
+
+
+def test_a_circle_carries_and_decays():
+    circle = Circle(ALPHA, 0.0, 100.0, 1.0, 8.0)
+    _, ((_, x, u, _),) = on_circle(
+        circle, lambda x: green(x, 1.0, ALPHA), [1.0], 0.02, velocity=lambda x: np.full(x.size, 0.5)
+    )
+    near = np.abs(x) < 5.0
+    assert np.abs(u - green(x - 0.5, 2.0, ALPHA))[near].max() < 2e-5
+    _, (_, (_, x, u, _)) = on_circle(
+        circle, lambda x: green(x, 1.0, ALPHA), [0.1, 1.0], 1e-7, source=lambda x, t, u: -u
+    )
+    assert np.abs(u - np.exp(-1.0) * green(x, 2.0, ALPHA))[near].max() < 2e-5
+
+
+def test_elements_that_decay_are_of_second_order():
+    errors = []
+    for count in (200, 400):
+        nodes = np.sinh(np.linspace(-9.0, 9.0, count))
+        _, (_, (_, x, u, volumes)) = on_elements(
+            ALPHA, lambda x: green(x, 1.0, ALPHA), nodes, [0.5, 1.0], 1e-8, lambda x, t, u: -u
+        )
+        errors.append(volumes @ np.abs(u - np.exp(-1.0) * green(x, 2.0, ALPHA)))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)
+
+
 # --- contests -------------------------------------------------------------------------------------
 
 # Of ours in each contest: a grid of the scene, and a bound of the error above what theory leaves there.
@@ -265,6 +307,11 @@ GOOD = {
     "Getoor": ("graded particles", (200,), 1e-7),
     "widths 0.01 and 1": ("evolve, two lattices", (128, 32), 1e-8),
     "widths 0.0001 and 1": ("adaptive particles", (0.35,), 1e-4),
+    "drawn together, 0.01": ("adaptive particles", (0.25, 1e-6), 2e-5),
+    "drawn together, 0.0001": ("adaptive particles", (0.25, 1e-6), 2e-5),
+    "competing, 0.01": ("adaptive particles", (0.25, 1e-6), 2e-5),
+    "competing, 0.0001": ("adaptive particles", (0.35, 1e-5), 5e-4),
+    "carried round": ("DD 12", (10.0, 0.5, 1e-4), 1e-4),
 }
 
 
@@ -316,7 +363,7 @@ def test_figure_and_caption_can_be_made_from_the_smoke_grid(scene, frame, tmp_pa
     inputs = Inputs("problem_times", benchmarks={"problem_times": frame})
     result = call(scene.function("study"), inputs, **scene.parameters)
     drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
-    assert len(drawn.axes) == len(CONTESTS)
+    assert sum(ax.get_visible() for ax in drawn.axes) == len(CONTESTS)
     (tmp_path / "tables").mkdir()
     result.table.to_csv(tmp_path / "tables/problem_times.csv", index=False)
     pd.DataFrame(columns=list(COLUMNS)).to_csv(tmp_path / "claims.csv", index=False)

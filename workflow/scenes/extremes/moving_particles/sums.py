@@ -10,7 +10,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from fracparticles.moving.remeshing import REMESHINGS, eliminate, remesh
+from fracparticles.moving.remeshing import eliminate, remesh
 from fracparticles.moving.scattered import (
     NaiveScatteredSum,
     NeighbourSum,
@@ -108,7 +108,7 @@ def _greatest(function: Any, *arguments: Any) -> float:
 
 def _remeshing(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
     """Moments of the strengths are kept to the ulps of the positions; a lattice stays as it is."""
-    for name in REMESHINGS:
+    for name in _MOMENTS:
         for offset in (0.0, 1e6, 1e8):
             # A position is rounded to an ulp of it, some 50 spacings from where moments are taken.
             bound = 16.0 * _EPS * (1.0 + (offset + _WIDTH) / _H)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from fracparticles.special import green
 from fracparticles.time.whole_space import evolve
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
+from scenes.problems.adaptive_particles.acts import ACTS, Exact
 
 __all__ = ["study"]
 
@@ -72,11 +73,31 @@ def study(
         lattice = _lattice(blobs, times[0], margin, spacings)
         rows += _compared(blobs, times[0], steps, lattice, panels if alpha == drawn else Panels())
         rows += _in_time(blobs, times, step, panels)
+        rows += [_acted_on(name, act, alpha, step) for name, act in ACTS.items()]
         if alpha == drawn:
             panels.add("count", _EXACT, *lattice)
             panels.add("count", _SCHEME, *_scheme(blobs, times[0], margin, scheme_spacings))
             _spacings(blobs, [0.0, times[-1]], step, panels)
     return Result(pd.DataFrame(rows), (), panels.frame)
+
+
+def _acted_on(
+    name: str, act: Callable[[float], tuple[Exact, dict[str, Any]]], alpha: float, step: float
+) -> dict[str, Any]:
+    """The error at t = 1 of what an exact solution is known of."""
+    exact, acts = act(alpha)
+    (state,) = follow(lambda x: exact(x, 0.0), 1.0, alpha=alpha, step=step, **acts)
+    x, volumes = state.particles.x, state.particles.volumes
+    size = float(volumes @ np.abs(exact(x, 1.0)))
+    return {
+        "alpha": alpha,
+        "step": f"{step:g}, {name}",
+        "time": 1.0,
+        "particles": x.size,
+        "error": _short(float(volumes @ np.abs(state.u - exact(x, 1.0))) / size),
+        "placements": state.placements,
+        "acts": name,
+    }
 
 
 def _compared(

@@ -11,16 +11,17 @@ from fracstudy.style import axes_row, log_log, name_ticks, panel_title
 __all__ = ["figure"]
 
 _TITLES = {
-    "none": "open, not remeshed",
-    "Lambda3": r"open, remeshed by $\Lambda_3$",
-    "M4'": "truncated, remeshed by M4'",
+    "none, open": "open, not remeshed",
+    "Lambda3, open": r"open, remeshed by $\Lambda_3$",
+    "M4', truncated": "truncated, by M4'",
+    "Lambda6,4, truncated": r"truncated, by $\Lambda_{6,4}$",
 }
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw a panel for each way to end and to remesh the particles: solid the plane, dashed the line."""
-    drawn, axes = axes_row(3, height=3.7, width=3.4, sharey=True)
-    for ax, letter, (panel, title) in zip(axes, "abc", _TITLES.items(), strict=True):
+    drawn, axes = axes_row(4, height=3.7, width=2.9, sharey=True)
+    for ax, letter, (panel, title) in zip(axes, "abcd", _TITLES.items(), strict=True):
         for name, points in pick(series, panel=panel).groupby("series", sort=False):
             plane, second = points["dim"].iloc[0] == 2, points["order"].iloc[0] == 2
             ax.plot(points["x"], points["y"], label=str(name), linestyle="-" if plane else "--",

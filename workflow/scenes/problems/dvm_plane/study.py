@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from fracparticles.errors import AccuracyWarning
 from fracparticles.moving import dvm
 from fracparticles.moving.dvm_plane import run_in_plane
 from fracparticles.run.orders import observed_order
@@ -17,7 +19,13 @@ from fracstudy.panels import Panels
 __all__ = ["study"]
 
 _STEP = 0.5  # D dt / h^alpha
-_WAYS = (("none", "open"), ("Lambda3", "open"), ("M4'", "truncated"))
+_WAYS = (
+    ("none", "open"),
+    ("Lambda3", "open"),
+    ("M4'", "truncated"),
+    ("Lambda6,4", "truncated"),
+    ("Lambda6,4", "open"),
+)
 
 
 def study(
@@ -43,8 +51,10 @@ def study(
                     "order": order, "remeshing": remeshing, "exterior": exterior,
                 }  # fmt: skip
                 r = np.hypot(lattice[:, None], lattice)
-                plane = run_in_plane(np.asarray(green(r, start, alpha, 2)), **common)
-                line = dvm.run(lattice, np.asarray(green(lattice, start, alpha)), **common)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore", AccuracyWarning)  # coarse ones are to be seen
+                    plane = run_in_plane(np.asarray(green(r, start, alpha, 2)), **common)
+                    line = dvm.run(lattice, np.asarray(green(lattice, start, alpha)), **common)
                 z = np.linspace(-2.0, 2.0, 41)
                 fields = plane.field(z, 0.0 * z), line.field(z)
                 drift = plane.total_final + plane.lost - plane.total_initial
@@ -59,7 +69,7 @@ def study(
                 errors = [row["error"] for row in part]
                 slopes = [np.nan, *observed_order(spacings, errors)]
                 name = f"{'plane' if dim == 2 else 'line'}, order {order}"
-                panels.add(remeshing, name, spacings, errors, dim=dim, order=order)
+                panels.add(f"{remeshing}, {exterior}", name, spacings, errors, dim=dim, order=order)
                 rows += [{**row, "observed order": s} for row, s in zip(part, slopes, strict=True)]
     return Result(pd.DataFrame(rows), (), panels.frame)
 

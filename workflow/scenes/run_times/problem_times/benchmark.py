@@ -12,6 +12,8 @@ from fracstudy.race.clock import measure, one_core, timings_dataset
 from scenes.run_times.problem_times.contest import Contest
 from scenes.run_times.problem_times.interval import eigenvalue, leaving
 from scenes.run_times.problem_times.line import drawn_back, variable_diffusivity
+from scenes.run_times.problem_times.plane import carried_round
+from scenes.run_times.problem_times.two_blobs import competing, drawn_together
 from scenes.run_times.problem_times.two_widths import two_widths
 
 if TYPE_CHECKING:
@@ -26,6 +28,11 @@ CONTESTS: dict[str, Callable[[float], Contest]] = {
     "Getoor": leaving,
     "widths 0.01 and 1": partial(two_widths, narrow=1e-2),
     "widths 0.0001 and 1": partial(two_widths, narrow=1e-4),
+    "drawn together, 0.01": partial(drawn_together, narrow=1e-2),
+    "drawn together, 0.0001": partial(drawn_together, narrow=1e-4),
+    "competing, 0.01": partial(competing, narrow=1e-2),
+    "competing, 0.0001": partial(competing, narrow=1e-4),
+    "carried round": carried_round,
 }
 
 

@@ -22,6 +22,11 @@ _TITLES = {
     "Getoor": r"$(-\Delta)^{\alpha/2} u = 1$, $(-1, 1)$",
     "widths 0.01 and 1": "widths 0.01 and 1",
     "widths 0.0001 and 1": "widths 0.0001 and 1",
+    "drawn together, 0.01": "velocity $-x$, widths 0.01 and 1",
+    "drawn together, 0.0001": "velocity $-x$, 0.0001 and 1",
+    "competing, 0.01": "$f(x, t, u)$, widths 0.01 and 1",
+    "competing, 0.0001": "$f(x, t, u)$, 0.0001 and 1",
+    "carried round": "rotation in the plane",
 }
 # Okabe & Ito: schemes as everywhere, other methods of ours in theirs, peers hollow.
 _LOOKS: dict[str, dict[str, Any]] = {
@@ -49,7 +54,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     rows = -(-len(problems) // _COLUMNS)
     drawn = Figure(figsize=(3.4 * _COLUMNS, 3.1 * rows + 1.2), layout="constrained")
     axes = list(drawn.subplots(rows, _COLUMNS, sharey=True, squeeze=False).flat)
-    for ax, letter, problem in zip(axes, "abcdefgh", problems, strict=False):
+    for ax, letter, problem in zip(axes, "abcdefghijkl", problems, strict=False):
         part = pick(series, problem=problem)
         for name, points in part[part["front"].astype(bool)].groupby("contender", sort=False):
             line = points.sort_values("time")
