@@ -8,8 +8,8 @@ import pandas as pd
 __all__ = ["TIMES", "best", "duration", "front", "trials_of"]
 
 TIMES = {
-    "total_time": "one solve, set-up and all / s",
-    "block_time": "a further solve, in a block of a thousand / s",
+    "total_time": "time of one solve with set-up / s",
+    "block_time": "time per solve, a thousand at once / s",
 }
 
 
