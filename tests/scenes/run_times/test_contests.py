@@ -103,7 +103,7 @@ def test_the_first_three():
     assert table["first"].tolist() == ["rational functions", "evolve, 4 terms"]
     assert table["second"].tolist() == ["evolve, 2 terms", "rational functions"]
     assert table["third"].tolist() == ["KPSE, order 12, series"] * 2
-    assert table["its memory / kB"].tolist() == [20.0, 20.0]
+    assert table["memory / kB"].tolist() == [20.0, 20.0]
 
 
 def situation(**changes):
@@ -222,7 +222,7 @@ def test_a_first_call_and_a_step_are_timed():
     data = step_times(line=201, plane=21, repeats=1).to_dataframe().reset_index()
     found = steps(inputs(step_times=data)).table
     assert set(found["dim"]) == {1, 2}
-    assert found[found["method"].str.startswith("exact")]["over the exact symbol"].tolist() == [
+    assert found[found["method"].str.startswith("exact")]["time / exact symbol"].tolist() == [
         1.0,
         1.0,
     ]
