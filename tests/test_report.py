@@ -271,3 +271,16 @@ def test_no_result_is_typed_in_a_caption(caption):
 @pytest.mark.parametrize("text", ["an error of 2.5 %", "3 times as large", "about 0.6 is better"])
 def test_a_typed_result_would_be_found(text):
     assert TYPED.search(text)
+
+
+def test_the_readme_says_which_method_to_use_as_the_scene_does():
+    """Situation, what to take and the line of code, row by row; what it costs stands in the report alone."""
+    import yaml
+
+    text = (SCENES / "run_times/which_method/scene.yaml").read_text("utf-8")
+    rows = [
+        f"| {row['situation']} | {row['take']} | `{row['code']}` |"
+        for row in yaml.safe_load(text)["parameters"]["situations"]
+    ]
+    assert len(rows) == 6
+    assert "\n".join(rows) in (ROOT / "README.md").read_text("utf-8")

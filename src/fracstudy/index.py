@@ -55,7 +55,7 @@ def index(project: Path) -> str:
         ]
         lines += _items(printed, scenes, project)
     own = [scene for scene in scenes.values() if not scene.items]
-    lines += ["", "## Studies of our own", "", "| scene | title |", "|---|---|"]
+    lines += ["", "## Our own studies", "", "| scene | title |", "|---|---|"]
     lines += [f"| {_link(scene, project)} | {scene.heading} |" for scene in own]
     return "\n".join(lines) + "\n"
 
