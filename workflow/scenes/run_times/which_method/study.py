@@ -53,10 +53,8 @@ def _row(
         "situation": situation,
         "take": take,
         "code": f"`{code}`",
-        "error": error,
-        "cost": "not reached" if np.isnan(ours) else duration(ours) + many,
-        "best of the literature": "none" if np.isnan(theirs) else f"{peer}, {duration(theirs)}",
-        "faster": _verdict(ours, theirs),
+        "cost": f"{duration(ours)}{many} to {error:g}" if ours > 0.0 else f"{error:g} not reached",
+        "faster": _faster(ours, peer, theirs),
     }
 
 
@@ -90,14 +88,16 @@ def _from_table(table: pd.DataFrame, contender: str, problem: str, error: float)
     return seconds[contender], *peer
 
 
-def _verdict(ours: float, theirs: float) -> str:
-    if np.isnan(ours):
-        return "the literature" if not np.isnan(theirs) else "nobody gets there"
+def _faster(ours: float, peer: str, theirs: float) -> str:
     if np.isnan(theirs):
-        return "only ours gets there"
-    if ours / theirs > _TIE:
-        return f"the literature, {_two_digits(ours / theirs)} times"
-    return f"ours, {_two_digits(theirs / ours)} times" if theirs / ours > _TIE else "a tie"
+        return "nobody gets there" if np.isnan(ours) else "nobody (no other gets there)"
+    if np.isnan(ours):
+        return f"{peer} (this does not get there)"
+    if max(ours, theirs) <= _TIE * min(ours, theirs):
+        return f"nobody ({peer}: a tie)"
+    if theirs < ours:
+        return f"{peer} ({_two_digits(ours / theirs)} times)"
+    return f"nobody ({peer}: {_two_digits(theirs / ours)} times as long)"
 
 
 def _two_digits(ratio: float) -> str:
