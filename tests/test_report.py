@@ -131,12 +131,19 @@ def test_every_link_leads_somewhere_in_the_study(study):
     assert {"extreme.md", "extreme.csv", "claims.csv", "claims.md", "paper.md"} < found
 
 
-def test_a_great_table_has_a_page_of_its_own(study):
-    lines = ["| s |", "|:--|", *(f"| row {k} |" for k in range(30))]
+def test_a_large_table_has_a_page_of_its_own(study):
+    lines = ["| s |", "|:--|", *(f"| row {k} |" for k in range(40))]
     (study["results_dir"] / "tables/extreme.md").write_text("\n".join(lines))
     text = build(**study)[2].read_text("utf-8")
     assert "row 7" not in text
-    assert "[table, 30 rows](../results/tables/extreme.md)" in text
+    assert "[table, 40 rows](../results/tables/extreme.md)" in text
+
+
+def test_a_table_takes_the_place_of_a_figure(study):
+    """The figure first; where there is none the table; the caption after either."""
+    paper, own = (path.read_text("utf-8") for path in build(**study)[1:3])
+    assert own.index("| ", own.index('<a id="extreme"')) < own.index("Where it is stiff.")
+    assert paper.index("![") < paper.index("Printed 4.81") < paper.index("| DD | 4.8161 |")
 
 
 def test_the_same_study_gives_the_same_bytes(study):
