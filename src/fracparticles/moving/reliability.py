@@ -1,9 +1,9 @@
-r"""What the particles of a run say of its accuracy. No estimate knows the exact solution.
+r"""What the particles of a run reveal about its accuracy. No estimate uses the exact solution.
 
 ripple
-    Particles a distance d apart make of a uniform field one that ripples by 2 K^(2 pi eps / d) of itself, K^ the
-    Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths, of
-    the greatest value that a gap of this size or a smaller one can give.
+    Particles a distance d apart represent a uniform field with a relative ripple of 2 K^(2 pi eps / d), where K^ is
+    the Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths,
+    of the largest value that a gap of this size or a smaller one can give.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Transform = Callable[[np.ndarray], np.ndarray]
 
 
 def cells(x: np.ndarray) -> np.ndarray:
-    """Return what each particle has of the line: half the way to either neighbour; at an end the whole way to one.
+    """Return the length of line of each particle: half the way to either neighbour; at an end the whole way to one.
 
     Parameters
     ----------

@@ -152,7 +152,7 @@ class TailModel:
         """Return how much of the total the tails hold wrongly: what is in them times the misfit of their power.
 
         The misfit of an end, at most 1, is that of c |y|^(-1-alpha) on the field half-way from the origin to the end.
-        Errors as of a call.
+        Errors as for a call.
         """
         tail = self(x, strength)
         width, wrong = cells(x), 0.0

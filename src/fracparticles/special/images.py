@@ -8,7 +8,8 @@ they are summed by Ewald's method: with s = n + gamma and the incomplete gamma f
 
     g(a, y) = y^(-a) Gamma(a, y).
 
-S is analytic up to |x|_inf = 1, twice as far as it is wanted, and even in each coordinate: a polynomial in the squares.
+S is analytic up to |x|_inf = 1, twice as far as needed, and even in each coordinate: it is represented as a
+polynomial in the squares.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def power_transform(exponent: np.ndarray, dim: int) -> np.ndarray:
 def outside_integral(exponent: float, dim: int) -> float:
     """Return the integral of |x|^(-n-gamma) outside the cube |x|_inf < 1/2, its finite part where it diverges.
 
-    By the divergence theorem (1/gamma) times that of |x|^(-n-gamma) x.n over the faces.
+    By the divergence theorem it is 1/gamma times the integral of |x|^(-n-gamma) x.n over the faces.
     """
     if dim == 1:
         return float(2.0 ** (1.0 + exponent) / exponent)
