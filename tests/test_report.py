@@ -280,6 +280,20 @@ def test_a_typed_result_would_be_found(text):
     assert TYPED.search(text)
 
 
+PAGES = ("README.md", "src/fracparticles/README.md", "docs/*.md", "report/template/*.j2")
+# What holds no result: code, addresses, look-ups, and what a machine must have.
+NO_RESULT = re.compile(
+    r"```.*?```|`[^`]*`|\]\([^)]*\)|Python \d\.\d+|[\d.]+ (?:to [\d.]+ )?GB", re.DOTALL
+)
+
+
+@pytest.mark.parametrize("page", sorted(p for name in PAGES for p in ROOT.glob(name)), ids=str)
+def test_no_result_is_typed_in_a_page(page):
+    text = NO_RESULT.sub("", LOOKED_UP.sub("", page.read_text("utf-8")))
+    typed = [m[0] for m in TYPED.finditer(text) if not PLACE.search(text[: m.start()])]
+    assert typed == [], f"look these up, or link to the table: {typed}"
+
+
 def test_the_readme_says_which_method_to_use_as_the_scene_does():
     """Situation, what to take and the line of code, row by row; what it costs stands in the report alone."""
     import yaml
