@@ -283,11 +283,14 @@ def test_a_typed_result_would_be_found(text):
 PAGES = ("README.md", "src/fracparticles/README.md", "docs/*.md", "report/template/*.j2")
 # What holds no result: code, addresses, look-ups, and what a machine must have.
 NO_RESULT = re.compile(
-    r"```.*?```|`[^`]*`|\]\([^)]*\)|Python \d\.\d+|[\d.]+ (?:to [\d.]+ )?GB", re.DOTALL
+    r"```.*?```|`[^`]*`|\]\([^)]*\)|doi [\d./s-]+|Python \d\.\d+|[\d.]+ (?:to [\d.]+ )?GB",
+    re.DOTALL,
 )
 
 
-@pytest.mark.parametrize("page", sorted(p for name in PAGES for p in ROOT.glob(name)), ids=str)
+@pytest.mark.parametrize(
+    "page", sorted(p for name in PAGES for p in ROOT.glob(name)), ids=lambda p: p.name
+)
 def test_no_result_is_typed_in_a_page(page):
     text = NO_RESULT.sub("", LOOKED_UP.sub("", page.read_text("utf-8")))
     typed = [m[0] for m in TYPED.finditer(text) if not PLACE.search(text[: m.start()])]
