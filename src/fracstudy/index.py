@@ -36,8 +36,8 @@ def index(project: Path) -> str:
     lines = [
         "# Index",
         "",
-        "From what a document prints to the code and the scene. Made by `python -m fracstudy.index`, from the",
-        "docstrings and the scenes themselves.",
+        "Where each equation, figure, table and claim of a document is found in the code and in the scenes.",
+        "`python -m fracstudy.index` makes this page from the docstrings and the scenes.",
     ]
     equations = _equations(project)
     for name, document in study.documents.items():
