@@ -308,3 +308,18 @@ def test_the_readme_says_which_method_to_use_as_the_scene_does():
     ]
     assert len(rows) == 6
     assert "\n".join(rows) in (ROOT / "README.md").read_text("utf-8")
+
+
+def test_every_look_up_of_every_caption_and_page_is_answered_by_the_tracked_results():
+    import yaml
+
+    from fracstudy.config import read_config
+    from fracstudy.lookup import LookUps
+
+    given = yaml.safe_load((ROOT / "config/study.yaml").read_text("utf-8"))
+    given |= {"scenes_dir": str(SCENES), "grids": None}
+    look_ups = LookUps(ROOT / "results")
+    for scene in read_config(given)[1].values():
+        text = look_ups.filled(scene.folder / "caption.md", scene=scene, root=".")
+        assert not re.search(r"\bnan\b|\{\{|\{%", text), scene.name
+    assert look_ups.filled(TEMPLATES / "findings.md.j2", results="results")
