@@ -13,7 +13,7 @@ Accuracy, estimated from the run alone:
 - The gaps between the markers leave a ripple on F (`moving.reliability`).
 - Gaps d at random leave a noise of the relative variance (var d / d^2) (d / eps) int S^2. Between neighbours d F / W
   differs by (var d / (2 d^2))^(1/2).
-- F is smoother than the field; halving epsilon shows by how much.
+- F is smoother than the field: how much, is what half of epsilon changes.
 - Waves of the field change at the rate sigma, where the equation has S^ = 1. The error of their amplitude over the run
   is found for the wavenumber of F, max |F_x| / (max F - min F), and for twice and half of it.
 Where the set of markers ends, F ends too, and says nothing about the field.

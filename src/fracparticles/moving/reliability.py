@@ -1,9 +1,9 @@
 r"""What the particles of a run reveal about its accuracy. No estimate uses the exact solution.
 
 ripple
-    Particles a distance d apart represent a uniform field with a relative ripple of 2 K^(2 pi eps / d), where K^ is
-    the Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths,
-    of the largest value that a gap of this size or a smaller one can give.
+    Particles a distance d apart make of a uniform field one that ripples by 2 K^(2 pi eps / d) of itself, K^ the
+    Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths, of
+    the greatest value that a gap of this size or a smaller one can give.
 """
 
 from __future__ import annotations

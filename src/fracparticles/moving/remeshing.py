@@ -3,7 +3,7 @@ r"""Redistribution of scattered particles onto the lattice x_p = p h:
     U_p = sum_j U_j W((x_p - x_j) / h),
 
 with an interpolation function W of two spacings' reach, so that every particle is split among four lattice points.
-The lattice extends as far as needed, so moments are conserved whatever the positions:
+The lattice goes on as far as that takes, so that moments are conserved whatever the positions:
 
 - `M4'`: 1 - 5/2 r^2 + 3/2 r^3 for r = |x| <= 1, (2 - r)^2 (1 - r) / 2 for 1 <= r <= 2. Continuous slope; keeps
   sum_j U_j x_j^m for m = 0, 1, 2. Monaghan, J. Comput. Phys. 60 (1985) 253.

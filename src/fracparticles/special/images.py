@@ -41,7 +41,7 @@ def power_transform(exponent: np.ndarray, dim: int) -> np.ndarray:
 def outside_integral(exponent: float, dim: int) -> float:
     """Return the integral of |x|^(-n-gamma) outside the cube |x|_inf < 1/2, its finite part where it diverges.
 
-    By the divergence theorem it is 1/gamma times the integral of |x|^(-n-gamma) x.n over the faces.
+    By the divergence theorem (1/gamma) times that of |x|^(-n-gamma) x.n over the faces.
     """
     if dim == 1:
         return float(2.0 ** (1.0 + exponent) / exponent)

@@ -225,7 +225,7 @@ def later_powers(tail: Sequence[float], dim: int, alpha: float, terms: int) -> t
 
 
 def _sums(starts: Sequence[float], alpha: float, greatest: float) -> np.ndarray:
-    """Return the exponents start + j alpha up to the largest that belong to a tail, ascending, each once."""
+    """Return the exponents start + j alpha up to the greatest that belong to a tail, ascending, each once."""
     most = int(greatest / alpha) + 1
     found: list[float] = []
     for exponent in sorted(start + j * alpha for start in starts for j in range(most + 1)):

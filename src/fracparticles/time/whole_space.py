@@ -126,7 +126,7 @@ def evolve(
 
 
 def _unresolved(u: np.ndarray) -> float:
-    """Return what the data, shape (data, N, .., N), may have at the wavenumber 2 K, K = pi / h, over their largest.
+    """Return what the data, shape (data, N, .., N), may have at the wavenumber 2 K, K = pi / h, over their greatest.
 
     That looks like a constant. u^ is known up to K along each axis, from the sums over the others; at 2 K it is the
     square of that at K if it falls like an exponential, and less if it falls like a Gaussian.

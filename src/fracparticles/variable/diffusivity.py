@@ -64,7 +64,7 @@ class VariableDiffusivity:
     Raises
     ------
     InvalidInput
-        If the form does not exist, or not for this setting.
+        If there is no such form, or not with this setting.
     """
 
     def __init__(self, form: str, setting: Setting, tail: float | None = None) -> None:

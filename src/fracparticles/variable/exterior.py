@@ -125,7 +125,7 @@ class PlaneGradientFarField:
 
 
 def warn_unsettled(field: str, values: np.ndarray, n: int) -> None:
-    """Warn of a coefficient on the lattice that still varies near the ends, where the tail assumes a constant."""
+    """Warn of a coefficient on the lattice that still varies near the ends, where the tail takes it for constant."""
     outer = round(_OUTER * n)
     middle = values.shape[0] // 2
     for axis in range(values.ndim):
