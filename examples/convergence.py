@@ -1,6 +1,6 @@
 """# A convergence study in thirty lines
 
-KPSE with kernels of order 2, 4 and 6 at four spacings: each run is a data set, and together they are a cube, whose axes
+KPSE with kernels of order 2, 4 and 6 at four spacings. Each run is a data set, and together they form a cube whose axes
 are the parameters. The order is the slope between two spacings.
 """
 

@@ -1,7 +1,7 @@
 """# Your own initial data
 
-Two blobs of tracer, an array on a lattice of our choice, after three times. The lattice need not hold the tails: what
-is beyond it is continued by the powers by which every solution falls. What leaves the lattice is accounted for.
+Two blobs of tracer on a lattice of our choice, at three later times. The lattice need not contain the
+tails: power laws continue the solution beyond it. The mass that leaves the lattice is accounted for.
 """
 
 import matplotlib.pyplot as plt

@@ -1,8 +1,8 @@
 """# From measured samples to a solution
 
-Displacements of particles, measured at one time, say what alpha and the diffusivity are: their characteristic function
-is exp(-D t |k|^alpha), so that log(-log |phi|) is a straight line in log k. With these the density at any later time
-follows. Here the samples are drawn from a stable law, so that we know what should come out.
+Displacements of particles, measured at one time, determine alpha and the diffusivity: their characteristic function phi
+is exp(-D t |k|^alpha), so log(-log |phi|) is a straight line in log k. The density at any later time follows from
+these. Here the samples are drawn from a stable law, so the right answer is known.
 """
 
 import matplotlib.pyplot as plt

@@ -507,7 +507,7 @@ def test_a_limit_says_what_it_does_not_bind(cli):
     status, out, err = cli("limit", *flags)
     a = fp.stability_limit("GPSE", 0.5)
     assert (status, out) == (0, f"a = {a:.6g}\ndt = {a * 0.1**1.5:.6g}\n")
-    assert err.startswith("note: this binds steps that are repeated; a single step of GPSE")
+    assert err.startswith("note: this limits repeated steps; a single step of GPSE")
     assert err.count("\n") == 1
     once = Case(scheme="GPSE", beta=0.5, half_width=10.0, spacing=0.1, dt=1.0)
     assert once.time_step > a * 0.1**1.5

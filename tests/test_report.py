@@ -131,12 +131,19 @@ def test_every_link_leads_somewhere_in_the_study(study):
     assert {"extreme.md", "extreme.csv", "claims.csv", "claims.md", "paper.md"} < found
 
 
-def test_a_great_table_has_a_page_of_its_own(study):
-    lines = ["| s |", "|:--|", *(f"| row {k} |" for k in range(30))]
+def test_a_large_table_has_a_page_of_its_own(study):
+    lines = ["| s |", "|:--|", *(f"| row {k} |" for k in range(40))]
     (study["results_dir"] / "tables/extreme.md").write_text("\n".join(lines))
     text = build(**study)[2].read_text("utf-8")
     assert "row 7" not in text
-    assert "[table, 30 rows](../results/tables/extreme.md)" in text
+    assert "[table, 40 rows](../results/tables/extreme.md)" in text
+
+
+def test_a_table_takes_the_place_of_a_figure(study):
+    """The figure first; where there is none the table; the caption after either."""
+    paper, own = (path.read_text("utf-8") for path in build(**study)[1:3])
+    assert own.index("| ", own.index('<a id="extreme"')) < own.index("Where it is stiff.")
+    assert paper.index("![") < paper.index("Printed 4.81") < paper.index("| DD | 4.8161 |")
 
 
 def test_the_same_study_gives_the_same_bytes(study):
@@ -271,3 +278,48 @@ def test_no_result_is_typed_in_a_caption(caption):
 @pytest.mark.parametrize("text", ["an error of 2.5 %", "3 times as large", "about 0.6 is better"])
 def test_a_typed_result_would_be_found(text):
     assert TYPED.search(text)
+
+
+PAGES = ("README.md", "src/fracparticles/README.md", "docs/*.md", "report/template/*.j2")
+# What holds no result: code, addresses, look-ups, and what a machine must have.
+NO_RESULT = re.compile(
+    r"```.*?```|`[^`]*`|\]\([^)]*\)|doi [\d./s-]+|Python \d\.\d+|[\d.]+ (?:to [\d.]+ )?GB",
+    re.DOTALL,
+)
+
+
+@pytest.mark.parametrize(
+    "page", sorted(p for name in PAGES for p in ROOT.glob(name)), ids=lambda p: p.name
+)
+def test_no_result_is_typed_in_a_page(page):
+    text = NO_RESULT.sub("", LOOKED_UP.sub("", page.read_text("utf-8")))
+    typed = [m[0] for m in TYPED.finditer(text) if not PLACE.search(text[: m.start()])]
+    assert typed == [], f"look these up, or link to the table: {typed}"
+
+
+def test_the_readme_says_which_method_to_use_as_the_scene_does():
+    """Situation, what to take and the line of code, row by row; what it costs stands in the report alone."""
+    import yaml
+
+    text = (SCENES / "run_times/which_method/scene.yaml").read_text("utf-8")
+    rows = [
+        f"| {row['situation']} | {row['take']} | `{row['code']}` |"
+        for row in yaml.safe_load(text)["parameters"]["situations"]
+    ]
+    assert len(rows) == 6
+    assert "\n".join(rows) in (ROOT / "README.md").read_text("utf-8")
+
+
+def test_every_look_up_of_every_caption_and_page_is_answered_by_the_tracked_results():
+    import yaml
+
+    from fracstudy.config import read_config
+    from fracstudy.lookup import LookUps
+
+    given = yaml.safe_load((ROOT / "config/study.yaml").read_text("utf-8"))
+    given |= {"scenes_dir": str(SCENES), "grids": None}
+    look_ups = LookUps(ROOT / "results")
+    for scene in read_config(given)[1].values():
+        text = look_ups.filled(scene.folder / "caption.md", scene=scene, root=".")
+        assert not re.search(r"\bnan\b|\{\{|\{%", text), scene.name
+    assert look_ups.filled(TEMPLATES / "findings.md.j2", results="results")

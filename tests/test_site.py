@@ -155,6 +155,7 @@ def test_the_api_is_made_of_the_docstrings(site):
     text = (site / "api/special.html").read_text("utf-8")
     assert "green" in text
     assert "The density." in text
+    assert "Special functions." in text
 
 
 def test_a_row_of_the_ledger_says_what_the_filters_look_for(study):

@@ -36,8 +36,8 @@ def index(project: Path) -> str:
     lines = [
         "# Index",
         "",
-        "From what a document prints to the code and the scene. Made by `python -m fracstudy.index`, from the",
-        "docstrings and the scenes themselves.",
+        "Where each equation, figure, table and claim of a document is found in the code and in the scenes.",
+        "`python -m fracstudy.index` makes this page from the docstrings and the scenes.",
     ]
     equations = _equations(project)
     for name, document in study.documents.items():
@@ -55,7 +55,7 @@ def index(project: Path) -> str:
         ]
         lines += _items(printed, scenes, project)
     own = [scene for scene in scenes.values() if not scene.items]
-    lines += ["", "## Studies of our own", "", "| scene | title |", "|---|---|"]
+    lines += ["", "## Our own studies", "", "| scene | title |", "|---|---|"]
     lines += [f"| {_link(scene, project)} | {scene.heading} |" for scene in own]
     return "\n".join(lines) + "\n"
 

@@ -15,12 +15,12 @@ _CONFIG = Path("config/study.yaml")
 
 
 def scenes(document: str | None = None) -> None:
-    """List the scenes: the name, which is the target of snakemake, the title, and the items of the document.
+    """List the scenes: name (the target of snakemake), title, and items of the document.
 
     Parameters
     ----------
     document : str
-        Those of one document alone, lucchesi for example.
+        Only the scenes of this document, for example lucchesi.
     """
     print("\n".join(listed(Path.cwd(), document)))
 

@@ -32,10 +32,8 @@ __all__ = ["ReportError", "build", "pages"]
 
 FINDINGS = "findings"
 FIGURE_FORMATS = (".svg", ".png")
-_INLINE = (
-    20,
-    8,
-)  # rows and columns of a table that a page shows; greater ones have a page of their own
+# Rows and columns of a table that a page shows; larger tables have a page of their own.
+_INLINE = (32, 8)
 
 
 class ReportError(FracparticlesError, ValueError):

@@ -29,6 +29,8 @@ __all__ = ["SiteError", "build", "ledger_page"]
 
 _LINK = re.compile(r"(\]\(|(?:href|src)=\")(?!https?://|#|mailto:)([^)\"#\s]+)(#[^)\"\s]*)?")
 _FOLDER_LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)#\s]+)\)")
+# Pages of `docs`: those that a newcomer reads first, and those about the project itself.
+_FIRST, _PROJECT = ("own_problem", "other_equations"), ("architecture",)
 _SCHEMES = ("DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM", "FD")
 
 
@@ -143,25 +145,30 @@ def _examples(scripts: Path, outputs: Path, out: Path) -> list[Path]:
 
 
 def _api(package: Path, out: Path) -> list[str]:
-    """Write a page for each room of the library, from its docstrings; return the rooms."""
+    """Write a page for each room of the library: its docstring, then its modules; return the rooms."""
     rooms = sorted(path.parent.name for path in package.glob("*/__init__.py"))
     for room in rooms:
         modules = sorted(
             path.stem for path in (package / room).glob("*.py") if not path.stem.startswith("_")
         )
+        words = ast.get_docstring(ast.parse((package / room / "__init__.py").read_text("utf-8")))
         parts = [f"::: fracparticles.{room}.{module}\n" for module in modules]
-        write_text(out / f"{room}.md", "\n".join([f"# {room}\n", *parts]))
+        write_text(out / f"{room}.md", "\n".join([f"# {room}\n", f"{words or ''}\n", *parts]))
     return rooms
 
 
 def _navigation(
     documents: Mapping[str, Document], root: Path, examples: Iterable[Path], rooms: Iterable[str]
 ) -> list[dict[str, Any]]:
+    places = {stem: place for place, stem in enumerate(_FIRST)}
     own = sorted((root / "docs").glob("*.md"))
+    own.sort(key=lambda page: places.get(page.stem, len(places)))
+    how = [page for page in own if page.stem not in _PROJECT]
+    about = [page for page in own if page.stem in _PROJECT]
     return [
         {"Home": "index.md"},
         {
-            "How to": [{_title(page): f"docs/{page.name}"} for page in own]
+            "How to": [{_title(page): f"docs/{page.name}"} for page in how]
             + [
                 {"The library": "src/fracparticles/README.md"},
                 {"The configuration": "config/README.md"},
@@ -179,6 +186,7 @@ def _navigation(
         {"API": [{room: f"api/{room}.md"} for room in rooms]},
         {
             "Project": [
+                *({_title(page): f"docs/{page.name}"} for page in about),
                 {"Index": "INDEX.md"},
                 {"Contributing": "CONTRIBUTING.md"},
                 {"Changes": "CHANGELOG.md"},

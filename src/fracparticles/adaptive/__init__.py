@@ -1,1 +1,1 @@
-"""Particles of unequal volume on the line: where they are put, what they exchange, how they follow a solution."""
+"""Particles of unequal volume on the line: how they are placed, what they exchange, and how they follow a solution."""

@@ -3,8 +3,8 @@
     du_i/dt = sum_j K_ij V_j (u_j - u_i) - kappa_i u_i,   K_ij = C omega_|i-j| |x_i - x_j|^(-1-alpha),
 
 C int (u(y) - u(x)) |x - y|^(-1-alpha) dy as a sum over particles that a smooth map places, with the weights omega of
-`weights` and C of `special.tail_constant`. K is symmetric: without losses sum V u is conserved for any volumes, and
-what is more, no smoothing length is needed.
+`weights` and C of `special.tail_constant`. K is symmetric: without losses sum V u is conserved for any volumes. No
+smoothing length is needed.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """The inverse of an exchange, to relative round-off, and with it its slow modes.
 
-A_ij = K_ij V_j, A_ii = -sum_j K_ij V_j - kappa_i has rates up to d^(-alpha), d the distance of two neighbours: at the
-end of an interval 1e30 and more, beside which those that matter, of order one, would be lost in round-off. The
-elimination of Grassmann, Taksar & Heyman (Oper. Res. 33 (1985) 1107) keeps them: it takes no difference of nearly equal
-rates, since each diagonal is the sum of what the particle still exchanges. With the outside as one more particle, which
-exchanges V_i kappa_i with particle i and is held at zero,
+A_ij = K_ij V_j, A_ii = -sum_j K_ij V_j - kappa_i has rates up to d^(-alpha), d being the distance of two neighbours.
+At the end of an interval this is 1e30 and more, and the rates that matter, of order one, would be lost in round-off.
+The elimination of Grassmann, Taksar & Heyman (Oper. Res. 33 (1985) 1107) keeps them: it takes no difference of nearly
+equal rates, since each diagonal is the sum of what the particle still exchanges. With the outside as one more
+particle, which exchanges V_i kappa_i with particle i and is held at zero,
 
     L_ij = V_i K_ij V_j (exchanges),  d_k = sum_(j > k) L_kj,  L_ij <- L_ij + L_ik L_kj / d_k,   i, j > k,
 
@@ -12,8 +12,8 @@ leaves -V A = U^T diag(d) U, U_kj = -L_kj / d_k, and
 
     -(V^(1/2) A V^(-1/2))^(-1) = Y Y^T,   Y = V^(1/2) U^(-1) d^(-1/2):
 
-the largest eigenvalues of Y Y^T are one over the slowest rates. The closest particles are taken first. Where
-nothing goes out, the last particle is held instead, and the constant, whose rate is zero, is projected out.
+the largest eigenvalues of Y Y^T are one over the slowest rates. The closest particles are taken first. If there are
+no losses, the last particle is held at zero instead, and the constant, whose rate is zero, is projected out.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class InverseExchange:
     factor : array, shape (N, N)
         Y, up to a permutation of its columns; of a conservative exchange its last column is zero.
     conservative : bool
-        Whether sum V u is conserved: -A^(-1) is then that of what has the mean zero.
+        Whether sum V u is conserved: -A^(-1) is then the inverse on fields of mean zero.
     """
 
     volumes: FloatArray
@@ -84,7 +84,7 @@ class InverseExchange:
     def modes(self, count: int | None = None) -> tuple[FloatArray, FloatArray]:
         """Return the slowest rates in ascending order, and orthonormal vectors V^(1/2) u in columns.
 
-        Without a `count` all of them; rates that are beyond 1e15 times the first are only known to be.
+        Without a `count` all of them. For rates above 1e15 times the first only this bound is known.
         """
         n = len(self.volumes)
         known = 1 if self.conservative else 0

@@ -4,9 +4,9 @@ The map is the regularised incomplete beta function,
 
     1 + phi(y) = 2 I_y(p, p),   phi'(y) = 2 [y (1 - y)]^(p-1) / B(p, p),   0 < y < 1,
 
-a polynomial of degree 2 p - 1 for a whole p. The distance d to an end is like y^p there: what is like d^(alpha/2) in x,
-as a solution is at an absorbing end, is like y^(p alpha/2) in y, smooth enough for the trapezoidal rule, and all of the
-interval has particles. p = 1 is the lattice of equal volumes.
+a polynomial of degree 2 p - 1 for a whole p. The distance d to an end behaves like y^p there. A solution that behaves
+like d^(alpha/2) at an absorbing end behaves like y^(p alpha/2) in y, which is smooth enough for the trapezoidal rule,
+and the whole interval has particles. p = 1 is the lattice of equal volumes.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ _CLOSEST = 1e-60  # of a particle to an end, whose powers are still numbers
 
 
 class GradedParticles(NamedTuple):
-    """Particles of (-1, 1) in ascending order, with their distances from the ends kept for themselves.
+    """Particles of (-1, 1) in ascending order, with their distances from the ends stored separately.
 
-    Close to an end the positions are equal to it to round-off, and the distances are not.
+    Close to an end the positions equal the end to round-off, but the distances keep their digits.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ def graded_on_interval(particles: int, degree: float = 8.0) -> GradedParticles:
     particles : int
         N, from `LEAST` to `MOST`.
     degree : float
-        p, 1 <= p <= 12: the first particle is N^(-p) from its end, but for a factor; 1 for equal volumes.
+        p, 1 <= p <= 12: the first particle is about N^(-p) from its end; 1 for equal volumes.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""Samples of a function, close where it is curved: from them the first particles are placed.
+"""Samples of a function, dense where it is curved, from which the first particles are placed.
 
-An interval is halved while its middle is off the straight line between its ends by so much that the area between them,
-about |u''| d^3 / 12, is more than a share of int |u|; and with it its neighbours, so that no bend is passed by.
+An interval is halved while its middle is so far off the straight line between its ends that the area between them,
+about |u''| d^3 / 12, exceeds a fraction of int |u|. Its neighbours are halved with it, so that no bend is missed.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def adapted_samples(
     f : callable
     low, high : float
     seen : array
-        Places that are among the first: what is narrow is found from there.
+        Positions that are sampled first, so that narrow features there are found.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def varying_samples(
 
 
 def unseen_share(f: Callable[[FloatArray], FloatArray], x: FloatArray, u: FloatArray) -> float:
-    """Return by what share int |f| changes if f is seen in the middles between the places x too; u is f there.
+    """Return the relative change of int |f| if f is also sampled midway between the positions x; u is f at x.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Weights of the nearest particles in a singular sum, by which it has a high order.
+"""Weights of the nearest particles in a singular sum, which give it a high order.
 
 For an even smooth f with f(0) = 0 the punctured trapezoidal rule with a singular weight errs by a series in the even
 derivatives of f (the zeta function: Navot 1961; Sidi 2012; as corrected weights: Kapur & Rokhlin 1997)
@@ -6,7 +6,7 @@ derivatives of f (the zeta function: Navot 1961; Sidi 2012; as corrected weights
     h sum_{m != 0} f(m h) |m h|^(-1-alpha)
         = int f(y) |y|^(-1-alpha) dy + 2 sum_{k = 2, 4, ..} zeta(1 + alpha - k) f_k h^(k - alpha),
 
-f_k the coefficients of Taylor's series, k = 2 being the principal value's. The first q of these errors go when the
+f_k the coefficients of Taylor's series, k = 2 being the principal value's. The first q of these errors vanish if the
 terms with m = -q .. q have the weights omega_m:
 
     sum_{m=1}^q (omega_m - 1) m^(k - 1 - alpha) = -zeta(1 + alpha - k),   k = 2, 4, .., 2 q,

@@ -8,10 +8,11 @@ zero beyond the outermost ones. GPSE over the whole time, epsilon^alpha = D T, i
 
     u_i(T) = sum_j u_j int E_epsilon(x_i - y) S_j(y) dy.                         (interpolated)
 
-The error is that of the interpolation: exponentially small in 1 / ds where u is smooth in s, as a solution is whose
-tails fall like a power of |y|, and that of what lies beyond the outermost particles. Volumes far larger than epsilon do
-no harm, which `graded.green_step` cannot say: alpha near 1, with its heavy tails, is where this pays most. As T goes to
-zero the matrix goes to the identity, but for the outermost particles, where the field jumps: they keep one half.
+One error is that of the interpolation. It is exponentially small in 1 / ds where u is smooth in s, as it is for a
+solution whose tails fall like a power of |y|. The other comes from the region beyond the outermost particles. Volumes
+far larger than epsilon do no harm here, unlike in `graded.green_step`: this pays most for alpha near 1, with its
+heavy tails. As T goes to zero the matrix tends to the identity, except for the outermost particles, where the field
+jumps: they keep one half.
 
 The integrals are done by Gauss's rule on panels that double in length away from y = x_i, up to half the way to y = 0,
 and from y = 0: within each both factors are smooth, but for the waves of S_j, for which the rule has enough nodes. A

@@ -1,7 +1,7 @@
 """One Green step on graded particles: GPSE over the whole time, on particles that stand for unequal volumes.
 
-Eqs. (38)-(41) do not ask for a lattice. With epsilon^alpha = D T, so that one step goes the whole way, and particles
-x_j that stand for the volumes V_j, Eq. (41) is
+Eqs. (38)-(41) do not require a lattice. With epsilon^alpha = D T, so that one step covers the whole time, and
+particles x_j of volumes V_j, Eq. (41) is
 
     u_i(T) = u_i + sum_j V_j (u_j - u_i) E_epsilon(x_i - x_j)                    (exchange)
 
@@ -14,14 +14,14 @@ Particles that are dense in the middle and ever wider apart towards the ends,
     x_j = L sinh(s_j),   V_j = L cosh(s_j) ds,   s_j equally spaced,
 
 reach far with few of them, and need no model of the exterior. The quadrature is the trapezoidal rule in s: its error
-falls faster than any power of ds where the volumes resolve E, about V_j < epsilon. Where they do not, far out, the
-exchange is right to leading order, since particle i keeps what no neighbour takes; it conserves sum V u. There the
-quadrature gives a particle V E(0) times its own strength, far more than it has. A step is a product with an N x N
-matrix: for tens or some hundred of particles, where it is faster than any sum by FFT.
+falls faster than any power of ds where the volumes resolve E, about V_j < epsilon. Far out they do not. There the
+exchange is right to leading order, since particle i keeps what no neighbour takes, and it conserves sum V u. The
+quadrature instead gives a particle V E(0) times its own strength, far more than it has. A step is a product with an N
+x N matrix: for tens or some hundred of particles, where it is faster than any sum by FFT.
 
-Volumes that do not belong to the positions can make a particle give away more than twice what it has. Then the exchange
-amplifies: it is symmetric in the scalar product of V, so that its greatest factor is from s - 1 to 2 s - 1, s
-the greatest sum of the weights of a particle's neighbours.
+Volumes that do not fit the positions can make a particle give away more than twice what it has. Then the exchange
+amplifies: it is symmetric in the scalar product of V, so that its largest factor is from s - 1 to 2 s - 1, s
+the largest sum of the weights of a particle's neighbours.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray
     reach : float
         The outermost particles are at -reach and reach.
     scale : float
-        L: within it the particles are nearly equally spaced; all are where reach is far below it.
+        L: within it the particles are nearly equally spaced. If reach is far below L, all of them are.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray
 
 
 def refuse_many(field: str, count: int) -> None:
-    """Refuse more particles than a dense matrix is for.
+    """Refuse more particles than a dense matrix should hold.
 
     Raises
     ------

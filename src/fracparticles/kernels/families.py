@@ -2,10 +2,10 @@ r"""The kernels of the particle schemes, by name and kernel family.
 
 Every kernel is radial (a function of r = |r|) or a vector along r; each has unit smoothing length,
 K_eps(r) = eps^-n K(r / eps). There are two kernel families: `printed`, the paper's orders II and IV
-(`kernels.printed`), and `gamma`, of any even order to 12 (`kernels.high_order`): the same in order 2, another in
-order 4, and the only one from order 6.
+(`kernels.printed`), and `gamma`, of any even order to 12 (`kernels.high_order`). They agree in order 2 and differ in
+order 4; from order 6 on there is only `gamma`.
 
-`KERNELS` lists what there is; `kernel` evaluates, `kernel_transform` gives the Fourier transform.
+`KERNELS` lists the kernels; `kernel` evaluates one, `kernel_transform` its Fourier transform.
 Equation numbers are those of Lucchesi et al. (2020).
 """
 
@@ -82,9 +82,9 @@ KERNELS: Mapping[str, Kernel] = MappingProxyType({entry.name: entry for entry in
 
 
 def family_of(order: int, family: str | None = None, field: str = "family") -> str:
-    """Return the kernel family, the default resolved: printed for the orders 2 and 4, gamma beyond.
+    """Return the kernel family; the default is printed for the orders 2 and 4, and gamma beyond.
 
-    Raises `InvalidInput` if there is no such kernel family, or it has no such order.
+    Raises `InvalidInput` if the kernel family does not exist, or does not have this order.
     """
     if family is None:
         return "printed" if order in PAPER_ORDERS else "gamma"

@@ -17,14 +17,14 @@ and likewise kappa, F and K, see `kernels.rules`. W_m is evaluated as
     W_m(a, b, x) ~ Gamma(b) / Gamma(b-a) x^-a [1 - (-1)^m sum_{l>=m} C(l-1, m-1) (a)_l (a-b+1)_l / (l! x^l)]  (far).
 
 Near: Kummer's transformation of each M; the weights p_k are those of a Poisson distribution, positive with sum 1, so
-that the errors of W_m are roundings of q_k. Far: DLMF 13.7.2 for each M; its term l gets the factor
-sum_{j<m} (-1)^j C(l, j) = (-1)^(m-1) C(l-1, m-1), so that nothing cancels: l = 0, alone before l = m, is the exact
-r^(-n-alpha) of the fractional Laplacian, the same for every order.
+the errors of W_m are rounding errors of q_k. Far: DLMF 13.7.2 for each M; its term l gets the factor sum_{j<m} (-1)^j
+C(l, j) = (-1)^(m-1) C(l-1, m-1), so that nothing cancels: l = 0, alone before l = m, is the exact r^(-n-alpha) of the
+fractional Laplacian, the same for every order.
 
 Measured against mpmath for all orders, dimensions and 1.001 <= alpha <= 1.9999: absolute error below 5e-15 of the
 largest |kernel| (half of it the table's fit); below 2e-13 of sum_j |(a)_j / j! M(a + j, b, x)| pointwise, so that
-digits are lost next to the zeros only; beyond r = 9, relative 6e-15. The order does not raise the floor: the terms
-of W_m are greatest at r = 0, where all are positive. (The series in powers of x would lose e^(2x).)
+digits are lost next to the zeros only; beyond r = 9, relative 6e-15. A higher order does not raise the floor: the
+terms of W_m are largest at r = 0, where all are positive. (The series in powers of x would lose e^(2x).)
 """
 
 from __future__ import annotations

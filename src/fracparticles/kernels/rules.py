@@ -1,4 +1,4 @@
-"""What every kernel family shares: kernels by name, and those that follow from others by a rule.
+"""What every kernel family shares: access by name, and kernels that follow from others by a rule.
 
 A kernel family is made by one regularisation eta of the delta function. With M(a, b, r^2) for the regularised
 1F1(a; b; -r^2) that belongs to eta, and Gamma_{n,b} of (B.14) of Lucchesi et al. (2020), which the numbers refer to,
@@ -8,7 +8,7 @@ A kernel family is made by one regularisation eta of the delta function. With M(
     G     = -Gamma_{n,0}(alpha) M((alpha+n)/2, n/2, r^2)              -k^alpha eta^(k)        (11), (12), (B.13)
     K     = Gamma_{n,2}(alpha) M((alpha+n)/2, (n+2)/2, r^2)           see `k_hat`             (31), (32)
 
-with the transform on the right. `kernel` and `kernel_transform` of a kernel family check what they are given.
+with the transform on the right. `kernel` and `kernel_transform` of a kernel family check their arguments.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def gamma_nb(n: int, b: int, alpha: float) -> float:
 def distances(r: Any, dim: int) -> FloatArray:
     """Return the distances that a kernel takes, |r| <= 1e150, with a sign on the line alone, as an array.
 
-    Raises `InvalidInput` if they are something else.
+    Raises `InvalidInput` if they are not.
     """
     r = real_array("r", r)
     if (np.abs(r) > _LARGEST).any():
@@ -135,7 +135,7 @@ class KernelFamily(ABC):
     def kernel(
         self, name: str, r: Any, alpha: float, dim: int = 1, order: int = 2
     ) -> FloatArray | float:
-        """Return the kernel `name` at distance r; parameters and errors as of `families.kernel`."""
+        """Return the kernel `name` at distance r; parameters and errors as for `families.kernel`."""
         alpha = self._checked(name, alpha, dim, order)
         r = distances(r, dim)
         return like(r, getattr(self, name.lower())(r, alpha, dim, order))
@@ -143,7 +143,7 @@ class KernelFamily(ABC):
     def kernel_transform(
         self, name: str, k: Any, alpha: float, dim: int = 1, order: int = 2
     ) -> FloatArray | float:
-        """Return its Fourier transform; parameters and errors as of `families.kernel_transform`."""
+        """Return its Fourier transform; parameters and errors as for `families.kernel_transform`."""
         alpha = self._checked(name, alpha, dim, order)
         k = real_array("k", k)
         if not ((k >= 0.0) & (k <= _LARGEST)).all():

@@ -2,7 +2,8 @@
 
     K(r) ~ K(r_k) + (r - r_k) (K(r_{k+1}) - K(r_k)) / step,   r_k = k step <= r < r_{k+1}.
 
-The error is at most step^2 max|K''| / 8. The table is there to show what it does: the exact kernels are fast enough.
+The error is at most step^2 max|K''| / 8. The tables only serve to show the effect of interpolation: the exact kernels
+are fast enough.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ def tabulated(step: float, family: str | None = None) -> KernelValues:
     Raises
     ------
     InvalidInput
-        If the step is not a positive number; by the function as by `kernel`, and if the distances ask for a table of
-        more than 2^25 points.
+        If the step is not a positive number. The returned function raises it as `kernel` does, and also if the
+        distances require a table of more than 2^25 points.
     """
     step = positive_real("kernel_table", step)
 

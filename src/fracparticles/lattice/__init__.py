@@ -1,1 +1,1 @@
-"""Sums and linear operators on a lattice, and what lies outside of it."""
+"""Sums and linear operators on a lattice, and the continuation beyond its ends."""

@@ -26,7 +26,7 @@ class BandedConvolution:
     Parameters
     ----------
     weights : array, shape (M + 1,)
-        w_m for m = 0 .. M; those at the end that vanish against the largest are left out.
+        w_m for m = 0 .. M; those at the end that are negligible beside the largest are dropped.
     parity : {1, -1}
         Whether w is even or odd.
     """

@@ -1,4 +1,4 @@
-"""What the matrix of an operator says: eigenvalues, symmetry, normality, and how its powers grow (Sec. 4.4)."""
+"""Properties of the matrix of an operator: eigenvalues, symmetry, normality, and how its powers grow (Sec. 4.4)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Spectrum(NamedTuple):
     particles : int
         The number N of its rows.
     lowest, highest : float
-        Least and greatest real part of its eigenvalues.
+        Least and largest real part of its eigenvalues.
     imaginary : float
         Greatest imaginary part.
     asymmetry : float

@@ -10,9 +10,9 @@ particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p. Wi
 
     right_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j},   left_i = parity * right_{-i},
 
-a rank-two update of the operator, computed once; each further term makes it two larger. Not in the papers, which
-truncate the lattice. A step of GPSE without the exterior lacks int_D E u dy ~ D^(-1-2 alpha); what each term leaves is
-smaller by another D^(-alpha).
+a rank-two update of the operator, computed once; each further term makes it two larger. This is not in the papers,
+which truncate the lattice. A step of GPSE without the exterior lacks int_D E u dy ~ D^(-1-2 alpha). Each further term
+reduces the remaining error by another factor D^(-alpha).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _DEPTHS = (0.0, 0.25, 0.5, 0.625)
 
 @dataclass(frozen=True)
 class LineFarField:
-    """The sum over the exterior, sum_p (u_{n-p} right_i^p + u_{-n+p} left_i^p): some strengths near the ends, extended.
+    """The sum over the exterior, sum_p (u_{n-p} right_i^p + u_{-n+p} left_i^p), of some strengths near the ends.
 
     Attributes
     ----------
@@ -137,14 +137,14 @@ def _tails(
 def continuation(
     u: np.ndarray, n: int, alpha: float, terms: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the expansion of the exterior where it was not made to meet u: the next depth inward, at either side.
+    """Return the expansion of the exterior where it was not fitted to u: at the next depth inward, on either side.
 
     Returns
     -------
     places : array of int, shape (2,)
         Indices into u.
     values : array, shape (2,)
-        What the expansion says there.
+        The values of the expansion there.
     """
     depth, powers, fit = _expansion(n, alpha, terms)
     p = round(n * _DEPTHS[terms])

@@ -10,17 +10,17 @@ where the a_k fit the outermost particles of the lattice in the least-squares se
 sum_k a_k S_k(i), S_k = A (phi_k outside of the lattice): an update of rank dim + 2, computed once. Not in the paper,
 which truncates the lattice.
 
-The outside is all there is less the inside. Let psi_k be phi_k made smooth within the lattice, a mixture of Gaussians:
+The outside is the whole space minus the inside. Let psi_k be phi_k, made smooth within the lattice as a mixture of
+Gaussians:
 
     rho^(-2p)  ->  1/Gamma(p) int_0^c t^(p-1) exp(-t rho^2) dt,
 
-the same to round-off of rho >= 1. On the infinite lattice A psi_k is an integral over the wave vectors, whose
+the same to round-off for rho >= 1. On the infinite lattice A psi_k is an integral over the wave vectors, whose
 integrand is the transform of psi_k times the symbol of A; inside it is one application of A. So
 
     S_k = A psi_k - A (psi_k on the lattice).
 
-The transform is radial, and so is the symbol where the lattice has no aliases; what these add is a short Fourier
-series.
+The transform is radial, and so is the symbol where the lattice has no aliases; the aliases add a short Fourier series.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def box_continuation(u: np.ndarray, n: int, alpha: float) -> tuple[np.ndarray, n
     places : array of int, shape (P,)
         Flat indices into u.
     values : array, shape (P,)
-        What the modes say there.
+        The values of the modes there.
     """
     boundary, edge = _shell(n, u.ndim, n)
     modes = _modes(edge / n, alpha).T

@@ -1,9 +1,9 @@
 """Linear operators on the lattice, as the integrators see them: du/dt = A u.
 
-Every operator has `size`, `apply(u)` and the fused `combine(u, out, scale, shift, keep)`, which writes
-scale A u + shift u + keep out into `out` in one pass over memory: stepping and Chebyshev recurrences are made of it.
+Every operator has `size`, `apply(u)` and the fused `combine(u, out, scale, shift, keep)`, which writes scale A u +
+shift u + keep out into `out` in one pass over memory. Stepping and Chebyshev recurrences use it.
 
-The sums keep work arrays. An operator locks them while it uses them, so that threads may share it: they take turns.
+The sums keep work arrays. An operator locks them while it uses them, so threads may share it and take turns.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Operator(Protocol):
 
 
 class FarField(Protocol):
-    """The sums over what is beyond the lattice, see `exterior`. A truncated problem has none: None instead."""
+    """The sums over the region beyond the lattice, see `exterior`. A truncated problem has None instead."""
 
     def add(self, u: np.ndarray, y: np.ndarray) -> None:
         """Add the contribution of the exterior to the sums y, or to A u."""
@@ -131,7 +131,7 @@ class ConvolutionOperator(LatticeOperator):
 
 
 class MatrixOperator(LatticeOperator):
-    """A dense matrix, shape (N, N). Its products sum in one order, which those of BLAS do not on many threads."""
+    """A dense matrix, shape (N, N). Its products always sum in the same order; those of BLAS do not on many threads."""
 
     def __init__(self, matrix: np.ndarray) -> None:
         super().__init__()

@@ -4,9 +4,9 @@ On a lattice every sum of the papers is a discrete convolution,
 
     y_i = sum_j w_{i-j} u_j,
 
-and there are two ways to do it: `fast_convolution`, O(N log N), which is a `FourierConvolution`, for few particles a
-`MatrixConvolution`, and `NaiveConvolution`, the papers' own double loop, O(N^2), which is the oracle of the first;
-`BoxConvolution` and `NaiveBoxConvolution` on a square or cubic lattice. `BandedConvolution` serves the kernels that
+and there are two ways to compute it. `fast_convolution`, O(N log N), is a `FourierConvolution`, or for few particles
+a `MatrixConvolution`. `NaiveConvolution`, O(N^2), is the papers' own double loop and the oracle of the first. On a
+square or cubic lattice these are `BoxConvolution` and `NaiveBoxConvolution`. `BandedConvolution` serves kernels that
 decay like a Gaussian.
 """
 

@@ -2,8 +2,9 @@
 
 Lewandowski, "Marker method for the solution of nonlinear diffusion equations"; its equations are cited by their
 numbers. `shapes` has the shape functions S1 to S8, `profiles` the initial profiles with their exact solutions,
-`loading` the initial markers, `solver` their motion, `stability` what the Fourier transform of a shape function says
-about clusters and time steps. `growth`, `clusters` and `accuracy` measure the same, and the error law (19), in runs.
+`loading` the initial markers, `solver` their motion, and `stability` the clusters and time steps that follow from the
+Fourier transform of a shape function. `growth`, `clusters` and `accuracy` measure these, and the error law (19), in
+runs.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@ r"""The law of the error (19), measured on the Gaussian exp(-x^2) after t = 1:
     |F - f| <= C_1 eps^k + C_2 (h / eps)^M,     eps_best = (M h^M / k)^(1 / (k + M)),
 
 for markers of weight f h at equal distances h. k is the order of the moments of S, and M = p + 1 for a shape function
-with p bounded derivatives; S8, smooth, has no M. The constants are left out of the formula for the best eps.
+with p bounded derivatives; S8 is smooth and has no M. The formula for the best eps leaves out the constants.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ _FINEST = 1e-4  # h: thousands of markers in each of some hundred sums
 
 
 def smoothing_exponent(shape: Shape) -> float:
-    """Return k, measured: from two support parameters, with so many markers that only eps^k is left.
+    """Return k, measured with two support parameters and so many markers that only the error eps^k remains.
 
-    Raises `InvalidInput` if it is no shape function. So do the others.
+    Raises `InvalidInput` if it is not a shape function. So do the others.
     """
     z = np.linspace(-1.0, 1.0, 41)
     errors = [_error(shape, epsilon, epsilon / 200.5, z) for epsilon in (0.1, 0.2)]
@@ -44,7 +44,7 @@ def smoothing_exponent(shape: Shape) -> float:
 def quadrature_exponent(shape: Shape) -> float:
     """Return M, measured: F against that of very many markers, eps / h from 2 to 3 and from 8 to 9.
 
-    The worst of several ratios and offsets is taken: at some ratios the error happens to vanish.
+    It takes the worst of several ratios and offsets, because at some ratios the error happens to vanish.
     """
     z, epsilon = np.linspace(-1.0, 1.0, 41), 0.5
     fine = _on_lattice(shape, epsilon, epsilon / 2000.5, z)
@@ -73,12 +73,13 @@ def predicted_support(shape: Shape, h: float) -> float:
 
 
 def optimal_support(shape: Shape, h: float) -> tuple[float, float]:
-    """Return the eps with the least error of F for markers h apart; and the same over ranges of eps.
+    """Return the eps with the least error of F for markers h apart, and the best over ranges of eps.
 
-    At some eps / h the error of equally spaced markers happens to vanish: the second takes the worst of a range of eps
-    as wide as h, and is its middle. From h to 14 h are tried.
+    At some eps / h the error of equally spaced markers happens to vanish. The second result is therefore judged by
+    the worst error over a range of eps as wide as h, and is the middle of the best range. Values from h to 14 h are
+    tried.
 
-    Raises `InvalidInput` as the others; also if h is not from 1e-4 to 1, or the best epsilon is beyond 14 h.
+    Raises `InvalidInput` as the others do; also if h is not from 1e-4 to 1, or the best epsilon is beyond 14 h.
     """
     z, h = np.linspace(-1.0, 1.0, 97), real_between("h", h, _FINEST, 1.0)
     ratios = np.arange(1.0, 14.0, 1.0 / _PER_UNIT)

@@ -26,7 +26,7 @@ def cluster_centres(x: Any, gap: float, within: float) -> np.ndarray:
 
 
 def emptiness(x: Any, gap: float, within: float) -> float:
-    """Return the part of |x| < within that lies in gaps wider than `gap`: near 1 for clusters, near 0 without."""
+    """Return the fraction of |x| < within that lies in gaps wider than `gap`: near 1 with clusters, near 0 without."""
     x, within = positions("x", x), scale("within", within)
     inside = np.sort(x[np.abs(x) < within])
     gaps = np.diff(np.concatenate([[-within], inside, [within]]))
@@ -38,7 +38,7 @@ def marker_spectrum(x: Any, q: Any, within: float) -> np.ndarray:
 
     Independent markers give about 1, equally spaced ones about 0, clusters a peak at 2 pi / their distance.
 
-    Raises `InvalidInput` as the others, and if there are no markers there.
+    Raises `InvalidInput` as the others do, and if there are no markers there.
     """
     x, q, within = positions("x", x), finite_array("q", q), scale("within", within)
     x = x[np.abs(x) < within]

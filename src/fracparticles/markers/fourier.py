@@ -1,8 +1,8 @@
 r"""The marker velocity of S8 with its sums by non-uniform Fourier transforms, O(N log N).
 
 The transform of the m-th derivative of S8, k^m (1 + k^2/4) exp(-k^2/4), is zero to round-off beyond k = 12.5.
-F is accurate relative to its maximum (1e-11), not to its own terms as in the sum over neighbours: a marker must not
-lie where F is less.
+F is accurate relative to its maximum (1e-11), not relative to its own terms as in the sum over neighbours: no marker
+may lie where F is below that.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 r"""How a perturbation of equally spaced markers grows, measured: x_j = j h + a cos(q j h) on a periodic line.
 
 To the first order in a, a midpoint step multiplies the perturbation by 1 + z + z^2 / 2, z = dt sigma(q), with the rate
-sigma of `stability`. What is measured is log |amplitude| per time, which is sigma but for (sigma dt)^2 / 6.
+sigma of `stability`. The measured rate is log |amplitude| per time, which equals sigma up to (sigma dt)^2 / 6.
 Lengths are in units of epsilon, times in units of epsilon^2.
 """
 
@@ -38,8 +38,9 @@ def measured_rate(
 ) -> tuple[float, float]:
     """Return k = eps q and eps^2 times the rate of a wave of `mode` wavelengths in a period.
 
-    Raises `InvalidInput` if a number is not positive, the mode or the steps are not whole, the shape function does not
-    do, or there is nothing to measure: an amplitude that round-off swallows, a wave that is zero at the markers.
+    Raises `InvalidInput` if a number is not positive, the mode or the steps are not whole numbers, the shape function
+    has no first derivative, or there is nothing to measure: the amplitude is lost in round-off, or the wave is zero
+    at the markers.
     """
     shape, epsilon = instance("shape", shape, Shape), scale("epsilon", epsilon)
     period, amplitude, dt = scale("period", period), scale("amplitude", amplitude), scale("dt", dt)
@@ -65,8 +66,8 @@ def measured_rate(
 def largest_step(shape: Shape, epsilon: float = 1.0) -> float:
     """Return the largest dt / eps^2 from 0.05 to 2 at which the wave that decays fastest does not grow, by bisection.
 
-    Raises `InvalidInput` if it is no shape function with a first derivative, epsilon is not positive, or the wave grows
-    at every such step, or at none.
+    Raises `InvalidInput` if the shape function has no first derivative, epsilon is not positive, or the wave grows at
+    every such step, or at none.
     """
     wavelength = 2.0 * math.pi / extremes(shape).k_decay
     waves = math.floor(2.0 * shape.reach / wavelength) + 1

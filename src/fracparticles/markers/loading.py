@@ -5,8 +5,8 @@ r"""Initial positions and weights of the markers, Sec. 2.2. Each returns x_j and
   (11) prints W_j = 1 / N for f = x exp(-x^2), whose sigma is not 1.
 - `random`: the same with random xi_j for (j - 1/2) / N, from a seed.
 
-All raise `InvalidInput` if the count is not a positive whole number, the ends do not increase, or f, the profile or the
-generator is none.
+All raise `InvalidInput` if the count is not a positive whole number, the ends do not increase, or f, the profile or
+the generator is not valid.
 """
 
 from __future__ import annotations

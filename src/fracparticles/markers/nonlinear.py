@@ -11,7 +11,7 @@ With Phi(f) = int_0^f D df' = D_0 (1 - (1 + f) exp(-f)), (20) reads
     f_t = (Phi(f) - Phi(f_inf))_xx.
 
 Where f = 0, D is zero and f_t = Q + D_0 f_x^2. In the flanks of f_inf, Q < 0: nothing in (20) keeps f positive there,
-and for f < 0 the diffusion coefficient is negative. `positivity_lost` finds where and when that happens.
+and for f < 0 the diffusion coefficient is negative. `positivity_lost` finds where and when this happens.
 """
 
 from __future__ import annotations
@@ -189,7 +189,7 @@ class Lines:
         Raises
         ------
         InvalidInput
-            If f or the times are anything else.
+            If f or the times are not of this kind.
         NonFiniteSolution
             If f does not stay positive so long.
         """
@@ -211,7 +211,7 @@ class Lines:
         Raises
         ------
         InvalidInput
-            If f is none that `solve` takes, or `until` is not positive.
+            If `solve` would refuse f, or `until` is not positive.
         NonFiniteSolution
             If the integration ends before.
         """

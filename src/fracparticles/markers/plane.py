@@ -5,13 +5,13 @@ With the marginals <f>_y(x) = int f dy and <f>_x(y) = int f dx, the paper loads
     x_k:  int_-inf^x <f>_y dx' / sigma = (k - 1/2) / n_x,     y_l:  int_-inf^y <f>_x dy' / sigma = (l - 1/2) / n_y,
 
 and W = sigma / (n_x n_y) for every pair (x_k, y_l). These markers have the density <f>_y <f>_x / sigma, which is f if
-and only if f is a product. Two ways to mend it, both with sum W = sigma or nearly:
+and only if f is a product. Two loadings correct this, both with sum W = sigma or nearly:
 
 - `weighted`: the same places with W = sigma / (n_x n_y) f / (<f>_y <f>_x / sigma);
 - `sequential`: x by its marginal, then y by the density of y given that x; all weights equal.
 
-`TwoBlobs` is a density that goes from a product to the contrary. All functions raise `InvalidInput` if an argument is
-none of its kind, the arrays do not fit together, or there are too many markers for memory.
+`TwoBlobs` is a density that is a product at one end of its range and far from one at the other. All functions raise
+`InvalidInput` if an argument is not valid, the arrays do not fit together, or there are too many markers for memory.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class TwoBlobs:
         return self.marginal(x) * self.marginal(y) / self.total
 
     def quantile(self, xi: Any, right: Any = 0.5) -> np.ndarray:
-        """Return x below which the part 0 < xi < 1 lies, of blobs with the parts `right` and 1 - `right`.
+        """Return x below which the fraction 0 < xi < 1 lies, for blobs with the fractions `right` and 1 - `right`.
 
         By bisection, to round-off in xi or, for small xi and 1 - xi, in these.
         """
@@ -110,7 +110,7 @@ class TwoBlobs:
         return bisected(too_low, -reach, reach, 60)
 
     def right(self, x: Any) -> np.ndarray:
-        """Return the part that the blob at (a, a) has of what lies at x."""
+        """Return the fraction of the density at x that belongs to the blob at (a, a)."""
         with np.errstate(over="ignore"):  # the part is zero then
             return 1.0 / (1.0 + np.exp(-4.0 * self.a * check.places("x", x)))
 

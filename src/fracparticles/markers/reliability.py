@@ -1,4 +1,4 @@
-r"""What the markers of a run say of it: whether waves of their places grow, and whether F is the field.
+r"""What the markers of a run reveal: whether waves of their positions grow, and whether F is the field.
 
 Stability. In a field that is uniform near a marker, displacements exp(i q x) change at the rate
 
@@ -6,17 +6,17 @@ Stability. In a field that is uniform near a marker, displacements exp(i q x) ch
 
 F_m the m-th derivative of F and S^ the Fourier transform of the shape function: -q^2 S^ for `diffusion`, as in
 `stability`. A midpoint step multiplies them by 1 + z + z^2 / 2, z = dt sigma. The c_m are differences of the flux, at
-the markers where they are the largest and the smallest. As markers spread their waves become longer and leave the range
-of growth: what is found is the most that can come.
+the markers where they are the largest and the smallest. As markers spread their waves become longer and leave the
+range of growth: the result is an upper bound.
 
-Accuracy, by what the run can see of itself:
+Accuracy, estimated from the run alone:
 - The gaps between the markers leave a ripple on F (`moving.reliability`).
 - Gaps d at random leave a noise of the relative variance (var d / d^2) (d / eps) int S^2. Between neighbours d F / W
   differs by (var d / (2 d^2))^(1/2).
 - F is smoother than the field: how much, is what a smaller epsilon changes, or a larger one (`smoothing`).
 - Waves of the field change at the rate sigma, where the equation has S^ = 1. The error of their amplitude over the run
   is found for the wavenumber of F, max |F_x| / (max F - min F), and for twice and half of it.
-Where the set of markers ends, F ends, and says nothing of the field.
+Where the set of markers ends, F ends too, and says nothing about the field.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ Step = Callable[[np.ndarray], np.ndarray]
 
 
 class Velocity(Protocol):
-    """What is asked of a `solver.MarkerVelocity`."""
+    """What this module needs of a `solver.MarkerVelocity`."""
 
     shape: Shape
     epsilon: float
@@ -128,7 +128,7 @@ def wave_error(
     steps: int,
     step: Step = midpoint,
 ) -> float:
-    """Return the greatest error in the amplitude of a wave that F holds, as a part of max |F|; zero if it holds none.
+    """Return the largest error in the amplitude of a wave that F holds, as a part of max |F|; zero if it holds none.
 
     Parameters
     ----------

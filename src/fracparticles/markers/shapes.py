@@ -127,7 +127,7 @@ class Shape:
         S8: (1 + k^2/4) exp(-k^2/4). The others by Gauss-Legendre quadrature on [0, 1], which is exact to round-off
         with the k / 2 + 24 nodes taken.
 
-        Raises `InvalidInput` if k, a wavenumber, is not real, finite and, but for S8, at most 1e4 in size; or if
+        Raises `InvalidInput` if a wavenumber k is not real and finite, or, except for S8, above 1e4 in size; or if
         there are too many k for memory.
         """
         k = finite_array("k, a wavenumber,", k)
@@ -193,6 +193,6 @@ SHAPES: Mapping[str, Shape] = MappingProxyType(
 def shape_function(name: str) -> Shape:
     """Return the shape function of that name, S1 to S8.
 
-    Raises `InvalidInput` if there is none.
+    Raises `InvalidInput` if it does not exist.
     """
     return SHAPES[choice("shape", name, tuple(SHAPES))]

@@ -39,8 +39,8 @@ def diffusion(x: np.ndarray, fields: np.ndarray) -> np.ndarray:
 class MarkerVelocity:
     """V(x_j) = flux / F, with F by (6).
 
-    Raises `InvalidInput` if the shape function does not have these derivatives, the flux is no function, or epsilon
-    or the period does not do.
+    Raises `InvalidInput` if the shape function does not have these derivatives, the flux is not a function, or
+    epsilon or the period is not allowed.
 
     Parameters
     ----------

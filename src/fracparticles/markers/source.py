@@ -1,10 +1,10 @@
 r"""Diffusion with a source, f_t = f_xx + Q(x), Sec. 2.1, in two ways.
 
-- As the paper has it: the source is a part of the velocity, the weights are constant,
+- As in the paper: the source is part of the velocity, and the weights are constant,
 
       V = -(f_x + S^(x)) / f,     S^(x) = int_-inf^x Q dx'.
 
-  It keeps sum_j W_j, but the equation gains int Q dx a unit of time: it can serve only a source of no total.
+  It keeps sum_j W_j, but the equation gains int Q dx per unit of time: it can serve only a source of no total.
 - The source changes the weights, the velocity stays (3):
 
       dx_j/dt = -F_x / F,     dW_j/dt = W_j Q(x_j) / F(x_j),
@@ -46,7 +46,7 @@ Function = Callable[[np.ndarray], np.ndarray]
 def source_flux(cumulative: Function) -> Flux:
     """Return the paper's flux V F = -F_x - S^(x).
 
-    Raises `InvalidInput` if S^ is no function.
+    Raises `InvalidInput` if S^ is not a function.
     """
     cumulative = check.function("cumulative", cumulative)
 

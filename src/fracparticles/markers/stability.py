@@ -34,7 +34,7 @@ _MIDPOINT_LIMIT = 2.0  # |1 + z + z^2/2| <= 1 for real z in [-2, 0]
 def rate(shape: Shape, k: Any) -> np.ndarray:
     """Return eps^2 sigma = -k^2 S^(k) at k = eps q, for many markers per eps.
 
-    Raises `InvalidInput` if it is no shape function, or k is not finite or too large for its transform.
+    Raises `InvalidInput` if it is not a shape function, or k is not finite or too large for its transform.
     """
     transform = instance("shape", shape, Shape).transform(k)
     k = np.clip(finite_array("k", k), -_LARGEST, _LARGEST)
@@ -94,7 +94,7 @@ class Extremes:
 def extremes(shape: Shape, largest: float = 30.0) -> Extremes:
     """Return the extremes of the rate over 0 < k < `largest`, each refined by a parabola through three points.
 
-    Raises `InvalidInput` if it is no shape function, or `largest` not from 1 to 2000.
+    Raises `InvalidInput` if it is not a shape function, or `largest` not from 1 to 2000.
     """
     shape, largest = instance("shape", shape, Shape), real_between("largest", largest, 1.0, 2000.0)
     k = np.linspace(0.0, largest, 6001)[1:]

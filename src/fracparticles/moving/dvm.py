@@ -11,14 +11,14 @@ apart (`moving.remeshing`). For the fundamental solution the velocity is exactly
 Stability: in a uniform field a displacement wave xi exp(i k x) of the particles changes at the rate
 -D |k|^alpha eta^(k eps) xi, aliases neglected, which is DD's symbol. So the midpoint rule is stable for
 D dt / h^alpha <= a with DD's a, although the strengths never change. At the ends of a truncated set, where the
-particles run into the void, the step is limited sooner, by what the remeshing of wide gaps makes of the field.
+particles run outward unchecked, the step is limited further, by the effect of remeshing wide gaps on the field.
 
-A run says by a warning what it can know of itself: a step beyond that limit, particles too far apart for the smoothing
-length (`moving.reliability`), strength that a threshold or the ends of the lattice took away, tails that do not
-continue the field inside.
+A run warns of what it can detect: a step beyond that limit, particles too far apart for the smoothing length
+(`moving.reliability`), strength lost to a threshold or at the ends of the lattice, and tails that do not continue the
+field inside.
 
-An open exterior continues the set by its far field (`moving.tail`): the end particles keep to the paths of the
-solution, and what is left to remesh for is that all spacings grow.
+An open exterior continues the set by its far field (`moving.tail`). The end particles then follow the paths of the
+solution, and remeshing is needed only because all spacings grow.
 """
 
 from __future__ import annotations
@@ -236,8 +236,8 @@ def run_to_outputs(
         With M4', the paper's, and Lambda3 an error of some 1e-3 stays, however close the particles; with Lambda6,4 that
         of the kernels.
     lattice : {"initial", "extended"}
-        Whether remeshing keeps to the initial lattice, as the paper's does, so that what has left it is lost, or
-        goes on as far as the particles need, which conserves the total; not for an open exterior, which has no end.
+        Whether remeshing is confined to the initial lattice, as in the paper, and what has left it is lost; or
+        extends as far as the particles need, which conserves the total. Not for an open exterior, which has no end.
     exterior : {"truncated", "open"}
         Nothing beyond the end particles, or their far field, see `moving.tail`.
     remesh_above : float, optional

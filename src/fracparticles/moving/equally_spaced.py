@@ -1,4 +1,4 @@
-"""Sums over particles that happen to lie equally spaced, as they do after every remeshing: one convolution."""
+"""Sums over particles that are equally spaced, as they are after every remeshing: one convolution."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ULPS = 4.0  # that a position p h may be off
 
 
 def equal_spacing(x: np.ndarray, slack: float = np.inf) -> float | None:
-    """Return the spacing of particles that are in order and equally spaced, to round-off; None of others, or a few.
+    """Return the spacing of particles that are in order and equally spaced, to round-off; None for others, or for few.
 
     Far from the origin the round-off of the positions may be more than a sum allows: its `slack`.
     """

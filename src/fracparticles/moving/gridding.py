@@ -7,7 +7,7 @@ c the positions in lattice spacings and phi the Kaiser-Bessel window of W = 14 s
     phi(r) = I_0(b (1 - (2 r / W)^2)^(1/2)) / I_0(b),     |r| <= W/2,
     phi^(k) = W sinh(s) / (s I_0(b)),     s^2 = b^2 - (k W / 2)^2,     |k| <= pi.
 
-Spreading followed by a transform of the lattice gives phi^(k) q^(k), but for aliases phi^(2 pi - k) q^(k). Where a
+Spreading followed by a transform of the lattice gives phi^(k) q^(k), up to aliases phi^(2 pi - k) q^(k). Where a
 Gaussian exp(-(12 k / pi)^2 / 4) follows, as it does in `scattered`, these are below 2e-13 of the whole for b = 2.2 W.
 J. Keiner, S. Kunis & D. Potts, ACM Trans. Math. Softw. 36 (2009) 19, has the window and its aliases.
 

@@ -6,9 +6,9 @@ in steps of the midpoint rule. It serves every conservation law u_t + (v u)_x = 
 by the field, v = Q / u, both of them sums over the particles (`moving.scattered`).
 
 Rules
-- Order does not matter. Particles that coincide are two strengths in one place: they stay together, since the
-  velocity has one value there. Particles that overtake one another do so because dt is too large for the velocity
-  gradient; the sums and remeshing remain what they are, and the history counts the steps that changed the order.
+- Order does not matter. Particles that coincide are two strengths at one position: they stay together, since the
+  velocity has one value there. Particles overtake one another because dt is too large for the velocity gradient; the
+  sums and remeshing still work, and the history counts the steps that changed the order.
 - Particles whose strength is at most `threshold` of the largest are left out at the start and after every
   remeshing, at threshold 0 those of no strength (or one that underflowed); the history keeps the total left out.
 - A remeshing may be given ends: what it puts beyond them is left out too, and the history keeps that total apart.

@@ -1,4 +1,4 @@
-"""A smooth function as a polynomial of degree 15, its even and its odd part apart: fast, many arguments at a time."""
+"""A smooth function as a polynomial of degree 15, in an even and an odd part: fast for many arguments at once."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ _MOST_WALKERS = 10**9  # beyond, the logarithms in `expected_deviation` lose dig
 
 
 def stable_variates(alpha: float, size: int, generator: np.random.Generator) -> FloatArray:
-    """Return `size` independent S with the density L_alpha^0; parameters and errors as of `walk`."""
+    """Return `size` independent S with the density L_alpha^0; parameters and errors as for `walk`."""
     origin = np.zeros(check.positive_integer("size", size, most=check.MOST))
     return walk(origin, alpha, 1.0, generator)
 

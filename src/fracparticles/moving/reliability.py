@@ -1,4 +1,4 @@
-r"""What the particles of a run say of its accuracy. No estimate knows the exact solution.
+r"""What the particles of a run reveal about its accuracy. No estimate uses the exact solution.
 
 ripple
     Particles a distance d apart make of a uniform field one that ripples by 2 K^(2 pi eps / d) of itself, K^ the
@@ -28,7 +28,7 @@ Transform = Callable[[np.ndarray], np.ndarray]
 
 
 def cells(x: np.ndarray) -> np.ndarray:
-    """Return what each particle has of the line: half the way to either neighbour; at an end the whole way to one.
+    """Return the length of line of each particle: half the way to either neighbour; at an end the whole way to one.
 
     Parameters
     ----------

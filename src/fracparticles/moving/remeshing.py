@@ -130,7 +130,7 @@ def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray
     From as far before the first particle's cell as W reaches to as far after the last's, strengths of zero included.
     Particles on the lattice keep their strengths to the last bit.
 
-    Raises `InvalidInput` if there is no such function, the arrays are empty, not finite or do not fit together, or a
+    Raises `InvalidInput` if the function does not exist, the arrays are empty, not finite or do not fit together, or a
     particle lies so far out that the lattice would not fit into memory.
 
     Parameters

@@ -13,13 +13,13 @@ for one or several kernels K with the same sources x_j, strengths q_j and points
   with the Fourier coefficients c_k of the kernel is the free-space sum, to round-off. Both sums are non-uniform
   transforms: the particles are spread over a lattice by a window (`moving.gridding`), a real fast Fourier transform
   follows, the window is divided out, and so back. A library of such transforms (finufft) takes complex strengths and
-  a lattice half as fine again; the Gaussian in c_k makes that needless, and this is four times faster.
+  a lattice half as fine again. The Gaussian in c_k makes that unnecessary, and these sums are four times faster.
   Particles that lie on a lattice already, as after a remeshing, are one convolution (`moving.equally_spaced`).
 - `NeighbourSum`, O(N times neighbours), for kernels that are zero, to round-off, beyond a distance. Where the sum
   is small it stays accurate relative to its own terms, not only to the maximum.
 - `NaiveScatteredSum`: the papers' own double loop over all pairs, the oracle of the other two.
 
-The same sequence of calls gives the same bytes. Threads may share a sum; one of transforms lets them in one by one.
+The same sequence of calls gives the same bytes. Threads may share a sum; a sum by transforms admits one at a time.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ _PAIRS = 2**14  # pairs evaluated together: they stay in the second-level cache
 class ScatteredKernel:
     """A kernel of unit smoothing length.
 
-    Raises `InvalidInput` if the profile is no function, or one of the others not positive.
+    Raises `InvalidInput` if the profile is not a function, or one of the others not positive.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ def scattered_sum(
 ) -> ScatteredSum:
     """Return the sum over scattered particles for these kernels.
 
-    Raises `InvalidInput` if there is no such summation, or epsilon is not a positive number, or "fft" is asked for a
+    Raises `InvalidInput` if the summation does not exist, or epsilon is not a positive number, or "fft" is asked for a
     kernel that has neither a finite reach nor a finite bandwidth.
 
     Parameters

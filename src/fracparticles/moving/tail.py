@@ -1,18 +1,18 @@
-r"""What lies beyond the end particles: the far field of the solution, as an open exterior has it on the lattice.
+r"""The region beyond the end particles: the far field of the solution, like the open exterior of a lattice.
 
-Beyond its ends a set of particles goes on as u = c |y|^(-1-alpha), the leading term of (A.2), on either side with the c
-that holds the strength of the outermost particles, eight of them or the eighth part of all,
+Beyond its ends a set of particles continues as u = c |y|^(-1-alpha), the leading term of (A.2). On either side c
+matches the strength of the outermost particles, eight of them or an eighth of all,
 
     c = sum_j U_j / int |y|^(-1-alpha) dy     over their cells, which end half-way between neighbours.
 
 Up to a distance of 20 smoothing lengths the tail is made of particles, as far apart as the outermost ones are on the
-mean, each with the strength of its cell. They count in every sum, and in remeshing, which would else smear the end.
-Beyond them, from Y on, the kernel F is its own far field, and the tail adds to the flux
+mean, each with the strength of its cell. They count in every sum, and in remeshing, which would otherwise smear the
+end. Beyond them, from Y on, the kernel F is its own far field, and the tail adds to the flux
 
     Q(x) = -D A c int_Y^inf y^(-1-alpha) (y - x)^(-alpha) dy = -D A c Y^(-2 alpha) g(x / Y),
     g(xi) = 2F1(alpha, 2 alpha; 2 alpha + 1; xi) / (2 alpha),     A = Gamma(alpha) sin(pi alpha / 2) / pi,
 
-and likewise on the left. Not in the paper, whose end particles see nothing beyond and run into the void.
+and likewise on the left. This is not in the paper, whose end particles see nothing beyond and run outward.
 """
 
 from __future__ import annotations
@@ -149,10 +149,10 @@ class TailModel:
         return TailEnd(self.alpha * share, last, float(edges[-1]), places, strengths)
 
     def misfit(self, x: np.ndarray, strength: np.ndarray) -> float:
-        """Return how much of the total the tails hold wrongly: what is in them times the misfit of their power.
+        """Return the error of the total due to the tails: their strength times the misfit of their power law.
 
         The misfit of an end, at most 1, is that of c |y|^(-1-alpha) on the field half-way from the origin to the end.
-        Errors as of a call.
+        Errors as for a call.
         """
         tail = self(x, strength)
         width, wrong = cells(x), 0.0

@@ -1,4 +1,4 @@
-"""How many walkers a density takes: what `random_walk` must spend to equal a scheme, and where too few are left."""
+"""How many walkers a density needs: the number with which `random_walk` equals a scheme, and where too few are left."""
 
 from __future__ import annotations
 

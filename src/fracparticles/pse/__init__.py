@@ -1,8 +1,8 @@
 """Derivatives by integral operators over particles: the lecture note "Particle Approximations".
 
-`moments` has the moments of a kernel, `shapes` the kernels of the note, `construction` those that the moment
-conditions determine, `approximation` the sums (9) and (21), `exchange` the particle strength exchange (26).
-Equation numbers in this package are those of the note.
+`moments` has the moments of a kernel, `shapes` the kernels of the note, `construction` the kernels that follow from
+moment conditions, `approximation` the sums (9) and (21), `exchange` the particle strength exchange (26). Equation
+numbers in this package are those of the note.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ def reconstruct(
 ) -> FloatArray:
     """f_eps^h(x) = sum_p f(x_p) V_p eta_eps(x - x_p)  (9), shape (M,).
 
-    Raises `InvalidInput` if the arrays do not fit together or are not finite, or epsilon or the kernel does not do.
+    Raises `InvalidInput` if the arrays do not fit together or are not finite, or epsilon or the kernel is not allowed.
 
     Parameters
     ----------
@@ -78,9 +78,9 @@ def derivative(
 ) -> FloatArray:
     """eps^-beta sum_p [f(x_p) - f(x)] V_p eta_eps(x - x_p), shape (M,), the sum of (18); (21) for beta = 2.
 
-    Errors as of `reconstruct`; also if the order is not a whole number from 1 to 24.
+    Errors as for `reconstruct`; also if the order is not a whole number from 1 to 24.
 
-    Warns with `AccuracyWarning` if the particles near some of the points make far less or far more than one of the
+    Warns with `AccuracyWarning` if the particles near some of the points give far less or far more than one for the
     moment that this needs, sum_p V_p (x_p - x)^beta eta_eps(x - x_p) / (beta! eps^beta).
 
     Parameters
@@ -112,9 +112,9 @@ def regularised(
 ) -> FloatArray:
     """eps^-beta int [f(x - eps z) - f(x)] eta(z) dz, the integral (18); for beta = 0 the integral of (9).
 
-    The sum without its quadrature error: what is left against the derivative is the error of regularisation.
+    This is the sum without its quadrature error: its difference from the derivative is the regularisation error.
 
-    Shape (M,). Errors as of `derivative`; also if f does not take arrays, or is not finite.
+    Shape (M,). Errors as for `derivative`; also if f does not take arrays, or is not finite.
     """
     divisor = _power(epsilon, check.whole_number("order", order, most=_HIGHEST))
     x = check.positions("x", x, least=0)

@@ -2,8 +2,8 @@
 
     M_k = 0 for k in S = {1, ..., beta + r - 1} without beta,    M_beta = (-1)^beta beta!.
 
-With the symmetry (19) every other condition holds by itself; those left are a linear system for the
-coefficients of a polynomial times a Gaussian, or for the values of a kernel at the points of a lattice.
+With the symmetry (19) every other condition holds automatically. The rest are a linear system for the coefficients of
+a polynomial times a Gaussian, or for the values of a kernel at the points of a lattice.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def required_moments(derivative: int, accuracy: int) -> dict[int, int]:
 def construct(derivative: int, accuracy: int, overlap: float | None = None) -> GaussianKernel:
     """Return the kernel c_j z^(p + 2 j) exp(-z^2) / sqrt(pi), p = beta mod 2, that meets the conditions.
 
-    Errors as of `required_moments`; also if the lattice has too few points within the kernel for the conditions.
+    Errors as for `required_moments`; also if the lattice has too few points within the kernel for the conditions.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def construct_laplacian(accuracy: int, dim: int) -> GaussianKernel:
 
     so that I_2 = 2 d and I_4 = ... = I_r = 0. For d = 1 it is `construct(2, r)`.
 
-    Errors as of `required_moments`; also unless d is 1, 2 or 3.
+    Errors as for `required_moments`; also unless d is 1, 2 or 3.
     """
     dim = dimension(dim)
     conditions = _of_parity(required_moments(2, accuracy), 0)
@@ -111,7 +111,7 @@ def construct_stencil(derivative: int, accuracy: int) -> Stencil:
 
     With (18) it is the centred finite difference of that accuracy; beta = 2, r = 2 gives (31).
 
-    Errors as of `required_moments`; also for beta = 0, where (9) at a particle is f itself.
+    Errors as for `required_moments`; also for beta = 0, where (9) at a particle is f itself.
     """
     conditions = required_moments(derivative, accuracy)
     if derivative == 0:
@@ -125,11 +125,11 @@ def construct_stencil(derivative: int, accuracy: int) -> Stencil:
 
 
 def taylor_constant(kernel: GaussianKernel, derivative: int, accuracy: int) -> Fraction | float:
-    """Return the constant of the first term that (17) leaves over, C eps^r f^(beta+r): (-1)^k M_k / k!, k = beta + r.
+    """Return the constant of the first error term of (17), C eps^r f^(beta+r): (-1)^k M_k / k!, k = beta + r.
 
     For an even r, in one dimension. |C| is C_1 of Sec. 2.2, with the norm of f^(beta+r), not f^(r).
 
-    Errors as of `required_moments`; also if r is odd, or the kernel none of one dimension.
+    Errors as for `required_moments`; also if r is odd, or the kernel is not one-dimensional.
     """
     required_moments(derivative, accuracy)
     kernel_of(1, instance("kernel", kernel, GaussianKernel))

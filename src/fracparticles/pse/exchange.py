@@ -28,15 +28,16 @@ _GROWS = 1e-5  # of the rate, what an eigenvalue must exceed zero by
 class StrengthExchange:
     """dQ_i/dt = (D / eps^2) sum_p [Q_p V_i - Q_i V_p] eta_eps(x_i - x_p)  (26), an `Operator` of `time`.
 
-    What i gains of p, p loses to i if eta is symmetric: then sum_i dQ_i/dt = 0 for any positions and volumes.
+    If eta is symmetric, i gains from p what p loses to i: then sum_i dQ_i/dt = 0 for any positions and volumes.
     Q_i = c V_i is a steady state for any kernel; and if eta >= 0 is symmetric, sum_i Q_i^2 / V_i does not grow.
 
-    Raises `InvalidInput` if a volume, the radius or the diffusivity is not positive and finite, a position not
-    finite, the kernel of another dimension, or the particles have more neighbours than memory holds.
+    Raises `InvalidInput` if a volume, the radius or the diffusivity is not positive and finite, a position is not
+    finite, the kernel has another dimension, or the particles have more neighbours than memory holds.
 
-    Warns with `AccuracyWarning` if eta is not symmetric, or the particles near some of them make far less or far more
-    than one of its second moment, sum_p V_p |x_p - x_i|^2 eta_eps / (2 d eps^2): so much too slow or too fast is the
-    diffusion there. Warns with `StabilityWarning` if eta is negative somewhere and makes A amplify, whatever the step.
+    Warns with `AccuracyWarning` if eta is not symmetric, or the particles near some of them give far less or far more
+    than one for its second moment, sum_p V_p |x_p - x_i|^2 eta_eps / (2 d eps^2): diffusion there is too slow or too
+    fast by this factor. Warns with `StabilityWarning` if eta is negative somewhere and makes A amplify, whatever the
+    step.
 
     Parameters
     ----------
@@ -127,7 +128,7 @@ class StrengthExchange:
 
 
 def _warn_of_growth(matrix: csr_array, root: np.ndarray, rate: float) -> None:
-    """Warn if the greatest eigenvalue of a matrix that the square roots of the volumes make symmetric is positive."""
+    """Warn if the largest eigenvalue of a matrix that the square roots of the volumes make symmetric is positive."""
     n = root.size
     symmetric = diags_array(1.0 / root) @ matrix @ diags_array(root)
     if n <= _DENSE:
@@ -152,9 +153,9 @@ def _warn_of_growth(matrix: csr_array, root: np.ndarray, rate: float) -> None:
 def cell_volumes(x: ArrayLike) -> FloatArray:
     """V_j = x_(j+1/2) - x_(j-1/2) of sorted particles, the half points in the middle (below (10)).
 
-    At the ends a cell is as wide outside as inside.
+    At the ends a cell extends as far outside as inside.
 
-    Raises `InvalidInput` if there are less than two particles, two in one place, or they are not in rising order.
+    Raises `InvalidInput` if there are fewer than two particles, two in one place, or they are not in rising order.
     """
     x = check.positions("x", x, least=2, rising=True)
     middle = 0.5 * (x[1:] + x[:-1])

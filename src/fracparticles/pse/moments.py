@@ -34,7 +34,7 @@ def nodes_and_weights(
     Beyond its reach a Gaussian is below round-off, but z^k times it is not. The integrand may have more `breaks` than
     the kernel has.
 
-    Raises `InvalidInput` if it is no kernel of one dimension.
+    Raises `InvalidInput` if it is not a kernel of one dimension.
     """
     kernel = kernel_of(1, kernel)
     inside = [-kernel.reach, *kernel.breaks, kernel.reach]
@@ -51,7 +51,8 @@ def nodes_and_weights(
 def moment(kernel: Kernel, k: int) -> float:
     """M_k = int z^k eta(z) dz  (16), k <= 60, by a Gauss rule on each piece of the kernel.
 
-    Raises `InvalidInput` if k is no whole number from 0 to 60, or the kernel none of one dimension, known everywhere.
+    Raises `InvalidInput` if k is not a whole number from 0 to 60, or the kernel is not one-dimensional and known
+    everywhere.
     """
     k = check.whole_number("k", k, most=_HIGHEST)
     z, w = nodes_and_weights(kernel)
@@ -59,9 +60,9 @@ def moment(kernel: Kernel, k: int) -> float:
 
 
 def absolute_moment(kernel: Kernel, k: int) -> float:
-    """int |z^k eta(z)| dz, k <= 60: what an error of M_k is to be held against.
+    """int |z^k eta(z)| dz, k <= 60: the scale against which an error of M_k is judged.
 
-    Errors as of `moment`.
+    Errors as for `moment`.
     """
     k = check.whole_number("k", k, most=_HIGHEST)
     z, w = nodes_and_weights(kernel, _sign_changes(kernel_of(1, kernel)))
@@ -85,9 +86,9 @@ def _sign_changes(kernel: Kernel) -> list[float]:
 def lattice_moment(
     kernel: Kernel, k: int, overlap: ArrayLike = 1.0, offset: float = 0.0
 ) -> FloatArray:
-    """M^_k = (1/s) sum_i z_i^k eta(z_i), z_i = (i + offset) / s: what the particles of a lattice make of M_k.
+    """M^_k = (1/s) sum_i z_i^k eta(z_i), z_i = (i + offset) / s: the value of M_k that the particles of a lattice give.
 
-    Errors as of `moment`; also if an overlap is not positive, or holds too many particles.
+    Errors as for `moment`; also if an overlap is not positive, or holds too many particles.
 
     Parameters
     ----------
@@ -98,7 +99,7 @@ def lattice_moment(
     overlap : array_like
         s = eps / h, positive; s = 1 is (28). The result has its shape.
     offset : float
-        Distance of the point from the lattice, in h; whole numbers more or less change nothing.
+        Distance of the point from the lattice, in h; adding a whole number changes nothing.
     """
     kernel, k = kernel_of(1, kernel), check.whole_number("k", k, most=_HIGHEST)
     s = check.within("overlap", overlap, 0.0, inside=True)
@@ -120,9 +121,9 @@ def lattice_moment(
 
 
 def warn_of_moment(found: FloatArray, places: str, stacklevel: int) -> None:
-    """Warn if particles make less than a quarter, or more than four times, of the moment that an operator needs.
+    """Warn if particles give less than a quarter, or more than four times, of the moment that an operator needs.
 
-    At the end of a set of particles it is a half.
+    At the end of a set of particles they give a half.
 
     Parameters
     ----------
@@ -149,9 +150,9 @@ def warn_of_moment(found: FloatArray, places: str, stacklevel: int) -> None:
 
 
 def gaussian_moment(k: int, dim: int = 1) -> Fraction:
-    """int |z|^k pi^(-d/2) exp(-z^2) dz = (d/2) (d/2 + 1) ... (d/2 + k/2 - 1) for even k; 0 for odd k, as of z^k.
+    """int |z|^k pi^(-d/2) exp(-z^2) dz = (d/2) (d/2 + 1) ... (d/2 + k/2 - 1) for even k, 0 for odd k.
 
-    Raises `InvalidInput` if k is no whole number from 0 to 1000, or the dimension not 1, 2 or 3.
+    Raises `InvalidInput` if k is not a whole number from 0 to 1000, or the dimension is not 1, 2 or 3.
     """
     k, dim = check.whole_number("k", k, most=1000), check.dimension(dim)
     if k % 2:

@@ -1,7 +1,7 @@
 """Kernels eta(z) of unit radius; eta_eps(x) = eta(x / eps) / eps^d (7).
 
-A kernel is a function of z (of the distance |z| in d > 1) that says how far it reaches and where its pieces meet. One
-of more dimensions than the line has a `dim`. Sums and integrals take no kernel of another dimension than theirs.
+A kernel is a function of z (of the distance |z| in d > 1) that states how far it reaches and where its pieces meet.
+For d > 1 it has a `dim`. Sums and integrals only take kernels of their own dimension.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Kernel(Protocol):
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Where the pieces of eta meet, the ends left out; empty if it is smooth."""
+        """Where the pieces of eta meet, without the ends; empty if it is smooth."""
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
@@ -55,7 +55,7 @@ class Kernel(Protocol):
 def kernel_of(dim: int, kernel: Any) -> Kernel:
     """Return a kernel of that many dimensions.
 
-    Raises `InvalidInput` if it is no kernel, or one of another dimension.
+    Raises `InvalidInput` if it is not a kernel, or has another dimension.
     """
     if not (callable(kernel) and hasattr(kernel, "reach") and hasattr(kernel, "breaks")):
         raise InvalidInput("kernel", kernel, "a kernel, with a reach and breaks", "Make one first.")
@@ -153,7 +153,8 @@ class SplineKernel:
     B_q(z) = 1/q! sum_k (-1)^k binom(q+1, k) (z + (q+1)/2 - k)_+^q has unit mass, the second moment (q+1)/12 and
     the transform (sin(k/2) / (k/2))^(q+1): the quadrature error is of the order m = q + 1.
 
-    The powers have both signs, and cancel for a large q. There it is, with positive terms only and u = z + (q+1)/2,
+    The powers have both signs, and cancel for a large q. Then B_q is computed with positive terms only, for
+    u = z + (q+1)/2, by
 
         q B_q(u) = u B_(q-1)(u) + (q + 1 - u) B_(q-1)(u - 1)     (de Boor).
 
@@ -204,7 +205,7 @@ def _spline(degree: int, u: FloatArray) -> FloatArray:
 class Stencil:
     """A kernel known at the points of the lattice only, eta(i), |i| <= n, for eps = h (Sec. 3.1).
 
-    Raises `InvalidInput` if there is an even number of values, or they are not finite.
+    Raises `InvalidInput` if the number of values is even, or one is not finite.
 
     Attributes
     ----------

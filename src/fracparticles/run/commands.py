@@ -80,7 +80,7 @@ def solve(
     output : str
         The NetCDF file to write.
     estimate : bool
-        Estimate the error against the whole space, store it with its parts, and say it.
+        Estimate the error against the whole space, store it with its parts, and print it.
     units : str
         Names of the units of length, time and concentration, for the file and the axes of plots: m,d,mg/L.
     """
@@ -126,7 +126,7 @@ def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
     print("\n".join(lines))
     if scheme.self_timed:
         whole = f"a single step of {scheme.name}, over the whole time, has no limit"
-        _note(f"this binds steps that are repeated; {whole}")
+        _note(f"this limits repeated steps; {whole}")
     if a == 0.0:
         _note("no step is stable, some wave grows: take a larger overlap or a lower order")
 

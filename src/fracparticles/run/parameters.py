@@ -70,12 +70,12 @@ class Parameters(BaseModel):
 
     scheme: SchemeName = Field(description=f"Particle scheme. The paper rejects {_REJECTED}.")
     order: Literal[2, 4, 6, 8, 10, 12] = Field(
-        default=2, description="Order of the kernels. 2 or 4; of some schemes up to 12."
+        default=2, description="Order of the kernels. 2 or 4; up to 12 for some schemes."
     )
     kernel_family: Literal["printed", "gamma"] | None = Field(
         default=None,
-        description=f"Family of the kernels. For {_WITH_FAMILIES}: printed, the paper's of orders 2 and 4, or gamma, "
-        "of all orders; if left out printed for 2 and 4, gamma beyond.",
+        description=f"Family of the kernels. For {_WITH_FAMILIES}. printed is the paper's, of orders 2 and 4; gamma "
+        "has all orders. If left out, printed for orders 2 and 4, gamma beyond.",
     )
     beta: float = Field(
         gt=0.0,
@@ -92,19 +92,19 @@ class Parameters(BaseModel):
         ge=SIZES[0],
         le=SIZES[1],
         description="Truncation factor C = D / ((diffusivity t_final)^(1/alpha) R_alpha), Eq. (46). "
-        "Either this or half_width.",
+        "Give either this or half_width.",
     )
     half_width: float | None = Field(
         default=None,
         ge=SIZES[0],
         le=SIZES[1],
-        description="Half-width D of the lattice in each coordinate. Graded particles end there, too.",
+        description="Half-width D of the lattice in each coordinate. Graded particles end there too.",
     )
     spacing: float = Field(
         ge=SIZES[0],
         le=SIZES[1],
-        description="Particle spacing h. The nearest that divides D is taken. Graded particles have "
-        "it in the middle.",
+        description="Particle spacing h. The nearest value that divides D is used. Graded particles have "
+        "this spacing in the middle.",
     )
     overlap: float | None = Field(
         default=None,
@@ -127,14 +127,14 @@ class Parameters(BaseModel):
     t_final: float = Field(default=1.5, ge=SIZES[0], le=SIZES[1], description="Final time.")
     times: tuple[float, ...] | None = Field(
         default=None,
-        description="Output times. Several in one run, in ascending order; the last is the final time, so that "
-        "t_final may be left out. The steps meet each. A list is taken whole.",
+        description="Output times. Several in one run, in ascending order. The last is the final time, so "
+        "t_final may be left out. A step ends at each of them.",
     )
     initial: str = Field(
         default=FUNDAMENTAL,
-        description='Initial data. "fundamental" for the fundamental solution at t_initial; the path of a '
-        "NetCDF file that holds u on the same particles; that of a table, x and u in columns (csv, tsv, txt, dat), or "
-        "measured:PATH for a NetCDF file with other points, which are interpolated.",
+        description='Initial data. "fundamental" is the fundamental solution at t_initial. A path names a NetCDF file '
+        "with u on the same particles, or a table with x and u in columns (csv, tsv, txt, dat), which is interpolated. "
+        "measured:PATH names a NetCDF file with other points, which is interpolated too.",
     )
     integrator: Literal["euler", "rk2", "rk4", "exponential"] | None = Field(
         default=None,
@@ -142,18 +142,19 @@ class Parameters(BaseModel):
     )
     evaluation: Literal["auto", "series", "stepping", "convolution"] | None = Field(
         default=None,
-        description="Evaluation of the time integrator. As one Chebyshev series (if left out) or step by step (always "
-        "DVM, and a single step): the same discrete solution to round-off. By convolution the whole run is one "
-        f"pair of transforms with the symbol: {_ONE_SUM}, exponential but for GPSE, with an open exterior. With auto "
-        "that where it is allowed, and the series elsewhere.",
+        description="Evaluation of the time integrator. series, the default, is one Chebyshev series. stepping "
+        "goes step by step, as DVM and a single step always do. Both give the same discrete solution to round-off. "
+        f"convolution is one pair of transforms with the symbol, for {_ONE_SUM} with an open exterior, exponential "
+        "in time except GPSE. auto is convolution where it is allowed, and series elsewhere.",
     )
     summation: Literal["fft", "naive"] = Field(
         default="fft",
-        description="Sum over particles. The fast Fourier transform of DVM is a non-uniform one.",
+        description="Sum over particles. For DVM the fast Fourier transform is non-uniform.",
     )
     exterior: Literal["truncated", "open"] = Field(
         default="truncated",
-        description=f"What lies beyond the lattice. The papers' truncation, or the far-field closure: {_OPEN}.",
+        description="What lies beyond the lattice. truncated: nothing, as in the papers. "
+        f"open: the far field, for {_OPEN}.",
     )
     far_terms: Literal[1, 2, 3] | None = Field(
         default=None,
@@ -176,9 +177,9 @@ class Parameters(BaseModel):
     )
     graded_form: Literal["exchange", "quadrature", "interpolated"] | None = Field(
         default=None,
-        description="Form of the step on graded particles. The exchange (41), its plain sum, or that "
-        "of the field between them, which need not resolve the Green's function; "
-        "interpolated if left out.",
+        description="Form of the step on graded particles. exchange is Eq. (41), quadrature its plain sum. "
+        "interpolated, the default, is the step of the field between the particles, which need not resolve the "
+        "Green's function.",
     )
     remeshing: Literal["M4'", "Lambda3", "Lambda6,4", "none"] | None = Field(
         default=None, description=f"Remeshing kernel of DVM. {REMESHING} if left out."
@@ -199,8 +200,8 @@ class Parameters(BaseModel):
     )
     store: Literal["field", "profile", "metrics"] = Field(
         default="field",
-        description="What a data set keeps. u everywhere; u for |x| <= 5 R_alpha, beyond the line "
-        "along an axis and a diagonal; or scalars only.",
+        description="What a data set keeps. field: u everywhere. profile: u for |x| <= 5 R_alpha, in the plane and in "
+        "space along an axis and a diagonal. metrics: scalars only.",
     )
 
     # --- what follows from the parameters -------------------------------------------------------------------

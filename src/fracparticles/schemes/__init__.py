@@ -1,7 +1,7 @@
 """The particle schemes: one module each, with the formula, the weights and the Fourier symbol.
 
-A scheme is a class of its module: a `Sum` or an `Exchange`, which give their kernel only; a `LatticeScheme` with an
-operator and a symbol of its own; or a `Scheme` whose particles move. It is found by its file, see `discovery`.
+A scheme is one class in a module: a `Sum` or an `Exchange`, which only provides its kernel; a `LatticeScheme` with
+its own operator and symbol; or a `Scheme` whose particles move. It is found by its file, see `discovery`.
 """
 
 from __future__ import annotations

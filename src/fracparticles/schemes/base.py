@@ -23,7 +23,7 @@ Function = Callable[[np.ndarray], np.ndarray]
 
 
 class Scheme:
-    """What every scheme says of itself; one is a class with a `name`, in a module of this folder."""
+    """What every scheme provides. A scheme is a class with a `name`, in a module of this folder."""
 
     name: str  # in tables the abbreviation,
     title: str  # the words,
@@ -50,7 +50,7 @@ class Scheme:
         return (1, 2, 3) if self.box_orders else (1,)
 
     def check(self, dim: int, order: int, family: str | None, field: str = "family") -> None:
-        """Refuse what the scheme does not exist for; `field` is what the caller calls the family of kernels.
+        """Refuse settings for which the scheme does not exist. `field` is the caller's name for the kernel family.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class LatticeScheme(Scheme, ABC):
         return False
 
     def closed_form_limit(self, beta: float, overlap: float) -> float:
-        """Return the stability limit a for order II in closed form, the aliases of the lattice neglected.
+        """Return the stability limit a for order II in closed form, neglecting the aliases of the lattice.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class LatticeScheme(Scheme, ABC):
 class OnePass(LatticeScheme):
     """A scheme with a single even sum, (c D / epsilon^alpha) sum_j V_j u_j K_epsilon(x_i - x_j) or its exchange form.
 
-    A subclass names K, or gives `values` and `transform` of a kernel of its own.
+    A subclass names K, or provides `values` and `transform` of its own kernel.
     """
 
     kernel_name: str  # K, see `kernels.kernel`
@@ -264,7 +264,7 @@ def one_pass_operator(
 
 
 def exactly_summed(setting: Setting) -> Setting:
-    """Return the setting without a table and with fast sums: of these is what the exterior of a box adds."""
+    """Return the setting without a table and with fast sums; the exterior of a box is made from these."""
     return replace(setting, kernel_table=None, summation="fft")
 
 

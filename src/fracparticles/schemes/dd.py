@@ -2,8 +2,10 @@
 
     du_i/dt = (D / epsilon^alpha) sum_j V_j u_j G_epsilon(x_i - x_j),
 
-the fractional Laplacian of the particle representation, collocated at the particles: G^(k) = -|k|^alpha eta^(k). Not
-conservative. Stable for D dt / h^alpha <= a; order II, aliases neglected: a = 2 (s/2)^alpha (2 e / alpha)^(alpha/2).
+the fractional Laplacian of the particle representation, collocated at the particles: G^(k) = -|k|^alpha eta^(k). It
+is not conservative. For order II and without aliases it is stable for D dt / h^alpha <= a with
+
+    a = 2 (s/2)^alpha (2 e / alpha)^(alpha/2).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which schemes there are: those in the modules of this folder. A new one is a new file, listed nowhere."""
+"""The schemes are found in the modules of this folder. A new scheme is a new file and is not listed anywhere."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def all_schemes() -> dict[str, Scheme]:
 
 
 def scheme(name: str) -> LatticeScheme:
-    """Return the scheme of that name, one with an operator on a lattice.
+    """Return the scheme of that name, which has an operator on a lattice.
 
     Raises
     ------

@@ -3,11 +3,13 @@
     v_i = epsilon^(1-beta) sum_j V_j u_j kappa_epsilon(x_i - x_j),
     du_i/dt = (2 D / epsilon^2) sum_j V_j (v_j - v_i) Phi_epsilon(x_j - x_i).
 
-The classical exchange approximation of the Laplacian, applied to the Riesz potential of u. Conservative, but the
-potential decays so slowly, like |x|^(-beta), that cutting it at the ends spoils the solution there.
+This is the classical exchange approximation of the Laplacian, applied to the Riesz potential of u. It is
+conservative. But the potential decays so slowly, like |x|^(-beta), that cutting it off at the ends spoils the
+solution there.
 
-For beta near zero kappa is nearly the constant 1 / beta, of which the differences v_j - v_i leave nothing but its
-roundings. There a constant is taken off the weights first, which changes no v_j - v_i: see `potential_differences`.
+For beta near zero kappa is nearly the constant 1 / beta, and the differences v_j - v_i would consist of its rounding
+errors. A constant is therefore subtracted from the weights first, which changes no v_j - v_i: see
+`potential_differences`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The diffusion velocity method (DVM) as a scheme: its particles move, see `moving.dvm`."""
+"""The diffusion velocity method (DVM) as a scheme whose particles move, see `moving.dvm`."""
 
 from __future__ import annotations
 

@@ -6,8 +6,8 @@ Dirichlet conditions. With omega(z) = z^(1-beta) / Gamma(2-beta) and delta_j = (
     L_i = sum_{j <= i} [omega(x_i - x_{j-1}) - omega(x_i - x_j)] delta_j,     R_i its mirror image,
     du_i/dt = D [(L_{i+1} - L_i) + (R_i - R_{i-1})] / (2 h |cos(pi alpha / 2)|).
 
-As beta goes to zero |cos(pi alpha / 2)| does, and with it all but the nearest weights of L: what is first order in h is
-of the size h / beta there.
+As beta goes to zero, so does |cos(pi alpha / 2)|, and with it all but the nearest weights of L: the first-order error
+is then of size h / beta.
 """
 
 from __future__ import annotations

@@ -3,9 +3,11 @@
     Q_i = -(1 / epsilon^beta) sum_j V_j u_j F_epsilon(x_i - x_j),
     du_i/dt = -(D / epsilon) sum_j V_j (Q_j + Q_i) eta1_epsilon(x_i - x_j).
 
-The fractional flux by direct differentiation, its divergence by particle strength exchange. Conservative; not
-symmetric, because the two sums do not commute on a bounded set of particles.
-Stable for D dt / h^alpha <= a; order II, aliases neglected: a = 2 (s/2)^alpha (4 e / alpha)^(alpha/2).
+The fractional flux is computed by direct differentiation, and its divergence by particle strength exchange. The
+scheme is conservative. It is not symmetric, because the two sums do not commute on a bounded set of particles. For
+order II and without aliases it is stable for D dt / h^alpha <= a with
+
+    a = 2 (s/2)^alpha (4 e / alpha)^(alpha/2).
 """
 
 from __future__ import annotations

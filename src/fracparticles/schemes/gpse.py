@@ -3,9 +3,9 @@
     (u_i^{k+1} - u_i^k) / dt = (1 / epsilon^alpha) sum_j V_j (u_j^k - u_i^k) E_epsilon(x_j - x_i),
     epsilon = (D dt)^(1/alpha).
 
-The kernel is the fundamental solution over one step, E^(k) = exp(-|k|^alpha), so that a step is exact up to quadrature:
-an explicit Euler step of the operator on the right, whose smoothing length is tied to the step: the overlap of its
-setting must be (D dt)^(1/alpha) / h. Conservative, symmetric.
+The kernel is the fundamental solution over one step, E^(k) = exp(-|k|^alpha), so a step is exact up to quadrature. It
+is an explicit Euler step of the operator on the right. Its smoothing length is tied to the step: the overlap of the
+setting must be (D dt)^(1/alpha) / h. The scheme is conservative and symmetric.
 """
 
 from __future__ import annotations

@@ -2,9 +2,12 @@
 
     du_i/dt = (D alpha / epsilon^alpha) sum_j V_j (u_j - u_i) K_epsilon(x_j - x_i).
 
-The integral form (4) of the fractional Laplacian with a regularised kernel. Conservative, symmetric.
-Stable for D dt / h^alpha <= a; order II, aliases neglected:
-a = 2 s^alpha / (alpha 2^beta gamma(alpha/2, (pi s / 2)^2)) with the lower incomplete gamma function.
+This is the integral form (4) of the fractional Laplacian with a regularised kernel. It is conservative and symmetric.
+For order II and without aliases it is stable for D dt / h^alpha <= a with
+
+    a = 2 s^alpha / (alpha 2^beta gamma(alpha/2, (pi s / 2)^2)),
+
+gamma being the lower incomplete gamma function.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
     du_i/dt = (D / epsilon^alpha) sum_j V_j (u_j - u_i) G_epsilon(x_j - x_i).
 
-DD with the exchange form forced upon it. On the infinite lattice the sum of G vanishes and (29) is DD; on a
-bounded one the missing far weights make the diagonal positive, and with it some eigenvalues.
+This is DD in exchange form. On the infinite lattice the sum of G vanishes and (29) is DD. On a bounded lattice the
+missing far weights make the diagonal positive, and with it some eigenvalues.
 """
 
 from __future__ import annotations
@@ -27,6 +27,6 @@ class Scheme29(Exchange):
     colour, marker = "#999999", "X"
 
     def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
-        """Return A(theta) h^alpha / D: that of DD less its value at theta = 0."""
+        """Return A(theta) h^alpha / D: that of DD minus its value at theta = 0."""
         at_zero = self.scaled_transform(np.zeros(1), setting)
         return self.scaled_transform(theta, setting) - at_zero

@@ -5,7 +5,7 @@
 
 The potential's kernel c |r|^(-beta) is cut off at the length epsilon directly instead of being convolved with eta.
 The paper prints no formula; this is the classical algebraic regularisation. Its symbol differs from |k|^alpha
-by a term of relative size (epsilon k)^(2-alpha): nearly no convergence for alpha near 2.
+by a term of relative size (epsilon k)^(2-alpha): it hardly converges for alpha near 2.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ __all__ = ["Setting"]
 class Setting:
     """One scheme on one lattice x_i = i h, i = -n .. n in each of `dim` coordinates.
 
-    A Fourier symbol is that of the infinite lattice: it depends on the first five alone.
+    A Fourier symbol is that of the infinite lattice and depends only on the first five attributes.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Setting:
     far_terms : {1, 2, 3}
         Terms that continue the solution in an open exterior, dim = 1.
     kernel_table : float, optional
-        Step of the table that the kernels are interpolated in; exact kernels without it.
+        Step of the table in which the kernels are interpolated; if left out, the kernels are exact.
     """
 
     alpha: float
@@ -72,7 +72,7 @@ class Setting:
 
     @property
     def is_open(self) -> bool:
-        """Whether the solution goes on beyond the lattice."""
+        """Whether the solution continues beyond the lattice."""
         return self.exterior == "open"
 
     @property
@@ -82,7 +82,7 @@ class Setting:
 
     @property
     def kernels(self) -> dict[str, Any]:
-        """Which kernels, in the words of `kernels.kernel`."""
+        """The kernels, as arguments of `kernels.kernel`."""
         return {"dim": self.dim, "order": self.order, "family": self.family}
 
     def kernel(self, name: str, r: np.ndarray) -> np.ndarray:

@@ -41,7 +41,7 @@ def eigenvalue_bounds(
 ) -> tuple[float, float]:
     """Return bounds of the real parts of the eigenvalues of A, at most zero if nothing grows.
 
-    They are the range of the symbol, that of an infinite lattice, and what the ends of a bounded one add to it.
+    They are the range of the symbol on an infinite lattice, plus what the ends of a bounded lattice add to it.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ def eigenvalue_bounds(
     diagonal (Weyl). DPSE is the product of a negative and a positive symmetric matrix, so that its eigenvalues are
     real. The symbol is that of interpolated kernels, on the line.
 
-    The rest is not proved: that exchanges whose weights change sign stay below zero, and that the eigenvalues of DPSE,
-    FPSE and of the open exterior lie in the range of the symbol, and are real on the line, was found by computation
-    (tests/test_spectrum.py). `largest_degree` keeps the series short enough for the deviations that are known, and
-    the evaluation looks at the size of its terms. Where the ends amplify (FPSE from order 6 on) the greatest
-    eigenvalue, up to 3e-4 of the range above zero, is that of a small lattice, on whose size it does not depend. Where
-    there are positive eigenvalues, for scheme (29) or an overlap too small for the order, the greatest is computed.
+    The rest is found by computation, not proved (tests/test_spectrum.py): exchanges whose weights change sign stay
+    below zero, and the eigenvalues of DPSE, FPSE and of the open exterior lie in the range of the symbol and are real
+    on the line. `largest_degree` keeps the series short enough for the deviations that are known, and the evaluation
+    looks at the size of its terms. Where the ends amplify (FPSE from order 6 on) the largest eigenvalue, up to 3e-4
+    of the range above zero, is that of a small lattice, on whose size it does not depend. Where there are positive
+    eigenvalues, for scheme (29) or an overlap too small for the order, the largest is computed.
     """
     low, high = range_in(name, setting)
     one, rate = scheme(name), setting.rate
@@ -85,13 +85,13 @@ def spectral_interval(
 ) -> tuple[float, float]:
     """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
 
-    Their bounds, with some room. A dissipative scheme ends at zero, and not a little above: a series of exp(z t) grows
-    with what is above.
+    It consists of their bounds, with a margin. For a dissipative scheme it ends exactly at zero: a series of exp(z t)
+    grows with any part above zero.
 
     Parameters
     ----------
     name, setting, operator
-        As of `eigenvalue_bounds`.
+        As for `eigenvalue_bounds`.
     steps : int
         The number of time steps that the series stands for; 0 for the exponential.
     """
@@ -115,7 +115,7 @@ def largest_degree(name: str, setting: Setting, operator: LatticeOperator) -> in
 def power_iteration(
     operator: Operator, tolerance: float = 1e-10, most: int = 20000, seed: int = 1
 ) -> tuple[float, int]:
-    """Return the eigenvalue of A of the greatest modulus and the number of iterations (paper, Sec. 4.4).
+    """Return the eigenvalue of A of the largest modulus and the number of iterations (paper, Sec. 4.4).
 
     v <- A v / |A v| with the Rayleigh quotient as the estimate, until it changes by less than `tolerance`,
     relative, over ten iterations.
@@ -146,7 +146,7 @@ def dense_matrix(operator: Operator) -> np.ndarray:
 
 
 def _greatest_eigenvalue(operator: LatticeOperator, of_the_symbol: float) -> float:
-    """The greatest real part, or an upper bound of it where the iteration does not converge."""
+    """The largest real part, or an upper bound of it where the iteration does not converge."""
     # 0.3 s, and hardly ever needed.
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
 

@@ -41,8 +41,8 @@ def stability_limit(
     """Return a = 2 D / (|lambda_min| h^alpha), Eq. (55), on the infinite lattice.
 
     Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a (Eq. 56). It is 0 where the symbol is
-    positive somewhere, at an overlap too small for the order of the kernels: no step is stable there. For GPSE it binds
-    steps that are repeated; a single one, the whole run, cannot grow.
+    positive somewhere, because the overlap is too small for the order of the kernels: then no step is stable. For
+    GPSE it limits repeated steps; a single step over the whole run cannot grow.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def symbol_range(
     dim: int = 1,
     family: str | None = None,
 ) -> tuple[float, float]:
-    """Return the least and the greatest value of A(theta) h^alpha / D."""
+    """Return the least and the largest value of A(theta) h^alpha / D."""
     one = scheme(name)
     if not (is_number(beta) and 1.0 < 1.0 + beta < 2.0):
         raise InvalidInput(
@@ -96,7 +96,7 @@ def symbol_range(
 
 
 def range_in(name: str, setting: Setting) -> tuple[float, float]:
-    """Return the `symbol_range` of a scheme in a setting, whose lattice does not matter; on the line of its table."""
+    """Return the `symbol_range` of a scheme in a setting, whose lattice does not matter; on the line for its table."""
     table = setting.kernel_table if setting.dim == 1 else None
     kernels = Setting(
         alpha=setting.alpha, overlap=setting.overlap, kernel_table=table, **setting.kernels
@@ -160,7 +160,7 @@ def _on_a_grid(f: Symbol, axis: np.ndarray, dim: int) -> np.ndarray:
 
 
 def _summit(f: Symbol, axis: np.ndarray, values: np.ndarray) -> float:
-    """Return the greatest value of f, whose `values` at the points with coordinates of `axis` are given."""
+    """Return the largest value of f, whose `values` at the points with coordinates of `axis` are given."""
     dim = values.ndim
     best = -np.inf
     for place in _peaks(values):
@@ -178,7 +178,7 @@ def _summit(f: Symbol, axis: np.ndarray, values: np.ndarray) -> float:
 
 
 def _peaks(values: np.ndarray) -> Iterator[tuple[int, ...]]:
-    """Yield the places where values are greater than at their neighbours, if nearly the greatest; that one first."""
+    """Yield the places where values are greater than at their neighbours, if nearly the largest; that one first."""
     peak = values >= values.max() - _NEARLY * np.ptp(values)
     for axis in range(values.ndim):
         rise = np.diff(values, axis=axis, prepend=-np.inf, append=-np.inf)

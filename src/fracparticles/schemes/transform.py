@@ -27,8 +27,8 @@ def lattice_transform(name: str, theta: np.ndarray, setting: Setting) -> np.ndar
 
     For an odd kernel the imaginary part, sum_l (k_l / |k_l|) g(|k_l|): for dim = 1 with the sign of k_l, for
     dim > 1 a vector along the last axis. The aliases l fall like a Gaussian, those of E like exp(-|k|^alpha);
-    they are summed until they vanish. For dim = 1 a kernel from a table gets its own transform: the sum over m of what
-    the interpolation adds.
+    they are summed until they vanish. For dim = 1 a kernel from a table has its own transform: the interpolation
+    error is added as a sum over m.
 
     Parameters
     ----------

@@ -12,15 +12,15 @@ towards the right at a saddle point; two straight pieces follow it closely enoug
    exp(-s x - s^alpha cos(pi alpha/2)) sin(s^alpha sin(pi alpha/2)), positive up to a phase of pi:
    this is the power-law tail.
 2. k = i s0 + e^(i phi) t, 0 < t < infinity, in the direction of steepest descent at the corner, but
-   with phi <= pi / (4 alpha), so that the real part of k^alpha grows all along: as alpha tends to
-   2 this is the Gaussian core.
+   with phi <= pi / (4 alpha), so that the real part of k^alpha grows along the whole piece: as alpha tends to 2 this
+   is the Gaussian core.
 
 The corner s0 is the saddle point of the modulus on the imaginary axis,
-x = alpha s^(alpha-1) sin(pi (alpha-1)/2), unless the phase of piece 1 reaches 3/2 before. Each
-piece is a sum of almost only positive parts, so that the result is accurate for every alpha in
-(1, 2), in the core, in the tail and in the sharp transition between them near alpha = 2: for n = 1
-the sum of the moduli exceeds the result by at most 5 %. On piece 1, z = -i k x = s x is positive
-and so is p_n; on piece 2, p_5 makes parts cancel near x = 1/2 and alpha = 2, to 1/20 of their size.
+x = alpha s^(alpha-1) sin(pi (alpha-1)/2), unless the phase of piece 1 reaches 3/2 before. Nearly all parts of the sum
+on each piece are positive, so the result is accurate for every alpha in (1, 2), in the core, in the tail and in the
+sharp transition between them near alpha = 2: for n = 1 the sum of the moduli exceeds the result by at most 5 %. On
+piece 1, z = -i k x = s x is positive and so is p_n; on piece 2, p_5 makes parts cancel near x = 1/2 and alpha = 2, to
+1/20 of their size.
 
 The mass beyond x follows from the same nodes, as the integral of exp(i k y) over y > x is
 i exp(i k x) / k:

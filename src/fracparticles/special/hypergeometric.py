@@ -128,7 +128,7 @@ def _checked(c: float, b: float, z: Any) -> tuple[_Table, NDArray[np.float64]]:
 def kummer(a: float, b: float, z: Any) -> NDArray[np.float64] | float:
     """Return 1F1(a; b; -z) for z >= 0, 0 < a <= 4, 0 < b <= 4, b - a > -1 and b not a.
 
-    z, accuracy and errors as of `kummer_transformed`.
+    z, accuracy and errors as for `kummer_transformed`.
     """
     return kummer_transformed(b - a, b, z)
 

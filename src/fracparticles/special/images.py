@@ -8,7 +8,8 @@ they are summed by Ewald's method: with s = n + gamma and the incomplete gamma f
 
     g(a, y) = y^(-a) Gamma(a, y).
 
-S is analytic up to |x|_inf = 1, twice as far as it is wanted, and even in each coordinate: a polynomial in the squares.
+S is analytic up to |x|_inf = 1, twice as far as needed, and even in each coordinate: it is represented as a
+polynomial in the squares.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The fundamental solution in the plane, Eq. (58), in three other ways, and what lies outside a square.
+"""The fundamental solution in the plane, Eq. (58), computed in three other ways, and the mass outside a square.
 
-`stable` evaluates it for every dimension; these are independent of it.
+`stable` evaluates it for every dimension; these functions are independent of that.
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ def square_exchange_error(half_width: float, alpha: float, time: float) -> float
     """Return the relative error that truncation to |x|, |y| <= D causes in KPSE and GPSE.
 
     time int c |y|^(-2-alpha) dy over the outside of the square, with c of (4) for n = 2,
-    c = alpha 2^(alpha-1) Gamma(1 + alpha/2) / (pi Gamma(1 - alpha/2)): what each particle near the origin would give
-    to the places without particles, and keeps. For n = 1 see `tails.exchange_truncation_error`.
+    c = alpha 2^(alpha-1) Gamma(1 + alpha/2) / (pi Gamma(1 - alpha/2)): the strength that each particle near the
+    origin keeps instead of giving it to places without particles. For n = 1 see `tails.exchange_truncation_error`.
     """
     c = alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + 0.5 * alpha) / (pi * gamma(1.0 - 0.5 * alpha))
     phi, weight = _first_octant()

@@ -17,7 +17,7 @@ def gauss_jacobi(count: int, power: float) -> tuple[FloatArray, FloatArray]:
         p_{k+1} = (v - a_k) p_k - b_k p_{k-1},   a_k = (1 + q^2 / ((2k+q) (2k+q+2))) / 2,
         b_k = (k (k+q) / (2k+q))^2 / ((2k+q)^2 - 1),   q = power.
 
-    numpy's eigenvalues, since scipy's rule imports its linear algebra, which takes longer than a whole run.
+    The eigenvalues are numpy's: scipy's rule imports scipy's linear algebra, which takes longer than a whole run.
 
     Parameters
     ----------

@@ -10,8 +10,8 @@ Phi_1 = L_alpha^0 of (36), Phi_2 is (58) of Lucchesi et al. (2020). It is evalua
 - far(alpha, n) < r: the asymptotic series `_far_terms`, (A.2) for n = 1, which reaches 1e-17 there.
 
 The first two are tabulated as polynomials on pieces of width 1/2; far(alpha, n) lies between 4 and
-25. The masses inside and outside the ball of radius r come from the same three. Each of them is a
-sum of parts that do not cancel, so that digits are lost neither in the core nor in the tail.
+25. The masses inside and outside the ball of radius r come from the same three. Each of them is a sum of parts that
+do not cancel, so no digits are lost in the core or in the tail.
 
 n runs from 1 to 5: the slope in n <= 3 dimensions, Phi_n' = -2 pi r Phi_{n+2}, needs 4 and 5.
 """
@@ -181,7 +181,7 @@ def _project(r: FloatArray, alpha: float, n: int) -> tuple[FloatArray, FloatArra
     T_n(r) = c_n r^n int_0^inf T_{n+1}(rho) rho^-(n+1) dy,
     c_n = 2 Gamma((n+1)/2) / (sqrt(pi) Gamma(n/2)), which makes T_n = 1 where T_{n+1} = 1.
 
-    All is positive. The trapezoidal rule in v, y = min(r, 1) sinh(v): the integrands are analytic
+    All terms are positive. The trapezoidal rule is used in v, y = min(r, 1) sinh(v): the integrands are analytic
     for |Im v| < pi/4 at least, and decay like exp(-(n + alpha) v).
     """
     above = radial_table(alpha, n + 1)

@@ -6,11 +6,11 @@
 al. (2020); (57), (58) for n = 2. `fracparticles.special.radial` evaluates Phi_n; here are the
 functions of x and t, and the partial sums (A.1), (A.2) that the paper's figures show.
 
-All but the masses take signed positions: G and its rate are even functions of x, its slope and its
+All functions except the masses take signed positions: G and its rate are even functions of x, its slope and its
 flux are odd. For n > 1, x is the radius, or a position on an axis.
 
-What is a function of x has the shape of x, and is a float for a single number. `InvalidInput` says which argument is
-outside its range, or that t is so short that the result would be too large for a float64.
+A function of x returns the shape of x, and a float for a single number. `InvalidInput` names the argument that is
+outside its range, or says that t is so short that the result would overflow a float64.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def green_asymptotic(x: Any, alpha: float, terms: int) -> FloatArray | float:
     L_alpha^0(x) ~ (1/pi) sum_{m=1}^{terms} (-1)^(m+1) Gamma(1 + alpha m) / m!
     sin(pi alpha m/2) |x|^(-alpha m - 1)
 
-    Close to 0 it overflows to +-inf, never to nan. Errors as of `green_series`.
+    Close to 0 it overflows to +-inf, never to nan. Errors as for `green_series`.
     """
     size, alpha, m = _checked(x, alpha, terms)
     log_size = np.log(np.maximum(size, np.finfo(float).tiny))
@@ -143,8 +143,8 @@ def reduced_green(x: Any, alpha: float, dim: int = 1) -> FloatArray | float:
 
     Phi_{n,alpha}(r) = (2 pi)^-n int exp(i k.x - |k|^alpha) dk
 
-    Parameters and errors as of `green`; infinities give 0. Relative accuracy better than 1e-13 for every x and alpha.
-    The first call for an alpha takes a few milliseconds more.
+    Parameters and errors as for `green`; infinities give 0. Relative accuracy better than 1e-13 for every x and alpha.
+    The first call for each alpha takes a few milliseconds longer.
     """
     return _reduced(check.real_array("x", x), check.fractional_order(alpha), check.dimension(dim))
 
@@ -168,7 +168,7 @@ def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     Returns
     -------
     ndarray or float
-        Same shape as x; accuracy as of `reduced_green`.
+        Same shape as x; accuracy as for `reduced_green`.
 
     Raises
     ------
@@ -184,7 +184,7 @@ def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
 def green_slope(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     """Return the radial derivative dG/dr, from Phi_n'(r) = -2 pi r Phi_{n+2}(r).
 
-    Parameters and errors as of `green`; an odd function of x, of relative accuracy better than 1e-12.
+    Parameters and errors as for `green`; an odd function of x, of relative accuracy better than 1e-12.
     """
     scale, n = _similarity(t, alpha), check.dimension(dim)
     r = _scaled(x, scale)
@@ -196,7 +196,7 @@ def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     """Return the radial component of the fractional flux (2) of the fundamental solution.
 
     Q = -grad^beta G = (r G / (alpha t)) e_r: by self-similarity this is the flux, regular at 0, of
-    which the divergence is -dG/dt. Parameters, errors and accuracy as of `green`; an odd function of x.
+    which the divergence is -dG/dt. Parameters, errors and accuracy as for `green`; an odd function of x.
     """
     value = green(x, t, alpha, dim)
     x = check.real_array("x", x)
@@ -212,7 +212,7 @@ def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
 
     Delta^alpha G = dG/dt = -(n G + r dG/dr) / (alpha t)
 
-    Parameters and errors as of `green`; relative accuracy better than 1e-12, next to its only zero relative to
+    Parameters and errors as for `green`; relative accuracy better than 1e-12, next to its only zero relative to
     n G / (alpha t).
     """
     scale, n = _similarity(t, alpha), check.dimension(dim)
@@ -241,7 +241,7 @@ def _mass_of(x: Any, t: Any, alpha: Any, dim: Any, inside: bool) -> FloatArray |
 def central_mass(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     """Return the integral of G(y, t) over the ball |y| < x, for radii x >= 0 (half-widths for n = 1).
 
-    Parameters and errors as of `green`; relative accuracy better than 1e-13.
+    Parameters and errors as for `green`; relative accuracy better than 1e-13.
     """
     return _mass_of(x, t, alpha, dim, True)
 
@@ -249,6 +249,6 @@ def central_mass(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | f
 def tail_mass(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     """Return the integral of G(y, t) over |y| > x: 1 - `central_mass`, without its cancellation.
 
-    Parameters, errors and accuracy as of `central_mass`.
+    Parameters, errors and accuracy as for `central_mass`.
     """
     return _mass_of(x, t, alpha, dim, False)

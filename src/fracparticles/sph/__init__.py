@@ -2,8 +2,8 @@
 
 Ghorbani and Semperlotti, "On the one-dimensional SPH approximation of fractional-order operators"; its equations
 are cited by their numbers. `cubic_spline` is the kernel, `particles` the real, virtual and auxiliary particles,
-`derivatives` and `integrals` the sums over them, `operators` the fractional operators, `closed_forms` the
-solutions of the Appendix that they are measured by, and `definition` the integral that defines them, by quadrature.
+`derivatives` and `integrals` the sums over them, `operators` the fractional operators, `closed_forms` the exact
+solutions of the Appendix, and `definition` the defining integral by quadrature.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The definition of the fractional integral, by quadrature: what closed forms and SPH sums are measured by."""
+"""The definition of the fractional integral, by quadrature: the reference for closed forms and SPH sums."""
 
 from __future__ import annotations
 

@@ -8,9 +8,9 @@ V_j = m_j / rho_j. Equation (19) prints L_i^{-1} for what is L_i: the gradient o
 Equation (37), Brookshaw's, has eta = 0.0001 (1/h)^2 in print, far larger than a distance and of another dimension;
 the paper's digits come with eta = 0.0001 h^2.
 
-A point within 2 h of the last particle lacks a part of its sums: see the virtual particles of `particles`. What the
-particles make of L says whether they are enough: 1 inside, a half at the end of a line. Less than a quarter, or more
-than four, is warned of with `AccuracyWarning`.
+A point within 2 h of the last particle lacks a part of its sums: see the virtual particles of `particles`. The value
+of L shows whether there are enough particles: it is 1 inside, and a half at the end of a line. Values below a quarter
+or above four raise an `AccuracyWarning`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _ENOUGH = 0.25  # of L
 def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
     """L_i of (19) at the points z, shape (M,), from the particles x, shape (N,). One dimension: a number each.
 
-    Errors as of `gradient`.
+    Errors as for `gradient`.
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
     return check.finite_result("volumes", _correction_at(z, x, volumes, h))
@@ -83,7 +83,7 @@ def second_derivative(
 
     `eta` is that of the formula, zero or more, by default 0.0001 h^2.
 
-    Errors as of `gradient`.
+    Errors as for `gradient`.
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
     f = check.vector("f", f, x.size, complex_too=True)

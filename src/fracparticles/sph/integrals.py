@@ -8,7 +8,7 @@ and, with the power of a fractional integral in the integrand,
 
     J^p f(z)        = sum_j V_j (z - x_j)^p f(x_j) W~(z - x_j).
 
-Particles up to 2 h beyond z have a share, for W~ is not yet 0 there; the power of a negative distance is complex,
+Particles up to 2 h beyond z contribute, because W~ is not yet 0 there. The power of a negative distance is complex,
 (-d)^p = d^p exp(i pi p). Its real part belongs to the smoothed integral, its imaginary part is an error of the same
 size, which the paper's norms count.
 
@@ -16,9 +16,9 @@ Three ways to place the volumes, `METHODS`: `standard` is (17) with the whole vo
 our repair of it, s/2 for the two particles at the ends, of whose volume only a half lies in the domain; `modified`
 is (20).
 
-All three take the integrand to be zero beyond b. J^p f then has a kink at b, and what differentiates it, as (35) does,
-is wrong there by something like (h/(b-a))^p, which hardly falls with h for a small p. A fourth way, `completed`, has
-s/2 at a and goes on beyond b, with f continued by the straight line through its last two values.
+All three take the integrand to be zero beyond b. J^p f then has a kink at b. Its derivative, as in (35), is wrong
+there by about (h/(b-a))^p, which hardly falls with h for a small p. A fourth way, `completed`, has s/2 at a and goes
+on beyond b, with f continued by the straight line through its last two values.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def power_integral(
 ) -> np.ndarray:
     """J^p f at the points z, shape (M,), complex.
 
-    Raises `InvalidInput` if there is no such method, or the arrays do not fit together or are not finite.
+    Raises `InvalidInput` if the method does not exist, or the arrays do not fit together or are not finite.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def power_integral(
     z : array_like, shape (M,)
         Where; for `completed` no farther beyond b than the virtual particles.
     power : array_like, shape (M,) or ()
-        p there. A particle at z itself has no share where p < 0: its term is infinite.
+        p there. A particle at z itself is left out where p < 0: its term is infinite.
     method : {"standard", "halved", "modified", "completed"}
         How the volumes are placed.
     """

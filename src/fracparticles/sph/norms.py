@@ -3,8 +3,8 @@
     L2  = sqrt(sum_i |f_i - <f>_i|^2) / sqrt(sum_i |f_i|^2),             (39)
     R^2 = 1 - sum_i |f_i - <f>_i|^2 / sum_i (f_i - f-bar)^2,             (40)
 
-f-bar being the mean of the analytical values. (40) is printed with plain squares; of complex deviations the paper's
-digits have the absolute ones.
+f-bar being the mean of the analytical values. (40) is printed with plain squares; for complex deviations the paper's
+digits come from absolute squares.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def r2_score(exact: Any, ours: Any) -> float:
 
 
 def _values(exact: Any, ours: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Both over the greatest exact value, so that their squares are numbers."""
+    """Both over the largest exact value, so that their squares are numbers."""
     exact = vector("exact", exact)
     ours = vector("ours", ours, exact.size, complex_too=True)
     greatest = np.abs(exact).max()

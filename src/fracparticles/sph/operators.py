@@ -60,7 +60,7 @@ def rl_integral(
     side : {"left", "right"}
         From a, or up to b.
     method : {"standard", "halved", "modified", "completed"}
-        How the sum that stands for the integral is done, see `integrals`.
+        How the integral is replaced by a sum, see `integrals`.
     """
     return _apply(_left_integral, line, f, order, side, method)[line.inside]
 
@@ -70,8 +70,8 @@ def rl_derivative(
 ) -> np.ndarray:
     """The Riemann-Liouville derivative (35), or (34) for a variable order. Parameters as in `rl_integral`.
 
-    Within 2 h of the end where the integral stops (b, or a of the right-handed one) all methods but `completed` are
-    wrong by about (h/(b-a))^(1-alpha) / 2 of f' there.
+    Within 2 h of the end where the integral stops (b, or a for the right-handed one) all methods except `completed`
+    are wrong by about (h/(b-a))^(1-alpha) / 2 of f' there.
 
     Warns
     -----

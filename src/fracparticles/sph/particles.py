@@ -1,4 +1,4 @@
-"""The particles on [a, b]: real ones, virtual ones beyond the ends, auxiliary ones between (Fig. 1)."""
+"""The particles on [a, b]: real ones, virtual ones beyond the ends, and auxiliary ones in between (Fig. 1)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ParticleLine:
     count : int
         N, at least 3.
     smoothing_ratio : float
-        h / s; the paper has 1.1. Above 1/2, or a particle would see no other; at most 1000.
+        h / s; the paper has 1.1. It must exceed 1/2, or a particle would have no neighbours; at most 1000.
     """
 
     a: float

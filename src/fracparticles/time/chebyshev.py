@@ -10,9 +10,9 @@ discrete solution as stepping gives, up to round-off; but p^n is so smooth on th
 coefficients fall below round-off after about sqrt(74 T |low| / 2) terms, whatever the number of steps.
 Tal-Ezer & Kosloff, J. Chem. Phys. 81 (1984) 3967, for the exponential.
 
-What is summed may be far larger than the sum: where the operator is not normal or its eigenvalues are not real, so that
-T_k(B) u grows with k, or where the solution decays by many decades. The evaluation looks at the size of its terms and
-raises `LostDigits`; `pieces` takes it from there.
+The terms may be far larger than their sum: where the operator is not normal or its eigenvalues are not real, so that
+T_k(B) u grows with k, or where the solution decays by many decades. The evaluation checks the size of its terms and
+raises `LostDigits`; `pieces` then continues with shorter series.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class ChebyshevSeries:
     Attributes
     ----------
     coefficients : array, shape (degree + 1,)
-        c_k; those at the end that vanish against the largest are left out.
+        c_k; those at the end that are negligible beside the largest are dropped.
     low, high : float
         The interval.
     """
@@ -133,7 +133,7 @@ class ChebyshevSeries:
 def evaluate(series: Sequence[ChebyshevSeries], operator: Operator, u: np.ndarray) -> np.ndarray:
     """Return f_j(A) u of several series on one interval by one recurrence, shape (series, N).
 
-    The vectors T_k(B) u are the same for all: as many applications as the longest takes alone.
+    The vectors T_k(B) u are the same for all, so this takes no more applications than the longest series alone.
 
     Raises
     ------

@@ -1,11 +1,11 @@
 """A function of an operator over a whole span, in as few pieces as keep their digits.
 
-f(A)^n = f(A)^{n_1} f(A)^{n_2} ...: a span of n units is done by one Chebyshev series, or by several in a row. One
-takes about sqrt(n) applications of A, m pieces take sqrt(m) times as many, so pieces are made only where one
-series loses digits (`chebyshev.LostDigits`): where its terms are far larger than their sum, because A is not normal, or
-because the solution decays by many decades. Each piece is exact to the round-off of its own terms. Between the pieces
-the strengths are scaled by powers of two, so that what decays keeps its digits to the end; what is then below every
-number is zero.
+f(A)^n = f(A)^{n_1} f(A)^{n_2} ...: a span of n units is computed by one Chebyshev series, or by several in a row. One
+series takes about sqrt(n) applications of A, and m pieces take sqrt(m) times as many. Pieces are therefore used only
+where one series loses digits (`chebyshev.LostDigits`): where its terms are far larger than their sum, because A is
+not normal or the solution decays by many decades. Each piece is exact to the round-off of its own terms. Between the
+pieces the strengths are scaled by powers of two, so that a decaying solution keeps its digits to the end; strengths
+that finally underflow are zero.
 
 The unit is a step of a Runge-Kutta scheme; for the exponential, a 2^-30th of the time.
 """
@@ -45,12 +45,12 @@ class Flow:
     units : int
         The span.
     largest_degree : int, optional
-        Of a piece: for an operator whose spectrum is not proved to lie where the series takes it to be.
+        Of a piece, for an operator whose spectrum is not proved to lie where the series assumes it to lie.
 
     Attributes
     ----------
     operator_applications : int
-        How often A is applied, unless pieces are cut further on the way.
+        How often A is applied, unless pieces have to be divided further.
 
     Raises
     ------
@@ -93,7 +93,7 @@ class Flow:
         return self.run(u)[0]
 
     def run(self, u: np.ndarray) -> tuple[np.ndarray, int]:
-        """Return f(A) u and how often A was applied, what was thrown away included.
+        """Return f(A) u and how often A was applied, including work that was discarded.
 
         Raises
         ------
@@ -138,7 +138,7 @@ class Flow:
 
 
 def _near_one(u: np.ndarray, exponent: int) -> tuple[np.ndarray, int]:
-    """Return u 2^exponent as another such product, the greatest |u| near one: the same bits, but for underflow."""
+    """Return u 2^exponent as another such product, the largest |u| near one: the same bits, but for underflow."""
     more = int(np.frexp(np.abs(u).max(initial=0.0))[1])
     return (np.ldexp(u, -more), exponent + more) if more else (u, exponent)
 

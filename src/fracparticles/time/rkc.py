@@ -9,8 +9,8 @@ Sommeijer, Shampine & Verwer, J. Comput. Appl. Math. 88 (1998) 315. One step of 
     b_j = T_j''(w_0) / T_j'(w_0)^2 (b_0 = b_1 = b_2),   a_j = 1 - b_j T_j(w_0),   m~_1 = b_1 w_1,
     w_0 = 1 + (2/13) / s^2,   w_1 = T_s'(w_0) / T_s''(w_0).
 
-Second order, explicit. It is stable for -(w_0 + 1) / w_1 <= z <= 0, about 0.65 s^2: for the same number of evaluations
-it goes 0.65 s times as far as the midpoint rule.
+The scheme is explicit and of second order. It is stable for -(w_0 + 1) / w_1 <= z <= 0, about 0.65 s^2: with the same
+number of evaluations it goes 0.65 s times as far as the midpoint rule.
 """
 
 from __future__ import annotations
@@ -112,9 +112,9 @@ class ChebyshevStep:
         Raises
         ------
         InvalidInput
-            If dt or steps is not positive, y or start is not finite, or f is no function to rates of the shape of y.
-        NonFiniteSolution
-            If y is no longer finite, or f says so; of the kind that f raised, with the step and the time.
+            If dt or steps is not positive, y or start is not finite, or f is not a function to rates of the shape of y.
+        NonFiniteSolution If y is no longer finite, or f raises it; then it is of the same kind, with the step and the
+        time.
         """
         dt, steps = positive_real("dt", dt), positive_integer("steps", steps, most=MOST_STEPS)
         f, start = function("f", f), finite_real("start", start)

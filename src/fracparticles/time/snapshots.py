@@ -1,11 +1,11 @@
 """Several output times of one run: one Chebyshev recurrence serves them all.
 
-f_j(A) u = sum_k c_jk T_k(B) u: the output times differ in the coefficients alone, and the vectors T_k(B) u of the last
-one, the longest, are those of all. Of a run in steps the f_j are products of step polynomials, since the steps of a
-run meet each output time: f_j = p(A dt_1)^{n_1} .. p(A dt_j)^{n_j}.
+f_j(A) u = sum_k c_jk T_k(B) u: the output times differ only in the coefficients, and the vectors T_k(B) u of the last
+and longest series serve all. For a run in steps the f_j are products of step polynomials, since the steps end at each
+output time: f_j = p(A dt_1)^{n_1} .. p(A dt_j)^{n_j}.
 
-Where one series would lose digits the outputs are halved, and each half has a recurrence of its own, which starts from
-the last output before it; a single output is done as any run is, see `pieces`.
+Where one series would lose digits the outputs are divided in two halves. Each half has its own recurrence, which
+starts from the last output before it. A single output is computed like any run, see `pieces`.
 """
 
 from __future__ import annotations

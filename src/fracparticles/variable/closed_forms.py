@@ -1,11 +1,11 @@
-"""Fields whose fractional derivatives are known in n dimensions, to test with:
+"""Test fields whose fractional derivatives are known in n dimensions:
 
     Cauchy      u = (1 + |x|^2)^(-(n+1)/2),  (-Laplacian)^(sigma/2) u = Gamma(n + sigma) / Gamma(n)
                                              2F1((n+sigma)/2, (n+sigma+1)/2; n/2; -|x|^2),
     Gaussian    u = exp(-|x|^2),             (-Laplacian)^(sigma/2) u = 2^sigma Gamma((n+sigma)/2) / Gamma(n/2)
                                              1F1((n+sigma)/2; n/2; -|x|^2).
 
-The fractional gradient is the gradient of what has sigma = beta - 1: grad^beta = grad (-Laplacian)^((beta-1)/2).
+The fractional gradient is the gradient of the field for sigma = beta - 1: grad^beta = grad (-Laplacian)^((beta-1)/2).
 On the line the first is Gamma(1 + sigma) (1 + x^2)^(-(1+sigma)/2) cos((1 + sigma) arctan x).
 """
 
@@ -110,7 +110,7 @@ class Gaussian(KnownField):
 
 
 class Packet(KnownField):
-    """exp(-x^2 / 144) cos x on the line, nearly one wave: errors are of the order of the scheme already when large.
+    """exp(-x^2 / 144) cos x on the line, nearly a single wave: even large errors show the order of the scheme.
 
     It is the mean of cos(k x) with a Gaussian weight about k = 1; by Gauss-Hermite quadrature.
     """

@@ -10,13 +10,13 @@ kernels. Not conservative.
 
     du_i/dt = (D_i / epsilon^alpha) sum_j V_j u_j G_epsilon(x_i - x_j) + D'_i . (grad^beta u)_i.
 
-exchange: Eq. (34) with the mean diffusivity of a pair. Conservative and symmetric, and another equation: with L of the
-constant operator, L = -(-Laplacian)^(alpha/2), it converges to (D L u + L(D u) - u L D) / 2.
+exchange: Eq. (34) with the mean diffusivity of a pair. It is conservative and symmetric, but solves another equation:
+with the constant operator L = -(-Laplacian)^(alpha/2) it converges to (D L u + L(D u) - u L D) / 2.
 
     du_i/dt = (alpha / epsilon^alpha) sum_j V_j (D_i + D_j) / 2 (u_j - u_i) K_epsilon(x_j - x_i).
 
-In an open exterior u goes on with its tail. The flux of FPSE is needed, and so D, as far beyond the ends as the
-divergence reaches; the exchange takes D beyond an end for what it is there.
+In an open exterior u continues with its tail. The flux of FPSE, and therefore D, is needed as far beyond the ends as
+the divergence reaches. The exchange takes D beyond an end to be constant, with its value at that end.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}  # and the scheme that 
 
 
 class VariableDiffusivity:
-    """div(D grad^beta u) on a lattice, or what the exchange makes of it.
+    """div(D grad^beta u) on a lattice, or the operator of the exchange.
 
     Parameters
     ----------
     form : {"FPSE", "DD", "exchange"}
         See the module.
     setting : Setting
-        Its diffusivity is 1: D is given at the points.
+        Its diffusivity must be 1, because D is given at the points.
     tail : float, optional
         p of u ~ |x|^-p in an open exterior; n + alpha, that of the fundamental solution, if left out.
 
@@ -118,7 +118,7 @@ class VariableDiffusivity:
             return rate(u, d)
 
     def spectral_radius(self, diffusivity: Any) -> float:
-        """Return an upper bound of |lambda|; in an open exterior of the lattice without what continues it."""
+        """Return an upper bound of |lambda|; for an open exterior that of the lattice without its continuation."""
         d = self._checked(diffusivity)
         if self.form == "FPSE":
             return float(d.max()) * self._gradient.norm * self._divergence.norm

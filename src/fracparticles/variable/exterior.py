@@ -1,9 +1,9 @@
-"""What lies beyond the lattice, where the tail of the solution need not be that of a constant operator.
+"""The region beyond the lattice, where the tail of the solution need not be that of a constant operator.
 
-u_j = a_1 (n / |j|)^p + .. is continued as in `lattice.exterior` and `lattice.exterior_box`, with an exponent p of its
-own at either end of the line: a solution of variable order falls like |x|^(-1-alpha) with the alpha of where it is.
-The flux in the plane gains, for each of the modes that continue u, the sum over a lattice four times as wide; what is
-beyond that is left out. It is 4^(-2 p) of what the modes add, up to a constant.
+u_j = a_1 (n / |j|)^p + .. is continued as in `lattice.exterior` and `lattice.exterior_box`, with a separate exponent
+p at either end of the line: a solution of variable order falls like |x|^(-1-alpha) with the local alpha. For each of
+the modes that continue u, the flux in the plane gains the sum over a lattice four times as wide. The region beyond
+that is left out: its contribution is 4^(-2 p) of that of the modes, up to a constant.
 """
 
 from __future__ import annotations

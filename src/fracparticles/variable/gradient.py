@@ -128,7 +128,7 @@ class ExchangeDivergence:
 
 
 def _largest(name: str, setting: Setting) -> float:
-    """The greatest length of the transform of a vector kernel on the lattice, of samples, and one percent more."""
+    """The largest length of the transform of a vector kernel on the lattice, of samples, and one percent more."""
     theta = np.linspace(0.0, np.pi, 257 if setting.dim == 1 else 33)
     exact = replace(setting, kernel_table=None)
     if setting.dim == 1:

@@ -1,4 +1,4 @@
-"""Variable order, du_i/dt = -D (-Laplacian)^(alpha(x_i)/2) u: row i has the kernel of order alpha_i, Eq. (10),
+"""Variable order, du_i/dt = -D (-Laplacian)^(alpha(x_i)/2) u: row i has the kernel for the order alpha_i, Eq. (10),
 
     du_i/dt = (D / epsilon^alpha_i) sum_j V_j u_j G^(alpha_i)_epsilon(x_i - x_j).
 
@@ -9,11 +9,12 @@ the interpolation differs from it by at most
 
     2 (R/2)^K / K! max_(0 < t <= pi) t^alpha |ln t|^K,
 
-at the least or the greatest alpha. K is the least number for which this is below a tolerance. Aliases, which an overlap
+at the least or the largest alpha. K is the least number for which this is below a tolerance. Aliases, which an overlap
 below 1 lets in, may add to it: up to 5e-10 at an overlap of 1/4, where the largest weights are 10 to 700.
 
-The source far away is that of the order there: u falls like |x|^(-1-alpha) with the alpha of either end of the line,
-and in the plane with the mean of alpha over the outermost particles. This holds where alpha is settled near the ends.
+Far away the local order determines the tail: u falls like |x|^(-1-alpha) with the alpha of either end of the line,
+and in the plane with the mean of alpha over the outermost particles. This holds where alpha is constant near the
+ends.
 """
 
 from __future__ import annotations
@@ -70,11 +71,11 @@ class VariableOrder:
     Parameters
     ----------
     setting : Setting
-        Of DD on the line or in the plane; its alpha is not looked at.
+        Of DD on the line or in the plane; its alpha is ignored.
     alpha : array_like, shape `setting.shape`, or float
         The order at each particle, 1 < alpha < 2.
     tail : float or (float, float), optional
-        p of u ~ |x|^-p in an open exterior, at the left and the right end; see the module for what it is if left out.
+        p of u ~ |x|^-p in an open exterior, at the left and the right end; the module gives the default.
     tolerance : float
         Of the interpolation, see the module.
 
@@ -139,9 +140,9 @@ class VariableOrder:
         return total
 
     def spectral_radius(self) -> float:
-        """Return an upper bound of |lambda|, the greatest sum of |weights| of a row.
+        """Return an upper bound of |lambda|, the largest sum of |weights| of a row.
 
-        In an open exterior it is that of the lattice without what continues it.
+        For an open exterior it is that of the lattice without its continuation.
         """
         # Equal orders have equal rows; between two samples of the order they hardly change.
         values, first = np.unique(self._alpha.reshape(-1), return_index=True)

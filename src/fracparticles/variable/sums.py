@@ -23,7 +23,7 @@ __all__ = ["EvenSum"]
 
 
 class EvenSum:
-    """The sum over the particles and, in an open exterior, over what continues them.
+    """The sum over the particles and, in an open exterior, over their continuation.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class EvenSum:
         return y
 
     def inside(self, u: np.ndarray) -> np.ndarray:
-        """Return the sums over the particles that there are."""
+        """Return the sums over the particles of the lattice."""
         y = self._sums(u)
         return np.array(y if self.setting.dim == 1 else y[0])
 

@@ -52,7 +52,7 @@ def test_dpse(computed):
     assert found["L-C14.remedy"]["gain"][case] > 10.0
     row = result.table.set_index("scheme").loc["DPSE"]
     assert row["u / exact at |x| = D"] > 10.0
-    assert abs(row["the same, v continued"]) < 0.1 * row["error of du/dt at D"]
+    assert abs(row["with v continued"]) < 0.1 * row["error of du/dt at D"]
     assert draw_dpse(result.series, result.table).axes
 
 

@@ -9,7 +9,7 @@ import pytest
 from fracparticles.errors import FracparticlesError
 from fracstudy.inputs import Inputs
 from fracstudy.style import save
-from scenes.run_times.contests import best, front, trials_of
+from scenes.run_times.contests import best, duration, front, trials_of
 from scenes.run_times.first_call.benchmark import benchmark as first_call
 from scenes.run_times.first_call.study import study as first_calls
 from scenes.run_times.reference_times.study import study as reference_times
@@ -103,7 +103,7 @@ def test_the_first_three():
     assert table["first"].tolist() == ["rational functions", "evolve, 4 terms"]
     assert table["second"].tolist() == ["evolve, 2 terms", "rational functions"]
     assert table["third"].tolist() == ["KPSE, order 12, series"] * 2
-    assert table["its memory / kB"].tolist() == [20.0, 20.0]
+    assert table["memory / kB"].tolist() == [20.0, 20.0]
 
 
 def situation(**changes):
@@ -111,13 +111,13 @@ def situation(**changes):
 
 
 @pytest.mark.parametrize(("changes", "faster"), [
-    ({"error": 1e-4}, "the literature, 2 times"),
-    ({"error": 1e-9}, "ours, 1.57 times"),
-    ({"error": 1e-10}, "ours: no other gets there"),
-    ({"error": 1e-12}, "neither gets there"),
-    ({"error": 1e-10, "contender": "DVM"}, "neither gets there"),
-    ({"error": 1e-9, "contender": "DVM"}, "it does not get there"),
-    ({"error": 1e-9, "time": "block_time"}, "the literature, 4 times"),
+    ({"error": 1e-4}, "rational functions (2 times)"),
+    ({"error": 1e-9}, "nobody (rational functions: 1.6 times as long)"),
+    ({"error": 1e-10}, "nobody (no other gets there)"),
+    ({"error": 1e-12}, "nobody gets there"),
+    ({"error": 1e-10, "contender": "DVM"}, "nobody gets there"),
+    ({"error": 1e-9, "contender": "DVM"}, "rational functions (this does not get there)"),
+    ({"error": 1e-9, "time": "block_time"}, "rational functions (4 times)"),
 ])  # fmt: skip
 def test_who_is_faster_follows_from_the_times(changes, faster):
     table = which_method(inputs(work_precision=frame()), situations=[situation(**changes)]).table
@@ -128,7 +128,32 @@ def test_two_times_within_a_fifth_are_a_tie():
     data = frame()
     data.loc[data["contender"] == "rational functions", "setup_time"] = 1e-4
     table = which_method(inputs(work_precision=data), situations=[situation(error=1e-4)]).table
-    assert table["faster"][0] == "a tie"
+    assert table["faster"][0] == "nobody (rational functions: a tie)"
+
+
+def test_a_situation_may_be_timed_by_a_table():
+    rows = [("a", "ours", 3.0), ("b", "peer", 4000.0), ("c", "peer", 2.0), ("d", "peer", NAN)]
+    table = pd.DataFrame(rows, columns=["contender", "group", "to 1e-06 / ms"]).assign(problem="p")
+    given = Inputs(scene="s", tables={"least": table})
+    where = {"measured": "least", "problem": "p"}
+    (row,) = which_method(given, situations=[situation(contender="a", **where)]).table.to_dict(
+        "records"
+    )
+    assert row["cost"] == "3.0 ms to 1e-06"
+    assert row["faster"] == "c (1.5 times)"
+    (slow,) = which_method(given, situations=[situation(contender="b", **where)]).table.to_dict(
+        "records"
+    )
+    assert slow["cost"] == "4.0 s to 1e-06"
+    with pytest.raises(FracparticlesError, match="no trial of e in least"):
+        which_method(given, situations=[situation(contender="e", **where)])
+
+
+@pytest.mark.parametrize(("seconds", "text"), [
+    (3.0, "3.0 s"), (0.0125, "12 ms"), (9.97e-5, "100 µs"), (9.2e-8, "92 ns"),
+])  # fmt: skip
+def test_a_time_has_two_digits_and_a_unit(seconds, text):
+    assert duration(seconds) == text
 
 
 def test_a_contender_that_was_not_measured_is_named():
@@ -196,7 +221,7 @@ def test_a_first_call_and_a_step_are_timed():
     data = step_times(line=201, plane=21, repeats=1).to_dataframe().reset_index()
     found = steps(inputs(step_times=data)).table
     assert set(found["dim"]) == {1, 2}
-    assert found[found["method"].str.startswith("exact")]["over the exact symbol"].tolist() == [
+    assert found[found["method"].str.startswith("exact")]["time / exact symbol"].tolist() == [
         1.0,
         1.0,
     ]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-__all__ = ["TIMES", "best", "front", "trials_of"]
+__all__ = ["TIMES", "best", "duration", "front", "trials_of"]
 
 TIMES = {
-    "total_time": "one solve, set-up and all / s",
-    "block_time": "a further solve, in a block of a thousand / s",
+    "total_time": "time of one solve with set-up / s",
+    "block_time": "time per solve, a thousand at once / s",
 }
 
 
@@ -38,3 +38,11 @@ def front(trials: pd.DataFrame, time: str) -> pd.Series:
     ordered = ordered.sort_values([time, "error"])
     so_far = ordered["error"].cummin().shift(fill_value=np.inf)
     return (ordered["error"] < so_far).reindex(trials.index, fill_value=False)
+
+
+def duration(seconds: float) -> str:
+    """Return a time to two digits, in the unit in which it is a number from 1 on."""
+    units = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
+    unit, name = next((pair for pair in units if seconds >= pair[0]), (1e-9, "ns"))
+    value = seconds / unit
+    return f"{value:.0f} {name}" if value >= 9.95 else f"{value:.1f} {name}"

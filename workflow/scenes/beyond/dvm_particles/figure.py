@@ -72,7 +72,7 @@ def _spacings(ax: Axes, series: pd.DataFrame) -> None:
         stretched = exact.loc[time]
         ax.plot([0.0, stretched["x"]], [stretched["y"]] * 2, color=shade, **_DASHES)
     rest = series[~series["series"].isin(["none", "exact"])]
-    ax.plot(rest["x"], rest["y"], label="remeshed, before", **_DOTS)
+    ax.plot(rest["x"], rest["y"], label="remeshed (just before)", **_DOTS)
     ax.axhline(_ABOVE, color="0.5", linewidth=0.8, linestyle=":")
     note(ax, f"remesh above {_ABOVE:g}", (1.0, _ABOVE), (0, -2), ha="right", va="top", **_NOTE)
     ax.set(xlabel="position $x$", ylabel=r"spacing $\Delta x / h$")
@@ -88,7 +88,7 @@ def _overlaps(ax: Axes, series: pd.DataFrame) -> None:
         "none, bulk": {**dvm, "linewidth": 2.2, "alpha": 0.6, "label": "not remeshed, bulk"},
         "none, ends": {**dvm, "linewidth": 1.0, "label": "not remeshed, ends"},
     }
-    remeshed = {**_DOTS, "label": "remeshed, before, ends"}
+    remeshed = {**_DOTS, "label": "remeshed (just before), ends"}
     for name, part in series.sort_values("x").groupby("series"):
         ax.plot(part["x"], part["y"], **looks.get(name, remeshed))
     ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle=":")

@@ -88,7 +88,7 @@ def _steps(ax: Axes, series: pd.DataFrame) -> None:
     log_log(ax, xlabel=r"time step $\Delta t$")
     ax.set_ylabel("change from the smallest step / error (48)")
     _plain_ticks(ax, sorted(series["x"].unique()))
-    panel_title(ax, "c", "what the step adds")
+    panel_title(ax, "c", "error in time")
     ax.legend(**_BELOW)
 
 

@@ -9,7 +9,15 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, legend_below, log_log, slope_triangle
+from fracstudy.style import (
+    COLOURS,
+    MARKERS,
+    axes_row,
+    legend_below,
+    log_log,
+    name_ticks,
+    slope_triangle,
+)
 
 __all__ = ["figure"]
 
@@ -28,6 +36,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         _panel(ax, part, scheme, orders)
         ax.plot(floor["h"], floor["error"], label="GPSE, one step", **_FLOOR)
         log_log(ax, xlabel="particle spacing $h$")
+        name_ticks(ax, sorted(part["h"].unique()), form=".2g")
         ax.set_title(scheme, loc="right", color=COLOURS[scheme])
     axes[0].set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
     legend_below(drawn, axes[0], columns=5)

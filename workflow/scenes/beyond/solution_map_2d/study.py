@@ -66,5 +66,5 @@ def _row(
         "largest relative error": error.max(),
         "least u / largest u": u.min() / u.max(),
         "mass at t_f": run.mass_final,
-        "the same, exact": 1.0 - square_tail_mass(half, run.t_final, alpha),
+        "mass at t_f, exact": 1.0 - square_tail_mass(half, run.t_final, alpha),
     }

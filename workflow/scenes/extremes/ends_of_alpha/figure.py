@@ -12,19 +12,19 @@ from fracstudy.style import axes_row, guide, legend_below, log_log, panel_title
 __all__ = ["figure"]
 
 _LINES: dict[str, dict[str, Any]] = {
-    "limit": {"color": "0.45", "linestyle": "--", "label": "Cauchy or Gauss in place of alpha"},
+    "limit": {"color": "0.45", "linestyle": "--", "label": r"Cauchy or Gauss instead of $\alpha$"},
     "evolve": {
         "color": "#D55E00",
         "marker": "s",
         "markersize": 4.0,
-        "label": "evolve against them",
+        "label": "evolve, against Cauchy or Gauss",
     },
     "density": {"color": "#0072B2", "marker": "o", "markersize": 4.0, "label": "density"},
-    "rate": {"color": "#56B4E9", "marker": "v", "markersize": 4.0, "label": "rate"},
+    "rate": {"color": "#56B4E9", "marker": "v", "markersize": 4.0, "label": "rate of change"},
     "tail mass": {"color": "#009E73", "marker": "^", "markersize": 4.0, "label": "tail mass"},
-    "K": {"color": "#CC79A7", "marker": "D", "markersize": 3.5, "label": "kernel K"},
-    "G": {"color": "#E69F00", "marker": "P", "markersize": 4.5, "label": "kernel G"},
-    "kappa": {"color": "#000000", "marker": "x", "markersize": 4.5, "label": "potential kappa"},
+    "K": {"color": "#CC79A7", "marker": "D", "markersize": 3.5, "label": "kernel $K$"},
+    "G": {"color": "#E69F00", "marker": "P", "markersize": 4.5, "label": "kernel $G$"},
+    "kappa": {"color": "#000000", "marker": "x", "markersize": 4.5, "label": r"potential $\kappa$"},
 }
 
 
@@ -36,7 +36,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         for name, line in _LINES.items():
             if name in points:
                 ax.plot(points[name]["x"], points[name]["y"], **line)
-        log_log(ax, xlabel=rf"$|\alpha - {end}|$, distance to the end")
+        log_log(ax, xlabel=rf"distance to the end, $|\alpha - {end}|$")
         panel_title(ax, letter, rf"$\alpha \to {end}$")
     axes[0].set_ylabel("relative error")
     guide(axes[1], (1e-15, 1e-3), (1e-15, 3e-16), 1.0, "slope 1")

@@ -13,6 +13,7 @@ from fracstudy.style import axes_row, entry, legend_below, log_log, note
 __all__ = ["figure"]
 
 _SAID = {"warned": "#D55E00", "silent": "#0072B2"}
+_NAMES = {"warned": "warned", "silent": "no warning"}
 _KINDS = {
     "overlap": "o",
     "too coarse": "s",
@@ -34,10 +35,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     )
     ax.axvline(1.0, color="0.5", linewidth=0.8, linestyle=":")
     ax.axhline(allowed, color="0.5", linewidth=0.8, linestyle=":")
-    log_log(ax, xlabel="greatest estimate over its limit", ylabel="true relative error, 1-norm")
+    log_log(ax, xlabel="largest estimate / its limit", ylabel="true relative error in the 1-norm")
     place = {"xycoords": "axes fraction", "va": "top", "fontsize": 9}
-    note(ax, "wrong without a word: empty", (0.02, 0.98), (0, 0), **place)
-    entries = [entry(said, color=colour, linewidth=2.0) for said, colour in _SAID.items()]
+    note(ax, "wrong without a warning: empty", (0.02, 0.98), (0, 0), **place)
+    entries = [entry(_NAMES[said], color=colour, linewidth=2.0) for said, colour in _SAID.items()]
     shown = [kind for kind in _KINDS if kind in set(series["panel"])]
     grey: dict[str, Any] = {
         "color": "0.3",

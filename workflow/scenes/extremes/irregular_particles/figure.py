@@ -62,16 +62,18 @@ def _jitter(ax: Axes, part: pd.DataFrame) -> None:
         line = {} if right else {"linestyle": "--", **_HOLLOW}
         ax.plot(points["x"], points["y"], markersize=4.5, **{**_look(str(form)), **line})
     log_log(
-        ax, xlabel="greatest jitter $J$, in $h$", ylabel=r"error of $du/dt$ by disorder, relative"
+        ax,
+        xlabel="largest jitter $J$, in units of $h$",
+        ylabel=r"relative error of $du/dt$ due to disorder",
     )
     name_ticks(ax, sorted(part["x"].unique()))
-    panel_title(ax, "a", "the volumes tell")
+    panel_title(ax, "a", "error due to disorder")
 
 
 def _spacing(ax: Axes, part: pd.DataFrame) -> None:
     for name, points in part.groupby("series"):
         ax.plot(points["x"], points["y"], label=name, **_LEVELS[str(name)])
-    log_log(ax, xlabel=r"spacing $h$", ylabel=r"whole error of $du/dt$, relative")
+    log_log(ax, xlabel=r"particle spacing $h$", ylabel=r"relative error of $du/dt$")
     name_ticks(ax, sorted(part["x"].unique()))
     finest = part[part["series"] == "lattice"].sort_values("x").iloc[0]
     slope_triangle(ax, 1.2 * finest["x"], 0.6 * finest["y"], 2.0)

@@ -40,10 +40,15 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, betas: list[float]) -> 
         misses = series[(series["panel"] == "error") & (series["series"] == ratio)]
         misses = misses[misses["x"] > 1e-2]
         error.plot(misses["x"], misses["y"], color=colour, linewidth=0.9)
-    log_log(profile, xlabel=r"$|x|\, t^{-1/\alpha}$", ylabel=r"$t^{1/\alpha} u$", ylim=(1e-12, 1.0))
-    log_log(error, xlabel=r"$|x|\, t^{-1/\alpha}$", ylabel="error over the peak")
+    log_log(
+        profile,
+        xlabel=r"scaled distance $|x|\, t^{-1/\alpha}$",
+        ylabel=r"scaled strength $t^{1/\alpha} u$",
+        ylim=(1e-12, 1.0),
+    )
+    log_log(error, xlabel=r"scaled distance $|x|\, t^{-1/\alpha}$", ylabel="error / peak")
     guide(profile, (30.0, 3000.0), (30.0, 30.0 ** (-1.0 - alpha)), -1.0 - alpha)
-    panel_title(profile, "a", rf"line: $\Phi$, markers: graded particles, $\alpha = {alpha:g}$")
-    panel_title(error, "b", "their error")
+    panel_title(profile, "a", rf"line: exact; markers: graded particles, $\alpha = {alpha:g}$")
+    panel_title(error, "b", "error of the graded particles")
     legend_below(drawn, profile)
     return drawn

@@ -31,10 +31,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     _errors(error, panels["error"])
     names = [name for name in _LOOKS if name in set(series["series"])]
     handles = [entry(name, linestyle="none", **_LOOKS[name]) for name in names]
-    handles.append(entry("filled: without a word", linestyle="none", marker="o", color="0.4"))
-    handles.append(
-        entry("hollow: with a warning", linestyle="none", marker="o", color="0.4", **_HOLLOW)
-    )
+    handles.append(entry("filled: no warning", linestyle="none", marker="o", color="0.4"))
+    handles.append(entry("hollow: warning", linestyle="none", marker="o", color="0.4", **_HOLLOW))
     legend_below(drawn, handles, columns=4)
     return drawn
 
@@ -47,8 +45,8 @@ def _growth(ax: Axes, part: pd.DataFrame) -> None:
     ax.axvline(1.0, color="0.5", linewidth=0.8, linestyle=":")
     ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle=":")
     ax.set(
-        xlabel=r"$\Delta t$ over the limit of stability",
-        ylabel="growth of the fastest wave, a step",
+        xlabel=r"time step $\Delta t$ / stability limit",
+        ylabel="growth of the fastest wave per step",
     )
     panel_title(ax, "a", "lines: predicted, markers: measured")
 
@@ -60,5 +58,7 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
         for spoke, some in points.groupby("spoke"):
             ax.plot(some["x"], some["y"], linestyle="none", **look, **(_HOLLOW if spoke else {}))
     ax.axhline(_ASKED, color="0.5", linewidth=0.8, linestyle=":")
-    log_log(ax, xlabel=r"smoothing length over spacing, $\epsilon / h$", ylabel="error of the run")
-    panel_title(ax, "b", "above the dotted line it must be said")
+    log_log(
+        ax, xlabel=r"smoothing length / spacing, $\epsilon / h$", ylabel="relative error of the run"
+    )
+    panel_title(ax, "b", "a warning is required above the dotted line")

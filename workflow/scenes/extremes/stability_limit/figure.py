@@ -35,7 +35,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             shown = _map(ax, pick(maps, series=f"{scheme} {order}"), colours)
             ax.set_title(f"{scheme} {NUMERALS[int(order)]}", loc="left", color=COLOURS[scheme])
     for ax in axes[-1]:
-        ax.set_xlabel(r"order $\beta$")
+        ax.set_xlabel(r"fractional order $\beta$")
     for ax in axes[:, 0]:
         ax.set_ylabel(r"overlap $\epsilon / h$")
     bar = left.colorbar(
@@ -50,7 +50,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 def _map(ax: Axes, points: pd.DataFrame, colours: Any) -> Any:
     grid = points.pivot_table(index="x", columns="beta", values="y")
     beta, overlap, limit = grid.columns.to_numpy(), grid.index.to_numpy(), grid.to_numpy()
-    ax.set_facecolor("0.75")
+    ax.set(xlim=(beta[0], beta[-1]), ylim=(overlap[0], overlap[-1]), facecolor="0.75")
+    ax.grid(visible=False)
     shown = ax.pcolormesh(
         beta,
         overlap,

@@ -69,11 +69,11 @@ def study(
         {
             "function": LABELS[name],
             "Caputo": caputo,
-            "deviation": worst(_caputo_gap, name),
-            "deviation, Type I": _caputo_gap(name, x, variable),
+            "Caputo, deviation": worst(_caputo_gap, name),
+            "Caputo, deviation, Type I": _caputo_gap(name, x, variable),
             "RL derivative": derivative,
-            "deviation of it": worst(_derivative_gap, name),
-            "deviation of it, Type I": _variable_gap(name, x, variable),
+            "RL derivative, deviation": worst(_derivative_gap, name),
+            "RL derivative, deviation, Type I": _variable_gap(name, x, variable),
             "RL integral, deviation": worst(_integral_gap, name),
             "RL integral, deviation, Type I": _integral_gap(name, x, variable),
         }
@@ -110,7 +110,7 @@ def _closed_forms(
 ) -> Iterator[Finding]:
     """(A1)-(A8) as printed, beside our way to write them; the integrals; and both of variable order."""
     rows = table.set_index(pd.Index(list(_EQUATIONS)))
-    forms = (("deviation", by.caputo), ("deviation of it", by.derivative))
+    forms = (("Caputo, deviation", by.caputo), ("RL derivative, deviation", by.derivative))
     for name, equations in _EQUATIONS.items():
         for equation, (column, definition) in zip(equations, forms, strict=True):
             values = [PRINTED[equation](x, a) for a in orders]
@@ -138,5 +138,5 @@ def _closed_forms(
     yield measured("S-APP.integral", deviation=constant)
     valid = {"Caputo derivative": caputo, "RL integral": integral}
     yield measured("S-APP.type_one", deviation=valid)
-    invalid = table.set_index("function")["deviation of it, Type I"]
+    invalid = table.set_index("function")["RL derivative, deviation, Type I"]
     yield measured("S-APP.type_one_derivative", deviation=dict(invalid))

@@ -63,7 +63,7 @@ def study(
                 f"L2, s = {spacing[at]:g}": whole[at],
                 "order": observed_order(spacing, whole)[-1],
                 "L2 of the real part": real[at],
-                "its order": observed_order(spacing, real)[-1],
+                "order of the real part": observed_order(spacing, real)[-1],
             }
         )
         key = {"operator": operator, "function": name, "side": side, "order": varies}

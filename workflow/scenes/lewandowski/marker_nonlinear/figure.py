@@ -95,10 +95,10 @@ def _approach(ax: Axes, series: pd.DataFrame) -> None:
     core, excess = (pick(series, series=name).sort_values("x") for name in ("core", "excess"))
     draw(ax, excess, "s-", color=_GREEN, markersize=4)
     draw(ax, core, "o-", color=_BLUE, markersize=4)
-    ax.set(xscale="log", yscale="log", xlabel="time $t$", ylabel="what is left")
+    ax.set(xscale="log", yscale="log", xlabel="time $t$", ylabel="deviation from the steady state")
     ax.set_ylim(0.6 * core["y"].min(), 2.0 * excess["y"].max())
     above, below = (part[["x", "y"]].iloc[len(part) // 2] for part in (excess, core))
-    note(ax, r"in the flanks, less that of $f_\infty$", above, (0, 12), color=_GREEN)
+    note(ax, r"mass in the flanks, minus that of $f_\infty$", above, (0, 12), color=_GREEN)
     text, style = r"max $|F - f_\infty|$ in the core", {"ha": "right", "va": "top"}
     note(ax, text, below, (-6, -12), color=_BLUE, **style)
     slope_triangle(ax, 0.3 * excess["x"].iloc[-1], 0.62 * excess["y"].iloc[-2], -0.25)

@@ -46,9 +46,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             style = scheme_style("DVM", **_FREE if exterior == "remeshing none" else {})
             ax.plot(points["x"], points["y"], label=f"DVM, {name}", **style)
     ax.axhline(2.0 * _FLOOR, color="0.5", linewidth=0.8, linestyle=":")
-    style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "bottom", "color": "0.35"}
-    note(ax, "one unit in the last place", (1.0, 2.0 * _FLOOR), (0, 3), **style)
-    log_log(ax, xlabel=r"time $t_f - t_0$", ylim=(_FLOOR / 2.0, 0.1))
+    style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "top", "color": "0.35"}
+    note(ax, "one unit in the last place", (1.0, 2.0 * _FLOOR), (0, -3), **style)
+    log_log(ax, xlabel=r"time $t_f - t_0$", ylim=(_FLOOR / 10.0, 0.1))
     ax.set_ylabel(r"change of the total strength, $|M(t_f) / M(t_0) - 1|$")
     ax.set_xlim(right=1.6 * series["x"].max())
     name_ticks(ax, sorted(series["x"].unique()))

@@ -41,11 +41,11 @@ def study(inputs: Inputs) -> Result:
             "C": runs["truncation"].round(6),
             "N": runs["N"],
             _START: 100.0 * (1.0 - initial),
-            "the same, exact, %": 100.0 * before,
+            "left out, exact, %": 100.0 * before,
             _LOST: (100.0 * (1.0 - final / initial)).round(_DIGITS),
-            "the same, exact solution, %": 100.0 * (1.0 - (1.0 - after) / (1.0 - before)),
+            "lost, exact, %": 100.0 * (1.0 - (1.0 - after) / (1.0 - before)),
             _MISSING: 100.0 * (1.0 - final),
-            "the same, exact solution on the lattice, %": 100.0 * after,
+            "missing, exact, %": 100.0 * after,
         }
     )
     findings = _findings(table.assign(h=runs["particle_spacing"], run=runs["run"]))

@@ -47,8 +47,8 @@ def study(inputs: Inputs, *, particles: dict[str, int]) -> Result:
                     "scheme": scheme,
                     "h": levels[count][0],
                     "N": count,
-                    "of the": what,
-                    "over": region,
+                    "compared": what,
+                    "summed over": region,
                     "printed": printed,
                     _OURS: ours,
                     "deviation": ours - printed,
@@ -88,7 +88,7 @@ def _findings(table: pd.DataFrame, particles: dict[str, int], files: list[str]) 
     for h, count in particles.items():
         here = table[table["N"] == count]
         for scheme, part in here.groupby("scheme", sort=False):
-            readings = part.set_index(["of the", "over"])
+            readings = part.set_index(["compared", "summed over"])
             nearest = readings["deviation"].abs().fillna(np.inf).idxmin()
             findings.append(
                 measured(
@@ -104,7 +104,7 @@ def _findings(table: pd.DataFrame, particles: dict[str, int], files: list[str]) 
             for spacing in here["h"].head(1)
         ]
     finest = table[table["N"] == table["N"].max()]
-    finest = finest.set_index(["of the", "over", "scheme"])[_OURS].sort_index()
+    finest = finest.set_index(["compared", "summed over", "scheme"])[_OURS].sort_index()
     difference = (finest - 2.0).abs()
     return [
         *findings,

@@ -19,7 +19,7 @@ from scenes.plane import DISK
 
 __all__ = ["flux_along_axis", "study"]
 
-_ERROR, _ORDER = "largest error for r <= 5 / largest value", "observed order"
+_ERROR, _ORDER = "largest error / largest value, r <= 5", "observed order"
 _QUANTITIES = {
     "flux": "flux (19), FPSE",
     "DD": "diffusion rate, DD",
@@ -94,8 +94,8 @@ def _table(series: pd.DataFrame) -> pd.DataFrame:
                     "h": part["h"].iloc[0],
                     _ERROR: error[inside].max(),
                     "at r": part.loc[error[inside].idxmax(), "r"],
-                    "the same, 3 < r < 5": error[inside & (part["r"] > 3.0)].max(),
-                    "the same, r > 5": error[~inside].max(),
+                    "ratio for 3 < r < 5": error[inside & (part["r"] > 3.0)].max(),
+                    "ratio for r > 5": error[~inside].max(),
                 }
             )
     table = pd.DataFrame(rows)

@@ -164,7 +164,7 @@ def _rivals(inputs: Inputs, cells: _Cells) -> pd.DataFrame:
                 "dt": run["dt"],
                 "relative error": error,
                 "walkers to equal it": walkers_to_equal(cells.masses, error),
-                "the same, cells of width h": walkers_to_equal(fine.masses, error),
+                "walkers, cells of width h": walkers_to_equal(fine.masses, error),
                 "run": run["run"],
             }
         )

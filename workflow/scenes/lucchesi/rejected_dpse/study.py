@@ -21,8 +21,8 @@ __all__ = ["study"]
 NEEDS = {"scheme": ["DPSE", "FPSE", "KPSE"]}
 
 _LAYER = 0.1  # relative error that ends the layer at the edge
-_RATIO, _RATE, _TAIL = "u / exact at |x| = D", "error of du/dt at D", "the same, from the tail of κ"
-_CONTINUED, _FPSE = "the same, v continued", "the same, FPSE"
+_RATIO, _RATE, _TAIL = "u / exact at |x| = D", "error of du/dt at D", "predicted from the tail of κ"
+_CONTINUED, _FPSE = "with v continued", "error of du/dt, FPSE"
 
 
 def study(inputs: Inputs) -> Result:

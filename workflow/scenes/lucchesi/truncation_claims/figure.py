@@ -39,7 +39,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             for variable, face in (("truncated", COLOURS[scheme]), ("open", "none")):
                 points = here.loc[variable, scheme, order].T.to_numpy()
                 ax.plot(*points, **scheme_style(scheme, order, markerfacecolor=face))
-        log_log(ax, xlabel=r"$C$")
+        log_log(ax, xlabel="truncation factor $C$")
         panel_title(ax, letter, rf"$\beta = {beta:g}$")
         name_ticks(ax, sorted(here["C"].unique())[::2])
     axes[0].set_ylabel(ERROR)

@@ -36,7 +36,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         log_log(ax, xlabel="particle spacing $h$", ylim=(3e-11, 1.0))
         name_ticks(ax, sorted(part["x"].unique()))
         panel_title(ax, letter, f"{field} field, error")
-    axes[1].set_ylabel("error over the greatest $u$")
+    axes[1].set_ylabel("error / largest $u$")
     _rotation(axes[3], pick(series, panel="rotation"))
     legend_below(drawn, axes[1], columns=5)
     return drawn

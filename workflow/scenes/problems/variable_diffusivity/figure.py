@@ -35,7 +35,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     for ax, letter, panel in zip(axes, "ab", ("line", "plane"), strict=False):
         _errors(ax, pick(series, panel=panel))
         panel_title(ax, letter, f"error, {panel}")
-    axes[0].set_ylabel("error of $du/dt$ over its greatest value")
+    axes[0].set_ylabel("error of $du/dt$ / its largest value")
     _right_hand_sides(axes[2], pick(series, panel="right-hand side"))
     _gap(axes[3], pick(series, panel="gap"))
     flux, mean = _FORMS
@@ -102,5 +102,5 @@ def _gap(ax: Axes, part: pd.DataFrame) -> None:
     ax.plot(part["x"], part["y"], color="0.2")
     end = part.iloc[-1]
     guide(ax, list(part["x"]), (end["x"], 0.5 * end["y"]), 1.0)
-    log_log(ax, xlabel=r"$2 - \alpha$", ylabel="greatest distance, relative")
-    panel_title(ax, "d", "their distance")
+    log_log(ax, xlabel=r"$2 - \alpha$", ylabel="largest relative distance")
+    panel_title(ax, "d", "distance between the two")

@@ -32,7 +32,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     log_log(axes[3], xlabel="half-width of the lattice", ylabel="error of $du/dt$, relative")
     name_ticks(axes[3], sorted(pick(series, panel="exterior")["x"].unique()))
     axes[3].legend(loc="lower left", fontsize=7, title="tail", title_fontsize=7)
-    panel_title(axes[3], "d", "what lies beyond")
+    panel_title(axes[3], "d", "tail beyond the lattice")
     return drawn
 
 
@@ -71,7 +71,11 @@ def _interpolation(ax: Axes, part: pd.DataFrame) -> None:
     for points, style in _styled(part):
         ax.plot(points["x"], points["y"], label=points["series"].iloc[0], linestyle="", **style)
         ax.plot(points["x"], points["bound"], color=style["color"], linestyle=":", marker="")
-    ax.set(yscale="log", xlabel="orders summed, $K$", ylabel="difference of rows; bound (dotted)")
+    ax.set(
+        yscale="log",
+        xlabel="number of orders summed, $K$",
+        ylabel="difference of rows; bound (dotted)",
+    )
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.legend(loc="upper right", fontsize=7, title=r"range of $\alpha$", title_fontsize=7)
     panel_title(ax, "b", r"interpolation in $\alpha$")

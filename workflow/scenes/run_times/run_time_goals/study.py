@@ -26,7 +26,7 @@ def study(inputs: Inputs, *, goals: dict[str, float], errors: list[float]) -> Re
     rows = [*_races(inputs, errors), *_reference(inputs.benchmarks["reference_times"])]
     calls = inputs.benchmarks["first_call"].set_index("call")["process_time"]
     rows += [
-        (f"a process with {call}, from start to end / s", "first call", calls[call])
+        (f"process with {call} / s", "first call", calls[call])
         for call in calls.index
         if call.startswith("fp.")
     ]
@@ -38,18 +38,18 @@ def _races(inputs: Inputs, errors: list[float]) -> Iterator[tuple[str, str, floa
         trials = trials_of(inputs.benchmarks[name])
         for problem, part in trials.groupby("problem", sort=False):
             ratio = max(behind(one, errors) for _, one in part.groupby("beta"))
-            what = f"{where}, {problem}: our fastest over the fastest of all, one solve with all counted"
+            what = f"{where}, {problem}: our time / least time"
             yield what, "ahead", ratio
 
 
 def _reference(runs: pd.DataFrame) -> Iterator[tuple[str, str, float]]:
     for scheme, part in runs.groupby("scheme"):
         ratio = part["floor_ratio"].max()
-        yield f"printed lattice, {scheme}: solve over its fastest transforms", "transforms", ratio
+        yield f"printed lattice, {scheme}: solve / fastest transforms", "transforms", ratio
     fourth = runs.loc[runs["order"] == 4, "solve_time"].max()
-    yield "printed lattice, order IV, slowest scheme, solve / s", "printed lattice", fourth
+    yield "printed lattice, order IV: slowest solve / s", "printed lattice", fourth
     kpse = runs[(runs["scheme"] == "KPSE") & (runs["order"] == 2)]
-    what = "printed setting, KPSE II: the naive algorithm, extrapolated, over ours, one core"
+    what = "printed setting, KPSE II: naive time / ours"
     yield what, "naive", kpse["naive_over_series"].iloc[0]
 
 

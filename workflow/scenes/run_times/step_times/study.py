@@ -20,7 +20,7 @@ def study(inputs: Inputs) -> Result:
             "N": data["points"],
             "step, min / ms": 1e3 * data["step_time"],
             "median / ms": 1e3 * data["step_time_median"],
-            "over the exact symbol": data["step_time"] / data["dim"].map(exact),
+            "time / exact symbol": data["step_time"] / data["dim"].map(exact),
         }
     )
     return Result(table)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from fracstudy.style import legend_below, note, note_below, panel_title
+from scenes.run_times.contests import duration
 
 __all__ = ["figure"]
 
@@ -62,7 +63,7 @@ def _bars(ax: Axes, parts: pd.DataFrame) -> None:
                 }
                 ax.annotate(f"{100.0 * share:.0f}", (start + 0.5 * share, place), **style)
             start += share
-        note(ax, _duration(bar["total"].iloc[0]), (1.0, place), (4, 0), va="center", color="black")
+        note(ax, duration(bar["total"].iloc[0]), (1.0, place), (4, 0), va="center", color="black")
     ax.set(xlim=(0.0, 1.0), xlabel="share / %")
     ax.set_xticks(np.linspace(0.0, 1.0, 5), [f"{share}" for share in range(0, 101, 25)])
     ax.tick_params(axis="y", length=0)
@@ -73,15 +74,3 @@ def _bars(ax: Axes, parts: pd.DataFrame) -> None:
 def _name(case: Any) -> str:
     applied = "application" if case.applications == 1 else "applications"
     return f"{case.case}\nN = {case.particles}, {case.applications} {applied}"
-
-
-def _duration(seconds: float) -> str:
-    """A time to two digits, in the unit in which it is a number from 1 on."""
-    for unit, name in ((1.0, "s"), (1e-3, "ms")):
-        if seconds >= unit:
-            return f"{_two_digits(seconds / unit)} {name}"
-    return f"{_two_digits(1e6 * seconds)} µs"
-
-
-def _two_digits(value: float) -> str:
-    return f"{value:.0f}" if value >= 9.95 else f"{value:.1f}"

@@ -46,7 +46,7 @@ def _podium(trials: pd.DataFrame, error: float) -> dict[str, object]:
         first = fastest.iloc[0]
         row |= {
             "N of the first": first["points"],
-            "its memory / kB": 1e-3 * first["peak_memory"],
-            "its error in the tail": first["tail_error"],
+            "memory / kB": 1e-3 * first["peak_memory"],
+            "error in the tail": first["tail_error"],
         }
     return row

@@ -28,7 +28,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, time: str, ylabel: str)
     problems, betas = series["problem"].unique(), sorted(series["beta"].unique())
     wide = len(betas) > 1
     rows, columns = (len(problems), len(betas)) if wide else (1, len(problems))
-    figure = Figure(figsize=(4.0 * columns, 2.7 * rows + 1.4), layout="constrained")
+    figure = Figure(figsize=(3.2 * columns, 2.3 * rows + 1.4), layout="constrained")
     grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
     for k, problem in enumerate(problems):
         for m, beta in enumerate(betas):
