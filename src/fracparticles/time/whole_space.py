@@ -22,7 +22,8 @@ from scipy.fft import irfft, irfftn, next_fast_len, rfft, rfftn
 
 from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.time.tails import MOST_TERMS, Tails, tail_exponents
+from fracparticles.time.exponents import MOST_TERMS, tail_exponents
+from fracparticles.time.tails import Tails
 
 __all__ = ["WholeSpace", "evolve", "tail_exponents"]
 
@@ -161,7 +162,12 @@ class WholeSpace:
     terms, tail, stretch
         See `evolve`.
     shown : int, optional
-        How many points an axis the result has, about the same middle; those of the data if left out.
+        How many points an axis the result has, about the middle of the tails; those of the data if left out.
+    middle : sequence of int, optional
+        Where the powers start along each axis, in points from the middle of the lattice, which is taken if left out.
+    moved : sequence of float, optional
+        The result is that at the points of the lattice and so many spacings on along each axis; fewer than the circle
+        of the transforms reaches beyond.
 
     Raises
     ------
@@ -182,6 +188,8 @@ class WholeSpace:
         tail: Sequence[float] | None = None,
         stretch: float | None = None,
         shown: int | None = None,
+        middle: Sequence[int] | None = None,
+        moved: Sequence[float] | None = None,
     ) -> None:
         points, dim = check.whole_number("points", points, _FEWEST), check.dimension(dim)
         alpha = check.fractional_order(alpha)
@@ -195,20 +203,25 @@ class WholeSpace:
             most = f"for {points} points an axis a lattice of at most {check.MOST} in all"
             raise InvalidInput("stretch", longer, most, "Take fewer points, or a smaller stretch.")
         circle = points if longer == 1.0 else next_fast_len(int(longer * points), real=True)
-        start = circle // 2 - points // 2
+        middle = (0,) * dim if middle is None else middle
+        moved = (0.0,) * dim if moved is None else moved
+        starts = [circle // 2 - points // 2 - by for by in middle]
         self._shape, self._circle = (points,) * dim, (circle,) * dim
         self._axes = tuple(range(-dim, 0))
-        self._start = start
-        self._inside: tuple[Any, ...] = (..., *(slice(start, start + points),) * dim)
+        self._start = np.array(starts)
+        inside = tuple(slice(start, start + points) for start in starts)
+        self._inside: tuple[Any, ...] = (..., *inside)
         self._shown = self._inside
         if shown is not None:
             first = circle // 2 - shown // 2
             self._shown = (..., *(slice(first, first + shown),) * dim)
         self._amplification = _on_circle(circle, dim, alpha, scaled_time, amplification)
+        if np.any(moved):
+            self._amplification = self._amplification * _displacement(circle, moved)
         self._tails = None
         if terms:
             time = scaled_time * float(circle) ** -alpha
-            self._tails = Tails(self._inside, self._circle, alpha, time, terms, tail)
+            self._tails = Tails(inside, self._circle, alpha, time, terms, tail, moved)
 
     def solve(self, u: np.ndarray) -> np.ndarray:
         """Return the solution from u, both of shape (..., N, .., N).
@@ -235,7 +248,7 @@ class WholeSpace:
         miss = np.abs(found - tail) / np.where(size > 0.0, size, 1.0)
         return result, float(miss.max(initial=0.0))
 
-    def _faces(self, start: int) -> np.ndarray:
+    def _faces(self, start: int | np.ndarray) -> np.ndarray:
         """The indices of the middles of the faces, shape (2 n, n); of the lattice, or in a circle where it starts."""
         dim, points = len(self._axes), self._shape[0]
         faces = np.full((2, dim, dim), points // 2)
@@ -281,6 +294,16 @@ def _on_circle(
         square = sum(axis * axis for axis in axes)
         return np.exp(-scaled_time * np.power(square, 0.5 * alpha, out=square), out=square)
     return amplification(np.stack(np.broadcast_arrays(*axes), axis=-1))
+
+
+def _displacement(points: int, moved: Sequence[float]) -> np.ndarray:
+    """Return exp(i k s) at the waves of the circle, s in spacings."""
+    every = np.fft.fftfreq(points, 1.0 / points) * (2.0 * np.pi / points)
+    waves = [every] * (len(moved) - 1) + [np.abs(every[: points // 2 + 1])]
+    phases = np.meshgrid(
+        *(k * s for k, s in zip(waves, moved, strict=True)), indexing="ij", sparse=True
+    )
+    return np.asarray(np.exp(1j * sum(phases)))
 
 
 def _refuse_outgrown(points: int, spread: float) -> None:

@@ -15,13 +15,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fracparticles.arguments import finite_array, fractional_order, positive_real
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.time.tails import later_powers
+from fracparticles.time.exponents import later_powers
 from fracparticles.time.whole_space import WholeSpace
 
 __all__ = ["evolve_long"]
@@ -29,6 +30,8 @@ __all__ = ["evolve_long"]
 _LET_GO = 20.0  # E: 2e-9
 _STRETCH = 2.5  # the circle of the transforms over the lattice; twice the lattice is wanted of it
 _TERMS = {1: 5, 2: 4, 3: 2}
+_SHORTEST = 1e-12  # scaled time of a step that only moves the solution
+_TINY = float(np.finfo(float).tiny)
 _NARROW = 16.0  # half the lattice over the spread at a doubling: less loses digits
 
 
@@ -90,8 +93,9 @@ def evolve_long(
         )
     points, dim = u.shape[0], u.ndim
     doubling = _LET_GO * (2.0 / np.pi) ** alpha  # D t / h^alpha at which the spacing doubles
+    middle = _middle(u)
     if left <= doubling * h**alpha:
-        return _step(points, dim, alpha, left * h**-alpha, tail).solve(u), h
+        return _step(points, dim, alpha, left * h**-alpha, tail, middle=middle).solve(u), h
     if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
         least = int(np.ceil(2.0 * _NARROW * doubling ** (1.0 / alpha)))
         warnings.warn(
@@ -100,7 +104,8 @@ def evolve_long(
             AccuracyWarning,
             stacklevel=2,
         )
-    u = _halved(_step(points, dim, alpha, doubling, tail, 2).solve(u), points)
+    u = _halved(_step(points, dim, alpha, doubling, tail, 2, middle=middle).solve(u), points)
+    moved = -h * np.array(middle)  # back to the middle of the lattice that was given
     left, h = left - doubling * h**alpha, 2.0 * h
     after = None if tail is None else later_powers(tail, dim, alpha, _TERMS[dim])
     between = doubling * (1.0 - 2.0**-alpha)
@@ -108,9 +113,8 @@ def evolve_long(
     while widen is not None and left > between * h**alpha:
         u = _halved(widen.solve(u), points)
         left, h = left - between * h**alpha, 2.0 * h
-    if left > 0.0:
-        u = _step(points, dim, alpha, left * h**-alpha, after).solve(u)
-    return u, h
+    last = max(left * h**-alpha, _SHORTEST)
+    return _step(points, dim, alpha, last, after, moved=moved / h).solve(u), h
 
 
 def _step(
@@ -120,11 +124,23 @@ def _step(
     scaled_time: float,
     tail: Sequence[float] | None,
     wider: int = 1,
+    **places: Any,
 ) -> WholeSpace:
+    shown = {"shown": wider * points} if wider > 1 else {}
     return WholeSpace(
         points, dim, alpha, scaled_time,
-        terms=_TERMS[dim], tail=tail, stretch=_STRETCH, shown=wider * points,
+        terms=_TERMS[dim], tail=tail, stretch=_STRETCH, **shown, **places,
     )  # fmt: skip
+
+
+def _middle(u: np.ndarray) -> list[int]:
+    """Return the centre of |u|, where the powers start, in points from the middle of the lattice."""
+    size, found = np.abs(u), []
+    for axis in range(u.ndim):
+        line = size.sum(axis=tuple(other for other in range(u.ndim) if other != axis))
+        place = np.arange(line.size) - line.size // 2
+        found.append(int(np.rint((line @ place) / max(line.sum(), _TINY))))
+    return found
 
 
 def _halved(u: np.ndarray, points: int) -> np.ndarray:
