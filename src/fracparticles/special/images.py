@@ -61,13 +61,18 @@ def outside_integrals(
     dim : int
         n.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = _gauss_legendre()
     face = 0.5 * np.array(list(product(nodes, repeat=dim - 1))).T
     weight = 0.5**dim * np.prod(list(product(weights, repeat=dim - 1)), axis=1)
     total: np.ndarray | float = 0.0
     for axis, side in product(range(dim), (-0.5, 0.5)):
         total = total + functions(np.insert(face, axis, side, axis=0)) @ weight
     return np.asarray(-total / (dim + degrees))
+
+
+@lru_cache(maxsize=1)
+def _gauss_legendre() -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(_NODES)
 
 
 def image_sum(x: np.ndarray, exponent: float) -> np.ndarray:

@@ -15,14 +15,14 @@ and its transform is (-i)^l H(k) |k|^gamma / kappa. The moments of the field, in
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache, reduce
 from math import factorial, prod
 
 import numpy as np
 
 from fracparticles.special.images import series_derivatives
 
-__all__ = ["HARMONICS", "Harmonic", "Monomial"]
+__all__ = ["HARMONICS", "Harmonic", "Monomial", "monomial"]
 
 Monomial = tuple[int, ...]
 
@@ -33,12 +33,12 @@ class Harmonic:
 
     terms: tuple[tuple[Monomial, float], ...]
 
-    @property
+    @cached_property
     def degree(self) -> int:
         """l."""
         return sum(self.terms[0][0])
 
-    @property
+    @cached_property
     def parity(self) -> Monomial:
         """In which coordinates it is odd."""
         return tuple(e % 2 for e in self.terms[0][0])
@@ -63,17 +63,17 @@ class Harmonic:
 
     def moment_at(self, q: int, x: np.ndarray) -> np.ndarray:
         """Return H(x) |x|^(2q) at points x, shape (n, points)."""
-        return np.asarray(sum(c * prod(_powers(x, x, e)) for e, c in self.moment(q).items()))
+        return np.asarray(sum(c * _product(x, x, e) for e, c in self.moment(q).items()))
 
     def tail(self, x: np.ndarray, odd: np.ndarray, gamma: float) -> np.ndarray:
-        """Return H(-grad) |x|^(-n-gamma) at points x, shape (n, points).
+        """Return H(-grad) |x|^(-n-gamma) at points x, shape (n, ..).
 
         The odd powers of a coordinate are x^(2m) `odd`, which is x but for places where it is to vanish.
         """
         s = len(x) + gamma
         found = np.square(x).sum(axis=0) ** (-0.5 * s - self.degree)
         if self.degree:
-            angular = sum(c * prod(_powers(x, odd, e)) for e, c in self.terms)
+            angular = sum(c * _product(x, odd, e) for e, c in self.terms)
             found *= prod(s + 2.0 * i for i in range(self.degree)) * angular
         return found
 
@@ -85,17 +85,25 @@ class Harmonic:
         dim, total = len(self.parity), np.zeros_like(series)
         for powers, c in self.terms:
             one = (-1.0) ** self.degree * c * series
-            for d, e in enumerate(powers):
-                axis = series.ndim - dim + d
+            for axis, e in enumerate(powers, series.ndim - dim):
                 matrix = _derivative(series.shape[-1], e)
-                one = np.moveaxis(np.tensordot(matrix, one, axes=(1, axis)), 0, axis)
+                one = np.swapaxes(np.swapaxes(one, axis, -1) @ matrix.T, axis, -1)
             total += one
         return total
 
 
-def _powers(x: np.ndarray, odd: np.ndarray, exponents: Monomial) -> list[np.ndarray]:
-    """x_d^e of each coordinate."""
-    return [(odd[d] if e % 2 else 1.0) * x[d] ** (e - e % 2) for d, e in enumerate(exponents)]
+def monomial(x: np.ndarray, odd: np.ndarray, exponent: int) -> np.ndarray:
+    """Return x^e, the odd ones as `odd` times an even power."""
+    found = odd if exponent % 2 else np.ones_like(x)
+    for _ in range(exponent // 2):
+        found = found * x * x
+    return found
+
+
+def _product(x: np.ndarray, odd: np.ndarray, exponents: Monomial) -> np.ndarray:
+    """The product of x_d^e over the coordinates, 1 without any."""
+    parts = [monomial(x[d], odd[d], e) for d, e in enumerate(exponents) if e]
+    return reduce(np.multiply, parts) if parts else np.ones(x.shape[1:])
 
 
 @lru_cache(maxsize=32)
@@ -120,11 +128,12 @@ HARMONICS: dict[int, tuple[Harmonic, ...]] = {
     1: _harmonics({"": 1.0}, {"x": 1.0}, axes="x"),
     2: _harmonics(
         {"": 1.0}, {"x": 1.0}, {"y": 1.0}, {"xx": 1.0, "yy": -1.0}, {"xy": 1.0},
-        {"xxx": 1.0, "xyy": -3.0}, {"yyy": 1.0, "xxy": -3.0}, axes="xy",
+        {"xxx": 1.0, "xyy": -3.0}, {"yyy": 1.0, "xxy": -3.0},
+        {"xxxx": 1.0, "xxyy": -6.0, "yyyy": 1.0}, {"xxxy": 1.0, "xyyy": -1.0}, axes="xy",
     ),
     3: _harmonics(
         {"": 1.0}, {"x": 1.0}, {"y": 1.0}, {"z": 1.0}, {"xy": 1.0}, {"yz": 1.0}, {"xz": 1.0},
         {"xx": 1.0, "yy": -1.0}, {"zz": 2.0, "xx": -1.0, "yy": -1.0}, axes="xyz",
     ),
 }  # fmt: skip
-"""All of degree up to 1 on the line, where there are no others; 3 in the plane, 2 in space."""
+"""All of degree up to 1 on the line, where there are no others; 4 in the plane, 2 in space."""

@@ -30,13 +30,14 @@ from fracparticles.special.images import (
     square_basis,
 )
 from fracparticles.time.exponents import SAME, powers, sums, tail_exponents
-from fracparticles.time.multipoles import HARMONICS, Harmonic, Monomial
+from fracparticles.time.multipoles import HARMONICS, Harmonic, Monomial, monomial
 
 __all__ = ["Tails"]
 
 _FOR_BLAS = 8192  # products of two numbers, below which it takes one thread
 _DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)  # where the tail meets the data, in half-widths
-_MOMENTS = {1: 5, 2: 3, 3: 2}  # the highest, by dimension
+_OUTER = np.linspace(1.0, 0.8, 8)
+_MOMENTS = {1: 5, 2: 4, 3: 2}  # the highest, by dimension
 
 Terms = list[tuple[Harmonic, float]]
 
@@ -51,6 +52,8 @@ class Tails:
     ----------
     inside : tuple of slices
         The lattice in the circle, an axis each; the powers start at the middle of the circle.
+    shown : tuple of slices
+        The points of the circle at which the result is wanted, an axis each.
     circle : tuple of int
         The shape of the circle.
     alpha : float
@@ -60,64 +63,95 @@ class Tails:
     terms, tail
         See `whole_space.evolve`.
     moved : sequence of float
-        The result is wanted at the points of the lattice and so many spacings on, along each axis.
+        The result is wanted so many spacings on, along each axis.
+    outer : bool
+        Whether the tail meets the data, in the mean, in the outer fifth of the lattice, and not at as many depths as
+        there are terms.
     """
 
     def __init__(
         self,
         inside: tuple[slice, ...],
+        shown: tuple[slice, ...],
         circle: tuple[int, ...],
         alpha: float,
         time: float,
         terms: int,
         tail: Sequence[float] | None,
         moved: Sequence[float],
+        outer: bool,
     ) -> None:
         dim, length = len(circle), circle[0]
         fundamental = tail_exponents(alpha, terms)
         before = fundamental if tail is None else powers(tail, dim)
         greatest = max([*fundamental, *before], default=0.0)
         after = sums([0.0, 2.0, *before], alpha, greatest)
-        self._dim, self._moved = dim, moved
+        self._dim, self._length, self._inside = dim, length, inside
         self._x = (np.arange(length) - length // 2) * (1.0 / length)
+        # What is odd in a coordinate vanishes where the circle closes, half way between x = -1/2 and its image at 1/2.
+        self._odd = np.where(self._x == -0.5, 0.0, self._x)
         self._before, self._after = _terms(before, dim), _terms(after, dim)
-        self._samples, self._fit = self._meeting(inside, before.size)
-        beyond = np.ones(circle, dtype=bool)
-        beyond[inside] = False
-        self._beyond = np.flatnonzero(beyond)
-        self._powers = self._columns(self._beyond, self._before)
+        self._samples, self._fit = self._meeting(before.size, outer)
+        self._powers = self._quadrant()
         self._moments = [
             (harmonic, q)
             for harmonic in HARMONICS[dim]
             for q in range((_MOMENTS[dim] - harmonic.degree) // 2 + 1)
         ]
+        each = _MOMENTS[dim] + 1
+        self._monomials = np.array([monomial(self._x, self._odd, e) for e in range(each)])
+        self._monomials *= 1.0 / length
+        self._of_monomials = np.zeros((each,) * dim + (len(self._moments),))
+        for m, (harmonic, q) in enumerate(self._moments):
+            for at, c in harmonic.moment(q).items():
+                self._of_monomials[(*at, m)] = c
+        self._of_monomials = self._of_monomials.reshape(-1, len(self._moments))
         own, count = len(self._before), len(self._moments)
         known = np.hstack([self._beyond_the_circle(), np.eye(count)])
-        self._result = self._flow(known, before, alpha, time)
-        self._bases = [self._basis(0.0)] * dim, [self._basis(by / length) for by in moved]
+        self._result = self._flow(known, alpha, time)
+        self._bases = [self._basis(slice(None), 0.0)] * dim
+        self._shown = [
+            self._basis(where, by / length) for where, by in zip(shown, moved, strict=True)
+        ]
         self._series = (
             self._images(self._before, np.eye(own, own + count)),
             self._images(self._after, self._result),
         )
 
-    def _meeting(self, inside: tuple[slice, ...], count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the flat indices of some points near the faces, and what makes the b of the values there."""
-        middle = self._x.size // 2
-        away = np.array([m for m in product((-1, 0, 1), repeat=self._dim) if any(m)])
-        low, high = np.array([(middle - one.start, one.stop - 1 - middle) for one in inside]).T
-        reach = np.where(away < 0, -low, np.where(away > 0, high, 0))
-        depths = np.array(_DEPTHS[:count]).reshape(-1, 1, 1)
-        index = (depths * reach).astype(int).reshape(-1, self._dim) + middle
-        samples = np.ravel_multi_index(tuple(index.T), (self._x.size,) * self._dim)
-        columns = self._columns(samples, self._before).T
-        scale = np.abs(columns).max(axis=0, initial=0.0)
-        return samples, np.linalg.pinv(columns / scale) / scale[:, None]
+    def _meeting(self, count: int, outer: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Return the indices in the lattice of some points near the faces, and what makes the b of the values there.
 
-    def _columns(self, points: np.ndarray, terms: Terms) -> np.ndarray:
-        """Return each H(-grad) |x|^(-n-gamma) at points given by flat indices, shape (terms, points)."""
-        x = self._x[np.array(np.unravel_index(points, (self._x.size,) * self._dim))]
-        # What is odd in a coordinate vanishes where the circle closes, half way between x = -1/2 and its image at 1/2.
-        return _values(terms, x, np.where(x == -0.5, 0.0, x))
+        Least squares, of what is missed over the slowest of the powers.
+        """
+        middle = self._length // 2
+        depths = _OUTER if outer else np.array(_DEPTHS[:count])
+        sides = (-1.0, -0.5, 0.0, 0.5, 1.0) if outer and self._dim > 1 else (-1.0, 0.0, 1.0)
+        away = np.array([m for m in product(sides, repeat=self._dim) if max(map(abs, m)) == 1.0])
+        low, high = np.array([(middle - at.start, at.stop - 1 - middle) for at in self._inside]).T
+        reach = np.where(away < 0.0, low, high) * away
+        places = (depths.reshape(-1, 1, 1) * reach).astype(int).reshape(-1, self._dim) + middle
+        columns = _values(self._before, self._x[places.T], self._odd[places.T]).T
+        weight = 1.0 / columns[:, :1] if outer and count else np.ones((len(places), 1))
+        columns = columns * weight
+        scale = np.abs(columns).max(axis=0, initial=0.0)
+        fit = np.linalg.pinv(columns / scale) / scale[:, None] * weight.T
+        return places.T - np.array([[at.start] for at in self._inside]), fit
+
+    def _quadrant(self) -> dict[Monomial, tuple[list[int], np.ndarray]]:
+        """Return each H(-grad) |x|^(-n-gamma) where no coordinate is negative, by the coordinates in which H is odd.
+
+        Each with the rows of the terms and an array of shape (terms, L // 2 + 1, ..). At the origin it is finite.
+        """
+        half = np.abs(self._x[self._length // 2 :: -1]), np.abs(self._odd[self._length // 2 :: -1])
+        x, odd = (np.array(np.meshgrid(*(one,) * self._dim, indexing="ij")) for one in half)
+        x.reshape(self._dim, -1)[:, 0] = 1.0
+        rows: dict[Monomial, list[int]] = {}
+        for row, (harmonic, _) in enumerate(self._before):
+            rows.setdefault(harmonic.parity, []).append(row)
+        return {
+            parity: (own, _values([self._before[row] for row in own], x, odd))
+            for parity, own in rows.items()
+        }
 
     def _beyond_the_circle(self) -> np.ndarray:
         """What the moments lack there of each term of the tail, shape (moments, terms)."""
@@ -133,28 +167,25 @@ class Tails:
 
         return outside_integrals(products, np.array(degrees), self._dim)
 
-    def _flow(
-        self, known: np.ndarray, before: np.ndarray, alpha: float, time: float
-    ) -> np.ndarray:
+    def _flow(self, known: np.ndarray, alpha: float, time: float) -> np.ndarray:
         """Return the matrix from the numbers to the b of the result: exp(-t |k|^alpha) times the expansion at k = 0."""
-        own = len(self._before)
         scaled = 1.0 / power_transform(np.array([g for _, g in self._before]), self._dim)
         found = np.zeros((len(self._after), known.shape[1]))
         for row, (harmonic, exponent) in enumerate(self._after):
             for m, (other, q) in enumerate(self._moments):
                 if other is harmonic:
-                    found[row] += harmonic.share(q) * _power(2.0 * q, exponent, alpha, time) * known[m]
+                    share = harmonic.share(q) * _power(2.0 * q, exponent, alpha, time)
+                    found[row] += share * known[m]
             for at, (other, gamma) in enumerate(self._before):
                 if other is harmonic:
                     found[row, at] += scaled[at] * _power(gamma, exponent, alpha, time)
-            found[row] *= power_transform(exponent, self._dim)
+            found[row] *= power_transform(np.array(exponent), self._dim)
         return found
 
-    def _basis(self, by: float) -> tuple[np.ndarray, np.ndarray]:
+    def _basis(self, where: slice, by: float) -> tuple[np.ndarray, np.ndarray]:
         """The polynomials of the images along an axis, the even ones and x times these."""
-        x = self._x + by
-        even = square_basis(x, self._dim)
-        return even, np.where(self._x == -0.5, 0.0, x) * even
+        even = square_basis(self._x[where] + by, self._dim)
+        return even, (self._odd[where] + by) * even
 
     def _images(self, terms: Terms, amplitudes: np.ndarray) -> dict[Monomial, np.ndarray]:
         """Return the series of the images, linear in the numbers, by the coordinates in which it is odd."""
@@ -165,37 +196,50 @@ class Tails:
             found[harmonic.parity] = found.get(harmonic.parity, 0.0) + part
         return found
 
-    def complete(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Continue the data, shape (data, L, .., L), and add their images, in place.
+    def complete(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the data, shape (data, N, .., N), continued on the circle, and their images added.
 
-        Return the images of the result, and the numbers that they depend on.
+        Then the images of the result where it is shown, and the numbers that they depend on.
         """
-        flat = u.reshape(len(u), self._x.size**self._dim)
-        tail = flat[:, self._samples] @ self._fit.T
-        flat[:, self._beyond] = np.einsum("nk,kx->nx", tail, self._powers)
-        numbers = np.hstack([tail, self._moments_of(u)])
-        u += self._sum(numbers, self._series[0], self._bases[0])
-        return self._sum(numbers, self._series[1], self._bases[1]), numbers
+        tail = u[(slice(None), *self._samples)] @ self._fit.T
+        whole = self._continued(tail)
+        whole[(slice(None), *self._inside)] = u
+        numbers = np.hstack([tail, self._moments_of(whole)])
+        whole += self._sum(numbers, self._series[0], self._bases)
+        return whole, self._sum(numbers, self._series[1], self._shown), numbers
+
+    def _continued(self, tail: np.ndarray) -> np.ndarray:
+        """Return the tail on the circle: from one quadrant, by what is even and what is odd in each coordinate."""
+        whole = np.empty((len(tail), *(self._length,) * self._dim))
+        if not self._powers:
+            whole[...] = 0.0
+        parts = {
+            parity: np.einsum("nk,k...->n...", tail[:, rows], columns)
+            for parity, (rows, columns) in self._powers.items()
+        }
+        middle = self._length // 2
+        ahead, behind = slice(0, self._length - middle), slice(middle, 0, -1)
+        for sides in product((False, True), repeat=self._dim):  # behind the middle, along each axis
+            whole_part = tuple(slice(0, middle) if back else slice(middle, None) for back in sides)
+            of_quadrant = tuple(behind if back else ahead for back in sides)
+            there = whole[(slice(None), *whole_part)]
+            for k, (parity, one) in enumerate(parts.items()):  # the first is even in all of them
+                flipped = sum(odd for odd, back in zip(parity, sides, strict=True) if back) % 2
+                add = np.subtract if flipped else np.add
+                part = one[(slice(None), *of_quadrant)]
+                np.copyto(there, part) if k == 0 else add(there, part, out=there)
+        return whole
 
     def _moments_of(self, u: np.ndarray) -> np.ndarray:
         """Return int H(x) |x|^(2q) u over the circle, shape (data, moments)."""
-        odd = np.where(self._x == -0.5, 0.0, self._x)
-        powers = np.array(
-            [(odd if e % 2 else 1.0) * self._x ** (e - e % 2) for e in range(_MOMENTS[self._dim] + 1)]
-        ) * (1.0 / self._x.size)
         for _ in range(self._dim):  # the last axis becomes the first after the data
-            u = np.einsum("n...x,ex->ne...", u, powers)
-        return np.array(
-            [
-                sum(c * u[(slice(None), *at)] for at, c in harmonic.moment(q).items())
-                for harmonic, q in self._moments
-            ]
-        ).T
+            u = np.einsum("n...x,ex->ne...", u, self._monomials)
+        return u.reshape(len(u), -1) @ self._of_monomials
 
     def result_at(self, index: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """Return the tail of the result at some points, shape (data, points)."""
-        points = np.ravel_multi_index(tuple(index.T), (self._x.size,) * self._dim)
-        return np.asarray(numbers @ self._result.T @ self._columns(points, self._after))
+        """Return the tail of the result at some points of the circle, shape (data, points)."""
+        columns = _values(self._after, self._x[index.T], self._odd[index.T])
+        return np.asarray(numbers @ self._result.T @ columns)
 
     def _sum(
         self,
@@ -203,19 +247,19 @@ class Tails:
         series: dict[Monomial, np.ndarray],
         bases: Sequence[tuple[np.ndarray, np.ndarray]],
     ) -> np.ndarray:
-        """Return the images on the circle, shape (data, L, .., L): the polynomials are summed along one axis after
-        the other."""
+        """Return the images: the polynomials are summed along one axis after the other."""
         parts = {
-            parity: np.tensordot(numbers, one, axes=(1, 0)) for parity, one in series.items()
+            parity: (numbers @ one.reshape(len(one), -1)).reshape(-1, *one.shape[1:])
+            for parity, one in series.items()
         }
         for basis in bases:
             summed: dict[Monomial, np.ndarray] = {}
             for (odd, *rest), one in parts.items():
-                along = _along(one, basis[odd])
-                key = tuple(rest)
+                along, key = _along(one, basis[odd]), tuple(rest)
                 summed[key] = summed[key] + along if key in summed else along
             parts = summed
-        return parts.get((), np.zeros((len(numbers), *(self._x.size,) * self._dim)))
+        shape = tuple(even.shape[1] for even, _ in bases)
+        return parts.get((), np.zeros((len(numbers), *shape)))
 
 
 def _terms(exponents: np.ndarray, dim: int) -> Terms:
@@ -225,8 +269,8 @@ def _terms(exponents: np.ndarray, dim: int) -> Terms:
 
 
 def _values(terms: Terms, x: np.ndarray, odd: np.ndarray) -> np.ndarray:
-    """Return each H(-grad) |x|^(-n-gamma), shape (terms, points), see `Harmonic.tail`."""
-    values = np.empty((len(terms), x.shape[1]))
+    """Return each H(-grad) |x|^(-n-gamma), shape (terms, ..), at points of shape (n, ..); see `Harmonic.tail`."""
+    values = np.empty((len(terms), *x.shape[1:]))
     for row, (harmonic, gamma) in zip(values, terms, strict=True):
         row[:] = harmonic.tail(x, odd, gamma)
     return values

@@ -104,14 +104,14 @@ def evolve_long(
             AccuracyWarning,
             stacklevel=2,
         )
-    u = _halved(_step(points, dim, alpha, doubling, tail, 2, middle=middle).solve(u), points)
+    u = _step(points, dim, alpha, doubling, tail, wider=2, middle=middle).solve(u)
     moved = -h * np.array(middle)  # back to the middle of the lattice that was given
     left, h = left - doubling * h**alpha, 2.0 * h
     after = None if tail is None else later_powers(tail, dim, alpha, _TERMS[dim])
     between = doubling * (1.0 - 2.0**-alpha)
-    widen = _step(points, dim, alpha, between, after, 2) if left > between * h**alpha else None
+    widen = _step(points, dim, alpha, between, after, wider=2) if left > between * h**alpha else None
     while widen is not None and left > between * h**alpha:
-        u = _halved(widen.solve(u), points)
+        u = widen.solve(u)
         left, h = left - between * h**alpha, 2.0 * h
     last = max(left * h**-alpha, _SHORTEST)
     return _step(points, dim, alpha, last, after, moved=moved / h).solve(u), h
@@ -123,13 +123,11 @@ def _step(
     alpha: float,
     scaled_time: float,
     tail: Sequence[float] | None,
-    wider: int = 1,
     **places: Any,
 ) -> WholeSpace:
-    shown = {"shown": wider * points} if wider > 1 else {}
     return WholeSpace(
         points, dim, alpha, scaled_time,
-        terms=_TERMS[dim], tail=tail, stretch=_STRETCH, **shown, **places,
+        terms=_TERMS[dim], tail=tail, stretch=_STRETCH, outer=True, **places,
     )  # fmt: skip
 
 
@@ -141,9 +139,3 @@ def _middle(u: np.ndarray) -> list[int]:
         place = np.arange(line.size) - line.size // 2
         found.append(int(np.rint((line @ place) / max(line.sum(), _TINY))))
     return found
-
-
-def _halved(u: np.ndarray, points: int) -> np.ndarray:
-    """Every second of 2 N points along each axis, the middle one kept."""
-    along = slice(points - 2 * (points // 2), None, 2)
-    return np.ascontiguousarray(u[(along,) * u.ndim])
