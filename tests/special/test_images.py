@@ -69,7 +69,7 @@ def test_the_series_is_the_sum(dim, exponent, tolerance):
 
 
 def test_derivatives_of_a_series():
-    """Of exp(x^2), whose series to T_17 is exact to round-off: 2 x exp(x^2), and of x exp(x^2)."""
+    """Of exp(x^2), whose series to T_17 is exact to round-off, which the derivative magnifies by 17^4 at most: 2 x exp(x^2), and of x exp(x^2)."""
     count, x = 18, np.linspace(-0.5, 0.5, 9)
     series = np.polynomial.chebyshev.chebinterpolate(lambda s: np.exp((s + 1.0) / 8.0), count - 1)
     first, second = series_derivatives(count)
@@ -77,8 +77,8 @@ def test_derivatives_of_a_series():
     def value(c):
         return np.polynomial.chebyshev.chebval(8.0 * x * x - 1.0, c)
 
-    assert x * value(first @ series) == pytest.approx(2.0 * x * np.exp(x * x), abs=1e-12)
-    assert value(second @ series) == pytest.approx((1.0 + 2.0 * x * x) * np.exp(x * x), rel=1e-12)
+    assert x * value(first @ series) == pytest.approx(2.0 * x * np.exp(x * x), abs=1e-10)
+    assert value(second @ series) == pytest.approx((1.0 + 2.0 * x * x) * np.exp(x * x), rel=1e-10)
 
 
 @pytest.mark.parametrize("dim", [1, 2, 3])

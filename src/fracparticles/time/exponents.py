@@ -9,7 +9,7 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 
-__all__ = ["MOST_TERMS", "SAME", "later_powers", "powers", "sums", "tail_exponents"]
+__all__ = ["MOST_TERMS", "SAME", "later_exponents", "powers", "tail_exponents"]
 
 MOST_TERMS = 6
 SAME = 1e-9  # exponents nearer than this are one
@@ -59,16 +59,14 @@ def _from_even(exponent: float) -> float:
     return abs(exponent - 2.0 * round(0.5 * exponent))
 
 
-def later_powers(tail: Sequence[float], dim: int, alpha: float, terms: int) -> tuple[float, ...]:
-    """Return the first powers by which a solution falls whose data fell like these, see `whole_space.evolve`."""
-    own = powers(tail, dim)
-    every = sums([0.0, 2.0, *own], alpha, max([*tail_exponents(alpha, terms), *own]))
-    return tuple((dim + every[:MOST_TERMS]).tolist())
+def later_exponents(
+    before: Sequence[float] | np.ndarray, alpha: float, greatest: float
+) -> np.ndarray:
+    """Return the gamma up to the greatest by which a solution falls whose data fell by those before, ascending.
 
-
-def sums(starts: Sequence[float], alpha: float, greatest: float) -> np.ndarray:
-    """Return the exponents start + j alpha up to the greatest that belong to a tail, ascending, each once."""
-    most = int(greatest / alpha) + 1
+    They are j alpha more than those, or than the 0, 2, 4 of the moments, but for even ones, which belong to no tail.
+    """
+    starts, most = [0.0, 2.0, 4.0, *before], int(greatest / alpha) + 1
     found: list[float] = []
     for exponent in sorted(start + j * alpha for start in starts for j in range(most + 1)):
         new = not found or exponent - found[-1] > SAME

@@ -5,7 +5,7 @@ degree l: the monopole, the dipole, and so on. With s = n + gamma
 
     H(-grad) |x|^(-s) = s (s + 2) .. (s + 2 l - 2) H(x) |x|^(-s-2l),
 
-and its transform is (-i)^l H(k) |k|^gamma / kappa. The moments of the field, int H(x) |x|^(2q) u, enter its transform by
+and its transform is (-i)^l H(k) |k|^gamma / kappa. The moments int H(x) |x|^(2q) u enter the transform of u by
 
     exp(-i k.x) = sum_H (-i)^l H(k) H(x) / <H, H> sum_q (-1)^q |k|^(2q) |x|^(2q) / prod_{i=1}^q 2 i (n + 2 l + 2 i - 2),
 
@@ -21,8 +21,9 @@ from math import factorial, prod
 import numpy as np
 
 from fracparticles.special.images import series_derivatives
+from fracparticles.time.exponents import SAME
 
-__all__ = ["HARMONICS", "Harmonic", "Monomial", "monomial"]
+__all__ = ["HARMONICS", "Harmonic", "Monomial", "Terms", "monomial", "terms_of", "values_of"]
 
 Monomial = tuple[int, ...]
 
@@ -137,3 +138,21 @@ HARMONICS: dict[int, tuple[Harmonic, ...]] = {
     ),
 }  # fmt: skip
 """All of degree up to 1 on the line, where there are no others; 4 in the plane, 2 in space."""
+
+
+Terms = list[tuple[Harmonic, float]]
+"""The H and the gamma of a tail."""
+
+
+def terms_of(exponents: np.ndarray, dim: int) -> Terms:
+    """Which H goes with which gamma: up to the order of the last dipole."""
+    last = max(exponents, default=0.0) + 1.0
+    return [(h, float(g)) for h in HARMONICS[dim] for g in exponents if g + h.degree <= last + SAME]
+
+
+def values_of(terms: Terms, x: np.ndarray, odd: np.ndarray) -> np.ndarray:
+    """Return each H(-grad) |x|^(-n-gamma), shape (terms, ..), at points of shape (n, ..); see `Harmonic.tail`."""
+    values = np.empty((len(terms), *x.shape[1:]))
+    for row, (harmonic, gamma) in zip(values, terms, strict=True):
+        row[:] = harmonic.tail(x, odd, gamma)
+    return values

@@ -29,17 +29,21 @@ from fracparticles.special.images import (
     power_transform,
     square_basis,
 )
-from fracparticles.time.exponents import SAME, powers, sums, tail_exponents
-from fracparticles.time.multipoles import HARMONICS, Harmonic, Monomial, monomial
+from fracparticles.time.exponents import SAME
+from fracparticles.time.meeting import Meeting
+from fracparticles.time.multipoles import (
+    HARMONICS,
+    Monomial,
+    Terms,
+    monomial,
+    terms_of,
+    values_of,
+)
 
 __all__ = ["Tails"]
 
 _FOR_BLAS = 8192  # products of two numbers, below which it takes one thread
-_DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)  # where the tail meets the data, in half-widths
-_OUTER = np.linspace(1.0, 0.8, 8)
 _MOMENTS = {1: 5, 2: 4, 3: 2}  # the highest, by dimension
-
-Terms = list[tuple[Harmonic, float]]
 
 
 class Tails:
@@ -54,44 +58,39 @@ class Tails:
         The lattice in the circle, an axis each; the powers start at the middle of the circle.
     shown : tuple of slices
         The points of the circle at which the result is wanted, an axis each.
-    circle : tuple of int
-        The shape of the circle.
+    length : int
+        The points of the circle along each axis.
     alpha : float
         Fractional order.
     time : float
         D t over the alpha-th power of the period.
-    terms, tail
-        See `whole_space.evolve`.
-    moved : sequence of float
+    before, after : arrays
+        The gamma of the data and of the result.
+    moved : sequence of float, optional
         The result is wanted so many spacings on, along each axis.
     outer : bool
-        Whether the tail meets the data, in the mean, in the outer fifth of the lattice, and not at as many depths as
-        there are terms.
+        See `Meeting`.
     """
 
     def __init__(
         self,
         inside: tuple[slice, ...],
         shown: tuple[slice, ...],
-        circle: tuple[int, ...],
+        length: int,
         alpha: float,
         time: float,
-        terms: int,
-        tail: Sequence[float] | None,
-        moved: Sequence[float],
-        outer: bool,
+        before: np.ndarray,
+        after: np.ndarray,
+        moved: Sequence[float] | None = None,
+        outer: bool = False,
     ) -> None:
-        dim, length = len(circle), circle[0]
-        fundamental = tail_exponents(alpha, terms)
-        before = fundamental if tail is None else powers(tail, dim)
-        greatest = max([*fundamental, *before], default=0.0)
-        after = sums([0.0, 2.0, *before], alpha, greatest)
+        dim = len(inside)
         self._dim, self._length, self._inside = dim, length, inside
         self._x = (np.arange(length) - length // 2) * (1.0 / length)
         # What is odd in a coordinate vanishes where the circle closes, half way between x = -1/2 and its image at 1/2.
         self._odd = np.where(self._x == -0.5, 0.0, self._x)
-        self._before, self._after = _terms(before, dim), _terms(after, dim)
-        self._samples, self._fit = self._meeting(before.size, outer)
+        self._before, self._after = terms_of(before, dim), terms_of(after, dim)
+        self.meeting = Meeting(self._before, self._x, self._odd, inside, outer)
         self._powers = self._quadrant()
         self._moments = [
             (harmonic, q)
@@ -111,31 +110,13 @@ class Tails:
         self._result = self._flow(known, alpha, time)
         self._bases = [self._basis(slice(None), 0.0)] * dim
         self._shown = [
-            self._basis(where, by / length) for where, by in zip(shown, moved, strict=True)
+            self._basis(where, by / length)
+            for where, by in zip(shown, moved or (0.0,) * dim, strict=True)
         ]
         self._series = (
             self._images(self._before, np.eye(own, own + count)),
             self._images(self._after, self._result),
         )
-
-    def _meeting(self, count: int, outer: bool) -> tuple[np.ndarray, np.ndarray]:
-        """Return the indices in the lattice of some points near the faces, and what makes the b of the values there.
-
-        Least squares, of what is missed over the slowest of the powers.
-        """
-        middle = self._length // 2
-        depths = _OUTER if outer else np.array(_DEPTHS[:count])
-        sides = (-1.0, -0.5, 0.0, 0.5, 1.0) if outer and self._dim > 1 else (-1.0, 0.0, 1.0)
-        away = np.array([m for m in product(sides, repeat=self._dim) if max(map(abs, m)) == 1.0])
-        low, high = np.array([(middle - at.start, at.stop - 1 - middle) for at in self._inside]).T
-        reach = np.where(away < 0.0, low, high) * away
-        places = (depths.reshape(-1, 1, 1) * reach).astype(int).reshape(-1, self._dim) + middle
-        columns = _values(self._before, self._x[places.T], self._odd[places.T]).T
-        weight = 1.0 / columns[:, :1] if outer and count else np.ones((len(places), 1))
-        columns = columns * weight
-        scale = np.abs(columns).max(axis=0, initial=0.0)
-        fit = np.linalg.pinv(columns / scale) / scale[:, None] * weight.T
-        return places.T - np.array([[at.start] for at in self._inside]), fit
 
     def _quadrant(self) -> dict[Monomial, tuple[list[int], np.ndarray]]:
         """Return each H(-grad) |x|^(-n-gamma) where no coordinate is negative, by the coordinates in which H is odd.
@@ -149,7 +130,7 @@ class Tails:
         for row, (harmonic, _) in enumerate(self._before):
             rows.setdefault(harmonic.parity, []).append(row)
         return {
-            parity: (own, _values([self._before[row] for row in own], x, odd))
+            parity: (own, values_of([self._before[row] for row in own], x, odd))
             for parity, own in rows.items()
         }
 
@@ -163,7 +144,7 @@ class Tails:
 
         def products(x: np.ndarray) -> np.ndarray:
             moments = np.array([h.moment_at(q, x) for h, q in self._moments])
-            return moments[:, None] * _values(self._before, x, x)
+            return moments[:, None] * values_of(self._before, x, x)
 
         return outside_integrals(products, np.array(degrees), self._dim)
 
@@ -196,12 +177,16 @@ class Tails:
             found[harmonic.parity] = found.get(harmonic.parity, 0.0) + part
         return found
 
-    def complete(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def complete(
+        self, u: np.ndarray, tail: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the data, shape (data, N, .., N), continued on the circle, and their images added.
 
-        Then the images of the result where it is shown, and the numbers that they depend on.
+        Then the images of the result where it is shown, and the numbers that they depend on. With the `tail` of the
+        data, as `result` has it, nothing is fitted.
         """
-        tail = u[(slice(None), *self._samples)] @ self._fit.T
+        scale = float(self._length) ** -self._falls(self._before)
+        tail = self.meeting.fitted(u) if tail is None else tail * scale
         whole = self._continued(tail)
         whole[(slice(None), *self._inside)] = u
         numbers = np.hstack([tail, self._moments_of(whole)])
@@ -234,11 +219,19 @@ class Tails:
         """Return int H(x) |x|^(2q) u over the circle, shape (data, moments)."""
         for _ in range(self._dim):  # the last axis becomes the first after the data
             u = np.einsum("n...x,ex->ne...", u, self._monomials)
-        return u.reshape(len(u), -1) @ self._of_monomials
+        return u.reshape(len(u), len(self._of_monomials)) @ self._of_monomials
+
+    def result(self, numbers: np.ndarray, wider: int) -> np.ndarray:
+        """Return the b of the result, shape (data, terms), in units of so many spacings."""
+        return numbers @ self._result.T * (self._length / wider) ** self._falls(self._after)
+
+    def _falls(self, terms: Terms) -> np.ndarray:
+        """The powers of |x| by which the terms fall."""
+        return np.array([self._dim + gamma + harmonic.degree for harmonic, gamma in terms])
 
     def result_at(self, index: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """Return the tail of the result at some points of the circle, shape (data, points)."""
-        columns = _values(self._after, self._x[index.T], self._odd[index.T])
+        columns = values_of(self._after, self._x[index.T], self._odd[index.T])
         return np.asarray(numbers @ self._result.T @ columns)
 
     def _sum(
@@ -249,7 +242,7 @@ class Tails:
     ) -> np.ndarray:
         """Return the images: the polynomials are summed along one axis after the other."""
         parts = {
-            parity: (numbers @ one.reshape(len(one), -1)).reshape(-1, *one.shape[1:])
+            parity: (numbers @ one.reshape(len(one), -1)).reshape(len(numbers), *one.shape[1:])
             for parity, one in series.items()
         }
         for basis in bases:
@@ -260,20 +253,6 @@ class Tails:
             parts = summed
         shape = tuple(even.shape[1] for even, _ in bases)
         return parts.get((), np.zeros((len(numbers), *shape)))
-
-
-def _terms(exponents: np.ndarray, dim: int) -> Terms:
-    """Which H goes with which gamma: up to the order of the last dipole."""
-    last = max(exponents, default=0.0) + 1.0
-    return [(h, float(g)) for h in HARMONICS[dim] for g in exponents if g + h.degree <= last + SAME]
-
-
-def _values(terms: Terms, x: np.ndarray, odd: np.ndarray) -> np.ndarray:
-    """Return each H(-grad) |x|^(-n-gamma), shape (terms, ..), at points of shape (n, ..); see `Harmonic.tail`."""
-    values = np.empty((len(terms), *x.shape[1:]))
-    for row, (harmonic, gamma) in zip(values, terms, strict=True):
-        row[:] = harmonic.tail(x, odd, gamma)
-    return values
 
 
 def _power(start: float, exponent: float, alpha: float, time: float) -> float:

@@ -13,22 +13,20 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
-from functools import reduce
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.fft import irfft, irfftn, next_fast_len, rfft, rfftn
+from scipy.fft import next_fast_len, rfft
 
 from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.time.exponents import MOST_TERMS, tail_exponents
+from fracparticles.time.circle import Amplification, Circle
+from fracparticles.time.exponents import MOST_TERMS, later_exponents, powers, tail_exponents
 from fracparticles.time.tails import Tails
 
-__all__ = ["WholeSpace", "evolve", "tail_exponents"]
-
-Amplification = Callable[[np.ndarray], np.ndarray]
+__all__ = ["WholeSpace", "evolve", "tail_exponents", "unresolved"]
 
 _NOTICED = (
     1e-3  # of the maximum: a tail that misses the solution by more, or waves that the lattice lacks
@@ -114,7 +112,7 @@ def evolve(
             AccuracyWarning,
             stacklevel=2,
         )
-    lacking = _unresolved(u.reshape(_count(u, dim), *(points,) * dim)) * min(
+    lacking = unresolved(u.reshape(_count(u, dim), *(points,) * dim)) * min(
         1.0, scaled_time * np.pi**alpha
     )
     if lacking > _NOTICED:
@@ -127,7 +125,7 @@ def evolve(
     return result
 
 
-def _unresolved(u: np.ndarray) -> float:
+def unresolved(u: np.ndarray) -> float:
     """Return what the data, shape (data, N, .., N), may have at the wavenumber 2 K, K = pi / h, over their greatest.
 
     That looks like a constant. u^ is known up to K along each axis, from the sums over the others; at 2 K it is the
@@ -162,17 +160,6 @@ class WholeSpace:
         exp(-tau |theta|^alpha).
     terms, tail, stretch
         See `evolve`.
-    wider : int
-        The result has as many points so many spacings apart, if not one, about the middle of the tails; the solution
-        must have no waves that this lattice does not hold.
-    middle : sequence of int, optional
-        Where the powers start along each axis, in points from the middle of the lattice, which is taken if left out.
-    moved : sequence of float, optional
-        The result is that at the points of the lattice and so many spacings on along each axis; fewer than the circle
-        of the transforms reaches beyond.
-    outer : bool
-        Whether the powers meet the data in the mean of the outer fifth of the lattice: better for data that are spread
-        over a tenth of it, and no better for those that are narrow.
 
     Raises
     ------
@@ -192,10 +179,6 @@ class WholeSpace:
         terms: int = 2,
         tail: Sequence[float] | None = None,
         stretch: float | None = None,
-        wider: int = 1,
-        middle: Sequence[int] | None = None,
-        moved: Sequence[float] | None = None,
-        outer: bool = False,
     ) -> None:
         points, dim = check.whole_number("points", points, _FEWEST), check.dimension(dim)
         alpha = check.fractional_order(alpha)
@@ -208,36 +191,22 @@ class WholeSpace:
         if (longer * points) ** dim > check.MOST:
             most = f"for {points} points an axis a lattice of at most {check.MOST} in all"
             raise InvalidInput("stretch", longer, most, "Take fewer points, or a smaller stretch.")
-        circle = points
-        if longer > 1.0:
-            circle = next_fast_len(int(longer * points), real=True)
-            if wider > 1:  # every second of the points that are left is one of them
-                circle = 2 * wider * next_fast_len(-(-int(longer * points) // (2 * wider)))
-        middle = (0,) * dim if middle is None else middle
-        moved = (0.0,) * dim if moved is None else moved
-        starts = [circle // 2 - points // 2 - by for by in middle]
+        circle = points if longer == 1.0 else next_fast_len(int(longer * points), real=True)
+        start = circle // 2 - points // 2
         self._shape, self._circle = (points,) * dim, (circle,) * dim
         self._axes = tuple(range(-dim, 0))
-        self._start = np.array(starts)
-        inside = tuple(slice(start, start + points) for start in starts)
-        shown, self._shown = inside, inside
-        self._wider = wider
-        if wider > 1:
-            first = circle // 2 - wider * (points // 2)
-            shown = (slice(first, first + wider * (points - 1) + 1, wider),) * dim
-            self._shown = (slice(first // wider, first // wider + points),) * dim
-        self._inside = (..., *inside)
-        self._shown = (..., *self._shown)
-        scaled = scaled_time * float(wider) ** -alpha
-        self._amplification = _on_circle(circle // wider, dim, alpha, scaled, amplification)
-        if np.any(moved):
-            self._amplification = self._amplification * _displacement(circle, moved)
+        self._start = start
+        inside = (slice(start, start + points),) * dim
+        self._inside: tuple[Any, ...] = (..., *inside)
+        self._periodic = Circle(circle, dim, alpha, scaled_time, amplification)
         self._tails = None
         if terms:
+            fundamental = tail_exponents(alpha, terms)
+            before = fundamental if tail is None else powers(tail, dim)
+            greatest = max([*fundamental, *before], default=0.0)
+            after = later_exponents(before, alpha, greatest)
             time = scaled_time * float(circle) ** -alpha
-            self._tails = Tails(
-                inside, shown, self._circle, alpha, time, terms, tail, moved, outer
-            )
+            self._tails = Tails(inside, inside, circle, alpha, time, before, after)
 
     def solve(self, u: np.ndarray) -> np.ndarray:
         """Return the solution from u, both of shape (..., N, .., N).
@@ -264,7 +233,7 @@ class WholeSpace:
         miss = np.abs(found - tail) / np.where(size > 0.0, size, 1.0)
         return result, float(miss.max(initial=0.0))
 
-    def _faces(self, start: int | np.ndarray) -> np.ndarray:
+    def _faces(self, start: int) -> np.ndarray:
         """The indices of the middles of the faces, shape (2 n, n); of the lattice, or in a circle where it starts."""
         dim, points = len(self._axes), self._shape[0]
         faces = np.full((2, dim, dim), points // 2)
@@ -284,49 +253,7 @@ class WholeSpace:
             longer[self._inside] = each
             return self._periodic(longer)[self._inside].reshape(u.shape), np.zeros(0)
         longer, images, numbers = self._tails.complete(each)
-        return (self._periodic(longer)[self._shown] - images).reshape(u.shape), numbers
-
-    def _periodic(self, u: np.ndarray) -> np.ndarray:
-        """Return the result on the circle, or on every so many points of it, where longer waves are left."""
-        if len(self._axes) == 1 and self._wider == 1:
-            return np.asarray(irfft(rfft(u) * self._amplification, u.shape[-1]))
-        spectrum = rfftn(u, axes=self._axes)
-        shape = tuple(length // self._wider for length in self._circle)
-        if self._wider > 1:
-            half = shape[0] // 2
-            spectrum = spectrum[..., : half + 1] * float(self._wider) ** -len(shape)
-            for axis in self._axes[:-1]:
-                ends = np.moveaxis(spectrum, axis, 0)
-                spectrum = np.moveaxis(np.concatenate([ends[:half], ends[-half:]]), 0, axis)
-        spectrum *= self._amplification
-        return np.asarray(irfftn(spectrum, shape, axes=self._axes))
-
-
-def _on_circle(
-    points: int,
-    dim: int,
-    alpha: float,
-    scaled_time: float,
-    amplification: Amplification | None,
-) -> np.ndarray:
-    """Return f at the waves of the circle, theta = 2 pi m / N, the last axis as of a real transform."""
-    last = np.arange(points // 2 + 1) * (2.0 * np.pi / points)
-    if dim == 1:
-        return np.exp(-scaled_time * last**alpha) if amplification is None else amplification(last)
-    every = np.fft.fftfreq(points, 1.0 / points) * (2.0 * np.pi / points)
-    axes = np.meshgrid(*[every] * (dim - 1), last, indexing="ij", sparse=True)
-    if amplification is None:
-        square = sum(axis * axis for axis in axes)
-        return np.exp(-scaled_time * np.power(square, 0.5 * alpha, out=square), out=square)
-    return amplification(np.stack(np.broadcast_arrays(*axes), axis=-1))
-
-
-def _displacement(points: int, moved: Sequence[float]) -> np.ndarray:
-    """Return exp(i k s) at the waves of the circle, s in spacings."""
-    every = np.fft.fftfreq(points, 1.0 / points) * (2.0 * np.pi / points)
-    waves = [every] * (len(moved) - 1) + [np.abs(every[: points // 2 + 1])]
-    phases = [np.exp(1j * s * k) for k, s in zip(waves, moved, strict=True)]
-    return np.asarray(reduce(np.multiply.outer, phases))
+        return (self._periodic(longer)[self._inside] - images).reshape(u.shape), numbers
 
 
 def _refuse_outgrown(points: int, spread: float) -> None:
