@@ -14,6 +14,7 @@ polynomial in the squares.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from itertools import product
 
@@ -21,7 +22,14 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebder
 from scipy.special import gamma, gammainc, gammaincc, zeta
 
-__all__ = ["image_series", "image_sum", "outside_integral", "power_transform", "square_basis"]
+__all__ = [
+    "image_series",
+    "image_sum",
+    "outside_integrals",
+    "power_transform",
+    "series_derivatives",
+    "square_basis",
+]
 
 _DEGREES = {1: 9, 2: 6, 3: 5}  # in the squares, by dimension: the error falls by 14 each
 _SHELLS = 2  # of Ewald's sums: exp(-pi 2.5^2) is 3e-9, of an image sum that is itself a correction
@@ -38,19 +46,34 @@ def power_transform(exponent: np.ndarray, dim: int) -> np.ndarray:
     return 2.0**g * gamma(0.5 * (dim + g)) / (np.pi ** (0.5 * dim) * gamma(-0.5 * g))
 
 
-def outside_integral(exponent: float, dim: int) -> float:
-    """Return the integral of |x|^(-n-gamma) outside the cube |x|_inf < 1/2, its finite part where it diverges.
+def outside_integrals(
+    functions: Callable[[np.ndarray], np.ndarray], degrees: np.ndarray, dim: int
+) -> np.ndarray:
+    """Return the integrals of homogeneous functions outside the cube |x|_inf < 1/2, finite parts where they diverge.
 
-    By the divergence theorem (1/gamma) times that of |x|^(-n-gamma) x.n over the faces.
+    By the divergence theorem -1 / (n + degree) times that of f x.n over the faces.
+
+    Parameters
+    ----------
+    functions : callable
+        From points, shape (n, points), to the values there, shape (.., points).
+    degrees : array
+        Those of the functions, of the shape (..), none of them -n.
+    dim : int
+        n.
     """
-    if dim == 1:
-        return float(2.0 ** (1.0 + exponent) / exponent)
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    squares = sum(np.meshgrid(*(np.square(0.5 * nodes),) * (dim - 1), sparse=True))
-    face = (0.25 + squares) ** (-0.5 * (dim + exponent))
-    for _ in range(dim - 1):
-        face = face @ (0.5 * weights)
-    return float(dim * face / exponent)
+    nodes, weights = _gauss_legendre()
+    face = 0.5 * np.array(list(product(nodes, repeat=dim - 1))).T
+    weight = 0.5**dim * np.prod(list(product(weights, repeat=dim - 1)), axis=1)
+    total: np.ndarray | float = 0.0
+    for axis, side in product(range(dim), (-0.5, 0.5)):
+        total = total + functions(np.insert(face, axis, side, axis=0)) @ weight
+    return np.asarray(-total / (dim + degrees))
+
+
+@lru_cache(maxsize=1)
+def _gauss_legendre() -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(_NODES)
 
 
 def image_sum(x: np.ndarray, exponent: float) -> np.ndarray:
@@ -82,20 +105,26 @@ def _scaled_upper(a: float, y: np.ndarray) -> np.ndarray:
     return np.asarray(value)
 
 
-def square_basis(x: np.ndarray, dim: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return T_j(8 x^2 - 1), j = 0 .. degree, along one axis, and their derivatives; shapes (degree + 1, len(x))."""
+def square_basis(x: np.ndarray, dim: int) -> np.ndarray:
+    """Return T_j(8 x^2 - 1), j = 0 .. degree, along one axis, shape (degree + 1, len(x))."""
     s = 8.0 * x * x - 1.0
     values = np.empty((_DEGREES[dim] + 1, x.size))
     values[0], values[1] = 1.0, s
     for j in range(2, len(values)):
         values[j] = 2.0 * s * values[j - 1] - values[j - 2]
-    return values, (_derivatives(len(values)) @ values) * (16.0 * x)
+    return values
 
 
 @lru_cache(maxsize=4)
-def _derivatives(count: int) -> np.ndarray:
-    """The matrix from T_0 .. T_{count - 1} to their derivatives."""
-    return np.pad(chebder(np.eye(count), axis=1), ((0, 0), (0, 1)))
+def series_derivatives(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the matrices of d/dx from sum c_j T_j(s), s = 8 x^2 - 1, to x times such a sum, and from that back.
+
+    d/dx f(s) = x 16 f'(s), and d/dx x g(s) = g + 2 (s + 1) g'.
+    """
+    slope = np.pad(chebder(np.eye(count), axis=0), ((0, 1), (0, 0)))
+    times_s = 0.5 * (np.eye(count, k=1) + np.eye(count, k=-1))
+    times_s[1:2, 0] = 1.0
+    return 16.0 * slope, np.eye(count) + 2.0 * (slope + times_s @ slope)
 
 
 def image_series(exponents: np.ndarray, dim: int) -> np.ndarray:

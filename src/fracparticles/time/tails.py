@@ -1,18 +1,18 @@
 """The tails of a run on the whole space, see `whole_space`: by powers, before and after, and their images.
 
-Beyond the lattice u falls like powers,
+Beyond the lattice u falls like powers, each with its dependence on the direction, see `multipoles`,
 
-    u ~ sum_j (a_j - p_j.grad) |x|^(-n-gamma_j),    gamma_j of alpha, 2 alpha, .., 2 + alpha, ..,
+    u ~ sum_j sum_H b_jH H(-grad) |x|^(-n-gamma_j),    gamma_j of alpha, 2 alpha, .., 2 + alpha, ..,
 
-which meet the data at some points near the ends. The tail of the result follows from the data: |x|^(-n-gamma) comes
-from |k|^gamma / kappa in u^, and near k = 0, with the mass M, the first moment M1 and the finite part Q of the second,
+which meet the data at some points near the ends. The tail of the result follows from the data: H(-grad) |x|^(-n-gamma)
+comes from (-i)^l H(k) |k|^gamma / kappa in u^, and near k = 0, with the finite parts m_Hq of the moments,
 
-    u^(k, 0) = M - i k.M1 - Q |k|^2 / 2 n + sum_j (a_j - i k.p_j) |k|^gamma_j / kappa_j,
+    u^(k, 0) = sum_H (-i)^l H(k) (sum_q m_Hq |k|^(2q) + sum_j b_jH |k|^gamma_j / kappa_j),
 
 which exp(-D t |k|^alpha) multiplies term by term.
 
-1 / kappa has poles at the even gamma, where it magnifies the round-off of the a_j. Of the gamma_j that are nearly even
-only alpha itself is kept, where all are, as alpha nears 2: what is left out vanishes with the distance, see `_NEARLY`.
+1 / kappa has poles at the even gamma, where it magnifies the round-off of the b_j. Of the gamma_j that are nearly even
+only alpha itself is kept, where all are, as alpha nears 2: what is left out vanishes with the distance.
 """
 
 from __future__ import annotations
@@ -20,191 +20,247 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import product
 from math import factorial
-from typing import Any
 
 import numpy as np
 
-from fracparticles import arguments as check
-from fracparticles.errors import InvalidInput
 from fracparticles.special.images import (
     image_series,
-    outside_integral,
+    outside_integrals,
     power_transform,
     square_basis,
 )
+from fracparticles.time.exponents import SAME
+from fracparticles.time.meeting import Meeting
+from fracparticles.time.multipoles import (
+    HARMONICS,
+    Monomial,
+    Terms,
+    monomial,
+    terms_of,
+    values_of,
+)
 
-__all__ = ["MOST_TERMS", "Tails", "later_powers", "powers", "tail_exponents"]
+__all__ = ["Tails"]
 
-MOST_TERMS = 6
 _FOR_BLAS = 8192  # products of two numbers, below which it takes one thread
-_SAME = 1e-9  # exponents nearer than this are one
-# Measured: six terms in space leave 1e-10 / distance of the maximum, and more near two, where all are nearly even and
-# nearly one. The amplitude of a term that is left out is proportional to the distance.
-_NEARLY = 1e-2
-_STEEPEST = 30.0  # power of a tail: of steeper ones nothing is left
-_DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)  # where the tail meets the data, in half-widths
-
-
-def tail_exponents(alpha: float, terms: int) -> np.ndarray:
-    """Return the first gamma_j of the tail |x|^(-n-gamma_j) of the fundamental solution and what is moved or widened.
-
-    They are j alpha + 2 m with j >= 1, ascending, but for those that are even, which belong to no tail, or within 0.01
-    of it; alpha itself may be as near as 1e-9. Of two that are nearly one there is the lower.
-    """
-    found: list[float] = []
-    for e in sorted(j * alpha + 2.0 * m for j in range(1, 2 * terms + 2) for m in range(terms + 1)):
-        new = not found or e - found[-1] >= _NEARLY
-        if new and _from_even(e) >= (_SAME if e == alpha else _NEARLY):
-            found.append(e)
-    return np.array(found[:terms])
-
-
-def powers(tail: Sequence[float], dim: int) -> np.ndarray:
-    """Return the gamma of the powers p = n + gamma by which somebody's data fall.
-
-    Raises
-    ------
-    InvalidInput
-        If there are more than six, or one is not above n, is n plus an even integer, or above 30.
-    """
-    exponents = check.vector("tail", tail, least=0) - dim
-    good = (exponents > 0.0) & (exponents + dim <= _STEEPEST)
-    if (
-        exponents.size > MOST_TERMS
-        or not good.all()
-        or min(map(_from_even, exponents), default=1.0) < _SAME
-    ):
-        allowed = f"at most {MOST_TERMS} powers from {dim} to {_STEEPEST:g}, none of them {dim} plus an even integer"
-        remedy = "Leave it out, or take a wide lattice with terms=0."
-        raise InvalidInput("tail", tail, allowed, remedy)
-    return exponents
-
-
-def _from_even(exponent: float) -> float:
-    """Return the distance to the nearest even integer."""
-    return abs(exponent - 2.0 * round(0.5 * exponent))
+_MOMENTS = {1: 5, 2: 4, 3: 2}  # the highest, by dimension
 
 
 class Tails:
     """The tails of the data and of the result, and their images; the period is the unit of length.
 
-    The images are polynomials, whose coefficients are linear in a few numbers: the (a, p) of the data's own tail, and
-    the means of u, of x_d u and of |x|^2 u.
+    The images are polynomials, whose coefficients are linear in a few numbers: the b of the data's own tail, and the
+    moments of the data, see `multipoles`.
 
     Parameters
     ----------
     inside : tuple of slices
-        The lattice in the circle, after what counts the data.
-    circle : tuple of int
-        The shape of the circle.
+        The lattice in the circle, an axis each; the powers start at the middle of the circle.
+    shown : tuple of slices
+        The points of the circle at which the result is wanted, an axis each.
+    length : int
+        The points of the circle along each axis.
     alpha : float
         Fractional order.
     time : float
         D t over the alpha-th power of the period.
-    terms, tail
-        See `whole_space.evolve`.
+    before, after : arrays
+        The gamma of the data and of the result.
+    moved : sequence of float, optional
+        The result is wanted so many spacings on, along each axis.
+    outer : bool
+        See `Meeting`.
     """
 
     def __init__(
         self,
-        inside: tuple[Any, ...],
-        circle: tuple[int, ...],
+        inside: tuple[slice, ...],
+        shown: tuple[slice, ...],
+        length: int,
         alpha: float,
         time: float,
-        terms: int,
-        tail: Sequence[float] | None,
+        before: np.ndarray,
+        after: np.ndarray,
+        moved: Sequence[float] | None = None,
+        outer: bool = False,
     ) -> None:
-        dim, length = len(circle), circle[0]
-        fundamental = tail_exponents(alpha, terms)
-        before = fundamental if tail is None else powers(tail, dim)
-        after = _sums([0.0, 2.0, *before], alpha, max([*fundamental, *before], default=0.0))
-        self._dim = dim
+        dim = len(inside)
+        self._dim, self._length, self._inside = dim, length, inside
         self._x = (np.arange(length) - length // 2) * (1.0 / length)
         # What is odd in a coordinate vanishes where the circle closes, half way between x = -1/2 and its image at 1/2.
         self._odd = np.where(self._x == -0.5, 0.0, self._x)
-        self._basis, self._slope = square_basis(self._x, dim)
-        self._slope[:, self._x == -0.5] = 0.0
-        self._samples, self._fit = self._meeting(inside[-1], before)
-        beyond = np.ones(circle, dtype=bool)
-        beyond[inside] = False
-        self._beyond = np.flatnonzero(beyond)
-        self._powers = self._columns(self._beyond, before).T
-        count = (1 + dim) * before.size
-        own = np.zeros((1 + dim, before.size, count + dim + 2))  # (a, p) of the data
-        own[..., :count] = np.eye(count).reshape(1 + dim, before.size, count)
-        known = np.zeros((1 + dim, 2 + before.size, own.shape[2]))  # M or M1; Q; (a, p)
-        known[np.arange(1 + dim), 0, count + np.arange(1 + dim)] = 1.0
-        known[0, 1, -1] = 1.0
-        known[:, 2:] = own
-        for at, g in enumerate(before):  # what M, M1 and Q lack beyond the lattice
-            outside = outside_integral(g, dim)
-            known[0, 0] += outside * own[0, at]
-            known[1:, 0] += (dim + g) / dim * outside * own[1:, at]
-            known[0, 1] += outside_integral(g - 2.0, dim) * own[0, at]
-        self._exponents = after
-        self._result = _flow(before, after, alpha, time, dim) @ known
-        self._before, self._after = (
-            image_series(exponents, dim).reshape(exponents.size, len(self._basis) ** dim).T
-            @ numbers
-            for exponents, numbers in ((before, own), (after, self._result))
+        self._before, self._after = terms_of(before, dim), terms_of(after, dim)
+        self.meeting = Meeting(self._before, self._x, self._odd, inside, outer)
+        self._powers = self._quadrant()
+        self._moments = [
+            (harmonic, q)
+            for harmonic in HARMONICS[dim]
+            for q in range((_MOMENTS[dim] - harmonic.degree) // 2 + 1)
+        ]
+        each = _MOMENTS[dim] + 1
+        self._monomials = np.array([monomial(self._x, self._odd, e) for e in range(each)])
+        self._monomials *= 1.0 / length
+        self._of_monomials = np.zeros((each,) * dim + (len(self._moments),))
+        for m, (harmonic, q) in enumerate(self._moments):
+            for at, c in harmonic.moment(q).items():
+                self._of_monomials[(*at, m)] = c
+        self._of_monomials = self._of_monomials.reshape(-1, len(self._moments))
+        own, count = len(self._before), len(self._moments)
+        known = np.hstack([self._beyond_the_circle(), np.eye(count)])
+        self._result = self._flow(known, alpha, time)
+        self._bases = [self._basis(slice(None), 0.0)] * dim
+        self._shown = [
+            self._basis(where, by / length)
+            for where, by in zip(shown, moved or (0.0,) * dim, strict=True)
+        ]
+        self._series = (
+            self._images(self._before, np.eye(own, own + count)),
+            self._images(self._after, self._result),
         )
 
-    def _meeting(self, inside: slice, exponents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the flat indices of some points near the faces, and what makes (a, p) of the values there."""
-        middle = self._x.size // 2
-        depths = [int(depth * (inside.stop - middle - 1)) for depth in _DEPTHS[: exponents.size]]
-        away = np.array([m for m in product((-1, 0, 1), repeat=self._dim) if any(m)])
-        index = (np.array(depths, dtype=int)[:, None, None] * away).reshape(-1, self._dim) + middle
-        samples = np.ravel_multi_index(tuple(index.T), (self._x.size,) * self._dim)
-        columns = self._columns(samples, exponents)
-        scale = columns.max(axis=0, initial=0.0)
-        return samples, np.linalg.pinv(columns / scale) / scale[:, None]
+    def _quadrant(self) -> dict[Monomial, tuple[list[int], np.ndarray]]:
+        """Return each H(-grad) |x|^(-n-gamma) where no coordinate is negative, by the coordinates in which H is odd.
 
-    def _columns(self, points: np.ndarray, exponents: np.ndarray) -> np.ndarray:
-        """Return each |x|^(-n-gamma), then of each axis each -d/dx |x|^(-n-gamma), at points given by flat indices."""
-        index = np.array(np.unravel_index(points, (self._x.size,) * self._dim))
-        square = (self._x[index] ** 2).sum(axis=0)[:, None]
-        power = square ** (-0.5 * (self._dim + exponents))
-        slope = (self._dim + exponents) * power / square
-        return np.hstack([power, *(line[:, None] * slope for line in self._odd[index])])
-
-    def complete(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Continue the data, shape (data, L, .., L), and add their images, in place.
-
-        Return the images of the result, and the numbers that they depend on.
+        Each with the rows of the terms and an array of shape (terms, L // 2 + 1, ..). At the origin it is finite.
         """
-        flat = u.reshape(len(u), self._x.size**self._dim)
-        numbers = np.empty((len(u), self._fit.shape[0] + self._dim + 2))
-        numbers[:, : -self._dim - 2] = flat[:, self._samples] @ self._fit.T
-        flat[:, self._beyond] = _along(numbers[:, : -self._dim - 2], self._powers)
-        axes = range(1, self._dim + 1)
-        lines = [u.mean(axis=tuple(a for a in axes if a != d)) for d in axes]  # along each axis
-        numbers[:, -2 - self._dim] = lines[0].mean(axis=1)
-        for d, line in enumerate(lines):
-            numbers[:, -1 - self._dim + d] = line @ self._odd / self._x.size
-        numbers[:, -1] = sum(lines) @ self._x**2 / self._x.size
-        u += self._sum(numbers, self._before)
-        return self._sum(numbers, self._after), numbers
+        half = np.abs(self._x[self._length // 2 :: -1]), np.abs(self._odd[self._length // 2 :: -1])
+        x, odd = (np.array(np.meshgrid(*(one,) * self._dim, indexing="ij")) for one in half)
+        x.reshape(self._dim, -1)[:, 0] = 1.0
+        rows: dict[Monomial, list[int]] = {}
+        for row, (harmonic, _) in enumerate(self._before):
+            rows.setdefault(harmonic.parity, []).append(row)
+        return {
+            parity: (own, values_of([self._before[row] for row in own], x, odd))
+            for parity, own in rows.items()
+        }
+
+    def _beyond_the_circle(self) -> np.ndarray:
+        """What the moments lack there of each term of the tail, shape (moments, terms)."""
+        degrees = [
+            # What is odd vanishes, where its finite part may have no meaning.
+            [m.degree + 2 * q - self._dim - g - h.degree if m.parity == h.parity else 0.0
+             for h, g in self._before] for m, q in self._moments
+        ]  # fmt: skip
+
+        def products(x: np.ndarray) -> np.ndarray:
+            moments = np.array([h.moment_at(q, x) for h, q in self._moments])
+            return moments[:, None] * values_of(self._before, x, x)
+
+        return outside_integrals(products, np.array(degrees), self._dim)
+
+    def _flow(self, known: np.ndarray, alpha: float, time: float) -> np.ndarray:
+        """Return the matrix from the numbers to the b of the result: exp(-t |k|^alpha) times the expansion at k = 0."""
+        scaled = 1.0 / power_transform(np.array([g for _, g in self._before]), self._dim)
+        found = np.zeros((len(self._after), known.shape[1]))
+        for row, (harmonic, exponent) in enumerate(self._after):
+            for m, (other, q) in enumerate(self._moments):
+                if other is harmonic:
+                    share = harmonic.share(q) * _power(2.0 * q, exponent, alpha, time)
+                    found[row] += share * known[m]
+            for at, (other, gamma) in enumerate(self._before):
+                if other is harmonic:
+                    found[row, at] += scaled[at] * _power(gamma, exponent, alpha, time)
+            found[row] *= power_transform(np.array(exponent), self._dim)
+        return found
+
+    def _basis(self, where: slice, by: float) -> tuple[np.ndarray, np.ndarray]:
+        """The polynomials of the images along an axis, the even ones and x times these."""
+        even = square_basis(self._x[where] + by, self._dim)
+        return even, (self._odd[where] + by) * even
+
+    def _images(self, terms: Terms, amplitudes: np.ndarray) -> dict[Monomial, np.ndarray]:
+        """Return the series of the images, linear in the numbers, by the coordinates in which it is odd."""
+        found: dict[Monomial, np.ndarray] = {}
+        series = image_series(np.array([gamma for _, gamma in terms]), self._dim)
+        for (harmonic, _), one, amplitude in zip(terms, series, amplitudes, strict=True):
+            part = np.multiply.outer(amplitude, harmonic.of_series(one))
+            found[harmonic.parity] = found.get(harmonic.parity, 0.0) + part
+        return found
+
+    def complete(
+        self, u: np.ndarray, tail: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the data, shape (data, N, .., N), continued on the circle, and their images added.
+
+        Then the images of the result where it is shown, and the numbers that they depend on. With the `tail` of the
+        data, as `result` has it, nothing is fitted.
+        """
+        scale = float(self._length) ** -self._falls(self._before)
+        tail = self.meeting.fitted(u) if tail is None else tail * scale
+        whole = self._continued(tail)
+        whole[(slice(None), *self._inside)] = u
+        numbers = np.hstack([tail, self._moments_of(whole)])
+        whole += self._sum(numbers, self._series[0], self._bases)
+        return whole, self._sum(numbers, self._series[1], self._shown), numbers
+
+    def _continued(self, tail: np.ndarray) -> np.ndarray:
+        """Return the tail on the circle: from one quadrant, by what is even and what is odd in each coordinate."""
+        whole = np.empty((len(tail), *(self._length,) * self._dim))
+        if not self._powers:
+            whole[...] = 0.0
+        parts = {
+            parity: np.einsum("nk,k...->n...", tail[:, rows], columns)
+            for parity, (rows, columns) in self._powers.items()
+        }
+        middle = self._length // 2
+        ahead, behind = slice(0, self._length - middle), slice(middle, 0, -1)
+        for sides in product((False, True), repeat=self._dim):  # behind the middle, along each axis
+            whole_part = tuple(slice(0, middle) if back else slice(middle, None) for back in sides)
+            of_quadrant = tuple(behind if back else ahead for back in sides)
+            there = whole[(slice(None), *whole_part)]
+            for k, (parity, one) in enumerate(parts.items()):  # the first is even in all of them
+                flipped = sum(odd for odd, back in zip(parity, sides, strict=True) if back) % 2
+                add = np.subtract if flipped else np.add
+                part = one[(slice(None), *of_quadrant)]
+                np.copyto(there, part) if k == 0 else add(there, part, out=there)
+        return whole
+
+    def _moments_of(self, u: np.ndarray) -> np.ndarray:
+        """Return int H(x) |x|^(2q) u over the circle, shape (data, moments)."""
+        for _ in range(self._dim):  # the last axis becomes the first after the data
+            u = np.einsum("n...x,ex->ne...", u, self._monomials)
+        return u.reshape(len(u), len(self._of_monomials)) @ self._of_monomials
+
+    def result(self, numbers: np.ndarray, wider: int) -> np.ndarray:
+        """Return the b of the result, shape (data, terms), in units of so many spacings."""
+        return numbers @ self._result.T * (self._length / wider) ** self._falls(self._after)
+
+    def _falls(self, terms: Terms) -> np.ndarray:
+        """The powers of |x| by which the terms fall."""
+        return np.array([self._dim + gamma + harmonic.degree for harmonic, gamma in terms])
 
     def result_at(self, index: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """Return the tail of the result at some points, shape (data, points)."""
-        points = np.ravel_multi_index(tuple(index.T), (self._x.size,) * self._dim)
-        columns = self._columns(points, self._exponents)
-        amplitudes = self._result.reshape(columns.shape[1], numbers.shape[1])
-        return np.asarray(numbers @ (columns @ amplitudes).T)
+        """Return the tail of the result at some points of the circle, shape (data, points)."""
+        columns = values_of(self._after, self._x[index.T], self._odd[index.T])
+        return np.asarray(numbers @ self._result.T @ columns)
 
-    def _sum(self, numbers: np.ndarray, series: np.ndarray) -> np.ndarray:
-        """Return sum_j (a_j - p_j.grad) S_j on the lattice, shape (data, L, .., L).
+    def _sum(
+        self,
+        numbers: np.ndarray,
+        series: dict[Monomial, np.ndarray],
+        bases: Sequence[tuple[np.ndarray, np.ndarray]],
+    ) -> np.ndarray:
+        """Return the images: the polynomials are summed along one axis after the other."""
+        parts = {
+            parity: (numbers @ one.reshape(len(one), -1)).reshape(len(numbers), *one.shape[1:])
+            for parity, one in series.items()
+        }
+        for basis in bases:
+            summed: dict[Monomial, np.ndarray] = {}
+            for (odd, *rest), one in parts.items():
+                along, key = _along(one, basis[odd]), tuple(rest)
+                summed[key] = summed[key] + along if key in summed else along
+            parts = summed
+        shape = tuple(even.shape[1] for even, _ in bases)
+        return parts.get((), np.zeros((len(numbers), *shape)))
 
-        The polynomials are summed along one axis after the other; the sum and the derivatives of the axes that are
-        done are one array.
-        """
-        shape = (len(numbers), *(len(self._basis),) * self._dim)
-        total, *slopes = (part.T.reshape(shape) for part in series @ numbers.T)
-        for d in range(self._dim):
-            total = _along(total, self._basis) - _along(slopes[d], self._slope)
-            slopes[d + 1 :] = [_along(slope, self._basis) for slope in slopes[d + 1 :]]
-        return total
+
+def _power(start: float, exponent: float, alpha: float, time: float) -> float:
+    """What exp(-t |k|^alpha) |k|^start has of |k|^exponent."""
+    j = round((exponent - start) / alpha)
+    if j < 0 or abs(start + j * alpha - exponent) >= SAME:
+        return 0.0
+    return float((-time) ** j / factorial(j))
 
 
 def _along(series: np.ndarray, basis: np.ndarray) -> np.ndarray:
@@ -215,34 +271,3 @@ def _along(series: np.ndarray, basis: np.ndarray) -> np.ndarray:
     if series.ndim == 2 and series.size * basis.shape[1] <= _FOR_BLAS:
         return np.asarray(series @ basis)
     return np.einsum("nk...,kx->n...x", series, basis)
-
-
-def later_powers(tail: Sequence[float], dim: int, alpha: float, terms: int) -> tuple[float, ...]:
-    """Return the first powers by which a solution falls whose data fell like these, see `whole_space.evolve`."""
-    own = powers(tail, dim)
-    every = _sums([0.0, 2.0, *own], alpha, max([*tail_exponents(alpha, terms), *own]))
-    return tuple((dim + every[:MOST_TERMS]).tolist())
-
-
-def _sums(starts: Sequence[float], alpha: float, greatest: float) -> np.ndarray:
-    """Return the exponents start + j alpha up to the greatest that belong to a tail, ascending, each once."""
-    most = int(greatest / alpha) + 1
-    found: list[float] = []
-    for exponent in sorted(start + j * alpha for start in starts for j in range(most + 1)):
-        new = not found or exponent - found[-1] > _SAME
-        if new and exponent <= greatest + _SAME and _from_even(exponent) >= _SAME:
-            found.append(exponent)
-    return np.array(found)
-
-
-def _flow(before: np.ndarray, after: np.ndarray, alpha: float, time: float, dim: int) -> np.ndarray:
-    """Return the matrix from (M, Q, a_j) to the a_j of the result: exp(-t |k|^alpha) times the expansion at k = 0."""
-    columns = [(0.0, 1.0), (2.0, -0.5 / dim)]
-    columns += zip(before.tolist(), (1.0 / power_transform(before, dim)).tolist(), strict=True)
-    flow = np.zeros((after.size, len(columns)))
-    for row, exponent in enumerate(after.tolist()):
-        for column, (start, factor) in enumerate(columns):
-            j = round((exponent - start) / alpha)
-            if j >= 0 and abs(start + j * alpha - exponent) < _SAME:
-                flow[row, column] = factor * (-time) ** j / factorial(j)
-    return flow * power_transform(after, dim)[:, None]

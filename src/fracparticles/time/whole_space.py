@@ -13,21 +13,20 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.fft import irfft, irfftn, next_fast_len, rfft, rfftn
+from scipy.fft import next_fast_len, rfft
 
 from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.time.tails import MOST_TERMS, Tails, tail_exponents
+from fracparticles.time.circle import Amplification, Circle
+from fracparticles.time.exponents import MOST_TERMS, later_exponents, powers, tail_exponents
+from fracparticles.time.tails import Tails
 
-__all__ = ["WholeSpace", "evolve", "tail_exponents"]
-
-Amplification = Callable[[np.ndarray], np.ndarray]
+__all__ = ["WholeSpace", "evolve", "tail_exponents", "unresolved"]
 
 _NOTICED = (
     1e-3  # of the maximum: a tail that misses the solution by more, or waves that the lattice lacks
@@ -104,7 +103,7 @@ def evolve(
     scaled_time = min(max(span * h**-alpha, _TIMES[0]), _TIMES[1])
     run = WholeSpace(points, dim, alpha, scaled_time, terms=terms, tail=tail, stretch=stretch)
     with np.errstate(over="ignore", invalid="ignore"):
-        result, miss, short = run.solve_and_look(u)
+        result, miss = run.solve_and_compare(u)
     check.finite_result("u", result)
     if miss > _NOTICED:
         warnings.warn(
@@ -113,7 +112,9 @@ def evolve(
             AccuracyWarning,
             stacklevel=2,
         )
-    lacking = short * min(1.0, scaled_time * np.pi**alpha)
+    lacking = unresolved(u.reshape(_count(u, dim), *(points,) * dim)) * min(
+        1.0, scaled_time * np.pi**alpha
+    )
     if lacking > _NOTICED:
         warnings.warn(
             f"the lattice does not resolve the data: {lacking:.2g} of the solution may be of waves shorter than two "
@@ -122,6 +123,23 @@ def evolve(
             stacklevel=2,
         )
     return result
+
+
+def unresolved(u: np.ndarray) -> float:
+    """Return what the data, shape (data, N, .., N), may have at the wavenumber 2 K, K = pi / h, over their greatest.
+
+    That looks like a constant. u^ is known up to K along each axis, from the sums over the others; at 2 K it is the
+    square of that at K if it falls like an exponential, and less if it falls like a Gaussian.
+    """
+    total = np.zeros(len(u))
+    for axis in range(1, u.ndim):
+        line = u.sum(axis=tuple(other for other in range(1, u.ndim) if other != axis))
+        size = np.abs(rfft(line))
+        greatest = size.max(axis=1)
+        # Of some waves: at K itself the two aliases of data centred between two points cancel.
+        last = size[:, int(0.8 * (size.shape[1] - 1)) :].max(axis=1)
+        total += 2.0 * np.divide(last, greatest, where=greatest > 0.0, out=np.zeros(len(u))) ** 2
+    return min(1.0, float(total.max(initial=0.0)))
 
 
 class WholeSpace:
@@ -142,8 +160,6 @@ class WholeSpace:
         exp(-tau |theta|^alpha).
     terms, tail, stretch
         See `evolve`.
-    shown : int, optional
-        How many points an axis the result has, about the same middle; those of the data if left out.
 
     Raises
     ------
@@ -163,7 +179,6 @@ class WholeSpace:
         terms: int = 2,
         tail: Sequence[float] | None = None,
         stretch: float | None = None,
-        shown: int | None = None,
     ) -> None:
         points, dim = check.whole_number("points", points, _FEWEST), check.dimension(dim)
         alpha = check.fractional_order(alpha)
@@ -180,17 +195,18 @@ class WholeSpace:
         start = circle // 2 - points // 2
         self._shape, self._circle = (points,) * dim, (circle,) * dim
         self._axes = tuple(range(-dim, 0))
-        self._start, self._size = start, points**dim
-        self._inside: tuple[Any, ...] = (..., *(slice(start, start + points),) * dim)
-        self._shown = self._inside
-        if shown is not None:
-            first = circle // 2 - shown // 2
-            self._shown = (..., *(slice(first, first + shown),) * dim)
-        self._amplification = _on_circle(circle, dim, alpha, scaled_time, amplification)
+        self._start = start
+        inside = (slice(start, start + points),) * dim
+        self._inside: tuple[Any, ...] = (..., *inside)
+        self._periodic = Circle(circle, dim, alpha, scaled_time, amplification)
         self._tails = None
         if terms:
+            fundamental = tail_exponents(alpha, terms)
+            before = fundamental if tail is None else powers(tail, dim)
+            greatest = max([*fundamental, *before], default=0.0)
+            after = later_exponents(before, alpha, greatest)
             time = scaled_time * float(circle) ** -alpha
-            self._tails = Tails(self._inside, self._circle, alpha, time, terms, tail)
+            self._tails = Tails(inside, inside, circle, alpha, time, before, after)
 
     def solve(self, u: np.ndarray) -> np.ndarray:
         """Return the solution from u, both of shape (..., N, .., N).
@@ -202,92 +218,42 @@ class WholeSpace:
         """
         return self._run(u)[0]
 
-    def solve_and_look(self, u: np.ndarray) -> tuple[np.ndarray, float, float]:
-        """Return the solution, how far its tail is from it at the faces, and what the data may have of short waves.
+    def solve_and_compare(self, u: np.ndarray) -> tuple[np.ndarray, float]:
+        """Return the solution, and how far its tail is from it at the faces of the lattice, over its maximum.
 
-        The second is over the maximum of the solution, the third that of `short_waves`; of several data, the worst.
+        Of several data, the worst.
         """
-        result, numbers, short = self._run(u, look=True)
-        count, dim = _count(u, len(self._axes)), len(self._axes)
-        size = np.abs(result.reshape(count, self._size)).max(axis=1)
-        faces = _faces(self._shape[0], dim)
-        found = result.reshape(count, *self._shape)[(slice(None), *faces.T)]
+        result, numbers = self._run(u)
+        each = result.reshape(_count(u, len(self._axes)), *self._shape)
+        size = np.abs(each).max(axis=tuple(self._axes), keepdims=True).reshape(-1, 1)
+        found = each[(slice(None), *self._faces(0).T)]
         tail: np.ndarray | float = 0.0
         if self._tails is not None:
-            tail = self._tails.result_at(faces + self._start, numbers)
-        size[size == 0.0] = 1.0
-        miss = np.abs(found - tail).max(axis=1) / size
-        return result, float(miss.max(initial=0.0)), short
+            tail = self._tails.result_at(self._faces(self._start), numbers)
+        miss = np.abs(found - tail) / np.where(size > 0.0, size, 1.0)
+        return result, float(miss.max(initial=0.0))
 
-    def _run(self, u: np.ndarray, look: bool = False) -> tuple[np.ndarray, np.ndarray, float]:
+    def _faces(self, start: int) -> np.ndarray:
+        """The indices of the middles of the faces, shape (2 n, n); of the lattice, or in a circle where it starts."""
+        dim, points = len(self._axes), self._shape[0]
+        faces = np.full((2, dim, dim), points // 2)
+        faces[0][np.diag_indices(dim)], faces[1][np.diag_indices(dim)] = 0, points - 1
+        return faces.reshape(-1, dim) + start
+
+    def _run(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         dim = len(self._axes)
         if u.ndim < dim or u.shape[u.ndim - dim :] != self._shape:
             allowed = f"the shape {self._shape}, after what counts the data"
             raise InvalidInput("u", u.shape, allowed, "Give a value at each lattice point.")
         if self._tails is None and self._shape == self._circle:
-            whole, short = self._periodic(u, look)
-            return whole, np.zeros(0), short
-        longer = np.zeros((*u.shape[: u.ndim - dim], *self._circle))
-        longer[self._inside] = u
+            return self._periodic(u), np.zeros(0)
+        each = u.reshape(_count(u, dim), *self._shape)
         if self._tails is None:
-            whole, short = self._periodic(longer, look)
-            return whole[self._inside], np.zeros(0), short
-        images, numbers = self._tails.complete(longer.reshape(_count(u, dim), *self._circle))
-        whole, short = self._periodic(longer, look)
-        return (whole - images.reshape(longer.shape))[self._shown], numbers, short
-
-    def _periodic(self, u: np.ndarray, look: bool) -> tuple[np.ndarray, float]:
-        spectrum = rfft(u) if len(self._axes) == 1 else rfftn(u, axes=self._axes)
-        short = short_waves(spectrum, len(self._axes)) if look else 0.0
-        spectrum *= self._amplification
-        if len(self._axes) == 1:
-            return irfft(spectrum, u.shape[-1]), short
-        return irfftn(spectrum, self._circle, axes=self._axes), short
-
-
-def short_waves(spectrum: np.ndarray, dim: int) -> float:
-    """Return what data with this transform may have at the wavenumber 2 K, K = pi / h, over their greatest.
-
-    That looks like a constant. u^ is known up to K along each axis, where the others are at zero; at 2 K it is the
-    square of that at K if it falls like an exponential, and less if it falls like a Gaussian. The transform is a real
-    one of shape (.., N, .., N / 2 + 1); of several data, the worst.
-    """
-    waves, total = spectrum.shape[-1], np.zeros(1)
-    for axis in range(dim):
-        along: tuple[Any, ...] = (0,) * axis + (slice(waves),) + (0,) * (dim - 1 - axis)
-        size = np.abs(spectrum[(..., *along)]).reshape(-1, waves)
-        # Of some waves: at K itself the two aliases of data centred between two points cancel.
-        greatest, last = size.max(axis=1), size[:, int(0.8 * (waves - 1)) :].max(axis=1)
-        greatest[greatest == 0.0] = 1.0
-        total = total + 2.0 * (last / greatest) ** 2
-    return min(1.0, float(total.max(initial=0.0)))
-
-
-@cache
-def _faces(points: int, dim: int) -> np.ndarray:
-    """Return the indices of the middles of a lattice's faces, shape (2 n, n)."""
-    faces = np.full((2, dim, dim), points // 2)
-    faces[0][np.diag_indices(dim)], faces[1][np.diag_indices(dim)] = 0, points - 1
-    return faces.reshape(-1, dim)
-
-
-def _on_circle(
-    points: int,
-    dim: int,
-    alpha: float,
-    scaled_time: float,
-    amplification: Amplification | None,
-) -> np.ndarray:
-    """Return f at the waves of the circle, theta = 2 pi m / N, the last axis as of a real transform."""
-    last = np.arange(points // 2 + 1) * (2.0 * np.pi / points)
-    if dim == 1:
-        return np.exp(-scaled_time * last**alpha) if amplification is None else amplification(last)
-    every = np.fft.fftfreq(points, 1.0 / points) * (2.0 * np.pi / points)
-    axes = np.meshgrid(*[every] * (dim - 1), last, indexing="ij", sparse=True)
-    if amplification is None:
-        square = sum(axis * axis for axis in axes)
-        return np.exp(-scaled_time * np.power(square, 0.5 * alpha, out=square), out=square)
-    return amplification(np.stack(np.broadcast_arrays(*axes), axis=-1))
+            longer = np.zeros((len(each), *self._circle))
+            longer[self._inside] = each
+            return self._periodic(longer)[self._inside].reshape(u.shape), np.zeros(0)
+        longer, images, numbers = self._tails.complete(each)
+        return (self._periodic(longer)[self._inside] - images).reshape(u.shape), numbers
 
 
 def _refuse_outgrown(points: int, spread: float) -> None:

@@ -31,7 +31,7 @@ class _Differences(Contender):
         """Return a(theta) at the waves of a circle: its weights are sums over images, a_m ~ C m^(-1-alpha) far away."""
         half = theta.size - 1
         m = np.arange(1.0, half + 1.0)
-        images = image_series(np.array([alpha]), 1)[0] @ square_basis(m / (2 * half), 1)[0]
+        images = image_series(np.array([alpha]), 1)[0] @ square_basis(m / (2 * half), 1)
         a = np.zeros(2 * half)
         a[1 : half + 1] = self.weights(alpha, half)
         factor = tail_constant(alpha) * np.where(m % 2.0 == 0.0, *self.far)

@@ -38,6 +38,6 @@ class Evolve(Contender):
         run = WholeSpace(points, dim, problem.alpha, tau, terms=terms, tail=problem.tail)
 
         def solve(u0: np.ndarray) -> np.ndarray:
-            return run.solve_and_look(u0)[0]  # as `evolve` does
+            return run.solve_and_compare(u0)[0]  # as `evolve` does
 
         return Ready(lattice(points, half_width, dim), h**dim, solve, batched=True)

@@ -1,0 +1,99 @@
+"""Periodic data by one pair of Fourier transforms: u^(k, t) = f(k) u^(k, 0), f = exp(-D t |k|^alpha) or another's.
+
+In units of the spacing f is a function of theta = k h, -pi < theta <= pi, and of tau = D t / h^alpha. Where the result
+holds no waves shorter than 2 m spacings, every m-th point tells all of it, and the transform back is that of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import reduce
+
+import numpy as np
+from scipy.fft import irfft, irfftn, rfft, rfftn
+
+__all__ = ["Amplification", "Circle"]
+
+Amplification = Callable[[np.ndarray], np.ndarray]
+
+
+class Circle:
+    """A run on L^n points that is periodic.
+
+    Parameters
+    ----------
+    points : int
+        L.
+    dim : int
+        n.
+    alpha : float
+        Fractional order.
+    scaled_time : float
+        tau.
+    amplification : callable, optional
+        f(theta) for theta in [0, pi], in more dimensions of an array whose last axis is the vector; left out,
+        exp(-tau |theta|^alpha).
+    every : int
+        m: the result is at every so many points, of which there are an even number.
+    moved : sequence of float, optional
+        The result is so many spacings on, along each axis.
+    """
+
+    def __init__(
+        self,
+        points: int,
+        dim: int,
+        alpha: float,
+        scaled_time: float,
+        amplification: Amplification | None = None,
+        every: int = 1,
+        moved: Sequence[float] | None = None,
+    ) -> None:
+        self._axes, self._every = tuple(range(-dim, 0)), every
+        self._shape = (points // every,) * dim
+        tau = scaled_time * float(every) ** -alpha
+        self._amplification = _amplification(points // every, dim, alpha, tau, amplification)
+        if moved is not None and any(moved):
+            steps = [by / every for by in moved]
+            self._amplification = self._amplification * _displacement(points // every, steps)
+
+    def __call__(self, u: np.ndarray) -> np.ndarray:
+        """Return the result from u, shape (.., L, .., L)."""
+        if len(self._axes) == 1 and self._every == 1:
+            return np.asarray(irfft(rfft(u) * self._amplification, u.shape[-1]))
+        spectrum = rfftn(u, axes=self._axes)
+        if self._every > 1:
+            spectrum = self._long_waves(spectrum)
+        spectrum *= self._amplification
+        return np.asarray(irfftn(spectrum, self._shape, axes=self._axes))
+
+    def _long_waves(self, spectrum: np.ndarray) -> np.ndarray:
+        half = self._shape[0] // 2
+        spectrum = spectrum[..., : half + 1] * float(self._every) ** -len(self._axes)
+        for axis in self._axes[:-1]:
+            lines = np.moveaxis(spectrum, axis, 0)
+            spectrum = np.moveaxis(np.concatenate([lines[:half], lines[-half:]]), 0, axis)
+        return spectrum
+
+
+def _amplification(
+    points: int, dim: int, alpha: float, tau: float, given: Amplification | None
+) -> np.ndarray:
+    """Return f at theta = 2 pi m / L, the last axis as of a real transform."""
+    last = np.arange(points // 2 + 1) * (2.0 * np.pi / points)
+    if dim == 1:
+        return np.exp(-tau * last**alpha) if given is None else given(last)
+    every = np.fft.fftfreq(points, 1.0 / points) * (2.0 * np.pi / points)
+    axes = np.meshgrid(*[every] * (dim - 1), last, indexing="ij", sparse=True)
+    if given is None:
+        square = sum(axis * axis for axis in axes)
+        return np.exp(-tau * np.power(square, 0.5 * alpha, out=square), out=square)
+    return given(np.stack(np.broadcast_arrays(*axes), axis=-1))
+
+
+def _displacement(points: int, moved: Sequence[float]) -> np.ndarray:
+    """Return exp(i theta s), s in spacings."""
+    every = np.fft.fftfreq(points, 1.0 / points) * (2.0 * np.pi / points)
+    waves = [every] * (len(moved) - 1) + [np.abs(every[: points // 2 + 1])]
+    phases = [np.exp(1j * s * theta) for theta, s in zip(waves, moved, strict=True)]
+    return np.asarray(reduce(np.multiply.outer, phases))

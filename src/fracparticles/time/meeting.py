@@ -1,0 +1,90 @@
+"""Where the tail of a run on the whole space meets its data, and what it is there."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from fracparticles.special.images import outside_integrals
+from fracparticles.time.multipoles import Terms, values_of
+
+__all__ = ["Meeting"]
+
+_DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)  # in half-widths, one for each of the gamma,
+_OUTER = np.linspace(1.0, 0.8, 8)  # or all of these
+
+
+class Meeting:
+    """The tail at some points towards the faces, the edges and the corners of the lattice.
+
+    Parameters
+    ----------
+    terms : list
+        The H and the gamma of the tail.
+    x, odd : arrays
+        The coordinate along the circle, and what stands for it where it is odd.
+    inside : tuple of slices
+        The lattice in the circle.
+    outer : bool
+        Whether the tail meets the data in the mean of the outer fifth of the lattice, all of it relative to the slowest
+        of the powers, and not at as many depths as there are gamma.
+    """
+
+    def __init__(
+        self, terms: Terms, x: np.ndarray, odd: np.ndarray, inside: tuple[slice, ...], outer: bool
+    ) -> None:
+        self._terms, self._dim = terms, len(inside)
+        middle, count = x.size // 2, len({gamma for _, gamma in terms})
+        depths = _OUTER if outer else np.array(_DEPTHS[:count])
+        sides = (-1.0, -0.5, 0.0, 0.5, 1.0) if outer and self._dim > 1 else (-1.0, 0.0, 1.0)
+        away = np.array([m for m in product(sides, repeat=self._dim) if max(map(abs, m)) == 1.0])
+        low, high = np.array([(middle - at.start, at.stop - 1 - middle) for at in inside]).T
+        reach = np.where(away < 0.0, low, high) * away
+        places = (depths.reshape(-1, 1, 1) * reach).astype(int).reshape(-1, self._dim) + middle
+        self._samples = places.T - np.array([[at.start] for at in inside])
+        self._nearest = float(min(*low, *high)) / x.size
+        self._cell = float(x.size) ** -self._dim
+        self._columns = values_of(terms, x[places.T], odd[places.T]).T
+        self._weight = np.ones((len(places), 1))
+        if outer and terms:
+            self._weight = 1.0 / self._columns[:, :1]
+        self._fit = _least_squares(self._columns, self._weight)
+
+    def fitted(self, u: np.ndarray) -> np.ndarray:
+        """Return the amplitudes of the terms, shape (data, terms), from data of shape (data, N, .., N)."""
+        return np.asarray(u[(slice(None), *self._samples)] @ self._fit.T)
+
+    def doubt(self, u: np.ndarray) -> float:
+        """Return what the last gamma changes of int u beyond the lattice, over int |u|: those left out may as much.
+
+        Without terms, where nothing is to be beyond, what is there if u falls like |x|^(-n-1).
+        """
+        size = float(np.abs(u).sum()) * self._cell
+        if size == 0.0:
+            return 0.0
+        found = u[tuple(self._samples)]
+        if not self._terms:
+            return float(
+                np.abs(found).mean() * self._dim * (2.0 * self._nearest) ** self._dim / size
+            )
+        change = self._fit @ found
+        last = max(gamma for _, gamma in self._terms)
+        fewer = np.array([gamma < last for _, gamma in self._terms])
+        change[fewer] -= _least_squares(self._columns[:, fewer], self._weight) @ found
+        # The others leave nothing beyond a cube.
+        alone = [row for row, (harmonic, _) in enumerate(self._terms) if harmonic.degree == 0]
+        gamma = np.array([self._terms[row][1] for row in alone])
+        beyond = outside_integrals(
+            lambda x: values_of([self._terms[row] for row in alone], x, x),
+            -self._dim - gamma,
+            self._dim,
+        )
+        return abs(float((beyond * (2.0 * self._nearest) ** -gamma) @ change[alone])) / size
+
+
+def _least_squares(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Return the matrix from values to amplitudes of the columns, the misfits times a weight least."""
+    weighted = columns * weight
+    scale = np.abs(weighted).max(axis=0, initial=0.0)
+    return np.asarray(np.linalg.pinv(weighted / scale) / scale[:, None] * weight.T)
