@@ -187,8 +187,9 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
     ----------
     data : path, DataArray, Dataset, Series, DataFrame, or a tuple of arrays (x, u)
         A table (csv, tsv, txt, dat) of two columns, or three or four for a rectangular grid of the plane or of space,
-        the values last; a first line may name them, with units in brackets, "x [m], c (mg/L)". A NetCDF file or
-        labelled data: a variable on axes of any names, whose units are read.
+        the values last; a first line may name them, with units in brackets, "x [m], c (mg/L)": then x, y, z are the
+        places and u, or the other one, the values, wherever they stand. A NetCDF file or labelled data: a variable on
+        axes of any names, whose units are read.
     x, u : str, optional
         Names of the columns or axes, and of the values, where there are more than these.
 
@@ -196,7 +197,7 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
     ------
     InvalidInput
         If there are fewer than four points along an axis, two in one place, a value that is no finite number, points
-        that make no grid; or it is not clear which are the values.
+        that make no grid, axes in two units; or it is not clear which are the values.
     """
     names = _names(x)
     if not isinstance(u, str | None):

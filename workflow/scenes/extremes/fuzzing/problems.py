@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from typing import Any
 
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.linalg import expm
 
+import fracparticles as fp
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates
 from fracparticles.problems.solve import solve_problem
@@ -34,6 +36,7 @@ _DIFFUSIVITIES = (
 _VELOCITIES = (None, 0.5, "-0.3*x", "sin(x)", "where(x > 0, -0.5, 0.5)", "x/(1 + x**2)")
 _SOURCES = (None, None, "exp(-x**2)", "1/(1 + (x - 1)**2)", "where(x > 0.3, 0.1, 0)")
 _IN_TIME = ("1 + 0.5*cos(3*t)", "(1 + 0.5*tanh(x))*(1.1 + sin(t))")
+_NEAR = 0.1  # of a run with three particles and more across, in the relative 1-norm
 _UNITS = (2.0**-20, 2.0**-7, 2.0**7, 2.0**20)  # of length and time
 
 
@@ -154,6 +157,26 @@ def _text(given: Any) -> float:
     return 2.0 * (again.to_json() != problem.to_json() or again.case != problem.case)
 
 
+def _known(drawn: tuple[float, str, float, float, float, int]) -> float:
+    """a = v - c x and constant D, from the fundamental solution: one about v (1 - e) / c, e = exp(-c t), of the width
+
+    l^alpha = e^alpha + D (1 - e^alpha) / (alpha c).
+    """
+    alpha, form, c, v, d, across = drawn
+    e = math.exp(-c)
+    end = e**alpha + d * (1.0 - e**alpha) / (alpha * c)
+    width = min(1.0, end ** (1.0 / alpha))
+    half_width = 10.0 * (1.0 + end ** (1.0 / alpha)) + abs(v) / min(c, 1.0)
+    problem = Problem(
+        alpha=alpha, form=form, diffusivity=d, velocity=f"{v!r} - {c!r}*x", half_width=half_width,
+        spacing=width / across, t_final=1.0,
+    )  # fmt: skip
+    x = problem.case.x
+    found = _solved(problem, np.asarray(fp.green(x, 1.0, alpha)))
+    exact = np.asarray(fp.green(x - v * (1.0 - e) / c, end, alpha))
+    return float(np.abs(found - exact).sum() / exact.sum()) / _NEAR
+
+
 # --- all ------------------------------------------------------------------------------------------------------
 
 _SEEDS = st.integers(0, 10**6)
@@ -180,6 +203,21 @@ PROPERTIES = (
         st.tuples(_STEADY, _SEEDS),
         _matrix,
         2,
+    ),
+    Property(
+        "a problem, closed form",
+        f"Ornstein and Uhlenbeck, to {_NEAR:g}, or a warning",
+        "closed form",
+        st.tuples(
+            between(1.1, 1.95),
+            st.sampled_from(tuple(FORMS)),
+            between(0.05, 2.0),
+            between(-3.0, 3.0),
+            st.sampled_from((0.1, 1.0, 3.0)),
+            st.integers(3, 6),
+        ),
+        _known,
+        1,
     ),
     Property(
         "a problem, other units",
