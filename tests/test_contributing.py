@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import os
 import re
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-import fracparticles
+from copies import answer, copy_packages
 from fracstudy.claims import read_printed
 from fracstudy.criteria import Status
 from fracstudy.findings import measured
@@ -71,11 +66,7 @@ print(json.dumps({
 def found(tmp_path_factory) -> dict:
     """What a program says that runs with a copy of the sources and the examples in it."""
     copy = tmp_path_factory.mktemp("copy")
-    sources = Path(fracparticles.__file__).parents[1]
-    for package in ("fracparticles", "fracstudy"):
-        shutil.copytree(
-            sources / package, copy / package, ignore=shutil.ignore_patterns("__pycache__")
-        )
+    copy_packages(copy)
     for name, text in FILES.items():
         place = copy / name.removeprefix("src/").removeprefix("workflow/")
         place.parent.mkdir(parents=True, exist_ok=True)
@@ -89,16 +80,9 @@ def found(tmp_path_factory) -> dict:
         assert text.count(old) == 1
         new = RK3 + old if "Step" in old else '"rk2", "rk3", "rk4"'
         module.write_text(text.replace(old, new), encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(copy), "NUMBA_CACHE_DIR": str(copy / "cache")}
-    run = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
-        env=environment, cwd=copy, capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
-    assert run.returncode == 0, run.stderr
-    answer = json.loads(run.stdout.splitlines()[-1])
-    assert Path(answer["file"]).is_relative_to(copy)
-    answer["table"] = pd.read_csv(copy / "results/tables/gain.csv")
-    return answer
+    said = answer(copy, PROGRAM)
+    said["table"] = pd.read_csv(copy / "results/tables/gain.csv")
+    return said
 
 
 def test_the_scheme_is_of_fourth_order_and_has_a_stability_limit(found):

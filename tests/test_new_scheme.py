@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import ast
-import json
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 import fracparticles
+from copies import answer, copy_packages
 from fracparticles.schemes import ALL_SCHEMES
 from test_contributing import FILES
 
@@ -56,21 +52,9 @@ print(json.dumps({
 def found(tmp_path_factory) -> dict:
     """What a program says that runs with a copy of the sources and one file more."""
     copy = tmp_path_factory.mktemp("copy")
-    sources = Path(fracparticles.__file__).parents[1]
-    for package in ("fracparticles", "fracstudy"):
-        shutil.copytree(
-            sources / package, copy / package, ignore=shutil.ignore_patterns("__pycache__")
-        )
+    copy_packages(copy)
     (copy / "fracparticles" / "schemes" / "smear.py").write_text(MODULE, encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(copy), "NUMBA_CACHE_DIR": str(copy / "cache")}
-    run = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
-        env=environment, cwd=copy, capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
-    assert run.returncode == 0, run.stderr
-    answer = json.loads(run.stdout.splitlines()[-1])
-    assert Path(answer["file"]).is_relative_to(copy)
-    return answer
+    return answer(copy, PROGRAM)
 
 
 def test_it_is_found_and_comes_last(found):

@@ -20,6 +20,8 @@ import pandas as pd
 import pytest
 import yaml
 
+from copies import copy_folder
+
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "config", "profiles", "workflow", "report", "src")
 SMOKE = ("--configfile", "config/smoke.yaml")
@@ -62,13 +64,11 @@ def planned(project: Path, *arguments: str) -> str:
 
 
 def copy(target: Path) -> Path:
-    """Copy with what numba compiled, but for what another process is writing."""
     target.mkdir(exist_ok=True)
     for part in PARTS:
         source = ROOT / part
         if source.is_dir():
-            ignore = shutil.ignore_patterns("*.tmp.*", "*.pyc.*")
-            shutil.copytree(source, target / part, ignore=ignore)
+            copy_folder(source, target / part)
         else:
             shutil.copy2(source, target / part)
     for folder in target.glob("workflow/scenes/*/*/"):
