@@ -33,6 +33,18 @@ def test_the_front_gathers_speed_towards_its_rate(result):
     assert last[-1] == pytest.approx(exact, rel=0.06)  # at t = 9; at t = 15 it is 0.3 per cent
 
 
+def test_particles_follow_the_front_of_the_lattice(result):
+    """The rates of both until t = 9, and from there on closer to the law."""
+    lattice = pick(result.series, panel="rate", series="α = 1.5")
+    followed = pick(result.series, panel="followed", series="α = 1.5")
+    off = (1.0 - lattice["y"] / lattice["exact"]).abs().to_numpy()
+    # At t = 3 and 4 half a spacing is much beside the place of the front.
+    assert followed["y"].to_numpy()[2 : off.size] == pytest.approx(off[2:], abs=2e-3)
+    assert followed["y"].iloc[-1] < 0.015
+    counts = result.table.set_index("problem")["particles"]
+    assert counts["Fisher-KPP, line, particles"] < 0.2 * counts["Fisher-KPP, line"]
+
+
 def test_the_tail_is_the_power_of_the_diffusion(result):
     tail = pick(result.series, panel="front", series="3")
     far = tail[tail["x"] > 100.0]
@@ -58,4 +70,4 @@ def test_blow_up_is_said_to_be_when_it_is(result):
 
 def test_the_figure_can_be_drawn(scene, result):
     drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
-    assert len(drawn.axes) == 3
+    assert len(drawn.axes) == 4

@@ -20,8 +20,8 @@ _STEPS = {"dop853": "order 8 (DOP853)", "rkc2": "stabilised (RKC2)"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
-    """Draw (a) the front, (b) its rate, (c) errors against evaluations."""
-    drawn, axes = axes_row(3, height=3.6, width=4.0)
+    """Draw (a) the front, (b) its rate, (c) errors against evaluations, (d) how close particles come to the rate."""
+    drawn, axes = axes_row(4, height=3.6, width=3.4)
     _front(axes[0], pick(series, panel="front"))
     _rates(axes[1], pick(series, panel="rate"))
     for (name, label), colour, marker in zip(_STEPS.items(), _COLOURS, _MARKERS, strict=False):
@@ -33,6 +33,12 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     name_ticks(axes[2], (100, 300, 1000, 3000))
     axes[2].legend(loc="upper right")
     panel_title(axes[2], "c", "decay: error and work")
+    followed = pick(series, panel="followed").groupby("series", sort=False)
+    for (name, points), colour, marker in zip(followed, _COLOURS, _MARKERS, strict=False):
+        axes[3].plot(points["x"], points["y"], color=colour, marker=marker, label=name)
+    axes[3].set(xlabel="time $t$", ylabel="relative distance from $1/(1+\\alpha)$", yscale="log")
+    axes[3].legend(loc="lower left", fontsize=7)
+    panel_title(axes[3], "d", "rate of the front, by particles")
     return drawn
 
 

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.optimize import brentq
 
+from fracparticles.adaptive.follow import follow
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.orders import observed_order
@@ -31,6 +33,8 @@ def study(
     half_width: float,
     spacing: float,
     until: list[int],
+    followed_until: list[int],
+    followed_reach: float,
     plane_half_width: float,
     plane_spacing: float,
     plane_until: int,
@@ -48,6 +52,8 @@ def study(
         for alpha, last in zip(alphas, until, strict=True):
             one = {"alpha": alpha, "half_width": half_width, "spacing": spacing}
             rows.append(_front_row(one, last, panels))
+        for alpha, last in zip(alphas, followed_until, strict=True):
+            rows.append(_followed_row(alpha, last, followed_reach, panels))
         plane = {
             "alpha": 1.5, "dim": 2, "form": "exchange", "half_width": plane_half_width, "spacing": plane_spacing,
         }  # fmt: skip
@@ -96,6 +102,32 @@ def _front_row(fields: dict[str, Any], last: int, panels: Panels) -> dict[str, A
         "integrator": str(run["integrator"].values),
         "evaluations": int(run["evaluations"]),
         "beyond the lattice": float(run["outside_share"][-1]),
+        "particles": int(run["u"].isel(t=-1).size),
+    }
+
+
+def _followed_row(alpha: float, last: int, reach: float, panels: Panels) -> dict[str, Any]:
+    """The same front on the line by particles that follow it, as far as they are told to reach."""
+    times = [float(t) for t in range(2, last + 1)]
+    states = follow(
+        lambda x: np.exp(-x * x / 8.0), times, alpha=alpha, window=(-15.0, 15.0), step=0.2, reach=reach,
+        source=lambda x, t, u: u * (1.0 - u), tolerance=1e-7,
+    )  # fmt: skip
+    places = []
+    for state in states:
+        right = state.particles.x > 0.0
+        x, u = state.particles.x[right], state.u[right]
+        beyond = x[u > _LEVEL][-1]
+        ahead = x[x > beyond][0]
+        places.append(brentq(lambda x, s=state: s.at(x) - _LEVEL, beyond, ahead))
+    rates = np.diff(np.log(places))
+    panels.add("followed", f"α = {alpha:g}", times[1:], np.abs(1.0 - (1.0 + alpha) * rates))
+    return {
+        "problem": "Fisher-KPP, line, particles",
+        "quantity": f"rate of the front, α = {alpha:g}, up to t = {last}",
+        "exact": 1.0 / (1.0 + alpha),
+        "ours": float(rates[-1]),
+        "particles": max(state.u.size for state in states),
     }
 
 
