@@ -26,7 +26,7 @@ from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import tail_constant
 
-__all__ = ["OutsideValues", "given_outside", "loss_rates"]
+__all__ = ["OutsideValues", "loss_rates"]
 
 _STEP = 0.25
 _FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
@@ -42,27 +42,8 @@ def loss_rates(particles: GradedParticles, alpha: float) -> FloatArray:
     return np.asarray(tail_constant(alpha) / alpha * losses)
 
 
-def given_outside(exterior: str, outside: Any, *, timed: bool) -> Callable[..., Any] | None:
-    """Return g(y, t) of a function g(y, t), or g(y) if it is not `timed`, or of a number; None for no values outside.
-
-    Raises
-    ------
-    InvalidInput
-        If there are none where the exterior is given, or some where it is not.
-    """
-    if (outside is None) == (exterior == "given"):
-        allowed = "values of u outside if the exterior is given, nothing otherwise"
-        raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
-    if outside is None:
-        return None
-    if callable(outside):
-        return outside if timed else lambda y, t: outside(y)
-    value = check.finite_real("outside", outside)
-    return lambda y, t: np.full(np.shape(y), value)
-
-
 class OutsideValues:
-    """b_i of a function g(y, t) that is given outside (-1, 1).
+    """b_i of a function g(y) that is given outside (-1, 1).
 
     Parameters
     ----------
@@ -94,8 +75,8 @@ class OutsideValues:
             axis=1,
         )
 
-    def load(self, g: Callable[..., FloatArray], t: float) -> FloatArray:
-        """Return b_i at the time t, shape (N,).
+    def load(self, g: Callable[..., Any]) -> FloatArray:
+        """Return b_i, shape (N,).
 
         Raises
         ------
@@ -107,7 +88,7 @@ class OutsideValues:
         AccuracyWarning
             If the points do not resolve g.
         """
-        values = check.sampled("outside", lambda y: np.asarray(g(y, t)) + 0.0 * y, self._points)
+        values = check.sampled("outside", lambda y: np.asarray(g(y)) + 0.0 * y, self._points)
         if (
             self._far_share * np.abs(values[self._farthest]).max()
             > _UNRESOLVED * np.abs(values[self._near]).max()

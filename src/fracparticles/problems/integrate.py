@@ -8,11 +8,11 @@ from itertools import pairwise
 import numpy as np
 
 from fracparticles.errors import InvalidInput
-from fracparticles.problems.krylov import KrylovStep
+from fracparticles.time.krylov import KrylovStep
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates
-from fracparticles.problems.stabilised import StabilisedStep, spectral_radius
-from fracparticles.problems.steps import STAGES, EighthOrderStep, Steps
+from fracparticles.time.stabilised import StabilisedStep, spectral_radius
+from fracparticles.time.steps import STAGES, EighthOrderStep, Steps
 
 __all__ = ["Integration", "integrate"]
 

@@ -13,7 +13,6 @@ from scipy.special import gamma
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
 from fracparticles.bounded.interval_no_flux import no_flux_state
-from fracparticles.bounded.interval_reaction import react
 from fracparticles.run.orders import observed_order
 from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
@@ -127,7 +126,7 @@ def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
         exact = np.cos(t) * getoor
         return np.asarray(np.cos(t) * rate - np.sin(t) * getoor + exact**2 - u**2)
 
-    u = react(absorbing, getoor, 1.0, reaction)
+    u = absorbing.react(getoor, 1.0, reaction)
     yield row("absorbing", "f = g(x, t) - u^2 at t = 1", np.abs(u - np.cos(1.0) * getoor).max())
     start = np.exp(-20.0 * (x - _BUMP) ** 2)
     mass = reflecting.volumes @ start

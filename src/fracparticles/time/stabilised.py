@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from fracparticles.problems.steps import Rate, blown_up, norm
+from fracparticles.time.steps import Rate, blown_up, norm
 from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["StabilisedStep", "spectral_radius"]
