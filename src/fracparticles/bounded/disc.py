@@ -17,7 +17,7 @@ exactly in time. The error is O(N^(alpha-4)) for N rings; a plain lattice has th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -29,6 +29,7 @@ from fracparticles.bounded.disc_rings import Rings, exterior_rate
 from fracparticles.bounded.domain import EXTERIORS, ModalDomain
 from fracparticles.bounded.exponential import Modes
 from fracparticles.bounded.given import Lift
+from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 
 __all__ = ["Disc"]
@@ -113,7 +114,64 @@ class Disc(ModalDomain):
         """Return the mean of g at the edge and what the rest of g holds in place: of that, D A w is nothing."""
         level, inflow = self._inflow_of(g)
         held = self.at_rest(self._rate * self._back(inflow))
-        return Lift(level + held, np.zeros(held.shape))
+        nothing = np.zeros(held.shape)
+        return Lift(level + held, nothing, nothing, nothing)
+
+    # --- a diffusivity and a velocity that vary ------------------------------------------------------
+
+    def carried(
+        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
+    ) -> FloatArray:
+        """Return -div(a u) = -((r a_r u)_r + (a_theta u)_theta) / r, u = v + base.
+
+        Across rings by differences in the variable of the map, after (1 - r^2)^(alpha/2), as v is at the edge; along
+        them by the Fourier transform. Where nothing leaves, what the sum of all is off by is taken off evenly.
+        """
+        (across, vanishing), r = self._slopes, self.radius * self._rings.r[:, None]
+        a_x, a_y = velocity
+        cos, sin = self._direction
+        outwards, around = a_x * cos + a_y * sin, a_y * cos - a_x * sin
+        bent = across if self.exterior == "reflecting" else vanishing
+        turned = 1j * np.arange(self.angular // 2 + 1) * self._transformed(around * (v + base))
+        if self.angular % 2 == 0:
+            turned[:, -1] = 0.0
+        out = bent @ (r * outwards * v) + across @ (r * outwards * base) + self._back(turned)
+        out = -out / r
+        return np.asarray(out - self._mean(out) if self.exterior == "reflecting" else out)
+
+    @cached_property
+    def _slopes(self) -> tuple[FloatArray, FloatArray]:
+        """d/dr of what is smooth, and of what is like (1 - r^2)^(alpha/2) at the edge, both of shape (N, N)."""
+        rings, power = self._rings, 0.5 * self.alpha
+        along = one_sided_differences(self.radial) / rings.slope[:, None]
+        depth = rings.edge * (1.0 + rings.r)
+        bent = depth[:, None] ** power * along / depth**power
+        bent -= np.diag(self.alpha * rings.r / depth)
+        return along / self.radius, bent / self.radius
+
+    def modes_with(self, d: FloatArray, form: str) -> Modes:
+        """Return all modes of the negative of `spread`, of a symmetric matrix between all particles."""
+        waves = range(self.angular // 2 + 1)
+        block = np.fft.irfft(np.array([self._form(wave) for wave in waves]), self.angular, axis=0)
+        angle = np.arange(self.angular)
+        # V_i A between the particles (i, a) and (j, b) of the rings i, j.
+        whole = block[(angle[:, None] - angle) % self.angular].transpose(2, 0, 3, 1)
+        size = self.radial * self.angular
+        exchange, d = -whole.reshape(size, size), d.reshape(-1)
+        np.fill_diagonal(exchange, 0.0)
+        exchange *= 0.5 * (d[:, None] + d)
+        volumes = np.repeat(self._rings.volumes, self.angular)
+        given_up = exchange.sum(axis=1)
+        if self.exterior != "reflecting":
+            given_up += d * volumes * np.repeat(self._rings.outward_rate(self.alpha), self.angular)
+        root = np.sqrt(volumes)
+        rates, vectors = np.linalg.eigh((np.diag(given_up) - exchange) / np.outer(root, root))
+        scale = np.sqrt(self.volumes.reshape(-1))
+
+        def back(y: Any) -> FloatArray:
+            return np.asarray((vectors @ y / scale).reshape(self.volumes.shape))
+
+        return Modes(self._rate * rates, lambda u: vectors.T @ (scale * u.reshape(-1)), back)
 
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the least eigenvalues of -D L, in order, each as often as it occurs."""
@@ -137,12 +195,15 @@ class Disc(ModalDomain):
             lost = lost + self._rings.volumes * self._rings.outward_rate(self.alpha)
         return lost
 
-    def _matrix(self, wave: int) -> FloatArray:
-        """-L of the unit disc for f(r) cos(l theta), symmetric: between the values of V^(1/2) f."""
+    def _form(self, wave: int) -> FloatArray:
+        """-V L of the unit disc for f(r) cos(l theta), symmetric."""
         rings = self._rings
         w = np.diag(self._given_up + rings.volumes * rings.loss(self.alpha, wave))
-        w -= rings.exchange(self.alpha, wave)
-        return np.asarray(w / (self._root[:, None] * self._root))
+        return np.asarray(w - rings.exchange(self.alpha, wave))
+
+    def _matrix(self, wave: int) -> FloatArray:
+        """The same between the values of V^(1/2) f."""
+        return np.asarray(self._form(wave) / (self._root[:, None] * self._root))
 
     @cached_property
     def _spectra(self) -> tuple[FloatArray, FloatArray]:

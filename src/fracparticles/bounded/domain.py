@@ -19,7 +19,7 @@ depends on time, u is the steady field and what is left of the distance from it;
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -82,12 +82,32 @@ class Domain(ABC):
         """Return a field w with the values g(places) outside, and D A w."""
 
     @abstractmethod
+    def carried(
+        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
+    ) -> FloatArray:
+        """Return -div(a (v + base)): v is 0 at an edge as u with u = 0 outside, the base is smooth there."""
+
+    @abstractmethod
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the lowest eigenvalues of -D A in ascending order; the first of reflecting edges is 0."""
 
     @abstractmethod
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
         """Warn if the particles do not resolve f, the initial data or a source."""
+
+    @abstractmethod
+    def unresolved_share(self, v: FloatArray) -> float:
+        """Return the share of the norm of v, 0 outside, in the waves that the particles do not tell apart."""
+
+    def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
+        """Return the exchange with a d that varies, the mean of a pair; with the outside by d itself.
+
+        D (C int_Omega (d(x) + d(y)) / 2 (u(y) - u(x)) |x - y|^(-n-alpha) dy - d kappa u)
+        = (d A u + A(d u) - u A d + d u A 1) D / 2, A 1 = -kappa.
+        """
+        one = np.ones(u.shape)
+        parts = d * self.applied(u) + self.applied(d * u) - u * self.applied(d)
+        return np.asarray(0.5 * (parts + d * u * self.applied(one)))
 
     # --- what all of them do -------------------------------------------------------------------------
 
@@ -245,8 +265,8 @@ class Domain(ABC):
         lift = self.lift_in_time(g, 0.0, time)
 
         def rest(t: float, v: FloatArray) -> FloatArray:
-            base, load = lift(t)
-            return f(t, v + base) + load
+            now = lift(t)
+            return f(t, v + now.base) + now.load - now.slope
 
         if time == 0.0:
             return start
@@ -254,14 +274,14 @@ class Domain(ABC):
         return self._finite(lift(time).base + v, time)
 
     def lift_in_time(self, g: Outside | None, start: float, span: float) -> Callable[[float], Lift]:
-        """Return w and D A w - w' as a function of the time, zero where nothing is given."""
+        """Return w and what it does as a function of the time, zero where nothing is given."""
         varies = g is not None and g.varies and span > 0.0
         return lifted_in_time(lambda t: self._lift_at(g, t), varies, start, span)
 
     def _lift_at(self, g: Outside | None, t: float) -> Lift:
         if g is None:
             nothing = np.zeros(self.volumes.shape)
-            return Lift(nothing, nothing)
+            return Lift(nothing, nothing, nothing, nothing)
         return self.lifted(lambda *place: g.at(*place, t))
 
     def _mean(self, u: FloatArray) -> float:
@@ -291,6 +311,22 @@ class ModalDomain(Domain):
 
     def steps(self, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
         """Return an exponential integrator of u' = D A u + rest(t, u)."""
+        return self.steps_with(self.all_modes(), rest, tolerance, start)
+
+    def unresolved_share(self, v: FloatArray) -> float:
+        """Return the share of the norm of v in all but the slowest quarter of the modes."""
         modes = self.all_modes()
-        size = float(np.linalg.norm(modes.into(start)))
-        return ExponentialSteps(modes, rest, tolerance, size)
+        y = np.abs(modes.into(v)).reshape(-1)
+        slow = np.argsort(modes.rates, axis=None)[: y.size // 4]
+        whole = float(np.linalg.norm(y))
+        y[slow] = 0.0
+        return float(np.linalg.norm(y)) / whole if whole > 0.0 else 0.0
+
+    @abstractmethod
+    def modes_with(self, d: FloatArray, form: str) -> Modes:
+        """Return all modes of -D d A for the form "FPSE", of the negative of `spread` for the form "exchange"."""
+
+    @staticmethod
+    def steps_with(modes: Modes, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
+        """Return an exponential integrator in these modes."""
+        return ExponentialSteps(modes, rest, tolerance, float(np.linalg.norm(modes.into(start))))

@@ -71,16 +71,18 @@ def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
 
 
 class Lift(NamedTuple):
-    """w and D A w - w' at one time."""
+    """w, D A w, (grad^beta w) on an interval, where it is wanted with a diffusivity that varies, and w'."""
 
     base: FloatArray
     load: FloatArray
+    flux: FloatArray
+    slope: FloatArray
 
 
 def lifted_in_time(
     lifted: Callable[[float], Lift], varies: bool, start: float, span: float
 ) -> Callable[[float], Lift]:
-    """Return w and D A w - w' as a function of the time from `start` on; w and D A w from one to the next by `lifted`.
+    """Return a lift as a function of the time from `start` on, by its values at some times.
 
     Raises
     ------
@@ -93,24 +95,29 @@ def lifted_in_time(
     degree = _FIRST
     while degree <= _LAST:
         nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(degree + 1) / degree)
-        values = np.array([lifted(start + span * node) for node in nodes[::-1]])
+        values = np.array([lifted(start + span * node)[:3] for node in nodes[::-1]])
         c = dct(values, type=1, axis=0) / degree
         c[[0, -1]] *= 0.5
-        size = np.abs(c).max(axis=(0, 2, *range(3, c.ndim)), keepdims=True)
-        size = np.maximum(size, size[:, :1])  # D A w may be round-off of w
-        if (np.abs(c[-2:]) <= _RESOLVED * size).all():
-            base, load = np.moveaxis(c, 1, 0)
-            slope = chebyshev.chebder(base, scl=2.0 / span)
-            load = load.copy()
-            load[:-1] -= slope
-
-            def at(t: float) -> Lift:
-                s = min(1.0, max(-1.0, 2.0 * (t - start) / span - 1.0))
-                return Lift(chebyshev.chebval(s, base), chebyshev.chebval(s, load))
-
-            return at
+        # Of w and D A w; D A w, and the flux at the ends, may be round-off of w.
+        size = np.abs(c[:, :2]).max(axis=(0, 2, *range(3, c.ndim)), keepdims=True)
+        if (np.abs(c[-2:, :2]) <= _RESOLVED * np.maximum(size, size[:, :1])).all():
+            return _Interpolated(c, start, span)
         degree *= 2
     raise NonFiniteSolution(
         f"the values outside are not resolved by polynomials of degree {_LAST} of the time up to t = {start + span:g}: "
         "they vary too fast or jump. Solve from jump to jump."
     )
+
+
+class _Interpolated:
+    """A lift by Chebyshev coefficients of its parts, shape (degree + 1, 3, ..)."""
+
+    def __init__(self, c: FloatArray, start: float, span: float) -> None:
+        self._c, self._start, self._span = c, start, span
+        self._slope = chebyshev.chebder(c[:, 0], scl=2.0 / span)
+
+    def __call__(self, t: float) -> Lift:
+        s = min(1.0, max(-1.0, 2.0 * (t - self._start) / self._span - 1.0))
+        parts = np.asarray(chebyshev.chebval(s, self._c))
+        slope = np.asarray(chebyshev.chebval(s, self._slope))
+        return Lift(parts[0], parts[1], parts[2], slope)

@@ -21,7 +21,7 @@ of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -37,8 +37,10 @@ from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import EXTERIORS, ModalDomain
 from fracparticles.bounded.exponential import Modes
 from fracparticles.bounded.given import Lift
+from fracparticles.bounded.interval_differences import differences
 from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.special import tail_constant
 
 __all__ = ["Interval"]
 
@@ -118,9 +120,11 @@ class Interval(ModalDomain):
 
     @cached_property
     def _inverse(self) -> InverseExchange:
-        unit = self._unit
-        inwards = np.argsort(np.minimum(unit.left, unit.right), kind="stable")
-        return InverseExchange.of(self._exchange, unit.volumes, self._loss, inwards)
+        return InverseExchange.of(self._exchange, self._unit.volumes, self._loss, self._inwards)
+
+    @cached_property
+    def _inwards(self) -> np.ndarray:
+        return np.argsort(np.minimum(self._unit.left, self._unit.right), kind="stable")
 
     @cached_property
     def _modes(self) -> tuple[FloatArray, FloatArray]:
@@ -161,7 +165,10 @@ class Interval(ModalDomain):
 
     def all_modes(self) -> Modes:
         """Return all modes of -D A; of eigenvalues above 1e15 times the first it is known only that they are."""
-        (rates, vectors), root = self._modes, np.sqrt(self.volumes)
+        return self._scaled(*self._modes, self.volumes)
+
+    def _scaled(self, rates: FloatArray, vectors: FloatArray, volumes: FloatArray) -> Modes:
+        root = np.sqrt(volumes)
         return Modes(
             self._rate * rates, lambda u: vectors.T @ (root * u), lambda y: vectors @ y / root
         )
@@ -177,14 +184,63 @@ class Interval(ModalDomain):
 
     def lifted(self, g: Callable[..., Any]) -> Lift:
         """Return what values g(y) outside alone would hold in place: of that, D A w is nothing."""
-        load = self._outside.load(g)
-        nothing = np.zeros(self.x.size)
-        return Lift(self._inverse.apply(self._unit.volumes * load), nothing)
+        load, flux = self._outside.load(g)
+        w, nothing = self._inverse.apply(self._unit.volumes * load), np.zeros(self.x.size)
+        flux = self.gradient(w) + self._half ** (1.0 - self.alpha) * flux
+        return Lift(w, nothing, flux, nothing)
+
+    # --- a diffusivity and a velocity that vary ------------------------------------------------------
+
+    def gradient(self, u: FloatArray) -> FloatArray:
+        """Return grad^beta u = (C / alpha) int u(y) sgn(y - x) |x - y|^-alpha dy, with u = 0 outside."""
+        inside = (self._odd * (u - u[:, None])) @ self._unit.volumes
+        left, right = (d ** (1.0 - self.alpha) for d in (self._unit.left, self._unit.right))
+        lost = tail_constant(self.alpha) / self.alpha / (self.alpha - 1.0) * (right - left)
+        return np.asarray(self._half ** (1.0 - self.alpha) * (inside - lost * u))
+
+    @cached_property
+    def _odd(self) -> FloatArray:
+        """The exchange times (x_j - x_i) / alpha: the weights of near neighbours are the same."""
+        distances = self._unit.distances
+        side = np.sign(np.arange(self.x.size) - np.arange(self.x.size)[:, None])
+        return np.asarray(self._exchange * distances * side / self.alpha)
+
+    def slope(self, f: FloatArray) -> FloatArray:
+        """Return df/dx, by differences of order 8 in the variable of the map, where what is beyond an end is even."""
+        return differences(f) / self.volumes
+
+    def carried(
+        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
+    ) -> FloatArray:
+        """Return -(a u)', u = v + base; the sum of V times it is what goes in at one end less what goes out."""
+        return -self.slope(velocity[0] * (v + base))
+
+    def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
+        """Return the exchange with the mean of d, by the differences of pairs."""
+        gained = (self._exchange * 0.5 * (d[:, None] + d) * (u - u[:, None])) @ self._unit.volumes
+        lost = 0.0 if self._loss is None else d * self._loss * u
+        return np.asarray(self._rate * (gained - lost))
+
+    def modes_with(self, d: FloatArray, form: str) -> Modes:
+        """Return all modes of -D d A (FPSE), which is an exchange of volumes V / d, or of the negative of `spread`."""
+        volumes = self._unit.volumes
+        if form == "FPSE":
+            kernel, volumes = self._exchange * np.outer(d, d), volumes / d
+        else:
+            kernel = self._exchange * 0.5 * (d[:, None] + d)
+        loss = None if self._loss is None else d * self._loss
+        inverse = InverseExchange.of(kernel, volumes, loss, self._inwards)
+        return self._scaled(*inverse.modes(), self._half * volumes)
 
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
-        """Warn if the particles do not resolve the initial data."""
-        if name == "initial" and (share := unseen_share(f, self.x, values)) > _UNRESOLVED:
-            text = f"the particles do not resolve the initial data, by {share:.1g} of int |u|. Take more."
+        """Warn if the particles do not resolve f, unless it is a source."""
+        if name == "source":  # may be infinite at the ends
+            return
+        named = "the initial data" if name == "initial" else f"the {name}"
+        if (share := unseen_share(f, self.x, values)) > _UNRESOLVED:
+            text = (
+                f"the particles do not resolve {named}, by {share:.1g} of its integral. Take more."
+            )
             warnings.warn(text, AccuracyWarning, stacklevel=4)
 
     def _lasting(self, time: float) -> float:

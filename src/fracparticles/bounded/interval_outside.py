@@ -3,7 +3,8 @@
 On (-1, 1), with the distances d of particle i from the two ends,
 
     kappa_i = C int_outside |x_i - y|^(-1-alpha) dy = (C / alpha) sum_ends d^(-alpha),
-    b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds.
+    b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds,
+    (grad^beta u)_i = (C / alpha) int_outside g(y) sgn(y - x_i) |x_i - y|^-alpha dy + what is inside.
 
 In s the integrand is smooth on the scale one wherever the particle is, if g is smooth in log |y - end|: the trapezoidal
 rule, its step 1/4, has its own error of e^(-8 pi^2) for a constant g. The weights are scaled to add up to kappa_i, so
@@ -67,6 +68,14 @@ class OutsideValues:
         self._farthest, self._near = ends, np.tile(s <= math.log(10.0), 2)
         self._far_share = math.exp(-alpha * s[-1])
         lost = tail_constant(alpha) / alpha
+        self._flux_weights = np.concatenate(
+            [
+                sign * lost / (alpha - 1.0) * distance[:, None] ** (1.0 - alpha) * weights
+                for sign, distance in ((-1.0, particles.left), (1.0, particles.right))
+                for weights in [_flux_weights(distance, beyond, alpha)]
+            ],
+            axis=1,
+        )
         self._weights = np.concatenate(
             [
                 _weights(distance, beyond, alpha) * (lost * distance**-alpha)[:, None]
@@ -75,8 +84,8 @@ class OutsideValues:
             axis=1,
         )
 
-    def load(self, g: Callable[..., Any]) -> FloatArray:
-        """Return b_i, shape (N,).
+    def load(self, g: Callable[..., Any]) -> tuple[FloatArray, FloatArray]:
+        """Return b_i and what grad^beta u has of the outside, both of shape (N,).
 
         Raises
         ------
@@ -106,10 +115,18 @@ class OutsideValues:
                 AccuracyWarning,
                 stacklevel=3,
             )
-        return load
+        return load, np.asarray(self._flux_weights @ values)
 
 
 def _weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:
     """Weights in proportion to (d + e^s)^(-1-alpha) e^s, each row of sum one."""
     weights = (1.0 + beyond / distance[:, None]) ** (-1.0 - alpha) * (beyond / distance[:, None])
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+
+
+def _flux_weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:
+    """Weights in proportion to (d + e^s)^-alpha e^s, each row of sum one: the last point has all that is farther."""
+    ratio = beyond / distance[:, None]
+    weights = (alpha - 1.0) * _STEP * (1.0 + ratio) ** -alpha * ratio
+    weights[:, -1] += 1.0 - weights.sum(axis=1)
+    return np.asarray(weights)

@@ -17,7 +17,8 @@ exact, by Chebyshev series; steady fields are found by conjugate gradients.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import EXTERIORS, Domain
 from fracparticles.bounded.exponential import Rest
 from fracparticles.bounded.given import Lift
+from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.bounded.square_lattice import (
     edge_exchange,
@@ -154,7 +156,30 @@ class Square(Domain):
     def lifted(self, g: Callable[..., Any]) -> Lift:
         """Return g itself, which goes on smoothly inside, and D A g."""
         base = check.sampled("outside", g, self.x, self.y)
-        return Lift(base, self._rate * self._rate_of_smooth(g))
+        nothing = np.zeros(base.shape)
+        return Lift(base, self._rate * self._rate_of_smooth(g), nothing, nothing)
+
+    def carried(
+        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
+    ) -> FloatArray:
+        """Return -div(a u), u = v + base, by differences after d^(alpha/2), d = R^2 - x^2, as v is at the edges.
+
+        Where nothing leaves, what the sum of all is off by is taken off evenly.
+        """
+        along, vanishing = self._slopes
+        bent = along if self.exterior == "reflecting" else vanishing
+        a_x, a_y = velocity
+        out = bent @ (a_x * v) + along @ (a_x * base) + (a_y * v) @ bent.T + (a_y * base) @ along.T
+        return np.asarray(self._mean(out) - out if self.exterior == "reflecting" else -out)
+
+    @cached_property
+    def _slopes(self) -> tuple[FloatArray, FloatArray]:
+        """d/dx of what is smooth, and of what is like (R^2 - x^2)^(alpha/2) at the edges, both of shape (N, N)."""
+        x, power = self.x[:, 0], 0.5 * self.alpha
+        along = one_sided_differences(self.side) * (0.5 * self.side / self.half_width)
+        depth = self.half_width**2 - x**2
+        bent = depth[:, None] ** power * along / depth**power
+        return along, bent - np.diag(self.alpha * x / depth)
 
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the least eigenvalues of -D L, in order, each as often as it occurs: up to 20 of them."""
@@ -178,6 +203,14 @@ class Square(Domain):
             return_eigenvectors=False,
         )
         return self._rate * np.concatenate([np.zeros(count - wanted), np.sort(found)])
+
+    def unresolved_share(self, v: FloatArray) -> float:
+        """Return the share of the norm of v in sines, or cosines, of more than half a wave for two particles."""
+        there = dctn if self.exterior == "reflecting" else dstn
+        waves = there(v, type=2, norm="ortho")
+        whole = float(np.linalg.norm(waves))
+        waves[: self.side // 2, : self.side // 2] = 0.0
+        return float(np.linalg.norm(waves)) / whole if whole > 0.0 else 0.0
 
     # --- between V^(1/2) u and u ------------------------------------------------------------------
 

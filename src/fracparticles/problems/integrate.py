@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
 from fracparticles.errors import InvalidInput
-from fracparticles.time.krylov import KrylovStep
 from fracparticles.problems.problem import Problem
-from fracparticles.problems.rates import Rates
+from fracparticles.time.krylov import KrylovStep
 from fracparticles.time.stabilised import StabilisedStep, spectral_radius
 from fracparticles.time.steps import STAGES, EighthOrderStep, Steps
 
@@ -44,7 +44,16 @@ class Integration:
     stiffness: float
 
 
-def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
+class RightHandSide(Protocol):
+    """R(t, u), flat as u, that counts how often it is asked for."""
+
+    evaluations: int
+
+    def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
+        """Return du/dt."""
+
+
+def integrate(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> Integration:
     """Integrate u' = R(t, u) from u0, shape (N,), to the output times.
 
     Raises
@@ -95,7 +104,7 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
     )  # fmt: skip
 
 
-def _size(problem: Problem, rates: Rates, u0: np.ndarray) -> float:
+def _size(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
     """The greatest |u| at t_initial, or what the source makes of it where that is zero."""
     size = float(np.abs(u0).max())
     if size == 0.0:

@@ -1,0 +1,216 @@
+"""A problem on a bounded domain: its right-hand side between particles, and the way through time.
+
+    v' = B(t) v + div(...) of what is held outside - div(a u) + f(x, t, u) - w',    u = w + v,
+
+w has the values outside, v = 0 there, and B is D A, or the exchange with the mean of a pair, or on the interval
+
+    D A v + D' grad^beta v = div(D grad^beta v).
+
+On the interval and the disc B is taken in its modes: those of the greatest D of the run at each place, so that what is
+left, like all else, is for the exponential integrator of `bounded.exponential`. On the square the lattice is not
+stiff, and the integrators of the whole space take it as it is.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fracparticles.bounded.domain import ModalDomain
+from fracparticles.bounded.exponential import Modes
+from fracparticles.bounded.given import Outside
+from fracparticles.bounded.interval import Interval
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.problems.dataset import domain_layout, to_dataset
+from fracparticles.problems.integrate import Integration, integrate
+from fracparticles.problems.problem import Problem
+from fracparticles.problems.rates import over_time, probe_source, reaction_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["DomainRates", "solve_on_domain"]
+
+_LOOKS = 33  # at a diffusivity that depends on time
+_KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
+_UNRESOLVED = 0.02  # of the norm of v, in modes that the particles do not tell apart
+
+
+class DomainRates:
+    """The right-hand side of a problem on a bounded domain.
+
+    Attributes
+    ----------
+    evaluations : int
+        How often it has been asked for.
+    lift : callable
+        w and what it does, by time.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.domain, self.evaluations = problem, problem.bounded_domain, 0
+        start, at = problem.t_initial, self.domain.points
+        self._d = over_time(problem.diffusion, at, start=start)
+        self._varies = bool(problem.diffusion.depends_on - {"t"})
+        self._flux = self._varies and problem.form == "FPSE"
+        self._velocity = [over_time(one, at, start=start) for one in problem.transport]
+        self._source = reaction_of(problem)
+        self.lift = self.domain.lift_in_time(_outside(problem), start, problem.span)
+        self.shape = self.domain.volumes.shape
+
+    def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
+        """Return dv/dt for v = u, flat as that."""
+        field = u.reshape(self.shape)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.asarray(self._spread(field, self._d(t)) + self.beside(t, field)).reshape(-1)
+
+    def beside(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return dv/dt without D A v, or the exchange of v."""
+        self.evaluations += 1
+        now, d = self.lift(t), self._d(t)
+        total = d * now.load - now.slope
+        if self._flux:
+            total = total + self._slope(d) * (self._gradient(v) + now.flux)
+        elif self._varies and self.problem.exterior == "given":
+            total = total + self._spread(now.base, d) - d * self.domain.applied(now.base)
+        if self._velocity:
+            total = total + self.domain.carried(v, now.base, [one(t) for one in self._velocity])
+        if self._source is not None:
+            total = total + self._source(t, v + now.base)
+        return np.asarray(total)
+
+    @cached_property
+    def modes(self) -> Modes:
+        """Those of the greatest D of the run."""
+        problem, domain = self.problem, self.domain
+        assert isinstance(domain, ModalDomain)
+        if not self._varies:
+            modes = domain.all_modes()
+            return modes._replace(rates=float(self._greatest) * modes.rates)
+        return domain.modes_with(np.asarray(self._greatest), problem.form)
+
+    def beside_modes(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return dv/dt without what is in the modes.
+
+        What D(t) is less than the greatest is left out of modes so fast that no more is known of their rates.
+        """
+        total = self.beside(t, v)
+        if "t" in self.problem.diffusion.depends_on:
+            modes = self.modes
+            less = modes.into(self._spread(v, self._d(t)) - self._spread(v, self._greatest))
+            total = total + modes.back(np.where(modes.rates < _KNOWN * self._slowest, less, 0.0))
+        return total
+
+    @cached_property
+    def _slowest(self) -> float:
+        rates = self.modes.rates
+        return float(rates[rates > 0.0].min())
+
+    @cached_property
+    def _greatest(self) -> np.ndarray:
+        if "t" not in self.problem.diffusion.depends_on:
+            return self._d(self.problem.t_initial)
+        looks = np.linspace(self.problem.t_initial, self.problem.t_final, _LOOKS)
+        return np.asarray(np.max([self._d(t) for t in looks], axis=0))
+
+    def _spread(self, v: np.ndarray, d: np.ndarray) -> np.ndarray:
+        if self._varies and not self._flux:
+            return self.domain.spread(v, d)
+        return np.asarray(d * self.domain.applied(v))
+
+    def _slope(self, d: np.ndarray) -> np.ndarray:
+        assert isinstance(self.domain, Interval)
+        return self.domain.slope(d)
+
+    def _gradient(self, v: np.ndarray) -> np.ndarray:
+        assert isinstance(self.domain, Interval)
+        return self.domain.gradient(v)
+
+
+def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
+    """Solve a problem on a bounded domain, see `solve.solve_problem`."""
+    u0, origin = _initial(problem, initial)
+    _look_at_coefficients(problem)
+    probe_source(problem, u0)
+    rates = DomainRates(problem)
+    v0 = u0 - rates.lift(problem.t_initial).base
+    if isinstance(rates.domain, ModalDomain):
+        result = _in_modes(problem, rates, u0, v0)
+    else:
+        result = integrate(problem, rates, v0.reshape(-1))
+    fields = [one.reshape(u0.shape) for one in result.u]
+    shares = [rates.domain.unresolved_share(one) for one in fields]
+    found = {
+        "unresolved_share": (shares, "share of u in waves that the particles do not tell apart")
+    }
+    for t, share in zip(problem.output_times, shares, strict=True):
+        if share > _UNRESOLVED:
+            text = f"by t = {t:.4g} the particles do not resolve the solution: {share:.2g} of it is in waves that they"
+            warnings.warn(f"{text} do not tell apart. Take more.", AccuracyWarning, stacklevel=3)
+            break
+    for t, one in zip(problem.output_times, fields, strict=True):
+        one += rates.lift(t).base
+    return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
+
+
+def _in_modes(problem: Problem, rates: DomainRates, u0: np.ndarray, v0: np.ndarray) -> Integration:
+    domain, modes = rates.domain, rates.modes
+    assert isinstance(domain, ModalDomain)
+    size = u0
+    if problem.atol is not None:
+        size = np.full(u0.shape, problem.atol / problem.rtol)
+    steps = domain.steps_with(modes, rates.beside_modes, problem.rtol, size)
+    outputs, v = [], v0
+    for before, after in pairwise((problem.t_initial, *problem.output_times)):
+        v = steps.advance(v, after - before, before)
+        outputs.append(np.array(v))
+    return Integration(
+        outputs, "exponential", steps.accepted, steps.rejected, rates.evaluations,
+        problem.span * float(modes.rates.max()),
+    )  # fmt: skip
+
+
+def _outside(problem: Problem) -> Outside | None:
+    g = problem.outside
+    if g is None:
+        return None
+
+    def at(*place: Any) -> np.ndarray:
+        return np.array(g.checked(dict(zip(g.variables, place, strict=True))))
+
+    return Outside(at, "t" in g.depends_on)
+
+
+def _look_at_coefficients(problem: Problem) -> None:
+    """Warn if the particles do not resolve what varies in space, at the start."""
+    for one in (problem.diffusion, *problem.transport):
+        if one.depends_on - {"t"}:
+
+            def at(*place: np.ndarray, one: Any = one) -> np.ndarray:
+                return one(
+                    {
+                        **dict(zip(one.variables, place, strict=False)),
+                        "t": np.array(problem.t_initial),
+                    }
+                )
+
+            problem.bounded_domain.seen(one.field, at)
+
+
+def _initial(problem: Problem, initial: Any) -> tuple[np.ndarray, str]:
+    """The initial strengths, and where they come from."""
+    domain = problem.bounded_domain
+    if initial is None or isinstance(initial, str | bytes):
+        what = "a function of the place, a number or an array: a bounded domain has no fundamental solution"
+        raise InvalidInput("initial", initial, what, "Pass one of these.")
+    if hasattr(initial, "coords"):
+        what = f"a bare array of shape {domain.volumes.shape}, whose order is that of bounded_domain.points"
+        raise InvalidInput("initial", type(initial).__name__, what, "Pass its values.")
+    u0 = np.array(domain.seen("initial", initial))
+    digest = hashlib.sha256(u0.tobytes()).hexdigest()[:16]
+    return u0, f"{'callable' if callable(initial) else 'array'}, sha256 {digest}"
