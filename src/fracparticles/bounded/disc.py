@@ -26,9 +26,10 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import Rings, exterior_rate
-from fracparticles.bounded.domain import EXTERIORS, ModalDomain
+from fracparticles.bounded.domain import EXTERIORS
 from fracparticles.bounded.exponential import Modes
 from fracparticles.bounded.given import Lift
+from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 
@@ -96,12 +97,9 @@ class Disc(ModalDomain):
 
     def applied(self, u: FloatArray) -> FloatArray:
         """Return D A u, with u = 0 outside."""
-        modes, root = self._transformed(u), self._root[:, None]
-        out = np.empty_like(modes)
-        for wave in range(modes.shape[1]):
-            part = modes[:, wave : wave + 1] * root
-            out[:, wave : wave + 1] = -(self._matrix(wave) @ part) / root
-        return self._rate * self._back(out)
+        root = self._root[:, None]
+        out = np.einsum("lij,jl->il", self._matrices, root * self._transformed(u))
+        return -self._rate * self._back(out / root)
 
     def at_rest(self, load: FloatArray) -> FloatArray:
         """Return u of D A u + load = 0; of a reflecting exterior that of total 0."""
@@ -151,8 +149,8 @@ class Disc(ModalDomain):
 
     def modes_with(self, d: FloatArray, form: str) -> Modes:
         """Return all modes of the negative of `spread`, of a symmetric matrix between all particles."""
-        waves = range(self.angular // 2 + 1)
-        block = np.fft.irfft(np.array([self._form(wave) for wave in waves]), self.angular, axis=0)
+        root = np.sqrt(self._rings.volumes)
+        block = np.fft.irfft(self._matrices * np.outer(root, root), self.angular, axis=0)
         angle = np.arange(self.angular)
         # V_i A between the particles (i, a) and (j, b) of the rings i, j.
         whole = block[(angle[:, None] - angle) % self.angular].transpose(2, 0, 3, 1)
@@ -201,15 +199,16 @@ class Disc(ModalDomain):
         w = np.diag(self._given_up + rings.volumes * rings.loss(self.alpha, wave))
         return np.asarray(w - rings.exchange(self.alpha, wave))
 
-    def _matrix(self, wave: int) -> FloatArray:
-        """The same between the values of V^(1/2) f."""
-        return np.asarray(self._form(wave) / (self._root[:, None] * self._root))
+    @cached_property
+    def _matrices(self) -> FloatArray:
+        """The same between the values of V^(1/2) f, for each wave number."""
+        forms = np.array([self._form(wave) for wave in range(self.angular // 2 + 1)])
+        return np.asarray(forms / np.outer(self._root, self._root))
 
     @cached_property
     def _spectra(self) -> tuple[FloatArray, FloatArray]:
         """Eigenvalues and orthonormal vectors of each wave number, shapes (waves, N) and (waves, N, N)."""
-        waves = range(self.angular // 2 + 1)
-        values, vectors = np.linalg.eigh(np.array([self._matrix(wave) for wave in waves]))
+        values, vectors = np.linalg.eigh(self._matrices)
         if self.exterior == "reflecting":
             # The constant is an eigenvector, and its eigenvalue zero: to all digits, not to those of the largest.
             values[0, 0], first = 0.0, vectors[0]

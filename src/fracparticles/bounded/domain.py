@@ -26,12 +26,12 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.exponential import ExponentialSteps, Modes, Rest
+from fracparticles.bounded.exponential import Rest
 from fracparticles.bounded.given import Lift, Outside, given_outside, lifted_in_time, takes
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.time.steps import Steps
 
-__all__ = ["EXTERIORS", "Domain", "ModalDomain"]
+__all__ = ["EXTERIORS", "Domain"]
 
 EXTERIORS = ("absorbing", "reflecting", "given")
 """What may be outside."""
@@ -96,8 +96,8 @@ class Domain(ABC):
         """Warn if the particles do not resolve f, the initial data or a source."""
 
     @abstractmethod
-    def unresolved_share(self, v: FloatArray) -> float:
-        """Return the share of the norm of v, 0 outside, in the waves that the particles do not tell apart."""
+    def unresolved(self, v: FloatArray) -> float:
+        """Return the norm of what of v, 0 outside, is in the waves that the particles do not tell apart."""
 
     def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
         """Return the exchange with a d that varies, the mean of a pair; with the outside by d itself.
@@ -114,6 +114,10 @@ class Domain(ABC):
     def total(self, u: Any) -> float:
         """Return the strength of all particles, int u dx."""
         return float((self.volumes * self.values("u", u)).sum())
+
+    def norm(self, u: FloatArray) -> float:
+        """Return (int u^2 dx)^(1/2)."""
+        return float(np.sqrt((self.volumes * u * u).sum()))
 
     def rate(self, u: Any, outside: Any = None) -> FloatArray:
         """Return D A u at the particles."""
@@ -295,38 +299,3 @@ class Domain(ABC):
             text = f"u is not finite at t = {time:g}: data or source are near the largest number. Take other units."
             raise NonFiniteSolution(text)
         return u
-
-
-class ModalDomain(Domain):
-    """A domain that knows all modes of its operator."""
-
-    @abstractmethod
-    def all_modes(self) -> Modes:
-        """Return all modes of -D A."""
-
-    def decayed(self, u: FloatArray, time: float) -> FloatArray:
-        """Return exp(time D A) u, u = 0 outside."""
-        modes = self.all_modes()
-        return modes.back(np.exp(-modes.rates * time) * modes.into(u))
-
-    def steps(self, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
-        """Return an exponential integrator of u' = D A u + rest(t, u)."""
-        return self.steps_with(self.all_modes(), rest, tolerance, start)
-
-    def unresolved_share(self, v: FloatArray) -> float:
-        """Return the share of the norm of v in all but the slowest quarter of the modes."""
-        modes = self.all_modes()
-        y = np.abs(modes.into(v)).reshape(-1)
-        slow = np.argsort(modes.rates, axis=None)[: y.size // 4]
-        whole = float(np.linalg.norm(y))
-        y[slow] = 0.0
-        return float(np.linalg.norm(y)) / whole if whole > 0.0 else 0.0
-
-    @abstractmethod
-    def modes_with(self, d: FloatArray, form: str) -> Modes:
-        """Return all modes of -D d A for the form "FPSE", of the negative of `spread` for the form "exchange"."""
-
-    @staticmethod
-    def steps_with(modes: Modes, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
-        """Return an exponential integrator in these modes."""
-        return ExponentialSteps(modes, rest, tolerance, float(np.linalg.norm(modes.into(start))))

@@ -34,11 +34,12 @@ from fracparticles.adaptive.maps import graded_on_interval
 from fracparticles.adaptive.samples import unseen_share
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.domain import EXTERIORS, ModalDomain
+from fracparticles.bounded.domain import EXTERIORS
 from fracparticles.bounded.exponential import Modes
 from fracparticles.bounded.given import Lift
 from fracparticles.bounded.interval_differences import differences
 from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
+from fracparticles.bounded.modal import ModalDomain
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import tail_constant
 
@@ -184,10 +185,10 @@ class Interval(ModalDomain):
 
     def lifted(self, g: Callable[..., Any]) -> Lift:
         """Return what values g(y) outside alone would hold in place: of that, D A w is nothing."""
-        load, flux = self._outside.load(g)
+        level, load, flux = self._outside.load(g)
         w, nothing = self._inverse.apply(self._unit.volumes * load), np.zeros(self.x.size)
         flux = self.gradient(w) + self._half ** (1.0 - self.alpha) * flux
-        return Lift(w, nothing, flux, nothing)
+        return Lift(level + w, nothing, flux, nothing)
 
     # --- a diffusivity and a velocity that vary ------------------------------------------------------
 

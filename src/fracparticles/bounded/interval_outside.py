@@ -84,8 +84,8 @@ class OutsideValues:
             axis=1,
         )
 
-    def load(self, g: Callable[..., Any]) -> tuple[FloatArray, FloatArray]:
-        """Return b_i and what grad^beta u has of the outside, both of shape (N,).
+    def load(self, g: Callable[..., Any]) -> tuple[float, FloatArray, FloatArray]:
+        """Return a level, b_i of g less that, and what grad^beta u has of it, both of shape (N,).
 
         Raises
         ------
@@ -104,8 +104,10 @@ class OutsideValues:
         ):
             allowed = "values that do not grow like |y|^alpha far out, where nothing would be left of the integral"
             raise InvalidInput("outside", g, allowed, "Give bounded ones.")
-        load = np.asarray(self._weights @ values)
-        every_other = 2.0 * self._weights[:, ::2] @ values[::2]
+        level = 0.5 * float(values[0] + values[values.size // 2])  # next to the ends
+        less = values - level
+        load = np.asarray(self._weights @ less)
+        every_other = 2.0 * self._weights[:, ::2] @ less[::2]
         size = self._weights.sum(axis=1) * np.abs(values).max()
         share = float((np.abs(load - every_other) / np.maximum(size, np.finfo(float).tiny)).max())
         if share > _UNRESOLVED:
@@ -115,7 +117,7 @@ class OutsideValues:
                 AccuracyWarning,
                 stacklevel=3,
             )
-        return load, np.asarray(self._flux_weights @ values)
+        return level, load, np.asarray(self._flux_weights @ less)
 
 
 def _weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:

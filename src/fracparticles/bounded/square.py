@@ -204,13 +204,11 @@ class Square(Domain):
         )
         return self._rate * np.concatenate([np.zeros(count - wanted), np.sort(found)])
 
-    def unresolved_share(self, v: FloatArray) -> float:
-        """Return the share of the norm of v in sines, or cosines, of more than half a wave for two particles."""
-        there = dctn if self.exterior == "reflecting" else dstn
-        waves = there(v, type=2, norm="ortho")
-        whole = float(np.linalg.norm(waves))
+    def unresolved(self, v: FloatArray) -> float:
+        """Return the norm of v in sines, or cosines, of more than half a wave for two particles."""
+        waves = (dctn if self.exterior == "reflecting" else dstn)(v, type=2, norm="ortho")
         waves[: self.side // 2, : self.side // 2] = 0.0
-        return float(np.linalg.norm(waves)) / whole if whole > 0.0 else 0.0
+        return float(np.linalg.norm(waves)) * 2.0 * self.half_width / self.side
 
     # --- between V^(1/2) u and u ------------------------------------------------------------------
 

@@ -29,7 +29,7 @@ class Integration:
     u : list of arrays, shape (N,)
         At each output time.
     method : str
-        "exponential", "rkc2" or "dop853".
+        "exponential", "rkc2" or "dop853"; on an interval "radau", too.
     accepted, rejected, evaluations : int
         Steps taken, steps thrown away, and evaluations of the right-hand side.
     stiffness : float

@@ -7,7 +7,8 @@ w has the values outside, v = 0 there, and B is D A, or the exchange with the me
     D A v + D' grad^beta v = div(D grad^beta v).
 
 On the interval and the disc B is taken in its modes: those of the greatest D of the run at each place, so that what is
-left, like all else, is for the exponential integrator of `bounded.exponential`. On the square the lattice is not
+left, like all else, is for the exponential integrator of `bounded.exponential`, and with a velocity on the interval for
+the implicit one of `bounded.implicit`. On the square the lattice is not
 stiff, and the integrators of the whole space take it as it is.
 """
 
@@ -21,15 +22,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fracparticles.bounded.domain import ModalDomain
 from fracparticles.bounded.exponential import Modes
 from fracparticles.bounded.given import Outside
+from fracparticles.bounded.implicit import ImplicitSteps
 from fracparticles.bounded.interval import Interval
+from fracparticles.bounded.modal import ModalDomain
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
 from fracparticles.problems.integrate import Integration, integrate
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import over_time, probe_source, reaction_of
+from fracparticles.time.steps import Steps
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,6 +65,9 @@ class DomainRates:
         self._source = reaction_of(problem)
         self.lift = self.domain.lift_in_time(_outside(problem), start, problem.span)
         self.shape = self.domain.volumes.shape
+        linear = (problem.diffusion, *problem.transport)
+        self._steady_matrix = all("t" not in one.depends_on for one in linear)
+        self._matrix: np.ndarray | None = None
 
     def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
         """Return dv/dt for v = u, flat as that."""
@@ -71,18 +77,31 @@ class DomainRates:
 
     def beside(self, t: float, v: np.ndarray) -> np.ndarray:
         """Return dv/dt without D A v, or the exchange of v."""
+        return self._forcing(t, v) + self._lower(t, v)
+
+    def _forcing(self, t: float, v: np.ndarray) -> np.ndarray:
+        """What is held outside, and the source."""
         self.evaluations += 1
-        now, d = self.lift(t), self._d(t)
+        now, d, domain = self.lift(t), self._d(t), self.domain
         total = d * now.load - now.slope
         if self._flux:
-            total = total + self._slope(d) * (self._gradient(v) + now.flux)
+            total = total + self._line.slope(d) * now.flux
         elif self._varies and self.problem.exterior == "given":
-            total = total + self._spread(now.base, d) - d * self.domain.applied(now.base)
-        if self._velocity:
-            total = total + self.domain.carried(v, now.base, [one(t) for one in self._velocity])
+            total = total + domain.spread(now.base, d) - d * domain.applied(now.base)
+        if self._velocity and self.problem.exterior == "given":
+            total = total + domain.carried(0.0 * v, now.base, [one(t) for one in self._velocity])
         if self._source is not None:
             total = total + self._source(t, v + now.base)
         return np.asarray(total)
+
+    def _lower(self, t: float, v: np.ndarray) -> np.ndarray:
+        """The linear parts of lower order than the diffusion."""
+        total = np.zeros(v.shape)
+        if self._flux:
+            total += self._line.slope(self._d(t)) * self._line.gradient(v)
+        if self._velocity:
+            total += self.domain.carried(v, total * 0.0, [one(t) for one in self._velocity])
+        return total
 
     @cached_property
     def modes(self) -> Modes:
@@ -95,21 +114,33 @@ class DomainRates:
         return domain.modes_with(np.asarray(self._greatest), problem.form)
 
     def beside_modes(self, t: float, v: np.ndarray) -> np.ndarray:
-        """Return dv/dt without what is in the modes.
+        """Return dv/dt without what is in the modes."""
+        return self._forcing(t, v) + self.modes.back(self._in_modes(t, v))
 
-        What D(t) is less than the greatest is left out of modes so fast that no more is known of their rates.
-        """
-        total = self.beside(t, v)
+    def lower_in_modes(self, t: float) -> np.ndarray:
+        """Return the matrix of what is linear beside the modes, between their amplitudes, shape (N, N)."""
+        if not self._steady_matrix or self._matrix is None:
+            rates = self.modes.rates
+            columns = (self._in_modes(t, self.modes.back(e)) for e in np.eye(rates.size))
+            self._matrix = np.stack(list(columns), axis=1) * (rates < self._known)
+        return self._matrix
+
+    def _in_modes(self, t: float, v: np.ndarray) -> Any:
+        """What is linear beside the modes, left out of those so fast that no more is known of their rates."""
+        part = self._lower(t, v)
         if "t" in self.problem.diffusion.depends_on:
-            modes = self.modes
-            less = modes.into(self._spread(v, self._d(t)) - self._spread(v, self._greatest))
-            total = total + modes.back(np.where(modes.rates < _KNOWN * self._slowest, less, 0.0))
-        return total
+            part += self._spread(v, self._d(t)) - self._spread(v, self._greatest)
+        return np.where(self.modes.rates < self._known, self.modes.into(part), 0.0)
 
     @cached_property
-    def _slowest(self) -> float:
+    def _known(self) -> float:
         rates = self.modes.rates
-        return float(rates[rates > 0.0].min())
+        return _KNOWN * float(rates[rates > 0.0].min())
+
+    @cached_property
+    def _line(self) -> Interval:
+        assert isinstance(self.domain, Interval)
+        return self.domain
 
     @cached_property
     def _greatest(self) -> np.ndarray:
@@ -122,14 +153,6 @@ class DomainRates:
         if self._varies and not self._flux:
             return self.domain.spread(v, d)
         return np.asarray(d * self.domain.applied(v))
-
-    def _slope(self, d: np.ndarray) -> np.ndarray:
-        assert isinstance(self.domain, Interval)
-        return self.domain.slope(d)
-
-    def _gradient(self, v: np.ndarray) -> np.ndarray:
-        assert isinstance(self.domain, Interval)
-        return self.domain.gradient(v)
 
 
 def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
@@ -144,7 +167,11 @@ def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
     else:
         result = integrate(problem, rates, v0.reshape(-1))
     fields = [one.reshape(u0.shape) for one in result.u]
-    shares = [rates.domain.unresolved_share(one) for one in fields]
+    shares = []
+    for t, v in zip(problem.output_times, fields, strict=True):
+        waves = rates.domain.unresolved(v)
+        v += rates.lift(t).base
+        shares.append(waves / max(rates.domain.norm(v), 1e-300))
     found = {
         "unresolved_share": (shares, "share of u in waves that the particles do not tell apart")
     }
@@ -153,8 +180,6 @@ def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
             text = f"by t = {t:.4g} the particles do not resolve the solution: {share:.2g} of it is in waves that they"
             warnings.warn(f"{text} do not tell apart. Take more.", AccuracyWarning, stacklevel=3)
             break
-    for t, one in zip(problem.output_times, fields, strict=True):
-        one += rates.lift(t).base
     return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
 
 
@@ -164,13 +189,18 @@ def _in_modes(problem: Problem, rates: DomainRates, u0: np.ndarray, v0: np.ndarr
     size = u0
     if problem.atol is not None:
         size = np.full(u0.shape, problem.atol / problem.rtol)
-    steps = domain.steps_with(modes, rates.beside_modes, problem.rtol, size)
+    steps: Steps = domain.steps_with(modes, rates.beside_modes, problem.rtol, size)
+    method = "exponential"
+    if problem.transport and problem.domain == "interval":
+        least = float(np.linalg.norm(modes.into(size)))
+        steps = ImplicitSteps(modes, rates.beside_modes, rates.lower_in_modes, problem.rtol, least)
+        method = "radau"
     outputs, v = [], v0
     for before, after in pairwise((problem.t_initial, *problem.output_times)):
         v = steps.advance(v, after - before, before)
         outputs.append(np.array(v))
     return Integration(
-        outputs, "exponential", steps.accepted, steps.rejected, rates.evaluations,
+        outputs, method, steps.accepted, steps.rejected, rates.evaluations,
         problem.span * float(modes.rates.max()),
     )  # fmt: skip
 
@@ -190,14 +220,11 @@ def _look_at_coefficients(problem: Problem) -> None:
     """Warn if the particles do not resolve what varies in space, at the start."""
     for one in (problem.diffusion, *problem.transport):
         if one.depends_on - {"t"}:
+            level = float(np.abs(one({**problem.places, "t": np.array(problem.t_initial)})).max())
 
-            def at(*place: np.ndarray, one: Any = one) -> np.ndarray:
-                return one(
-                    {
-                        **dict(zip(one.variables, place, strict=False)),
-                        "t": np.array(problem.t_initial),
-                    }
-                )
+            def at(*place: np.ndarray, one: Any = one, level: float = level) -> np.ndarray:
+                named = dict(zip(one.variables, place, strict=False))
+                return one({**named, "t": np.array(problem.t_initial)}) + level
 
             problem.bounded_domain.seen(one.field, at)
 
