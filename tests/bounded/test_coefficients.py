@@ -1,4 +1,4 @@
-"""The gradient, transport, and a diffusivity that varies on bounded domains: closed forms, orders, pairs, invariants."""
+"""The gradient, transport, and a diffusivity that varies on bounded domains: closed forms, orders, pairs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def eigenvalue(n, alpha):
 @pytest.mark.parametrize("alpha", ALPHAS)
 @pytest.mark.parametrize("n", [0, 1, 2, 3])
 def test_the_gradient_is_a_polynomial(alpha, n):
-    """grad^beta w P_n^(a, a) = -2 mu_n / (n + 2 a) P_(n+1)^(a-1, a-1), w = (1 - x^2)^a: its slope is -mu_n P_n^(a, a)."""
+    """grad^beta w P_n^(a, a) = -2 mu_n / (n + 2 a) P_(n+1)^(a-1, a-1), w = (1 - x^2)^a, of slope -mu_n P_n^(a, a)."""
     a, errors = 0.5 * alpha, []
     for particles in (100, 200):
         line = Interval(alpha=alpha, particles=particles)

@@ -21,12 +21,20 @@ from fracparticles.errors import InvalidInput, one_of
 if TYPE_CHECKING:
     from fracparticles.problems.problem import Problem
 
-__all__ = ["DOMAINS", "check_domain", "is_bounded", "make_domain", "sample_points", "with_dim"]
+__all__ = [
+    "DOMAINS",
+    "OF_A_LATTICE",
+    "check_domain",
+    "is_bounded",
+    "make_domain",
+    "sample_points",
+    "with_dim",
+]
 
 DOMAINS = ("interval", "square", "disc")
 _USUAL = {"interval": 200, "square": 64, "disc": 64}
 _RANGE = {"interval": (16, 4000), "square": (8, 512), "disc": (8, 128)}
-_OF_A_LATTICE = ("spacing", "order", "overlap", "far_terms")
+OF_A_LATTICE = ("spacing", "order", "overlap", "far_terms")
 _NORMAL = 1e-9  # of the greatest velocity, what may point through an edge that nothing leaves
 _MOST = (
     2100  # particles in a disc, whose modes with a diffusivity that varies are those of one matrix
@@ -86,7 +94,7 @@ def check_domain(problem: Problem, looks: np.ndarray) -> None:
         if problem.spacing is None:
             raise InvalidInput("spacing", None, "a number", "Give the particle spacing h.")
         return
-    for name in _OF_A_LATTICE:
+    for name in OF_A_LATTICE:
         if name in given and getattr(problem, name) is not None:
             what = "nothing on a bounded domain, whose particles are no lattice of the scheme"
             raise InvalidInput(name, getattr(problem, name), what, "Leave it out; give particles.")

@@ -53,6 +53,8 @@ class ProblemFields(BaseModel):
     )
     particles: int | None = Field(
         default=None,
+        ge=8,
+        le=4000,
         description="Particles of a bounded domain. On the interval, along a side of the square, or rings of the disc; "
         "200, 64 and 64 if left out.",
     )

@@ -53,8 +53,10 @@ class RightHandSide(Protocol):
         """Return du/dt."""
 
 
-def integrate(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> Integration:
-    """Integrate u' = R(t, u) from u0, shape (N,), to the output times.
+def integrate(
+    problem: Problem, rates: RightHandSide, u0: np.ndarray, size: float = 0.0
+) -> Integration:
+    """Integrate u' = R(t, u) from u0, shape (N,), to the output times; `size` is what the tolerance is of, if not u0.
 
     Raises
     ------
@@ -75,7 +77,7 @@ def integrate(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> Integra
     # The error is to be small where the solution is, not in the mean over a lattice that it hardly fills.
     shares = np.sqrt(_filled(u0))
     rtol = problem.rtol * shares
-    atol = problem.atol * shares if problem.atol else rtol * _size(problem, rates, u0)
+    atol = problem.atol * shares if problem.atol else rtol * (size or _size(problem, rates, u0))
     start, span = problem.t_initial, problem.span
     method: str = problem.integrator
     largest = 0.0

@@ -7,9 +7,9 @@ w has the values outside, v = 0 there, and B is D A, or the exchange with the me
     D A v + D' grad^beta v = div(D grad^beta v).
 
 On the interval and the disc B is taken in its modes: those of the greatest D of the run at each place, so that what is
-left, like all else, is for the exponential integrator of `bounded.exponential`, and with a velocity on the interval for
-the implicit one of `bounded.implicit`. On the square the lattice is not
-stiff, and the integrators of the whole space take it as it is.
+left, like all else, is for the exponential integrator of `bounded.exponential`, and with a velocity, or a D that
+changes in time, on the interval for the implicit one of `bounded.implicit`. On the square the lattice is not stiff, and
+the integrators of the whole space take it as it is.
 """
 
 from __future__ import annotations
@@ -58,8 +58,9 @@ class DomainRates:
     def __init__(self, problem: Problem) -> None:
         self.problem, self.domain, self.evaluations = problem, problem.bounded_domain, 0
         start, at = problem.t_initial, self.domain.points
-        self._d = over_time(problem.diffusion, at, start=start)
         self._varies = bool(problem.diffusion.depends_on - {"t"})
+        anywhere = (np.array(0.0),) * problem.dim
+        self._d = over_time(problem.diffusion, at if self._varies else anywhere, start=start)
         self._flux = self._varies and problem.form == "FPSE"
         self._velocity = [over_time(one, at, start=start) for one in problem.transport]
         self._source = reaction_of(problem)
@@ -68,12 +69,15 @@ class DomainRates:
         linear = (problem.diffusion, *problem.transport)
         self._steady_matrix = all("t" not in one.depends_on for one in linear)
         self._matrix: np.ndarray | None = None
+        self._kept: tuple[float, tuple[Any, Any, list[Any]]] | None = None
 
     def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
         """Return dv/dt for v = u, flat as that."""
         field = u.reshape(self.shape)
         with np.errstate(over="ignore", invalid="ignore"):
-            return np.asarray(self._spread(field, self._d(t)) + self.beside(t, field)).reshape(-1)
+            return np.asarray(self._spread(field, self._now(t)[0]) + self.beside(t, field)).reshape(
+                -1
+            )
 
     def beside(self, t: float, v: np.ndarray) -> np.ndarray:
         """Return dv/dt without D A v, or the exchange of v."""
@@ -82,26 +86,34 @@ class DomainRates:
     def _forcing(self, t: float, v: np.ndarray) -> np.ndarray:
         """What is held outside, and the source."""
         self.evaluations += 1
-        now, d, domain = self.lift(t), self._d(t), self.domain
+        now, (d, slope, velocity), domain = self.lift(t), self._now(t), self.domain
         total = d * now.load - now.slope
         if self._flux:
-            total = total + self._line.slope(d) * now.flux
+            total = total + slope * now.flux
         elif self._varies and self.problem.exterior == "given":
             total = total + domain.spread(now.base, d) - d * domain.applied(now.base)
-        if self._velocity and self.problem.exterior == "given":
-            total = total + domain.carried(0.0 * v, now.base, [one(t) for one in self._velocity])
+        if velocity and self.problem.exterior == "given":
+            total = total + domain.carried(0.0 * v, now.base, velocity)
         if self._source is not None:
             total = total + self._source(t, v + now.base)
         return np.asarray(total)
 
     def _lower(self, t: float, v: np.ndarray) -> np.ndarray:
         """The linear parts of lower order than the diffusion."""
-        total = np.zeros(v.shape)
+        total, (_, slope, velocity) = np.zeros(v.shape), self._now(t)
         if self._flux:
-            total += self._line.slope(self._d(t)) * self._line.gradient(v)
-        if self._velocity:
-            total += self.domain.carried(v, total * 0.0, [one(t) for one in self._velocity])
+            total += slope * self._line.gradient(v)
+        if velocity:
+            total += self.domain.carried(v, 0.0 * v, velocity)
         return total
+
+    def _now(self, t: float) -> tuple[Any, Any, list[Any]]:
+        """D, D' and a at one time, kept until another is asked for."""
+        if self._kept is None or self._kept[0] != t:
+            d = self._d(t)
+            slope = self._line.slope(d) if self._flux else None
+            self._kept = t, (d, slope, [one(t) for one in self._velocity])
+        return self._kept[1]
 
     @cached_property
     def modes(self) -> Modes:
@@ -129,7 +141,7 @@ class DomainRates:
         """What is linear beside the modes, left out of those so fast that no more is known of their rates."""
         part = self._lower(t, v)
         if "t" in self.problem.diffusion.depends_on:
-            part += self._spread(v, self._d(t)) - self._spread(v, self._greatest)
+            part += self._spread(v, self._now(t)[0] - self._greatest)  # linear in D
         return np.where(self.modes.rates < self._known, self.modes.into(part), 0.0)
 
     @cached_property
@@ -165,7 +177,7 @@ def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
     if isinstance(rates.domain, ModalDomain):
         result = _in_modes(problem, rates, u0, v0)
     else:
-        result = integrate(problem, rates, v0.reshape(-1))
+        result = integrate(problem, rates, v0.reshape(-1), float(np.abs(u0).max()))
     fields = [one.reshape(u0.shape) for one in result.u]
     shares = []
     for t, v in zip(problem.output_times, fields, strict=True):
@@ -191,7 +203,8 @@ def _in_modes(problem: Problem, rates: DomainRates, u0: np.ndarray, v0: np.ndarr
         size = np.full(u0.shape, problem.atol / problem.rtol)
     steps: Steps = domain.steps_with(modes, rates.beside_modes, problem.rtol, size)
     method = "exponential"
-    if problem.transport and problem.domain == "interval":
+    moves = problem.transport or "t" in problem.diffusion.depends_on
+    if moves and problem.domain == "interval":
         least = float(np.linalg.norm(modes.into(size)))
         steps = ImplicitSteps(modes, rates.beside_modes, rates.lower_in_modes, problem.rtol, least)
         method = "radau"

@@ -18,6 +18,7 @@ from pydantic import ValidationError, model_validator
 from fracparticles.bounded.domain import Domain
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.domains import (
+    OF_A_LATTICE,
     check_domain,
     is_bounded,
     make_domain,
@@ -233,9 +234,9 @@ class Problem(ProblemFields):
 
     def to_json(self) -> str:
         """Return the problem as one JSON object; `from_json` reads it, unless a coefficient is a function."""
-        return json.dumps(
-            self.model_dump(exclude_none=True), sort_keys=True, default=lambda _: _FUNCTION
-        )
+        absent = set(OF_A_LATTICE) if self.is_bounded else set()
+        fields = self.model_dump(exclude_none=True, exclude=absent)
+        return json.dumps(fields, sort_keys=True, default=lambda _: _FUNCTION)
 
     @classmethod
     def from_json(cls, text: str) -> Problem:
