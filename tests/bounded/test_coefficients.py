@@ -182,3 +182,24 @@ def test_the_exchange_of_the_square_is_a_sum_over_pairs():
         weight += along[i] * (i == k and abs(j - m) == 1) + along[j] * (j == m and abs(i - k) == 1)
         naive[i, j] += weight * 0.5 * (d[i, j] + d[k, m]) * (u[k, m] - u[i, j])
     assert one.spread(u, d) == pytest.approx(naive * 4.0**1.5, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_the_powers_in_the_ball(alpha):
+    """Getoor's; and outside the integral over the ball, by a quadrature, or far away by its mass."""
+    from scipy.integrate import quad
+    from scipy.special import gamma
+
+    from fracparticles.bounded.closed_forms import power_in_ball, riesz_of_power
+    from fracparticles.bounded.disc_rings import plane_constant
+    from fracparticles.special.tails import tail_constant
+
+    inside = riesz_of_power(np.array([0.0, 0.5]), alpha, 0.5 * alpha, 1)
+    assert inside == pytest.approx(gamma(1.0 + alpha), rel=1e-12)
+    exact = quad(lambda y: (1.0 - y * y) ** 2.2 * (1.5 - y) ** (-1.0 - alpha), -1.0, 1.0)[0]
+    ours = riesz_of_power(np.array(2.25), alpha, 2.2, 1)
+    assert ours == pytest.approx(-tail_constant(alpha) * exact, rel=1e-9)
+    far = riesz_of_power(np.array(1e8), alpha, 2.0, 2)
+    mass = np.pi / 3.0
+    assert far == pytest.approx(-plane_constant(alpha) * mass * 1e-4 ** (2.0 + alpha), rel=1e-6)
+    assert power_in_ball(np.array([0.5, 2.0]), 2.0) == pytest.approx([0.25, 0.0])

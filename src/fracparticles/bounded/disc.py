@@ -164,6 +164,8 @@ class Disc(ModalDomain):
             given_up += d * volumes * np.repeat(self._rings.outward_rate(self.alpha), self.angular)
         root = np.sqrt(volumes)
         rates, vectors = np.linalg.eigh((np.diag(given_up) - exchange) / np.outer(root, root))
+        if self.exterior == "reflecting":
+            _with_the_constant(rates, vectors, root)
         scale = np.sqrt(self.volumes.reshape(-1))
 
         def back(y: Any) -> FloatArray:
@@ -210,10 +212,7 @@ class Disc(ModalDomain):
         """Eigenvalues and orthonormal vectors of each wave number, shapes (waves, N) and (waves, N, N)."""
         values, vectors = np.linalg.eigh(self._matrices)
         if self.exterior == "reflecting":
-            # The constant is an eigenvector, and its eigenvalue zero: to all digits, not to those of the largest.
-            values[0, 0], first = 0.0, vectors[0]
-            first[:, 0] = self._root / np.linalg.norm(self._root)
-            first[:, 1:] -= np.outer(first[:, 0], first[:, 0] @ first[:, 1:])
+            _with_the_constant(values[0], vectors[0], self._root)
         return values, vectors
 
     def all_modes(self) -> Modes:
@@ -271,3 +270,10 @@ class Disc(ModalDomain):
 
     def _back(self, modes: Any) -> FloatArray:
         return np.asarray(np.fft.irfft(modes, self.angular, axis=1))
+
+
+def _with_the_constant(rates: FloatArray, vectors: FloatArray, root: FloatArray) -> None:
+    """Put the constant for the first vector, and its rate zero: to all digits, not to those of the largest."""
+    rates[0] = 0.0
+    vectors[:, 0] = root / np.linalg.norm(root)
+    vectors[:, 1:] -= np.outer(vectors[:, 0], vectors[:, 0] @ vectors[:, 1:])

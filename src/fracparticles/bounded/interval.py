@@ -213,8 +213,9 @@ class Interval(ModalDomain):
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -(a u)', u = v + base; the sum of V times it is what goes in at one end less what goes out."""
-        return -self.slope(velocity[0] * (v + base))
+        """Return -(a u)', u = v + base; where nothing leaves the sum of V times it is zero."""
+        walls = self.exterior == "reflecting"
+        return -differences(velocity[0] * (v + base), walls) / self.volumes
 
     def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
         """Return the exchange with the mean of d, by the differences of pairs."""

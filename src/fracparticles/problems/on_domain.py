@@ -142,7 +142,10 @@ class DomainRates:
         part = self._lower(t, v)
         if "t" in self.problem.diffusion.depends_on:
             part += self._spread(v, self._now(t)[0] - self._greatest)  # linear in D
-        return np.where(self.modes.rates < self._known, self.modes.into(part), 0.0)
+        known = np.where(self.modes.rates < self._known, self.modes.into(part), 0.0)
+        if self.problem.exterior == "reflecting":
+            known.flat[0] = 0.0  # of the constant: the total
+        return known
 
     @cached_property
     def _known(self) -> float:
