@@ -21,7 +21,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float, **_: obje
     line = pick(series, panel="interval", alpha=drawn)
     _errors(axes[0], line, "-")
     first = pick(line, series="D(x, t)").sort_values("x").iloc[0]
-    slope_triangle(axes[0], 1.1 * first["x"], 0.05 * first["y"], drawn - 8.0)
+    slope_triangle(axes[0], 1.1 * first["x"], 2e-3 * first["y"], drawn - 8.0)
     log_log(axes[0], xlabel="particles $N$", ylabel=r"mean error at $t = 1$, relative")
     name_ticks(axes[0], sorted(line["x"].astype(int).unique()))
     axes[0].legend(loc="upper right", fontsize=7)
