@@ -8,7 +8,7 @@ everywhere that of the exchange with the mean of a pair (form="exchange"), which
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +17,7 @@ from fracparticles.bounded.domain import EXTERIORS, Domain
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.square import Square
 from fracparticles.errors import InvalidInput, one_of
-
-if TYPE_CHECKING:
-    from fracparticles.problems.problem import Problem
+from fracparticles.problems.coefficients import WithCoefficients
 
 __all__ = [
     "DOMAINS",
@@ -64,7 +62,7 @@ def sample_points(domain: str | None, half_width: float, dim: int) -> tuple[np.n
     return radius * np.cos(angle), radius * np.sin(angle)
 
 
-def make_domain(problem: Problem) -> Domain:
+def make_domain(problem: WithCoefficients) -> Domain:
     """Return the particles of a problem on a bounded domain, of diffusivity 1."""
     alpha, half, exterior = 1.0 + problem.beta, problem.half_width, problem.exterior
     domain = str(problem.domain)
@@ -77,7 +75,7 @@ def make_domain(problem: Problem) -> Domain:
     return Disc(alpha, count, 2 * (max(8, count // 2) // 2), exterior, radius=half)
 
 
-def check_domain(problem: Problem, looks: np.ndarray) -> None:
+def check_domain(problem: WithCoefficients, looks: np.ndarray) -> None:
     """Refuse what a lattice has and a domain has not, the other way round, and what makes no sense there.
 
     Raises
@@ -119,7 +117,7 @@ def check_domain(problem: Problem, looks: np.ndarray) -> None:
         _check_edge(problem, looks)
 
 
-def _check_form(problem: Problem) -> None:
+def _check_form(problem: WithCoefficients) -> None:
     form, varies = problem.form, bool(problem.diffusion.depends_on - {"t"})
     if form == "DD":
         raise one_of("form", form, ("FPSE", "exchange"), "a bounded domain")
@@ -139,11 +137,11 @@ def _check_form(problem: Problem) -> None:
         raise InvalidInput("form", form, what, remedy)
 
 
-def _size(problem: Problem) -> int:
+def _size(problem: WithCoefficients) -> int:
     return int(make_domain(problem).volumes.size)
 
 
-def _check_edge(problem: Problem, looks: np.ndarray) -> None:
+def _check_edge(problem: WithCoefficients, looks: np.ndarray) -> None:
     """Refuse a velocity through an edge that nothing leaves."""
     points = sample_points(problem.domain, problem.half_width, problem.dim)
     for t in looks if any("t" in one.depends_on for one in problem.transport) else looks[:1]:

@@ -17,6 +17,7 @@ from pydantic import ValidationError, model_validator
 
 from fracparticles.bounded.domain import Domain
 from fracparticles.errors import InvalidInput
+from fracparticles.problems.coefficients import AXES, WithCoefficients
 from fracparticles.problems.domains import (
     OF_A_LATTICE,
     check_domain,
@@ -25,8 +26,6 @@ from fracparticles.problems.domains import (
     sample_points,
     with_dim,
 )
-from fracparticles.problems.expressions import Coefficient
-from fracparticles.problems.fields import ProblemFields
 from fracparticles.problems.order import with_any_order
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import allowed, first_complaint
@@ -38,13 +37,12 @@ __all__ = ["FORMS", "Problem"]
 FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 """The schemes of a constant diffusivity, by the form of the equation."""
 
-_AXES = ("x", "y")
 _SHORT = 0.05  # of the half-width, how far the solution spreads
 _LOOKS = 33  # between t_initial and t_final, at coefficients that depend on time
 _FUNCTION = "a function, which the file does not hold"  # in JSON
 
 
-class Problem(ProblemFields):
+class Problem(WithCoefficients):
     """One problem; the fields are the parameters, keyword only.
 
     A text is an expression, see `expressions`: "1 + 0.5*sin(x)*exp(-t)". A function takes arrays x, t on the line and
@@ -119,64 +117,6 @@ class Problem(ProblemFields):
         """The time of the run, t_final - t_initial."""
         return self.t_final - self.t_initial
 
-    # --- the coefficients -----------------------------------------------------------------------------------
-
-    @cached_property
-    def order_coefficient(self) -> Coefficient:
-        """Beta, a coefficient of the place alone."""
-        return Coefficient("beta", self.beta, _AXES[: self.dim])
-
-    @cached_property
-    def diffusion(self) -> Coefficient:
-        """D."""
-        return Coefficient("diffusivity", self.diffusivity, (*_AXES[: self.dim], "t"))
-
-    @cached_property
-    def transport(self) -> tuple[Coefficient, ...]:
-        """The components of a; none if there is no velocity."""
-        if self.velocity is None:
-            return ()
-        given = self.velocity if isinstance(self.velocity, tuple) else (self.velocity,)
-        if len(given) != self.dim:
-            each = f"one expression for each of the {self.dim} coordinate(s)"
-            raise InvalidInput("velocity", self.velocity, each, "Give a tuple of them.")
-        return tuple(Coefficient("velocity", one, (*_AXES[: self.dim], "t")) for one in given)
-
-    @cached_property
-    def reaction(self) -> Coefficient | None:
-        """f, or None."""
-        if self.source is None:
-            return None
-        return Coefficient("source", self.source, (*_AXES[: self.dim], "t", "u"))
-
-    @cached_property
-    def outside(self) -> Coefficient | None:
-        """g, or None."""
-        if self.exterior_data is None:
-            return None
-        return Coefficient("exterior_data", self.exterior_data, (*_AXES[: self.dim], "t"))
-
-    @property
-    def _coefficients(self) -> list[Coefficient]:
-        every = [self.order_coefficient, self.diffusion, *self.transport]
-        every += [one for one in (self.reaction, self.outside) if one is not None]
-        return every
-
-    @property
-    def is_linear(self) -> bool:
-        """Whether the source says nothing of u."""
-        return self.reaction is None or "u" not in self.reaction.depends_on
-
-    @property
-    def is_autonomous(self) -> bool:
-        """Whether no coefficient says anything of t."""
-        return all("t" not in one.depends_on for one in self._coefficients)
-
-    @property
-    def reproducible(self) -> bool:
-        """Whether the JSON text holds all of it: not if a coefficient is a function."""
-        return all(one.reproducible for one in self._coefficients)
-
     # --- the lattice ----------------------------------------------------------------------------------------
 
     @property
@@ -188,12 +128,12 @@ class Problem(ProblemFields):
     def places(self) -> dict[str, np.ndarray]:
         """Where the particles are, by coordinate."""
         at = self.bounded_domain.points if self.is_bounded else self.case.positions
-        return dict(zip(_AXES, at, strict=False))
+        return dict(zip(AXES, at, strict=False))
 
     @property
     def _samples(self) -> dict[str, np.ndarray]:
         points = sample_points(self.domain, self.half_width, self.dim)
-        return dict(zip(_AXES, points, strict=False))
+        return dict(zip(AXES, points, strict=False))
 
     @cached_property
     def bounded_domain(self) -> Domain:

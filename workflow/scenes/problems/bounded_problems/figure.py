@@ -15,7 +15,7 @@ _COLOURS = ("#0072B2", "#D55E00", "#009E73")
 _MARKERS = "osD"
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float, **_: object) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float) -> Figure:
     """Draw (a) interval, (b) disc and square, (c) profiles."""
     figure, axes = axes_row(3, height=3.7, width=4.0)
     line = pick(series, panel="interval", alpha=drawn)
