@@ -38,16 +38,46 @@ def test_the_decay_takes_its_share_of_the_mass(done):
     assert run.mass.values == pytest.approx(expected, rel=40.0**-1.5)
 
 
-def test_the_interval(done):
+def test_what_all_varies_between_absorbing_ends(done):
+    between = done["between"]
+    assert fp.Problem.from_json(between.attrs["problem"]) == done["ends"]
+    assert 0.0 < float(between.mass) < 4.0 / 3.0
+    assert float(abs(between.u[0])) < 1e-6
+    assert str(between.integrator.values) == "radau"
+
+
+def test_walls_keep_the_mass(done):
+    kept = done["kept"]
+    assert float(kept.mass_final) == pytest.approx(float(kept.mass_initial), rel=1e-12)
+
+
+def test_the_disc_that_turns_has_turned(done):
+    """By 0.2, about what does not turn: the first moments are those, turned."""
+    turned, still = (
+        done["turned"],
+        fp.solve_problem(
+            done["turning"].model_copy(update={"velocity": None}),
+            lambda x, y: np.exp(-8.0 * ((x - 0.3) ** 2 + y**2)),
+        ),
+    )
+    z = (turned.volume * turned.u * (turned.x + 1j * turned.y)).sum().values
+    z0 = (still.volume * still.u * (still.x + 1j * still.y)).sum().values
+    assert abs(z - z0 * np.exp(0.2j)) < 1e-6
+
+
+def test_the_square_follows_what_is_outside(done):
+    swung = done["swung"]
+    edge = float(swung.u.isel(x=0).sel(y=0.0, method="nearest"))
+    assert edge == pytest.approx(np.cos(0.2) / 2.0, abs=0.05)
+
+
+def test_the_domains_beneath(done):
     assert done["interval"].eigenvalues(3) == pytest.approx(jacobi_eigenvalues(1.5, 3), rel=1e-6)
     assert 0.0 < done["u"].max() < 1.0
-    assert done["walls"].volumes @ done["v"] == pytest.approx(4.0 / 3.0, rel=1e-5)
-
-
-def test_the_disc(done):
-    disc, w = done["disc"], done["w"]
+    disc, w, r = done["disc"], done["w"], done["r"]
     assert w.shape == disc.x.shape
-    assert 0.0 < disc.total(w) < np.pi / 4.0
+    assert (w > 0.5).all()
+    assert ((r >= 0.1 - 1e-4) & (r < 0.16)).all()
 
 
 def test_the_blobs(done):

@@ -245,8 +245,8 @@ def test_a_field_given_outside_is_continued_inside(alpha):
 
     errors = []
     for side in (16, 32):
-        one = Square(alpha, side, "given", given=u)
-        errors.append(np.abs(one.stationary(source) - u(one.x, one.y)).max())
+        one = Square(alpha, side, "given")
+        errors.append(np.abs(one.stationary(source, u) - u(one.x, one.y)).max())
     # Of order 6 - alpha by the lattice, of order 2 by the end of the wider one, far away.
     assert errors[-1] < 3e-5
     assert orders(errors)[-1] > 1.9
@@ -298,9 +298,9 @@ def test_the_reflecting_total_stays(alpha):
 
 
 def test_a_constant_stays_if_it_is_given():
-    one = Square(1.8, 16, "given", given=lambda x, y: 0.0 * x + 2.0)
-    assert np.abs(one.evolve(2.0, 5.0) - 2.0).max() < 1e-14
-    assert np.abs(one.evolve(0.0, 60.0) - 2.0).max() < 1e-9
+    one = Square(1.8, 16, "given")
+    assert np.abs(one.evolve(2.0, 5.0, outside=2.0) - 2.0).max() < 1e-14
+    assert np.abs(one.evolve(0.0, 60.0, outside=lambda x, y: 0.0 * x + 2.0) - 2.0).max() < 1e-9
 
 
 @pytest.mark.parametrize("exterior", ["absorbing", "reflecting"])
@@ -347,9 +347,6 @@ def test_a_field_that_the_particles_do_not_see_is_said():
         ({"side": 7}, "side"),
         ({"side": 513}, "side"),
         ({"exterior": "open"}, "exterior"),
-        ({"exterior": "given"}, "given"),
-        ({"given": lambda x, y: x}, "given"),
-        ({"exterior": "given", "given": lambda x, y: x * np.inf}, "given"),
         ({"half_width": 0.0}, "half_width"),
         ({"diffusivity": -1.0}, "diffusivity"),
         ({"fitted": 1}, "fitted"),

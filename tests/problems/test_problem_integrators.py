@@ -7,9 +7,9 @@ import pytest
 from scipy.linalg import expm
 
 from fracparticles.errors import NonFiniteSolution
-from fracparticles.problems.krylov import KrylovStep
-from fracparticles.problems.stabilised import StabilisedStep, spectral_radius
-from fracparticles.problems.steps import EighthOrderStep
+from fracparticles.time.krylov import KrylovStep
+from fracparticles.time.stabilised import StabilisedStep, spectral_radius
+from fracparticles.time.steps import EighthOrderStep
 
 N = 60
 LAPLACIAN = (np.eye(N, k=1) + np.eye(N, k=-1) - 2.0 * np.eye(N)) * 50.0

@@ -11,11 +11,11 @@ from numpy.testing import assert_allclose
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.problems.expressions import Coefficient
-from fracparticles.problems.krylov import KrylovStep
 from fracparticles.problems.moving_particles import solve_with_moving_particles
-from fracparticles.problems.steps import norm
-from fracparticles.problems.sudden import sudden_times
+from fracparticles.problems.sudden import sudden_changes
 from fracparticles.special import green
+from fracparticles.time.krylov import KrylovStep
+from fracparticles.time.steps import norm
 
 LINE = {"alpha": 1.5, "half_width": 40.0, "spacing": 0.1, "t_final": 1.0}
 TOLERANCE = 1e-6  # the default of rtol
@@ -75,11 +75,11 @@ def test_a_pulse_of_the_diffusivity_and_one_of_a_function():
 
 def test_sudden_times_are_those_before_and_after_a_jump():
     problem = Problem(**LINE, source="where(t > 0.3, 1.0, 0.0)*exp(-x**2)", velocity="sin(7*t)")
-    before, after = sudden_times(problem, bell(problem.case.x))
+    before, after = sudden_changes(problem, bell(problem.case.x))
     assert before <= 0.3 < after < before + 1e-10
     quick = Problem(**LINE, source="where(sin(500*t) > 0, 1.0, 0.0)*exp(-x**2)")
-    assert 32 < len(sudden_times(quick, bell(quick.case.x))) <= 256
-    assert sudden_times(Problem(**LINE, source="cos(9*t)"), bell(problem.case.x)) == []
+    assert 32 < len(sudden_changes(quick, bell(quick.case.x))) <= 256
+    assert sudden_changes(Problem(**LINE, source="cos(9*t)"), bell(problem.case.x)) == []
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ exactly in time. The error is O(N^(alpha-4)) for N rings; a plain lattice has th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -26,9 +26,12 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import Rings, exterior_rate
-from fracparticles.bounded.exteriors import EXTERIORS
+from fracparticles.bounded.domain import EXTERIORS
+from fracparticles.bounded.exponential import Modes
+from fracparticles.bounded.given import Lift
+from fracparticles.bounded.modal import ModalDomain
+from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
-from fracparticles.errors import InvalidInput
 
 __all__ = ["Disc"]
 
@@ -38,10 +41,8 @@ _MOST_RINGS = (
 _MOST_ANGLES = 512
 _TURN = 0.382  # of a step of the angle, where fields are looked at again: no simple fraction
 
-Field = FloatArray | float | Callable[..., Any]
 
-
-class Disc:
+class Disc(ModalDomain):
     """Particles in a disc.
 
     Parameters
@@ -55,8 +56,6 @@ class Disc:
     exterior : {"absorbing", "reflecting", "given"}
     radius, diffusivity : float
         R and D.
-    given : callable, optional
-        g(x, y) outside, for the exterior "given" only: bounded, continuous at the edge.
 
     Attributes
     ----------
@@ -69,6 +68,8 @@ class Disc:
         If one of them is not allowed.
     """
 
+    balance = 1e-3
+
     def __init__(
         self,
         alpha: float,
@@ -78,7 +79,6 @@ class Disc:
         *,
         radius: float = 1.0,
         diffusivity: float = 1.0,
-        given: Callable[..., Any] | None = None,
     ) -> None:
         self.alpha = check.fractional_order(alpha)
         self.radial = check.whole_number("radial", radial, 8, _MOST_RINGS)
@@ -86,85 +86,97 @@ class Disc:
         self.exterior = check.choice("exterior", exterior, EXTERIORS)
         self.radius = check.scale("radius", radius)
         self.diffusivity = check.scale("diffusivity", diffusivity)
-        if (given is None) == (exterior == "given"):
-            allowed = "a function g(x, y) for exterior='given', and nothing for others"
-            raise InvalidInput("given", given, allowed, "Give one, or choose another exterior.")
         self._rings = Rings.graded(self.radial)
         angle = 2.0 * np.pi / self.angular * np.arange(self.angular)
         self._direction = np.cos(angle), np.sin(angle)
         r = self.radius * self._rings.r[:, None]
-        self.x, self.y = (r * one for one in self._direction)
+        self.x, self.y = self.points = tuple(r * one for one in self._direction)
         share = self.radius**2 * 2.0 * np.pi / self.angular * self._rings.volumes
         self.volumes = np.repeat(share[:, None], self.angular, axis=1)
         self._rate = self.diffusivity * self.radius**-self.alpha  # of the unit disc's operator
-        self._level, self._inflow = 0.0, None
-        if given is not None:
-            self._level, self._inflow = self._inflow_of(given)
 
-    def total(self, u: FloatArray) -> float:
-        """Return the strength of all particles, int u dx."""
-        return float((self.volumes * self._field("u", u)).sum())
-
-    def rate(self, u: Field) -> FloatArray:
-        """Return D L u at the particles."""
-        modes = self._transformed(self._field("u", u) - self._level)
+    def applied(self, u: FloatArray) -> FloatArray:
+        """Return D A u, with u = 0 outside."""
         root = self._root[:, None]
-        out = np.empty_like(modes)
-        for wave in range(modes.shape[1]):
-            part = modes[:, wave : wave + 1] * root
-            out[:, wave : wave + 1] = -(self._matrix(wave) @ part) / root
-        if self._inflow is not None:
-            out += self._inflow
-        return self._rate * self._back(out)
+        out = np.einsum("lij,jl->il", self._matrices, root * self._transformed(u))
+        return -self._rate * self._back(out / root)
 
-    def evolve(self, initial: Field, time: float, source: Field = 0.0) -> FloatArray:
-        """Return u a time after `initial`, exact in time, shape (radial, angular).
+    def at_rest(self, load: FloatArray) -> FloatArray:
+        """Return u of D A u + load = 0; of a reflecting exterior that of total 0."""
+        modes = self.all_modes()
+        z = modes.rates
+        held = np.where(z == 0.0, 0.0, 1.0 / np.where(z == 0.0, 1.0, z))  # of the constant nothing
+        return modes.back(held * modes.into(load))
 
-        Parameters
-        ----------
-        initial, source : array, number or callable
-            u at time 0, and f: arrays of the shape of `x`, or functions of (x, y).
-        time : float
-            0 or more.
+    def lifted(self, g: Callable[..., Any]) -> Lift:
+        """Return the mean of g at the edge and what the rest of g holds in place: of that, D A w is nothing."""
+        level, inflow = self._inflow_of(g)
+        held = self.at_rest(self._rate * self._back(inflow))
+        nothing = np.zeros(held.shape)
+        return Lift(level + held, nothing, nothing, nothing)
 
-        Warns
-        -----
-        AccuracyWarning
-            If the particles do not resolve one of these functions.
+    # --- a diffusivity and a velocity that vary ------------------------------------------------------
+
+    def carried(
+        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
+    ) -> FloatArray:
+        """Return -div(a u) = -((r a_r u)_r + (a_theta u)_theta) / r, u = v + base.
+
+        Across rings by differences in the variable of the map, after (1 - r^2)^(alpha/2), as v is at the edge; along
+        them by the Fourier transform. Where nothing leaves, what the sum of all is off by is taken off evenly.
         """
-        t = self._rate * check.not_negative("time", time)
-        u = self._transformed(self._field("initial", initial) - self._level)
-        f = self._transformed(self._field("source", source)) / self._rate
-        if self._inflow is not None:
-            f = f + self._inflow
-        done = self._combined(u, f, lambda z: np.exp(-z * t), lambda z: _phi(z, t))
-        return self._level + self._back(done)
+        (across, vanishing), r = self._slopes, self.radius * self._rings.r[:, None]
+        a_x, a_y = velocity
+        cos, sin = self._direction
+        outwards, around = a_x * cos + a_y * sin, a_y * cos - a_x * sin
+        bent = across if self.exterior == "reflecting" else vanishing
+        turned = 1j * np.arange(self.angular // 2 + 1) * self._transformed(around * (v + base))
+        if self.angular % 2 == 0:
+            turned[:, -1] = 0.0
+        out = bent @ (r * outwards * v) + across @ (r * outwards * base) + self._back(turned)
+        out = -out / r
+        return np.asarray(out - self._mean(out) if self.exterior == "reflecting" else out)
 
-    def stationary(self, source: Field) -> FloatArray:
-        """Return the u that does not change, D L u + f = 0; of the exterior "reflecting" the one of total 0.
+    @cached_property
+    def _slopes(self) -> tuple[FloatArray, FloatArray]:
+        """d/dr of what is smooth, and of what is like (1 - r^2)^(alpha/2) at the edge, both of shape (N, N)."""
+        rings, power = self._rings, 0.5 * self.alpha
+        along = one_sided_differences(self.radial) / rings.slope[:, None]
+        depth = rings.edge * (1.0 + rings.r)
+        bent = depth[:, None] ** power * along / depth**power
+        bent -= np.diag(self.alpha * rings.r / depth)
+        return along / self.radius, bent / self.radius
 
-        Raises
-        ------
-        InvalidInput
-            If the exterior is "reflecting" and the total of the source is not zero, to 1e-3 of that of its size.
-        """
-        f = self._transformed(self._field("source", source)) / self._rate
+    def modes_with(self, d: FloatArray, form: str) -> Modes:
+        """Return all modes of the negative of `spread`, of a symmetric matrix between all particles."""
+        root = np.sqrt(self._rings.volumes)
+        block = np.fft.irfft(self._matrices * np.outer(root, root), self.angular, axis=0)
+        angle = np.arange(self.angular)
+        # V_i A between the particles (i, a) and (j, b) of the rings i, j.
+        whole = block[(angle[:, None] - angle) % self.angular].transpose(2, 0, 3, 1)
+        size = self.radial * self.angular
+        exchange, d = -whole.reshape(size, size), d.reshape(-1)
+        np.fill_diagonal(exchange, 0.0)
+        exchange *= 0.5 * (d[:, None] + d)
+        volumes = np.repeat(self._rings.volumes, self.angular)
+        given_up = exchange.sum(axis=1)
+        if self.exterior != "reflecting":
+            given_up += d * volumes * np.repeat(self._rings.outward_rate(self.alpha), self.angular)
+        root = np.sqrt(volumes)
+        rates, vectors = np.linalg.eigh((np.diag(given_up) - exchange) / np.outer(root, root))
         if self.exterior == "reflecting":
-            field = self._back(f)
-            whole, size = self.total(field), self.total(np.abs(field))
-            if abs(whole) > 1e-3 * size:
-                allowed = "a source of total 0 for a reflecting exterior"
-                shown = f"a total of {whole / size:.3g} of its size"
-                raise InvalidInput("source", shown, allowed, "Take off its mean.")
-        if self._inflow is not None:
-            f = f + self._inflow
-        zero = np.zeros_like(f)
-        return self._level + self._back(self._combined(zero, f, np.zeros_like, _inverse))
+            _with_the_constant(rates, vectors, root)
+        scale = np.sqrt(self.volumes.reshape(-1))
+
+        def back(y: Any) -> FloatArray:
+            return np.asarray((vectors @ y / scale).reshape(self.volumes.shape))
+
+        return Modes(self._rate * rates, lambda u: vectors.T @ (scale * u.reshape(-1)), back)
 
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the least eigenvalues of -D L, in order, each as often as it occurs."""
         count = check.positive_integer("count", count, self.radial * self.angular)
-        parts = [self._spectra(wave)[0] for wave in range(self.angular // 2 + 1)]
+        parts = self._spectra[0]
         alone = {0, self.angular / 2}  # a cosine without a sine
         every = [np.repeat(part, 1 if wave in alone else 2) for wave, part in enumerate(parts)]
         return self._rate * np.sort(np.concatenate(every))[:count]
@@ -183,38 +195,43 @@ class Disc:
             lost = lost + self._rings.volumes * self._rings.outward_rate(self.alpha)
         return lost
 
-    def _matrix(self, wave: int) -> FloatArray:
-        """-L of the unit disc for f(r) cos(l theta), symmetric: between the values of V^(1/2) f."""
+    def _form(self, wave: int) -> FloatArray:
+        """-V L of the unit disc for f(r) cos(l theta), symmetric."""
         rings = self._rings
         w = np.diag(self._given_up + rings.volumes * rings.loss(self.alpha, wave))
-        w -= rings.exchange(self.alpha, wave)
-        return np.asarray(w / (self._root[:, None] * self._root))
+        return np.asarray(w - rings.exchange(self.alpha, wave))
 
     @cached_property
-    def _known(self) -> dict[int, tuple[FloatArray, FloatArray]]:
-        return {}
+    def _matrices(self) -> FloatArray:
+        """The same between the values of V^(1/2) f, for each wave number."""
+        forms = np.array([self._form(wave) for wave in range(self.angular // 2 + 1)])
+        return np.asarray(forms / np.outer(self._root, self._root))
 
-    def _spectra(self, wave: int) -> tuple[FloatArray, FloatArray]:
-        if wave not in self._known:
-            values, vectors = np.linalg.eigh(self._matrix(wave))
-            if wave == 0 and self.exterior == "reflecting":
-                # The constant is an eigenvector, and its eigenvalue zero: to all digits, not to those of the largest.
-                values[0] = 0.0
-                vectors[:, 0] = self._root / np.linalg.norm(self._root)
-                vectors[:, 1:] -= np.outer(vectors[:, 0], vectors[:, 0] @ vectors[:, 1:])
-            self._known[wave] = values, vectors
-        return self._known[wave]
+    @cached_property
+    def _spectra(self) -> tuple[FloatArray, FloatArray]:
+        """Eigenvalues and orthonormal vectors of each wave number, shapes (waves, N) and (waves, N, N)."""
+        values, vectors = np.linalg.eigh(self._matrices)
+        if self.exterior == "reflecting":
+            _with_the_constant(values[0], vectors[0], self._root)
+        return values, vectors
 
-    def _combined(self, u: Any, f: Any, of_u: Any, of_f: Any) -> Any:
-        """of_u(A) u + of_f(A) f, A = -L, wave number by wave number."""
-        out = np.empty_like(u)
-        for wave in range(u.shape[1]):
-            values, vectors = self._spectra(wave)
-            a, b = (vectors.T @ (self._root * one[:, wave]) for one in (u, f))
-            out[:, wave] = vectors @ (of_u(values) * a + of_f(values) * b) / self._root
-        return out
+    def all_modes(self) -> Modes:
+        """Return all modes of -D A, by wave number."""
+        values, vectors = self._spectra
+        waves = np.arange(len(values))
+        # int u^2 is the sum of |y|^2: of a cosine and its sine together, 2 pi r V and half of that each.
+        both = np.where((waves == 0) | (2 * waves == self.angular), 1.0, 2.0)
+        size = np.sqrt(self.volumes[:, 0] / self.angular * both[:, None])  # (waves, N)
 
-    def _inflow_of(self, given: Callable[..., Any]) -> tuple[float, Any]:
+        def into(u: FloatArray) -> Any:
+            return np.einsum("lji,lj->li", vectors, size * self._transformed(u).T)
+
+        def back(y: Any) -> FloatArray:
+            return self._back((np.einsum("lij,lj->li", vectors, y) / size).T)
+
+        return Modes(self._rate * values, into, back)
+
+    def _inflow_of(self, g: Callable[..., Any]) -> tuple[float, Any]:
         """The mean g_0 of g at the edge, and c int_(|y| > 1) (g(y) - g_0) |x - y|^(-2-alpha) dy wave by wave.
 
         The latter as the rate to the outside times g - g_0 at the edge, and the rest. Since all else works with
@@ -223,9 +240,7 @@ class Disc:
         rings = self._rings
 
         def sampled(r: FloatArray) -> FloatArray:
-            return check.sampled(
-                "given", given, *(self.radius * r * one for one in self._direction)
-            )
+            return check.sampled("outside", g, *(self.radius * r * one for one in self._direction))
 
         edge = sampled(np.ones((1, 1)))
         level = float(edge.mean())
@@ -241,17 +256,14 @@ class Disc:
 
     # --- fields and their waves in the angle ------------------------------------------------------
 
-    def _field(self, name: str, value: Field) -> FloatArray:
-        if not callable(value):
-            return check.finite_array(name, value, self.x.shape)
-        field = check.sampled(name, value, self.x, self.y)
+    def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
+        """Warn if the particles do not resolve f."""
         between = Rings.between(self.radial)
         angle = 2.0 * np.pi / self.angular * (np.arange(self.angular) + _TURN)
         r = self.radius * between.r[:, None]
-        other = check.sampled(name, value, r * np.cos(angle), r * np.sin(angle))
+        other = check.sampled(name, f, r * np.cos(angle), r * np.sin(angle))
         volumes = 2.0 * np.pi / self.angular * self.radius**2 * between.volumes[:, None]
-        warn_of_the_unseen(name, field, self.volumes, other, volumes)
-        return field
+        warn_of_the_unseen(name, values, self.volumes, other, volumes)
 
     def _transformed(self, field: FloatArray) -> Any:
         return np.fft.rfft(field, axis=1)
@@ -260,12 +272,8 @@ class Disc:
         return np.asarray(np.fft.irfft(modes, self.angular, axis=1))
 
 
-def _phi(z: FloatArray, t: float) -> FloatArray:
-    """(1 - exp(-z t)) / z."""
-    small = np.abs(z) * t < 1e-300
-    return np.where(small, t, -np.expm1(-z * t) / np.where(small, 1.0, z))
-
-
-def _inverse(z: FloatArray) -> FloatArray:
-    """1 / z, and 0 of 0: the constant of a reflecting exterior."""
-    return np.where(z == 0.0, 0.0, 1.0 / np.where(z == 0.0, 1.0, z))
+def _with_the_constant(rates: FloatArray, vectors: FloatArray, root: FloatArray) -> None:
+    """Put the constant for the first vector, and its rate zero: to all digits, not to those of the largest."""
+    rates[0] = 0.0
+    vectors[:, 0] = root / np.linalg.norm(root)
+    vectors[:, 1:] -= np.outer(vectors[:, 0], vectors[:, 0] @ vectors[:, 1:])

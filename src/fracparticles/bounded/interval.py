@@ -21,7 +21,7 @@ of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -34,22 +34,23 @@ from fracparticles.adaptive.maps import graded_on_interval
 from fracparticles.adaptive.samples import unseen_share
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.exteriors import EXTERIORS
-from fracparticles.bounded.interval_outside import OutsideValues, given_outside, loss_rates
-from fracparticles.bounded.interval_time import forced_modes, slopes_in_time
-from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
+from fracparticles.bounded.domain import EXTERIORS
+from fracparticles.bounded.exponential import Modes
+from fracparticles.bounded.given import Lift
+from fracparticles.bounded.interval_differences import differences
+from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
+from fracparticles.bounded.modal import ModalDomain
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.special import tail_constant
 
 __all__ = ["Interval"]
-
-_Load = Callable[[float], FloatArray]
 
 _SHORTEST = 1e-9  # time times the slowest rate: before, modes matter that are not told apart
 _UNRESOLVED = 0.01  # of int |u|, what initial data may hold that the particles do not see
 _EACH = 8  # particles for a mode; higher ones are off by more than 0.1 per cent
-_BALANCE = 1e-8  # of int |f|, what int f may be where nothing can leave
 
 
-class Interval:
+class Interval(ModalDomain):
     """Particles between two ends, and the problems that can be solved on them.
 
     Parameters
@@ -79,6 +80,8 @@ class Interval:
         If an argument is outside its range.
     """
 
+    balance = 1e-8
+
     def __init__(
         self,
         *,
@@ -101,6 +104,7 @@ class Interval:
         self._unit = graded_on_interval(particles, degree)
         self.x = self._place(self._unit.x)
         self.volumes = self._half * self._unit.volumes
+        self.points = (self.x,)
         # D A in the unit of (-1, 1).
         self._rate = self.diffusivity * self._half**-self.alpha
 
@@ -117,9 +121,11 @@ class Interval:
 
     @cached_property
     def _inverse(self) -> InverseExchange:
-        unit = self._unit
-        inwards = np.argsort(np.minimum(unit.left, unit.right), kind="stable")
-        return InverseExchange.of(self._exchange, unit.volumes, self._loss, inwards)
+        return InverseExchange.of(self._exchange, self._unit.volumes, self._loss, self._inwards)
+
+    @cached_property
+    def _inwards(self) -> np.ndarray:
+        return np.argsort(np.minimum(self._unit.left, self._unit.right), kind="stable")
 
     @cached_property
     def _modes(self) -> tuple[FloatArray, FloatArray]:
@@ -158,142 +164,92 @@ class Interval:
         first = np.argmax(np.abs(vectors) > 0.5 * np.abs(vectors).max(axis=0), axis=0)
         return self._rate * rates, functions * np.sign(vectors[first, range(count)])
 
-    def starting(self, initial: Any) -> FloatArray:
-        """Return u(x, 0) at the particles; warns if they do not resolve it."""
-        start = self.values("initial", initial)
-        if callable(initial) and (share := unseen_share(initial, self.x, start)) > _UNRESOLVED:
-            text = f"the particles do not resolve the initial data, by {share:.1g} of int |u|. Take more."
-            warnings.warn(text, AccuracyWarning, stacklevel=3)
-        return start
+    def all_modes(self) -> Modes:
+        """Return all modes of -D A; of eigenvalues above 1e15 times the first it is known only that they are."""
+        return self._scaled(*self._modes, self.volumes)
 
-    def all_modes(self) -> tuple[FloatArray, FloatArray]:
-        """Return all eigenvalues of -D A, those above 1e15 times the first as that, and orthonormal V^(1/2) u."""
-        return self._rate * self._modes[0], self._modes[1]
+    def _scaled(self, rates: FloatArray, vectors: FloatArray, volumes: FloatArray) -> Modes:
+        root = np.sqrt(volumes)
+        return Modes(
+            self._rate * rates, lambda u: vectors.T @ (root * u), lambda y: vectors @ y / root
+        )
 
-    def held(self, outside: Any) -> FloatArray:
-        """Return what values g(y) outside alone hold in place, zero where nothing is given."""
-        g, nothing = given_outside(self.exterior, outside, timed=False), np.zeros(self.x.size)
-        return nothing if g is None else self._steady(nothing, g, 0.0)
+    def applied(self, u: FloatArray) -> FloatArray:
+        """Return D A u, with u = 0 outside: by the differences of pairs, of which what is equal has none."""
+        gained = (self._exchange * (u - u[:, None])) @ self._unit.volumes
+        return np.asarray(self._rate * (gained if self._loss is None else gained - self._loss * u))
 
-    def stationary(self, source: Any = 0.0, outside: Any = None) -> FloatArray:
-        """Return u of D A u + f = 0, shape (N,); of reflecting ends that of mean zero.
+    def at_rest(self, load: FloatArray) -> FloatArray:
+        """Return u of D A u + load = 0; of reflecting ends that of mean zero."""
+        return self._inverse.apply(self._unit.volumes * load / self._rate)
 
-        Parameters
-        ----------
-        source : callable, array or number
-            f(x), or its values.
-        outside : callable or number, optional
-            g(y), where the exterior is given.
+    def lifted(self, g: Callable[..., Any]) -> Lift:
+        """Return what values g(y) outside alone would hold in place: of that, D A w is nothing."""
+        level, load, flux = self._outside.load(g)
+        w, nothing = self._inverse.apply(self._unit.volumes * load), np.zeros(self.x.size)
+        flux = self.gradient(w) + self._half ** (1.0 - self.alpha) * flux
+        return Lift(level + w, nothing, flux, nothing)
 
-        Raises
-        ------
-        InvalidInput
-            If they are not finite, `outside` is missing or superfluous, or f makes what reflecting ends keep.
-        """
-        g = given_outside(self.exterior, outside, timed=False)
-        f = self._source(source, timed=False)(0.0)
-        if self.exterior == "reflecting":
-            total, size = self.volumes @ f, self.volumes @ np.abs(f)
-            if abs(total) > _BALANCE * size:
-                allowed = "a source of integral zero, where nothing leaves"
-                raise InvalidInput("source", f"int f = {total:g}", allowed, "Take its mean off.")
-        return self._steady(f / self._rate, g, 0.0)
+    # --- a diffusivity and a velocity that vary ------------------------------------------------------
 
-    def evolve(
-        self,
-        initial: Any,
-        time: float,
-        source: Any = None,
-        outside: Any = None,
-        tolerance: float = 1e-10,
+    def gradient(self, u: FloatArray) -> FloatArray:
+        """Return grad^beta u = (C / alpha) int u(y) sgn(y - x) |x - y|^-alpha dy, with u = 0 outside."""
+        inside = (self._odd * (u - u[:, None])) @ self._unit.volumes
+        left, right = (d ** (1.0 - self.alpha) for d in (self._unit.left, self._unit.right))
+        lost = tail_constant(self.alpha) / self.alpha / (self.alpha - 1.0) * (right - left)
+        return np.asarray(self._half ** (1.0 - self.alpha) * (inside - lost * u))
+
+    @cached_property
+    def _odd(self) -> FloatArray:
+        """The exchange times (x_j - x_i) / alpha: the weights of near neighbours are the same."""
+        distances = self._unit.distances
+        side = np.sign(np.arange(self.x.size) - np.arange(self.x.size)[:, None])
+        return np.asarray(self._exchange * distances * side / self.alpha)
+
+    def slope(self, f: FloatArray) -> FloatArray:
+        """Return df/dx, by differences of order 8 in the variable of the map, where what is beyond an end is even."""
+        return differences(f) / self.volumes
+
+    def carried(
+        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return u at the particles, shape (N,), a time after `initial`.
+        """Return -(a u)', u = v + base; where nothing leaves the sum of V times it is zero."""
+        walls = self.exterior == "reflecting"
+        return -differences(velocity[0] * (v + base), walls) / self.volumes
 
-        Parameters
-        ----------
-        initial : callable, array or number
-            u(x, 0), or its values at the particles.
-        time : float
-            Positive.
-        source : callable, array or number, optional
-            f(x, t), or values that do not change.
-        outside : callable or number, optional
-            g(y, t), where the exterior is given.
-        tolerance : float
-            Of the integral in time over what depends on it, relative to u.
+    def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
+        """Return the exchange with the mean of d, by the differences of pairs."""
+        gained = (self._exchange * 0.5 * (d[:, None] + d) * (u - u[:, None])) @ self._unit.volumes
+        lost = 0.0 if self._loss is None else d * self._loss * u
+        return np.asarray(self._rate * (gained - lost))
 
-        Raises
-        ------
-        InvalidInput
-            If they are not finite, `outside` is missing or superfluous, or the time is too short for the particles.
-        NonFiniteSolution
-            If the source or g varies too fast in time, or numbers overflow.
+    def modes_with(self, d: FloatArray, form: str) -> Modes:
+        """Return all modes of -D d A (FPSE), which is an exchange of volumes V / d, or of the negative of `spread`."""
+        volumes = self._unit.volumes
+        if form == "FPSE":
+            kernel, volumes = self._exchange * np.outer(d, d), volumes / d
+        else:
+            kernel = self._exchange * 0.5 * (d[:, None] + d)
+        loss = None if self._loss is None else d * self._loss
+        inverse = InverseExchange.of(kernel, volumes, loss, self._inwards)
+        return self._scaled(*inverse.modes(), self._half * volumes)
 
-        Warns
-        -----
-        AccuracyWarning
-            If the particles do not resolve `initial`, or what is outside.
-        """
+    def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
+        """Warn if the particles do not resolve f, unless it is a source."""
+        if name == "source":  # may be infinite at the ends
+            return
+        named = "the initial data" if name == "initial" else f"the {name}"
+        if (share := unseen_share(f, self.x, values)) > _UNRESOLVED:
+            text = (
+                f"the particles do not resolve {named}, by {share:.1g} of its integral. Take more."
+            )
+            warnings.warn(text, AccuracyWarning, stacklevel=4)
+
+    def _lasting(self, time: float) -> float:
         time = check.positive_real("time", time)
-        tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
-        g = given_outside(self.exterior, outside, timed=True)
-        f = self._source(0.0 if source is None else source, timed=True)
-        start = self.starting(initial)
-        rates = self._rate * self._modes[0]
+        rates = self.all_modes().rates
         slowest = rates[0] or rates[1]
         if time * slowest < _SHORTEST:
             allowed = f"{_SHORTEST / slowest:.2g} or more"
             raise InvalidInput("time", time, allowed, "A shorter one is not resolved at the ends.")
-        with np.errstate(over="ignore", invalid="ignore"):
-            changes = callable(source) or callable(outside) or self.exterior == "reflecting"
-            u = (self._moved if changes else self._relaxed)(start, rates, f, g, time, tolerance)
-        if not np.isfinite(u).all():
-            text = f"u is not finite at t = {time:g}: data or source are near the largest number. Take other units."
-            raise NonFiniteSolution(text)
-        return u
-
-    def _relaxed(
-        self, start: FloatArray, rates: FloatArray, f: _Load, g: Any, time: float, tolerance: float
-    ) -> FloatArray:
-        """Return what is left of the distance from the stationary solution, and that: nothing depends on time."""
-        root, vectors = np.sqrt(self.volumes), self._modes[1]
-        steady = self._steady(f(0.0) / self._rate, g, 0.0)
-        y = np.exp(-rates * time) * (vectors.T @ (root * (start - steady)))
-        return np.asarray(steady + vectors @ y / root)
-
-    def _moved(
-        self, start: FloatArray, rates: FloatArray, f: _Load, g: Any, time: float, tolerance: float
-    ) -> FloatArray:
-        """Return w + v: w(t) is what the values outside alone would hold in place, v_t = A v + f - w_t is bounded."""
-        root, vectors = np.sqrt(self.volumes), self._modes[1]
-
-        def held(t: float) -> FloatArray:
-            return np.zeros(len(root)) if g is None else self._steady(np.zeros(len(root)), g, t)
-
-        def forcing(times: FloatArray) -> FloatArray:
-            loads = np.array([f(t) for t in times])
-            if g is not None:
-                loads -= slopes_in_time(times, np.array([held(t) for t in times]))
-            return np.asarray((loads * root) @ vectors)
-
-        y = vectors.T @ (root * (start - held(0.0)))
-        y = forced_modes(rates, y, forcing, time, tolerance)
-        return np.asarray(held(time) + vectors @ y / root)
-
-    def _steady(self, load: FloatArray, g: Any, t: float) -> FloatArray:
-        """u of A u + load + b = 0 in the unit of (-1, 1)."""
-        if g is not None:
-            load = load + self._outside.load(g, t)
-        return self._inverse.apply(self._unit.volumes * load)
-
-    def values(self, field: str, given: Any) -> FloatArray:
-        """Return a function, an array or a number at the particles, shape (N,)."""
-        if callable(given):
-            return check.sampled(field, given, self.x)
-        return np.asarray(check.finite_array(field, given, self.x.shape), dtype=float)
-
-    def _source(self, source: Any, *, timed: bool) -> Callable[[float], FloatArray]:
-        if callable(source) and timed:
-            return lambda t: self.values("source", lambda x: source(x, t))
-        values = self.values("source", source)
-        return lambda t: values
+        return time

@@ -3,7 +3,8 @@
 On (-1, 1), with the distances d of particle i from the two ends,
 
     kappa_i = C int_outside |x_i - y|^(-1-alpha) dy = (C / alpha) sum_ends d^(-alpha),
-    b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds.
+    b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds,
+    (grad^beta u)_i = (C / alpha) int_outside g(y) sgn(y - x_i) |x_i - y|^-alpha dy + what is inside.
 
 In s the integrand is smooth on the scale one wherever the particle is, if g is smooth in log |y - end|: the trapezoidal
 rule, its step 1/4, has its own error of e^(-8 pi^2) for a constant g. The weights are scaled to add up to kappa_i, so
@@ -26,7 +27,7 @@ from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import tail_constant
 
-__all__ = ["OutsideValues", "given_outside", "loss_rates"]
+__all__ = ["OutsideValues", "loss_rates"]
 
 _STEP = 0.25
 _FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
@@ -42,27 +43,8 @@ def loss_rates(particles: GradedParticles, alpha: float) -> FloatArray:
     return np.asarray(tail_constant(alpha) / alpha * losses)
 
 
-def given_outside(exterior: str, outside: Any, *, timed: bool) -> Callable[..., Any] | None:
-    """Return g(y, t) of a function g(y, t), or g(y) if it is not `timed`, or of a number; None for no values outside.
-
-    Raises
-    ------
-    InvalidInput
-        If there are none where the exterior is given, or some where it is not.
-    """
-    if (outside is None) == (exterior == "given"):
-        allowed = "values of u outside if the exterior is given, nothing otherwise"
-        raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
-    if outside is None:
-        return None
-    if callable(outside):
-        return outside if timed else lambda y, t: outside(y)
-    value = check.finite_real("outside", outside)
-    return lambda y, t: np.full(np.shape(y), value)
-
-
 class OutsideValues:
-    """b_i of a function g(y, t) that is given outside (-1, 1).
+    """b_i of a function g(y) that is given outside (-1, 1).
 
     Parameters
     ----------
@@ -86,6 +68,14 @@ class OutsideValues:
         self._farthest, self._near = ends, np.tile(s <= math.log(10.0), 2)
         self._far_share = math.exp(-alpha * s[-1])
         lost = tail_constant(alpha) / alpha
+        self._flux_weights = np.concatenate(
+            [
+                sign * lost / (alpha - 1.0) * distance[:, None] ** (1.0 - alpha) * weights
+                for sign, distance in ((-1.0, particles.left), (1.0, particles.right))
+                for weights in [_flux_weights(distance, beyond, alpha)]
+            ],
+            axis=1,
+        )
         self._weights = np.concatenate(
             [
                 _weights(distance, beyond, alpha) * (lost * distance**-alpha)[:, None]
@@ -94,8 +84,8 @@ class OutsideValues:
             axis=1,
         )
 
-    def load(self, g: Callable[..., FloatArray], t: float) -> FloatArray:
-        """Return b_i at the time t, shape (N,).
+    def load(self, g: Callable[..., Any]) -> tuple[float, FloatArray, FloatArray]:
+        """Return a level, b_i of g less that, and what grad^beta u has of it, both of shape (N,).
 
         Raises
         ------
@@ -107,15 +97,17 @@ class OutsideValues:
         AccuracyWarning
             If the points do not resolve g.
         """
-        values = check.sampled("outside", lambda y: np.asarray(g(y, t)) + 0.0 * y, self._points)
+        values = check.sampled("outside", lambda y: np.asarray(g(y)) + 0.0 * y, self._points)
         if (
             self._far_share * np.abs(values[self._farthest]).max()
             > _UNRESOLVED * np.abs(values[self._near]).max()
         ):
             allowed = "values that do not grow like |y|^alpha far out, where nothing would be left of the integral"
             raise InvalidInput("outside", g, allowed, "Give bounded ones.")
-        load = np.asarray(self._weights @ values)
-        every_other = 2.0 * self._weights[:, ::2] @ values[::2]
+        level = 0.5 * float(values[0] + values[values.size // 2])  # next to the ends
+        less = values - level
+        load = np.asarray(self._weights @ less)
+        every_other = 2.0 * self._weights[:, ::2] @ less[::2]
         size = self._weights.sum(axis=1) * np.abs(values).max()
         share = float((np.abs(load - every_other) / np.maximum(size, np.finfo(float).tiny)).max())
         if share > _UNRESOLVED:
@@ -125,10 +117,18 @@ class OutsideValues:
                 AccuracyWarning,
                 stacklevel=3,
             )
-        return load
+        return level, load, np.asarray(self._flux_weights @ less)
 
 
 def _weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:
     """Weights in proportion to (d + e^s)^(-1-alpha) e^s, each row of sum one."""
     weights = (1.0 + beyond / distance[:, None]) ** (-1.0 - alpha) * (beyond / distance[:, None])
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+
+
+def _flux_weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:
+    """Weights in proportion to (d + e^s)^-alpha e^s, each row of sum one: the last point has all that is farther."""
+    ratio = beyond / distance[:, None]
+    weights = (alpha - 1.0) * _STEP * (1.0 + ratio) ** -alpha * ratio
+    weights[:, -1] += 1.0 - weights.sum(axis=1)
+    return np.asarray(weights)

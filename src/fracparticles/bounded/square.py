@@ -17,7 +17,8 @@ exact, by Chebyshev series; steady fields are found by conjugate gradients.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,10 @@ from scipy.sparse.linalg import LinearOperator, cg, eigsh
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.exteriors import EXTERIORS
+from fracparticles.bounded.domain import EXTERIORS, Domain
+from fracparticles.bounded.exponential import Rest
+from fracparticles.bounded.given import Lift
+from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.bounded.square_lattice import (
     edge_exchange,
@@ -36,22 +40,20 @@ from fracparticles.bounded.square_lattice import (
     weights,
 )
 from fracparticles.bounded.square_outside import mean_outside, outward_rate
-from fracparticles.errors import FracparticlesError, InvalidInput
+from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.box import BoxConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.time.pieces import exponential_flow
+from fracparticles.time.steps import EighthOrderStep, Steps
 
 __all__ = ["Square"]
 
 _MOST = 512  # particles along a side
 _SOLVED = 1e-12  # the residual of a steady field, relative
 _MOST_STEPS = 20000
-_BALANCE = 1e-6  # of int |f|, what int f may be where nothing can leave
-
-Field = FloatArray | float | Callable[..., Any]
 
 
-class Square:
+class Square(Domain):
     """Particles in a square.
 
     Parameters
@@ -63,9 +65,6 @@ class Square:
     exterior : {"absorbing", "reflecting", "given"}
     half_width, diffusivity : float
         R and D.
-    given : callable, optional
-        g(x, y), for the exterior "given" only: bounded, and smooth across the edge. Its values inside are where u - g
-        is counted from.
     fitted : bool
         Whether the lattice is fitted to the edges; False to see what that is worth.
 
@@ -80,6 +79,8 @@ class Square:
         If one of them is not allowed.
     """
 
+    balance = 1e-6
+
     def __init__(
         self,
         alpha: float,
@@ -88,7 +89,6 @@ class Square:
         *,
         half_width: float = 1.0,
         diffusivity: float = 1.0,
-        given: Callable[..., Any] | None = None,
         fitted: bool = True,
     ) -> None:
         self.alpha = check.fractional_order(alpha)
@@ -97,15 +97,12 @@ class Square:
         self.half_width = check.scale("half_width", half_width)
         self.diffusivity = check.scale("diffusivity", diffusivity)
         fitted = check.flag("fitted", fitted)
-        if (given is None) == (exterior == "given"):
-            allowed = "a function g(x, y) for exterior='given', and nothing for others"
-            raise InvalidInput("given", given, allowed, "Give one, or choose another exterior.")
         h = 2.0 * self.half_width / self.side
         self._rate = (
             self.diffusivity * h**-self.alpha
         )  # of the operator on a lattice of spacing one
         middle = h * (np.arange(self.side) - 0.5 * (self.side - 1))
-        self.x, self.y = np.meshgrid(middle, middle, indexing="ij")
+        self.x, self.y = self.points = tuple(np.meshgrid(middle, middle, indexing="ij"))
         line = np.ones(self.side)
         if fitted and exterior != "reflecting":
             line = edge_volumes(self.alpha, self.side)
@@ -130,71 +127,59 @@ class Square:
             along = edge_exchange(self.alpha, self.side)
             self._along = (along + along[::-1])[:, None]
         self._operator = ConvolutionOperator(self._convolved, -self._lost, None, dim=2)
-        self._base, self._inflow = np.zeros(shape), np.zeros(shape)
-        if given is not None:
-            self._base = check.sampled("given", given, self.x, self.y)
-            self._inflow = self._rate_of_smooth(given)
 
-    def total(self, u: FloatArray) -> float:
-        """Return the strength of all particles, int u dx."""
-        return float((self.volumes * self._field("u", u)).sum())
+    def applied(self, u: FloatArray) -> FloatArray:
+        """Return D A u, with u = 0 outside."""
+        return self._rate * self._outer(self._operator.apply(self._inner(u)))
 
-    def rate(self, u: Field) -> FloatArray:
-        """Return D L u at the particles."""
-        v = self._inner(self._field("u", u) - self._base)
-        return self._rate * (self._outer(self._operator.apply(v)) + self._inflow)
+    def at_rest(self, load: FloatArray) -> FloatArray:
+        """Return u of D A u + load = 0; of a reflecting exterior that of total 0."""
+        return self._outer(self._at_rest(self._inner(load) / self._rate))
 
-    def evolve(self, initial: Field, time: float, source: Field = 0.0) -> FloatArray:
-        """Return u a time after `initial`, exact in time, shape (N, N).
-
-        Parameters
-        ----------
-        initial, source : array, number or callable
-            u at time 0, and f: arrays of the shape of `x`, or functions of (x, y).
-        time : float
-            0 or more.
-
-        Raises
-        ------
-        FracparticlesError
-            If the time is so long that it takes too many sums.
-
-        Warns
-        -----
-        AccuracyWarning
-            If the particles do not resolve one of these functions.
-        """
-        t = self._rate * check.not_negative("time", time)
-        v = self._inner(self._field("initial", initial) - self._base)
-        f = self._inner(self._field("source", source) / self._rate + self._inflow)
-        mean = grown = np.zeros_like(v)
-        if self.exterior == "reflecting":
-            mean, grown = np.full_like(v, v.mean()), np.full_like(f, f.mean())
-            v, f = v - mean, f - grown
-        at_rest = self._at_rest(f)
-        v = v - at_rest
-        if t > 0.0:
-            v = exponential_flow(self._operator, t, -2.0 * float(self._lost.max()), 0.0)(v)
+    def decayed(self, u: FloatArray, time: float) -> FloatArray:
+        """Return exp(time D A) u, by Chebyshev series; raises `FracparticlesError` if that takes too many sums."""
+        t = self._rate * time
+        if t == 0.0:
+            return u
+        v = self._inner(u)
+        mean = v.mean() if self.exterior == "reflecting" else 0.0
+        v = exponential_flow(self._operator, t, -2.0 * float(self._lost.max()), 0.0)(v - mean)
         if self.exterior == "reflecting":
             v = v - v.mean()  # round-off
-        return self._base + self._outer(v + at_rest + mean + t * grown)
+        return self._outer(v + mean)
 
-    def stationary(self, source: Field) -> FloatArray:
-        """Return the u that does not change, D L u + f = 0; of the exterior "reflecting" the one of total 0.
+    def steps(self, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
+        """Return steps of order 8 of u' = D A u + rest(t, u)."""
+        least = tolerance * max(float(np.abs(start).max()), 1e-100)
+        return EighthOrderStep(lambda t, u: self.applied(u) + rest(t, u), tolerance, least)
 
-        Raises
-        ------
-        InvalidInput
-            If the exterior is "reflecting" and the total of the source is not zero, to 1e-6 of that of its size.
+    def lifted(self, g: Callable[..., Any]) -> Lift:
+        """Return g itself, which goes on smoothly inside, and D A g."""
+        base = check.sampled("outside", g, self.x, self.y)
+        nothing = np.zeros(base.shape)
+        return Lift(base, self._rate * self._rate_of_smooth(g), nothing, nothing)
+
+    def carried(
+        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
+    ) -> FloatArray:
+        """Return -div(a u), u = v + base, by differences after d^(alpha/2), d = R^2 - x^2, as v is at the edges.
+
+        Where nothing leaves, what the sum of all is off by is taken off evenly.
         """
-        f = self._inner(self._field("source", source) / self._rate + self._inflow)
-        if self.exterior == "reflecting":
-            if abs(f.sum()) > _BALANCE * np.abs(f).sum():
-                allowed = "a source of total 0 for a reflecting exterior"
-                shown = f"a total of {f.sum() / np.abs(f).sum():.3g} of its size"
-                raise InvalidInput("source", shown, allowed, "Take off its mean.")
-            f = f - f.mean()
-        return self._base + self._outer(self._at_rest(f))
+        along, vanishing = self._slopes
+        bent = along if self.exterior == "reflecting" else vanishing
+        a_x, a_y = velocity
+        out = bent @ (a_x * v) + along @ (a_x * base) + (a_y * v) @ bent.T + (a_y * base) @ along.T
+        return np.asarray(self._mean(out) - out if self.exterior == "reflecting" else -out)
+
+    @cached_property
+    def _slopes(self) -> tuple[FloatArray, FloatArray]:
+        """d/dx of what is smooth, and of what is like (R^2 - x^2)^(alpha/2) at the edges, both of shape (N, N)."""
+        x, power = self.x[:, 0], 0.5 * self.alpha
+        along = one_sided_differences(self.side) * (0.5 * self.side / self.half_width)
+        depth = self.half_width**2 - x**2
+        bent = depth[:, None] ** power * along / depth**power
+        return along, bent - np.diag(self.alpha * x / depth)
 
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the least eigenvalues of -D L, in order, each as often as it occurs: up to 20 of them."""
@@ -218,6 +203,12 @@ class Square:
             return_eigenvectors=False,
         )
         return self._rate * np.concatenate([np.zeros(count - wanted), np.sort(found)])
+
+    def unresolved(self, v: FloatArray) -> float:
+        """Return the norm of v in sines, or cosines, of more than half a wave for two particles."""
+        waves = (dctn if self.exterior == "reflecting" else dstn)(v, type=2, norm="ortho")
+        waves[: self.side // 2, : self.side // 2] = 0.0
+        return float(np.linalg.norm(waves)) * 2.0 * self.half_width / self.side
 
     # --- between V^(1/2) u and u ------------------------------------------------------------------
 
@@ -267,25 +258,22 @@ class Square:
 
     # --- fields -----------------------------------------------------------------------------------
 
-    def _field(self, name: str, value: Field) -> FloatArray:
-        if not callable(value):
-            return check.finite_array(name, value, self.x.shape)
-        field = check.sampled(name, value, self.x, self.y)
+    def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
+        """Warn if the particles do not resolve f."""
         # The corners of the cells, those at the edges for a half.
         line = np.linspace(-self.half_width, self.half_width, self.side + 1)
         part = np.full(self.side + 1, 2.0 * self.half_width / self.side)
         part[[0, -1]] *= 0.5
-        corners = check.sampled(name, value, *np.meshgrid(line, line, indexing="ij"))
-        cell = np.full(field.shape, (2.0 * self.half_width / self.side) ** 2)
-        warn_of_the_unseen(name, field, cell, corners, np.multiply.outer(part, part))
-        return field
+        corners = check.sampled(name, f, *np.meshgrid(line, line, indexing="ij"))
+        cell = np.full(values.shape, (2.0 * self.half_width / self.side) ** 2)
+        warn_of_the_unseen(name, values, cell, corners, np.multiply.outer(part, part))
 
     def _rate_of_smooth(self, g: Callable[..., Any]) -> FloatArray:
         """L g in the square, in the unit of the lattice: a lattice twice as wide, and the mean beyond."""
         n, h = self.side, 2.0 * self.half_width / self.side
         margin = n // 2
         wide = h * (np.arange(n + 2 * margin) - 0.5 * (n + 2 * margin - 1))
-        values = check.sampled("given", g, *np.meshgrid(wide, wide, indexing="ij"))
+        values = check.sampled("outside", g, *np.meshgrid(wide, wide, indexing="ij"))
         own = values[margin : margin + n, margin : margin + n]
         sums = BoxConvolution([weights(self.alpha, n + margin)], [None], n + 2 * margin, n)
         # The level is taken off first: a constant is one to the last digit.

@@ -50,7 +50,7 @@ def mean_outside(
                 step = d * far
                 at_x = x + step * (outward[0] + slope * along[0])
                 at_y = y + step * (outward[1] + slope * along[1])
-                total += weight * part * size * check.sampled("given", g, at_x, at_y)
+                total += weight * part * size * check.sampled("outside", g, at_x, at_y)
     return np.asarray(total / whole)
 
 

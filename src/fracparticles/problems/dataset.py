@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,36 +16,82 @@ from fracparticles.run.dataset import source
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["to_dataset"]
+__all__ = ["Layout", "domain_layout", "lattice_layout", "to_dataset"]
 
-_STORED = (
-    "order",
-    "half_width",
-    "spacing",
-    "overlap",
-    "form",
-    "exterior",
-    "dim",
-    "t_initial",
-    "t_final",
-    "rtol",
-)
+_STORED = ("half_width", "form", "exterior", "dim", "t_initial", "t_final", "rtol")
+_OF_A_LATTICE = ("order", "spacing", "overlap")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where the particles of a data set are.
+
+    Attributes
+    ----------
+    axes : tuple of str
+        Dimensions of u.
+    coordinates : dict
+        By name, as xarray takes them.
+    integral : callable
+        The sum of V u.
+    scheme : str
+    """
+
+    axes: tuple[str, ...]
+    coordinates: dict[str, tuple]
+    integral: Callable[[np.ndarray], float]
+    scheme: str
+
+
+def lattice_layout(problem: Problem) -> Layout:
+    """Return that of a lattice."""
+    case, fields = problem.case, type(problem).model_fields
+    axes = ("x", "y")[: problem.dim]
+    coordinates = {
+        name: _scalar(_plain(getattr(problem, name)), label_of(fields[name]))
+        for name in _OF_A_LATTICE
+    }
+    coordinates["particle_spacing"] = _scalar(case.particle_spacing, "particle spacing, realised")
+    coordinates |= {axis: ((axis,), case.x, _describe("particle position")) for axis in axes}
+    return Layout(axes, coordinates, case.integral, FORMS[problem.form])
+
+
+def domain_layout(problem: Problem) -> Layout:
+    """Return that of the particles of a bounded domain; those of a disc lie on rings, at equal angles."""
+    domain = problem.bounded_domain
+    place, places = _describe("particle position"), problem.places
+    coordinates: dict[str, tuple] = {"domain": _scalar(problem.domain, "bounded domain")}
+    if problem.domain == "disc":
+        axes: tuple[str, ...] = ("ring", "angle")
+        coordinates |= {name: (axes, at, place) for name, at in places.items()}
+    else:
+        axes = ("x", "y")[: problem.dim]
+        lines = (at[:, 0] if n == 0 and at.ndim == 2 else at[0] if n else at
+                 for n, at in enumerate(places.values()))  # fmt: skip
+        coordinates |= {
+            axis: ((axis,), line, place) for axis, line in zip(axes, lines, strict=True)
+        }
+    coordinates["volume"] = (axes, domain.volumes, _describe("particle volume V"))
+    kind = {"interval": "graded particles", "square": "fitted lattice", "disc": "rings"}
+    scheme = kind[str(problem.domain)]
+    return Layout(axes, coordinates, lambda u: float((domain.volumes * u).sum()), scheme)
 
 
 def to_dataset(
     problem: Problem,
+    layout: Layout,
     u0: np.ndarray,
     result: Integration,
     estimates: dict[str, tuple[list[float], str]],
     origin: str,
 ) -> xr.Dataset:
-    """Return u on x (and y) at t_final, or along t at each of `times`, with what the solution took and may be off by.
+    """Return u at t_final, or along t at each of `times`, with what the solution took and may be off by.
 
     Parameters
     ----------
-    problem, result
-        The problem and its integration.
-    u0 : array, shape (N, .., N)
+    problem, layout, result
+        The problem, its particles and its integration.
+    u0 : array
         Initial strengths.
     estimates : dict
         By name a value for each output time, and what it is in words.
@@ -52,21 +100,19 @@ def to_dataset(
     """
     import xarray as xr
 
-    case, several = problem.case, problem.times is not None
-    shape = case.shape
-    u = np.array([one.reshape(shape) for one in result.u])
-    mass = np.array([case.integral(one) for one in u])
+    several = problem.times is not None
+    u = np.array([one.reshape(u0.shape) for one in result.u])
+    mass = np.array([layout.integral(one) for one in u])
     along = ("t",) if several else ()
-    axes = ("x", "y")[: problem.dim]
 
     def each(values: Any, meaning: str) -> tuple:
         values = np.asarray(values, dtype=float)
         return along, values if several else values[0], _describe(meaning)
 
     data = {
-        "u": ((*along, *axes), u if several else u[0], _describe("particle strength u")),
+        "u": ((*along, *layout.axes), u if several else u[0], _describe("particle strength u")),
         "mass": each(mass, "total mass, the sum of V u"),
-        "mass_initial": _scalar(case.integral(u0), "total mass, the sum of V u, at t_initial"),
+        "mass_initial": _scalar(layout.integral(u0), "total mass, the sum of V u, at t_initial"),
         "mass_final": _scalar(float(mass[-1]), "total mass, the sum of V u, at t_final"),
         "accepted_steps": _scalar(np.int64(result.accepted), "number of time steps"),
         "rejected_steps": _scalar(np.int64(result.rejected), "number of time steps that were thrown away"),
@@ -84,10 +130,9 @@ def to_dataset(
     ):
         if coefficient.constant is not None:
             coordinates[name] = _scalar(coefficient.constant, label_of(fields[name]))
-    coordinates["scheme"] = _scalar(FORMS[problem.form], "particle scheme")
+    coordinates["scheme"] = _scalar(layout.scheme, "particle scheme")
     coordinates["integrator"] = _scalar(result.method, "time integrator")
-    coordinates["particle_spacing"] = _scalar(case.particle_spacing, "particle spacing, realised")
-    coordinates |= {axis: ((axis,), case.x, _describe("particle position")) for axis in axes}
+    coordinates |= layout.coordinates
     if several:
         coordinates["t"] = (("t",), np.array(problem.times), _describe("output time"))
     return xr.Dataset(
@@ -115,7 +160,7 @@ def _diffusion(problem: Problem) -> str:
     if problem.order_coefficient.constant is None:
         return "-D (-Laplacian)^(alpha(x)/2) u"
     if problem.form == "exchange" and problem.diffusion.depends_on - {"t"}:
-        return "(D L u + L(D u) - u L D) / 2"
+        return "(D L u + L(D u) - u L D) / 2" + " in the interior" * problem.is_bounded
     return "div(D grad^beta u)"
 
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
 from fracparticles.errors import InvalidInput
-from fracparticles.problems.krylov import KrylovStep
 from fracparticles.problems.problem import Problem
-from fracparticles.problems.rates import Rates
-from fracparticles.problems.stabilised import StabilisedStep, spectral_radius
-from fracparticles.problems.steps import STAGES, Absolute, EighthOrderStep, Steps
-from fracparticles.problems.sudden import sudden_times
+from fracparticles.problems.sudden import sudden_changes
+from fracparticles.time.krylov import KrylovStep
+from fracparticles.time.stabilised import StabilisedStep, spectral_radius
+from fracparticles.time.steps import STAGES, Absolute, EighthOrderStep, Steps
 
-__all__ = ["Integration", "integrate"]
+__all__ = ["Integration", "advanced", "integrate"]
 
 _FINEST = 1e-9  # rtol of RKC2; below, the estimate of its error is round-off
 _LOOKS = 17  # at a source that starts from nothing
@@ -31,7 +31,7 @@ class Integration:
     u : list of arrays, shape (N,)
         At each output time.
     method : str
-        "exponential", "rkc2" or "dop853".
+        "exponential", "rkc2" or "dop853"; on an interval "radau", too.
     accepted, rejected, evaluations : int
         Steps taken, steps thrown away, and evaluations of the right-hand side.
     stiffness : float
@@ -46,8 +46,20 @@ class Integration:
     stiffness: float
 
 
-def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
-    """Integrate u' = R(t, u) from u0, shape (N,), to the output times.
+class RightHandSide(Protocol):
+    """R(t, u), flat as u, that counts how often it is asked for."""
+
+    evaluations: int
+    shape: tuple[int, ...]
+
+    def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
+        """Return du/dt."""
+
+
+def integrate(
+    problem: Problem, rates: RightHandSide, u0: np.ndarray, size: float = 0.0
+) -> Integration:
+    """Integrate u' = R(t, u) from u0, shape (N,), to the output times; `size` is that of what is added to u.
 
     Raises
     ------
@@ -63,13 +75,13 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
         )
         raise InvalidInput("integrator", problem.integrator, what, "Take auto.")
     if problem.integrator == "rkc2" and problem.rtol < _FINEST:
-        least = f"at least {_FINEST:g} for rkc2, whose estimate of the error is round-off below"
-        raise InvalidInput("rtol", problem.rtol, least, "Take another integrator.")
+        finest = f"at least {_FINEST:g} for rkc2, whose estimate of the error is round-off below"
+        raise InvalidInput("rtol", problem.rtol, finest, "Take another integrator.")
     # The error is to be small where the solution is, not in the mean over a lattice that it hardly fills.
     shares = np.sqrt(_filled(u0))
     rtol = problem.rtol * shares
-    size = _size(problem, rates, u0)
-    atol: Absolute = lambda u: rtol * (float(np.abs(u).max()) or size)  # noqa: E731
+    least = size or _size(problem, rates, u0)
+    atol: Absolute = lambda u: rtol * (max(float(np.abs(u).max()), size) or least)  # noqa: E731
     if problem.atol:
         atol = problem.atol * shares
     start, span = problem.t_initial, problem.span
@@ -88,14 +100,8 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
         steps = StabilisedStep(rates, rtol, atol)
     else:
         steps = EighthOrderStep(rates, rtol, atol)
-    sudden, times = sudden_times(problem, u0.reshape(rates.shape)), problem.output_times
-    outputs, u = [], u0
-    for before, after in pairwise(sorted({start, *sudden, *times})):
-        if before in sudden:
-            steps.forget()
-        u = steps.advance(u, after - before, before)
-        if after in times:
-            outputs.append(u)
+    outputs = advanced(problem, steps, u0, sudden_changes(problem, u0.reshape(rates.shape)))
+    u = outputs[-1]
     if not steps.largest and not largest:
         largest = spectral_radius(rates, problem.t_final, u, rates(problem.t_final, u))[0]
     return Integration(
@@ -104,7 +110,21 @@ def integrate(problem: Problem, rates: Rates, u0: np.ndarray) -> Integration:
     )  # fmt: skip
 
 
-def _size(problem: Problem, rates: Rates, u0: np.ndarray) -> float:
+def advanced(
+    problem: Problem, steps: Steps, u0: np.ndarray, sudden: list[float]
+) -> list[np.ndarray]:
+    """Return u at each output time; where something changes suddenly, steps end and find their length anew."""
+    times, outputs, u = problem.output_times, [], u0
+    for before, after in pairwise(sorted({problem.t_initial, *sudden, *times})):
+        if before in sudden:
+            steps.forget()
+        u = steps.advance(u, after - before, before)
+        if after in times:
+            outputs.append(np.array(u))
+    return outputs
+
+
+def _size(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
     """The greatest |u| at t_initial, or what the source may make of it where that is zero."""
     size = float(np.abs(u0).max())
     if size == 0.0:

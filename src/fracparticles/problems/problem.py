@@ -2,7 +2,7 @@
 
     u_t + div(a(x,t) u) = div(D(x,t) grad^beta u) + f(x,t,u),    div grad^beta = -(-Laplacian)^(alpha/2),
 
-alpha = 1 + beta, in one and two dimensions.
+alpha = 1 + beta, in one and two dimensions: on the whole space, or on an interval, a square or a disc, see `domains`.
 """
 
 from __future__ import annotations
@@ -10,17 +10,26 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import ValidationError, model_validator
 
+from fracparticles.bounded.domain import Domain
 from fracparticles.errors import InvalidInput
-from fracparticles.problems.expressions import Coefficient
+from fracparticles.problems.coefficients import AXES, WithCoefficients
+from fracparticles.problems.domains import (
+    OF_A_LATTICE,
+    check_domain,
+    is_bounded,
+    make_domain,
+    sample_points,
+    with_dim,
+)
 from fracparticles.problems.order import with_any_order
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import allowed, first_complaint
-from fracparticles.run.parameters import OVERLAPS, SIZES
+from fracparticles.run.parameters import SIZES
 from fracparticles.run.times import with_times
 
 __all__ = ["FORMS", "Problem"]
@@ -28,14 +37,12 @@ __all__ = ["FORMS", "Problem"]
 FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 """The schemes of a constant diffusivity, by the form of the equation."""
 
-_AXES = ("x", "y")
-_COEFFICIENT = "A number, an expression in x, y and t, or a function of them."
 _SHORT = 0.05  # of the half-width, how far the solution spreads
 _LOOKS = 33  # between t_initial and t_final, at coefficients that depend on time
 _FUNCTION = "a function, which the file does not hold"  # in JSON
 
 
-class Problem(BaseModel):
+class Problem(WithCoefficients):
     """One problem; the fields are the parameters, keyword only.
 
     A text is an expression, see `expressions`: "1 + 0.5*sin(x)*exp(-t)". A function takes arrays x, t on the line and
@@ -48,74 +55,6 @@ class Problem(BaseModel):
         With the field, the value, what is allowed and what to do; of a coefficient with the place where it is wrong.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
-
-    beta: Any = Field(
-        description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive); a number, or for a variable order "
-        "an expression in x and y, or a function of them. alpha may be given instead.",
-        json_schema_extra={"remedy": "Give beta = alpha - 1, or alpha itself."},
-    )
-    diffusivity: Any = Field(
-        default=1.0, description=f"Diffusivity D. Not negative. {_COEFFICIENT}"
-    )
-    velocity: Any = Field(
-        default=None,
-        description=f"Velocity a, one for each coordinate. None if left out. {_COEFFICIENT}",
-    )
-    source: Any = Field(
-        default=None, description="Source f. None if left out. It may depend on u: a reaction."
-    )
-    dim: Literal[1, 2] = Field(default=1, description="Space dimension.")
-    half_width: float = Field(
-        ge=SIZES[0], le=SIZES[1], description="Half-width of the lattice in each coordinate."
-    )
-    spacing: float = Field(
-        ge=SIZES[0],
-        le=SIZES[1],
-        description="Particle spacing h. The nearest that divides the half-width is taken.",
-    )
-    order: Literal[2, 4, 6, 8, 10, 12] = Field(
-        default=4,
-        description="Order of the kernels. FPSE in the plane has 2 and 4 where the diffusivity is the same everywhere.",
-    )
-    overlap: float = Field(
-        default=2.0,
-        ge=OVERLAPS[0],
-        le=OVERLAPS[1],
-        description="Overlap epsilon / h. For the last digits of order 10 and 12 take 2.5 or more.",
-    )
-    form: Literal["FPSE", "DD", "exchange"] = Field(
-        default="FPSE",
-        description="Form of the diffusion. The flux and its divergence; direct differentiation; exchange. A variable "
-        "order has the second alone. The exchange with a diffusivity that varies in space is that of the mean of a "
-        "pair, (D L u + L(D u) - u L D) / 2 with L of D = 1: another equation.",
-    )
-    exterior: Literal["open", "truncated"] = Field(
-        default="open",
-        description="What lies beyond the lattice. A tail, continued by powers; or nothing.",
-    )
-    far_terms: Literal[1, 2, 3] | None = Field(
-        default=None,
-        description="Terms that continue the solution in an open exterior on the line. 1 if left out.",
-    )
-    t_initial: float = Field(default=0.0, ge=0.0, le=SIZES[1], description="Initial time.")
-    t_final: float = Field(ge=SIZES[0], le=SIZES[1], description="Final time.")
-    times: tuple[float, ...] | None = Field(
-        default=None, description="Output times. In ascending order; the last is the final time."
-    )
-    rtol: float = Field(
-        default=1e-6, ge=1e-13, le=0.1, description="Relative tolerance of the time integration."
-    )
-    atol: float | None = Field(
-        default=None, ge=1e-300, le=SIZES[1],
-        description="Absolute tolerance of the time integration. rtol times the greatest |u| of the time if left out. "
-        "Both are of the root mean square over the part of the lattice that the data fill.",
-    )  # fmt: skip
-    integrator: Literal["auto", "exponential", "rkc2", "dop853"] = Field(
-        default="auto",
-        description="Time integrator. By Krylov spaces if all is linear and constant in time; stabilised; of order 8.",
-    )
-
     def __init__(self, **data: Any) -> None:
         try:
             super().__init__(**data)
@@ -125,7 +64,7 @@ class Problem(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _plain(cls, data: dict[str, Any]) -> dict[str, Any]:
-        for name in ("dim", "order", "far_terms"):
+        for name in ("dim", "order", "far_terms", "particles"):
             if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
                 raise InvalidInput(
                     name, data[name], allowed(cls.model_fields[name]), "Give such a value."
@@ -133,7 +72,7 @@ class Problem(BaseModel):
         plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
         if isinstance(plain.get("velocity"), list | np.ndarray):
             plain["velocity"] = tuple(plain["velocity"])
-        return with_times(with_any_order(plain))
+        return with_times(with_any_order(with_dim(plain)))
 
     @model_validator(mode="after")
     def _consistent(self) -> Problem:
@@ -144,22 +83,24 @@ class Problem(BaseModel):
             raise InvalidInput(
                 "beta", beta.given, allowed, "Give beta = alpha - 1, or alpha itself."
             )
-        if beta.constant is None:
+        if beta.constant is None and not self.is_bounded:
             if self.form != "DD":
                 raise InvalidInput("form", self.form, "DD for a variable order", "Take form='DD'.")
             if self.diffusion.depends_on - {"t"}:
                 what = "a number, or an expression in t alone, beside a variable order"
                 raise InvalidInput("diffusivity", self.diffusivity, what, "Leave the place out.")
-        _ = self.reaction  # which is checked, as the case is
-        places = dict(zip(_AXES, self.case.positions, strict=False))
+        _ = self.reaction, self.outside  # which are checked, as the case is
+        between = np.linspace(self.t_initial, self.t_final, _LOOKS)
+        check_domain(self, between)
+        places = points if self.is_bounded else self.places
         if self.times is not None and self.times[0] <= self.t_initial:
             later = f"numbers > t_initial = {self.t_initial:g}"
             raise InvalidInput(
                 "times", self.times, later, "Leave out the others: there are the data."
             )
-        between = np.linspace(self.t_initial, self.t_final, _LOOKS)
+        least_d = SIZES[0] if self.is_bounded else 0.0
         for one in (self.diffusion, *self.transport):
-            least = 0.0 if one is self.diffusion else None
+            least = least_d if one is self.diffusion else None
             for time in (self.t_initial, *self.output_times):
                 one.checked({**places, "t": np.array(time)}, least)
             for time in between if "t" in one.depends_on else ():
@@ -176,65 +117,31 @@ class Problem(BaseModel):
         """The time of the run, t_final - t_initial."""
         return self.t_final - self.t_initial
 
-    # --- the coefficients -----------------------------------------------------------------------------------
-
-    @cached_property
-    def order_coefficient(self) -> Coefficient:
-        """Beta, a coefficient of the place alone."""
-        return Coefficient("beta", self.beta, _AXES[: self.dim])
-
-    @cached_property
-    def diffusion(self) -> Coefficient:
-        """D."""
-        return Coefficient("diffusivity", self.diffusivity, (*_AXES[: self.dim], "t"))
-
-    @cached_property
-    def transport(self) -> tuple[Coefficient, ...]:
-        """The components of a; none if there is no velocity."""
-        if self.velocity is None:
-            return ()
-        given = self.velocity if isinstance(self.velocity, tuple) else (self.velocity,)
-        if len(given) != self.dim:
-            each = f"one expression for each of the {self.dim} coordinate(s)"
-            raise InvalidInput("velocity", self.velocity, each, "Give a tuple of them.")
-        return tuple(Coefficient("velocity", one, (*_AXES[: self.dim], "t")) for one in given)
-
-    @cached_property
-    def reaction(self) -> Coefficient | None:
-        """f, or None."""
-        if self.source is None:
-            return None
-        return Coefficient("source", self.source, (*_AXES[: self.dim], "t", "u"))
-
-    @property
-    def coefficients(self) -> list[Coefficient]:
-        """Those that there are."""
-        every = [self.order_coefficient, self.diffusion, *self.transport, self.reaction]
-        return [one for one in every if one is not None]
-
-    @property
-    def is_linear(self) -> bool:
-        """Whether the source says nothing of u."""
-        return self.reaction is None or "u" not in self.reaction.depends_on
-
-    @property
-    def is_autonomous(self) -> bool:
-        """Whether no coefficient says anything of t."""
-        return all("t" not in one.depends_on for one in self.coefficients)
-
-    @property
-    def reproducible(self) -> bool:
-        """Whether the JSON text holds all of it: not if a coefficient is a function."""
-        return all(one.reproducible for one in self.coefficients)
-
     # --- the lattice ----------------------------------------------------------------------------------------
 
     @property
+    def is_bounded(self) -> bool:
+        """Whether it is on a bounded domain."""
+        return is_bounded(self.exterior)
+
+    @property
+    def places(self) -> dict[str, np.ndarray]:
+        """Where the particles are, by coordinate."""
+        at = self.bounded_domain.points if self.is_bounded else self.case.positions
+        return dict(zip(AXES, at, strict=False))
+
+    @property
     def _samples(self) -> dict[str, np.ndarray]:
-        """Some points of the domain: the ends, the middle, and what lies between them."""
-        axis = np.linspace(-self.half_width, self.half_width, 257 if self.dim == 1 else 33)
-        grid = np.meshgrid(*(axis,) * self.dim, indexing="ij", sparse=True)
-        return dict(zip(_AXES, grid, strict=False))
+        points = sample_points(self.domain, self.half_width, self.dim)
+        return dict(zip(AXES, points, strict=False))
+
+    @cached_property
+    def bounded_domain(self) -> Domain:
+        """The particles of a bounded domain, of diffusivity 1; raises `InvalidInput` if there is none."""
+        if not self.is_bounded:
+            what = "absorbing, reflecting or given for a bounded domain"
+            raise InvalidInput("exterior", self.exterior, what, "Take such an exterior.")
+        return make_domain(self)
 
     @cached_property
     def case(self) -> Case:
@@ -243,6 +150,9 @@ class Problem(BaseModel):
         Of diffusion alone it has the times, too, and refuses a lattice that the solution outgrows. A field may hold the
         solution together, and a source spread it: then it is a short run, and what leaves the lattice is told after.
         """
+        if self.is_bounded:
+            what = "open or truncated for a lattice"
+            raise InvalidInput("exterior", self.exterior, what, "Use bounded_domain.")
         points = self._samples
         beta = float(self.order_coefficient(points).max())
         d = float(self.diffusion.checked({**points, "t": np.array(self.t_initial)}, 0.0).max())
@@ -264,9 +174,9 @@ class Problem(BaseModel):
 
     def to_json(self) -> str:
         """Return the problem as one JSON object; `from_json` reads it, unless a coefficient is a function."""
-        return json.dumps(
-            self.model_dump(exclude_none=True), sort_keys=True, default=lambda _: _FUNCTION
-        )
+        absent = set(OF_A_LATTICE) if self.is_bounded else set()
+        fields = self.model_dump(exclude_none=True, exclude=absent)
+        return json.dumps(fields, sort_keys=True, default=lambda _: _FUNCTION)
 
     @classmethod
     def from_json(cls, text: str) -> Problem:

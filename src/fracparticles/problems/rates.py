@@ -14,7 +14,7 @@ from fracparticles.problems.transport import Transport
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.variable import VariableDiffusivity, VariableOrder
 
-__all__ = ["Rates"]
+__all__ = ["Rates", "over_time", "probe_source", "reaction_of"]
 
 Part = Callable[[float, np.ndarray], np.ndarray]
 
@@ -39,7 +39,7 @@ class Rates:
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.shape, self.evaluations = problem, problem.case.shape, 0
-        parts = (_diffusion(problem), _transport(problem), _reaction(problem))
+        parts = (_diffusion(problem), _transport(problem), reaction_of(problem))
         self._parts: list[Part] = [part for part in parts if part is not None]
 
     def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
@@ -57,10 +57,10 @@ def _named(points: tuple[np.ndarray, ...] | list[np.ndarray]) -> dict[str, Any]:
     return dict(zip(("x", "y"), points, strict=False))
 
 
-def _over_time(
+def over_time(
     coefficient: Coefficient, points: Any, least: float | None = None, start: float = 0.0
 ) -> Callable[[float], Any]:
-    """Return the values at some points as a function of time; evaluated once if they do not change."""
+    """Return the values of a coefficient at some points as a function of time; evaluated once if they do not change."""
     named = _named(points)
     values = coefficient.checked({**named, "t": np.array(start)}, least)
     if "t" in coefficient.depends_on:
@@ -76,10 +76,10 @@ def _diffusion(problem: Problem) -> Part | None:
     setting = replace(problem.case.setting, diffusivity=1.0)
     if problem.diffusion.depends_on - {"t"}:
         varying = VariableDiffusivity(problem.form, setting)
-        d = _over_time(problem.diffusion, varying.points, 0.0, problem.t_initial)
+        d = over_time(problem.diffusion, varying.points, 0.0, problem.t_initial)
         return lambda t, u: varying.apply(u, d(t))
     apply = _of_unit_diffusivity(problem, setting)
-    everywhere = _over_time(
+    everywhere = over_time(
         problem.diffusion, (np.array(0.0),) * problem.dim, 0.0, problem.t_initial
     )
     return lambda t, u: everywhere(t) * apply(u)
@@ -98,20 +98,32 @@ def _transport(problem: Problem) -> Part | None:
         return None
     transport = Transport(problem.case.setting)
     speeds = [
-        _over_time(one, points, start=problem.t_initial)
+        over_time(one, points, start=problem.t_initial)
         for one, points in zip(problem.transport, transport.points, strict=True)
     ]
     return lambda t, u: transport.apply(u, [speed(t) for speed in speeds])
 
 
-def _reaction(problem: Problem) -> Part | None:
-    f = problem.reaction
+def reaction_of(problem: Problem) -> Part | None:
+    """Return f as a function of t and u at the particles, or None."""
+    f, named = problem.reaction, problem.places
     if f is None:
         return None
-    named = _named(problem.case.positions)
     if not f.depends_on & {"t", "u"}:
-        fixed = f.checked(
-            {**named, "t": np.array(problem.t_initial), "u": np.zeros(problem.case.shape)}
-        )
+        nothing = np.zeros(np.broadcast_shapes(*(np.shape(at) for at in named.values())))
+        fixed = f.checked({**named, "t": np.array(problem.t_initial), "u": nothing})
         return lambda t, u: fixed
     return lambda t, u: f({**named, "t": np.array(t), "u": u})
+
+
+def probe_source(problem: Problem, u0: np.ndarray) -> None:
+    """Refuse a source that is not a finite number at each particle, for the initial data, at each output time.
+
+    Raises
+    ------
+    InvalidInput
+    """
+    if problem.reaction is None:
+        return
+    for time in (problem.t_initial, *problem.output_times):
+        problem.reaction.checked({**problem.places, "t": np.array(time), "u": u0})

@@ -188,7 +188,7 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
     says = {
         "outside_share": f"the solution has reached the ends of {reach}: about {{:.2g}} of it lies beyond, or has "
         "left. Take a wider lattice, or an earlier end",
-        "resolution": f"particles of spacing {problem.spacing:.3g} do not resolve the solution: epsilon times its "
+        "resolution": f"particles of spacing {problem.case.spacing:.3g} do not resolve the solution: epsilon times its "
         "wavenumber is {:.2g}. Take a smaller spacing",
         "wave_error": "the waves that the solution holds may be wrong by {:.2g} of a peak. Take a smaller spacing, "
         "or a higher order",

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
-from fracparticles.problems.dataset import to_dataset
+from fracparticles.problems.dataset import lattice_layout, to_dataset
 from fracparticles.problems.integrate import integrate
+from fracparticles.problems.on_domain import solve_on_domain
 from fracparticles.problems.problem import Problem
-from fracparticles.problems.rates import Rates
+from fracparticles.problems.rates import Rates, probe_source
 from fracparticles.problems.reliability import estimates, warn_if_doubtful
 from fracparticles.run.initial import Initial, initial_strengths
 
@@ -28,7 +27,8 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
     ----------
     problem : Problem
     initial : array, labelled data, callable or path, optional
-        Initial strengths, as those of `solve`: an array of shape `problem.case.shape`, or a function of x, of x and y.
+        Initial strengths, as those of `solve`: an array of shape `problem.case.shape`, or a function of x, of x and y;
+        on a bounded domain these two alone, the array of the shape of `problem.bounded_domain.volumes`.
         Left out, the fundamental solution at `t_initial`, of a problem with a constant order and diffusivity.
 
     Returns
@@ -55,6 +55,8 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
     >>> u = solve_problem(problem).u
     """
     problem = check.instance("problem", problem, Problem)
+    if problem.is_bounded:
+        return solve_on_domain(problem, initial)
     plain = problem.order_coefficient.constant is not None and problem.diffusion.constant
     if initial is None and not plain:
         given = "data of your own: there is no fundamental solution with these coefficients"
@@ -63,17 +65,8 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
         update={"t_initial": problem.t_initial}
     )  # it is said, if by default
     u0, origin = initial_strengths(case, initial)
-    _probe_source(problem, u0)
+    probe_source(problem, u0)
     result = integrate(problem, Rates(problem), u0.reshape(-1))
     found = estimates(problem, [u0, *(one.reshape(u0.shape) for one in result.u)], initial)
     warn_if_doubtful(problem, found)
-    return to_dataset(problem, u0, result, found, origin)
-
-
-def _probe_source(problem: Problem, u0: np.ndarray) -> None:
-    """Refuse a source that is not a finite number at each particle, for the initial data, at each output time."""
-    if problem.reaction is None:
-        return
-    points = dict(zip(("x", "y"), problem.case.positions, strict=False))
-    for time in (problem.t_initial, *problem.output_times):
-        problem.reaction.checked({**points, "t": np.array(time), "u": u0})
+    return to_dataset(problem, lattice_layout(problem), u0, result, found, origin)

@@ -114,7 +114,7 @@ def _scaled(drawn: tuple[Problem, int, float, float]) -> float:
         "velocity": other(problem.velocity, length / time),
         "source": other(problem.source, 1.0 / time),
         "half_width": length * problem.half_width,
-        "spacing": length * problem.spacing,
+        "spacing": length * problem.case.particle_spacing,
         "t_final": time * problem.t_final,
     }
     fields = {name: value for name, value in changed.items() if value is not None}

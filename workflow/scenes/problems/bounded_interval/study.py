@@ -13,7 +13,6 @@ from scipy.special import gamma
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
 from fracparticles.bounded.interval_no_flux import no_flux_state
-from fracparticles.bounded.interval_reaction import react
 from fracparticles.run.orders import observed_order
 from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
@@ -127,12 +126,12 @@ def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
         exact = np.cos(t) * getoor
         return np.asarray(np.cos(t) * rate - np.sin(t) * getoor + exact**2 - u**2)
 
-    u = react(absorbing, getoor, 1.0, reaction)
+    u = absorbing.react(getoor, 1.0, reaction)
     yield row("absorbing", "f = g(x, t) - u^2 at t = 1", np.abs(u - np.cos(1.0) * getoor).max())
     start = np.exp(-20.0 * (x - _BUMP) ** 2)
-    mass = reflecting.volumes @ start
+    mass = reflecting.total(start)
     after = reflecting.evolve(start, 0.1)
-    yield row("reflecting", "mass at t = 0.1", reflecting.volumes @ after / mass - 1.0)
+    yield row("reflecting", "mass at t = 0.1", reflecting.total(after) / mass - 1.0)
     yield row("reflecting", "a constant at t = 0.1", np.abs(reflecting.evolve(1.0, 0.1) - 1).max())
     bell, source = Cauchy.value([x]), Cauchy.riesz([x], alpha)
     u = given.evolve(
@@ -194,5 +193,5 @@ def _profiles(alpha: float, particles: int, panels: Panels) -> None:
         outside = 0.2 if exterior == "given" else None
         panels.add("profile", exterior, line.x, line.evolve(start, 0.2, outside=outside))
     inner = line.x[np.abs(line.x) < 0.995]
-    mass = line.volumes @ start
+    mass = line.total(start)
     panels.add("profile", "no flux, last", inner, no_flux_state(inner, alpha, mass))

@@ -84,7 +84,7 @@ def _front_row(fields: dict[str, Any], last: int, panels: Panels) -> dict[str, A
     else:
         run = solve_problem(problem, lambda x, y: np.exp(-(x * x + y * y) / 8.0))
         along = run["u"].sel(y=0.0)
-    right = along.sel(x=slice(0.5 * problem.spacing, None))
+    right = along.sel(x=slice(0.5 * problem.case.spacing, None))
     x = right["x"].values
     places = np.array([front(x, u) for u in right.values])
     rates = np.diff(np.log(places))

@@ -18,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import expm
 
-from fracparticles.problems.steps import Absolute, absolute, blown_up, norm
+from fracparticles.time.steps import Absolute, absolute, blown_up, norm
 
 __all__ = ["KrylovStep"]
 

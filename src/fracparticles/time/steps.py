@@ -53,7 +53,7 @@ class EighthOrderStep:
         self._dt: float | None = None
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
-        """Return u after the time `span`, shape (N,).
+        """Return u after the time `span`, of any shape.
 
         Raises
         ------
@@ -63,7 +63,10 @@ class EighthOrderStep:
         first = None if self._dt is None else min(self._dt, span)
         tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, u)}
         with np.errstate(over="ignore", invalid="ignore"):
-            solver = DOP853(self._rate, start, u, start + span, first_step=first, **tolerances)
+            solver = DOP853(
+                lambda t, y: self._rate(t, y.reshape(u.shape)).reshape(-1),
+                start, u.reshape(-1), start + span, first_step=first, **tolerances,
+            )  # fmt: skip
             began, taken = solver.nfev, 0
             while solver.status == "running":
                 solver.atol = absolute(self._atol, solver.y)
@@ -74,7 +77,7 @@ class EighthOrderStep:
         self.accepted += taken
         self.rejected += round((solver.nfev - began) / STAGES) - taken
         self._dt = solver.h_abs
-        return np.asarray(solver.y)
+        return np.asarray(solver.y).reshape(u.shape)
 
     def forget(self) -> None:
         """Let the next step find its length anew."""

@@ -7,7 +7,6 @@ import pytest
 from scipy.special import gamma
 
 from fracparticles.bounded.interval import Interval
-from fracparticles.bounded.interval_reaction import react
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 
@@ -21,25 +20,25 @@ def test_a_manufactured_reaction_with_absorbing_ends(alpha):
         exact = np.cos(t) * shape
         return -np.sin(t) * shape + np.cos(t) * gamma(1.0 + alpha) + exact**2 - u**2
 
-    assert react(line, shape, 1.5, source) == pytest.approx(np.cos(1.5) * shape, abs=2e-7)
+    assert line.react(shape, 1.5, source) == pytest.approx(np.cos(1.5) * shape, abs=2e-7)
 
 
 def test_decay_multiplies_by_its_factor():
     line = Interval(alpha=1.6, particles=100)
     start = np.cos(0.5 * np.pi * line.x) ** 2
-    decayed = react(line, start, 0.7, lambda x, t, u: -0.8 * u, tolerance=1e-10)
+    decayed = line.react(start, 0.7, lambda x, t, u: -0.8 * u, tolerance=1e-10)
     assert decayed == pytest.approx(np.exp(-0.56) * line.evolve(start, 0.7), rel=1e-7, abs=1e-9)
 
 
 def test_a_constant_follows_the_logistic_law_where_nothing_leaves():
     line = Interval(alpha=1.4, particles=60, exterior="reflecting")
-    u = react(line, 0.1, 3.0, lambda x, t, u: u * (1.0 - u), tolerance=1e-10)
+    u = line.react(0.1, 3.0, lambda x, t, u: u * (1.0 - u), tolerance=1e-10)
     assert u == pytest.approx(0.1 * np.exp(3.0) / (0.9 + 0.1 * np.exp(3.0)), rel=1e-8)
 
 
 def test_a_source_that_does_not_depend_on_u_is_that_of_evolve():
     line = Interval(alpha=1.5, particles=100, exterior="given", ends=(0.0, 3.0))
-    ours = react(line, 0.2, 0.5, lambda x, t, u: np.sin(3 * t) * x, outside=0.2, tolerance=1e-10)
+    ours = line.react(0.2, 0.5, lambda x, t, u: np.sin(3 * t) * x, outside=0.2, tolerance=1e-10)
     exact = line.evolve(0.2, 0.5, source=lambda x, t: np.sin(3 * t) * x, outside=0.2)
     assert ours == pytest.approx(exact, rel=1e-7)
 
@@ -48,18 +47,17 @@ def test_a_solution_that_becomes_infinite_says_when():
     """u' = u^2 from 1/2 where nothing leaves: at t = 2."""
     line = Interval(alpha=1.5, particles=40, exterior="reflecting")
     with pytest.raises(NonFiniteSolution, match=r"stops at t = (1\.99|2)"):
-        react(line, 0.5, 3.0, lambda x, t, u: u**2, tolerance=1e-6)
+        line.react(0.5, 3.0, lambda x, t, u: u**2, tolerance=1e-6)
 
 
 def test_what_is_refused():
     line = Interval(alpha=1.5, particles=20)
     for field, call in {
-        "line": lambda: react(None, 1.0, 1.0, lambda x, t, u: u),
-        "source": lambda: react(line, 1.0, 1.0, 3.0),
-        "time": lambda: react(line, 1.0, -1.0, lambda x, t, u: u),
-        "outside": lambda: react(line, 1.0, 1.0, lambda x, t, u: u, outside=1.0),
+        "source": lambda: line.react(1.0, 1.0, 3.0),
+        "time": lambda: line.react(1.0, -1.0, lambda x, t, u: u),
+        "outside": lambda: line.react(1.0, 1.0, lambda x, t, u: u, outside=1.0),
     }.items():
         with pytest.raises(InvalidInput, match=f"^{field} = "):
             call()
     with pytest.raises(InvalidInput, match=r"^source = "):
-        react(line, 1.0, 1.0, lambda x, t, u: u[:3])
+        line.react(1.0, 1.0, lambda x, t, u: u[:3])

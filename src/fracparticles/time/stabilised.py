@@ -16,8 +16,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from fracparticles.problems.steps import Absolute, Rate, absolute, blown_up, norm
 from fracparticles.time.rkc import ChebyshevStep
+from fracparticles.time.steps import Absolute, Rate, absolute, blown_up, norm
 
 __all__ = ["StabilisedStep", "spectral_radius"]
 

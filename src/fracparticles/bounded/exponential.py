@@ -1,0 +1,167 @@
+r"""Diffusion in its modes, and all else beside it, by an exponential integrator: y' = -lambda y + N(y, t).
+
+Krogstad's scheme of order 4 (J. Comput. Phys. 203 (2005) 72) has the coefficients
+
+    phi_k(-z) = int_0^1 e^(-z r) (1 - r)^(k-1) / (k-1)! dr,   k = 1, 2, 3,   z = lambda h:
+
+stiff rates cost nothing, and what N does not say is exact. Each step is compared with two of half its length, which
+are kept.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.special import gammainc
+
+from fracparticles.arguments import FloatArray
+from fracparticles.errors import NonFiniteSolution
+
+__all__ = ["ExponentialSteps", "Modes", "moments_of_decay"]
+
+Rest = Callable[[float, FloatArray], FloatArray]
+"""N(t, u), between fields."""
+
+_FIRST = 1e-3  # of the time: the first step
+_SHORTEST = 1e-10
+_MOST = 20_000  # steps
+_SAFETY, _SHRINK, _GROW = 0.9, 0.2, 3.0
+_ORDER = 3.0  # of the difference, where N does not vanish at the edge
+_TERMS = 24  # of the series for z <= 1
+
+
+class Modes(NamedTuple):
+    """The rates of the modes of an operator, and the way from fields to their amplitudes and back; |y|^2 = int u^2."""
+
+    rates: FloatArray
+    into: Callable[[FloatArray], Any]
+    back: Callable[[Any], FloatArray]
+
+
+class ExponentialSteps:
+    """Steps of u' = A u + N(t, u), with A in its modes.
+
+    Parameters
+    ----------
+    modes : Modes
+        Of -A.
+    rest : callable
+        N.
+    tolerance : float
+        Of each step, relative to the norm of u.
+    size : float
+        A norm of u that is not small: below it the tolerance is relative to this one.
+
+    Attributes
+    ----------
+    accepted, rejected : int
+    largest : float
+        Zero: no eigenvalue limits the steps.
+    """
+
+    def __init__(self, modes: Modes, rest: Rest, tolerance: float, size: float = 0.0) -> None:
+        self._modes, self._rest, self._tolerance = modes, rest, tolerance
+        self._least = max(size, 1e-300)
+        self.accepted = self.rejected = 0
+        self.largest = 0.0
+        self._h: float | None = None
+
+    def advance(self, u: FloatArray, span: float, start: float = 0.0) -> FloatArray:
+        """Return u after the time `span`.
+
+        Raises
+        ------
+        NonFiniteSolution
+            If u becomes infinite, or the steps too short or too many; says when.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._modes.back(self._advanced(self._modes.into(u), span, start))
+
+    def _advanced(self, y: Any, span: float, start: float) -> Any:
+        t, h = 0.0, self._h or _FIRST * span
+        for _ in range(_MOST):
+            h = min(h, span - t)
+            whole = _Step(self._modes.rates, h).advance(y, start + t, self._slope)
+            half = _Step(self._modes.rates, 0.5 * h)
+            middle = half.advance(y, start + t, self._slope)
+            halves = half.advance(middle, start + t + 0.5 * h, self._slope)
+            off = _norm(halves - whole) / max(_norm(halves), self._least)
+            if off <= self._tolerance:
+                t, y = t + h, halves
+                self.accepted += 1
+                if t >= span * (1.0 - 1e-14):
+                    self._h = max(h, self._h or 0.0)
+                    return y
+                self._h = h
+            else:
+                self.rejected += 1
+            ratio = self._tolerance / off if off > 0.0 else np.inf
+            grown = float(np.clip(_SAFETY * ratio ** (1.0 / _ORDER), _SHRINK, _GROW))
+            h *= grown if np.isfinite(off) else _SHRINK
+            if h < _SHORTEST * span:
+                break
+        raise NonFiniteSolution(
+            f"the solution stops at t = {start + t:g}: its steps became too short or too many, as they do where it "
+            "becomes infinite, or where it is carried much faster than it spreads. End before, or mend the source "
+            "or the velocity."
+        )
+
+    def forget(self) -> None:
+        """Let the next step find its length anew."""
+        self._h = None
+
+    def _slope(self, y: Any, t: float) -> Any:
+        u = self._modes.back(y)
+        if not np.isfinite(u).all():
+            return np.full(y.shape, np.nan)
+        return self._modes.into(self._rest(t, u))
+
+
+class _Step:
+    """One step of Krogstad's scheme, of one length."""
+
+    def __init__(self, rates: FloatArray, h: float) -> None:
+        self._h = h
+        self._half_decay, self._decay = np.exp(-0.5 * h * rates), np.exp(-h * rates)
+        self._half = _phi(0.5 * h * rates)
+        self._whole = _phi(h * rates)
+
+    def advance(self, y: Any, t: float, slope: Callable[[Any, float], Any]) -> Any:
+        """Return y a step later."""
+        h, (half1, half2, _), (phi1, phi2, phi3) = self._h, self._half, self._whole
+        n1 = slope(y, t)
+        first = self._half_decay * y + 0.5 * h * half1 * n1
+        n2 = slope(first, t + 0.5 * h)
+        n3 = slope(first + h * half2 * (n2 - n1), t + 0.5 * h)
+        n4 = slope(self._decay * y + h * (phi1 * n1 + 2.0 * phi2 * (n3 - n1)), t + h)
+        middle = n2 + n3
+        change = phi1 * n1 + phi2 * (2.0 * middle - 3.0 * n1 - n4) + 4.0 * phi3 * (n1 - middle + n4)
+        return self._decay * y + h * change
+
+
+def _norm(y: Any) -> float:
+    return float(np.linalg.norm(y))
+
+
+def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """phi_1, phi_2 and phi_3 of -z."""
+    zero, one, two = moments_of_decay(z, 2)
+    return zero, zero - one, 0.5 * (zero - 2.0 * one + two)
+
+
+def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
+    """Return int_0^1 e^(-z r) r^m dr for m = 0, .., degree, shape (degree + 1, ..): m! P(m + 1, z) / z^(m+1)."""
+    small = np.minimum(z, 1.0)
+    large = np.maximum(z, 1.0)
+    result = []
+    for m in range(degree + 1):
+        series, term = np.zeros_like(small), np.ones_like(small)
+        for k in range(_TERMS):
+            series += term / (m + 1.0 + k)
+            term = term * (-small / (k + 1.0))
+        closed = math.factorial(m) * gammainc(m + 1.0, large) * large ** -(m + 1.0)
+        result.append(np.where(z <= 1.0, series, closed))
+    return np.array(result)

@@ -1,0 +1,131 @@
+r"""What a caller gives of a bounded domain: sources, and values outside, that may depend on time.
+
+Values g outside are taken off: u = w + v, where w has the values g outside. With the operator D A of the domain, for
+any w
+
+    v' = D A v + (D A w - w') + f,    v = 0 outside.
+
+A domain returns w and D A w for g at one time, `lifted`. Where they change, both are interpolated by Chebyshev
+polynomials of the time, whose derivative is w'.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.fft import dct
+
+from fracparticles import arguments as check
+from fracparticles.arguments import FloatArray
+from fracparticles.errors import InvalidInput, NonFiniteSolution
+
+__all__ = ["Lift", "Outside", "given_outside", "lifted_in_time", "takes"]
+
+_FIRST, _LAST = 8, 512  # degrees
+_MISSED = 1e-6  # of the greatest coefficient, at a sudden change
+_RESOLVED = 1e-11  # the last coefficients over the greatest
+
+
+def takes(f: Callable[..., Any], count: int) -> bool:
+    """Return whether a function can be called with so many arguments; one that does not say so takes any number."""
+    if isinstance(f, np.ufunc):
+        return bool(f.nin == count)
+    try:
+        inspect.signature(f).bind(*range(count))
+    except TypeError:
+        return False
+    except ValueError:  # of one written in C
+        return True
+    return True
+
+
+class Outside(NamedTuple):
+    """g(places, t) outside; `varies` if it depends on t."""
+
+    at: Callable[..., Any]
+    varies: bool
+
+
+def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
+    """Return the values of a function g of places and time, or of places alone, or of a number; None for none.
+
+    Raises
+    ------
+    InvalidInput
+        If there are none where the exterior is given, or some where it is not.
+    """
+    if (outside is None) == (exterior == "given"):
+        allowed = "values of u outside if the exterior is given, nothing otherwise"
+        raise InvalidInput("outside", outside, allowed, "Give g, or take another exterior.")
+    if outside is None:
+        return None
+    if callable(outside):
+        if takes(outside, dim + 1):
+            return Outside(outside, True)
+        return Outside(lambda *place: outside(*place[:dim]), False)
+    value = check.finite_real("outside", outside)
+    return Outside(lambda *place: np.full(np.shape(place[0]), value), False)
+
+
+class Lift(NamedTuple):
+    """w, D A w, (grad^beta w) on an interval, where it is wanted with a diffusivity that varies, and w'."""
+
+    base: FloatArray
+    load: FloatArray
+    flux: FloatArray
+    slope: FloatArray
+
+
+def lifted_in_time(
+    lifted: Callable[[float], Lift],
+    varies: bool,
+    start: float,
+    span: float,
+    sudden: Sequence[float] = (),
+) -> Callable[[float], Lift]:
+    """Return a lift as a function of the time from `start` on, by its values at some times, right at the sudden ones.
+
+    Raises
+    ------
+    NonFiniteSolution
+        If they vary too fast in time for a polynomial of degree 1024.
+    """
+    if not varies:
+        fixed = lifted(start)
+        return lambda t: fixed
+    degree = _FIRST
+    while degree <= _LAST:
+        nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(degree + 1) / degree)
+        values = np.array([lifted(start + span * node)[:3] for node in nodes[::-1]])
+        c = dct(values, type=1, axis=0) / degree
+        c[[0, -1]] *= 0.5
+        # Of w and D A w; D A w, and the flux at the ends, may be round-off of w.
+        size = np.abs(c[:, :2]).max(axis=(0, 2, *range(3, c.ndim)), keepdims=True)
+        if (np.abs(c[-2:, :2]) <= _RESOLVED * np.maximum(size, size[:, :1])).all():
+            found = _Interpolated(c, start, span)
+            most = _MISSED * float(size.max())
+            if all(np.abs(found(t).base - lifted(t).base).max() <= most for t in sudden):
+                return found
+        degree *= 2
+    raise NonFiniteSolution(
+        f"the values outside are not resolved by polynomials of degree {_LAST} of the time up to t = {start + span:g}: "
+        "they vary too fast or jump. Solve from jump to jump."
+    )
+
+
+class _Interpolated:
+    """A lift by Chebyshev coefficients of its parts, shape (degree + 1, 3, ..)."""
+
+    def __init__(self, c: FloatArray, start: float, span: float) -> None:
+        self._c, self._start, self._span = c, start, span
+        self._slope = chebyshev.chebder(c[:, 0], scl=2.0 / span)
+
+    def __call__(self, t: float) -> Lift:
+        s = min(1.0, max(-1.0, 2.0 * (t - self._start) / self._span - 1.0))
+        parts = np.asarray(chebyshev.chebval(s, self._c))
+        slope = np.asarray(chebyshev.chebval(s, self._slope))
+        return Lift(parts[0], parts[1], parts[2], slope)
