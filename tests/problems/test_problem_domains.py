@@ -276,6 +276,13 @@ def test_the_data_set_says_where_its_particles_are(kind, tmp_path):
     write(run, tmp_path / "run.nc")
 
 
+def test_a_source_that_is_faster_than_all_else_is_taken_implicitly():
+    """u' = .. - 1e6 (u - cos t): u is cos t, but where it is zero outside within a layer of d ~ 1e-4."""
+    run = solve_problem(Problem(**LINE, source="-1e6*(u - cos(t))"), lambda x: 1.0 + 0.0 * x)
+    assert run.integrator == "radau"
+    assert np.abs(run.u.values[np.abs(run.x) < 0.5] - np.cos(1.0)).max() < 1e-5
+
+
 # --- what warns, and what is refused --------------------------------------------------------------
 
 
@@ -285,6 +292,10 @@ def test_what_the_particles_do_not_resolve_warns():
     )
     with pytest.warns(AccuracyWarning, match="do not resolve the velocity"):
         solve_problem(narrow, bell)
+    steps = {"diffusivity": "where(x > 0.1, 2, 1)", "source": "1000*exp(-((x - 0.013)/0.003)**2)"}
+    for field, text in steps.items():
+        with pytest.warns(AccuracyWarning, match=f"do not resolve the {field}"):
+            solve_problem(Problem(**{**LINE, "particles": 40}, **{field: text}), bell)
     with pytest.warns(AccuracyWarning, match="do not resolve the initial data"):
         solve_problem(
             Problem(**{**LINE, "particles": 40}), lambda x: np.exp(-(((x - 0.1) / 0.004) ** 2))
