@@ -41,8 +41,9 @@ def places(run):
 # --- the interval ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
-@pytest.mark.parametrize("swing", ["", "*cos(t)"])
+@pytest.mark.parametrize(
+    ("alpha", "swing"), [(1.1, ""), (1.5, ""), (1.9, ""), (1.1, "*cos(t)"), (1.9, "*cos(t)")]
+)
 def test_the_flux_form_with_a_diffusivity_that_varies(alpha, swing):
     """u = e^-t (1 - x^2)^(alpha/2): grad^beta u = -Gamma(1 + alpha) x e^-t, of D = 1 + x / 2 (cos t)."""
     size = gamma(1.0 + alpha)
@@ -72,11 +73,11 @@ def by_jacobi(alpha, d, load, x, terms=30):
     return (1.0 - x * x) ** a * (eval_jacobi(n, a, a, x[:, None]) @ c)
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("alpha", [1.1, 1.9])
 def test_a_problem_comes_to_rest_where_its_flux_is_the_integral_of_the_source(alpha):
     """div(D grad^beta u) + 1 = 0, D = e^x: no closed form, but an oracle of thirty polynomials."""
     problem = Problem(
-        **{**LINE, "alpha": alpha, "t_final": 60.0}, diffusivity="exp(x)", source="1", rtol=1e-9
+        **{**LINE, "alpha": alpha, "t_final": 30.0}, diffusivity="exp(x)", source="1", rtol=1e-7
     )
     run = solve_problem(problem, 0.0)
     exact = by_jacobi(alpha, np.exp, lambda x: x, run.x.values)
@@ -119,7 +120,7 @@ def test_the_order_of_a_problem_is_that_of_the_particles():
     assert np.log2(errors[0] / errors[1]) == pytest.approx(8.0 - alpha, abs=1.0)
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("alpha", [1.1, 1.9])
 def test_all_at_once_with_values_given_outside(alpha):
     """u = e^-t / (1 + x^2), with D(x, t), a(x), as text: what is outside is u itself."""
     power = 1.0 + alpha
@@ -138,7 +139,7 @@ def test_all_at_once_with_values_given_outside(alpha):
 
 
 @pytest.mark.parametrize("velocity", [None, "1 - x**2"])
-@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("alpha", [1.1, 1.9])
 def test_reflecting_ends_keep_the_mass_with_all_that_varies(alpha, velocity):
     problem = Problem(
         **{**LINE, "alpha": alpha, "exterior": "reflecting"}, form="exchange",
@@ -205,7 +206,7 @@ def test_the_plane_keeps_the_mass_with_all_that_varies(kind):
     assert float(run.mass_final) == pytest.approx(float(run.mass_initial), rel=1e-12)
 
 
-@pytest.mark.parametrize("alpha", [1.2, 1.5, 1.8])
+@pytest.mark.parametrize("alpha", [1.2, 1.8])
 def test_a_rotation_of_the_disc_turns_the_solution(alpha):
     """Three of 24 angles in the time of the run, about what turned data become: an exact symmetry."""
     fields = {**DISC, "alpha": alpha, "particles": 48, "rtol": 1e-7}
@@ -215,8 +216,9 @@ def test_a_rotation_of_the_disc_turns_the_solution(alpha):
     assert np.abs(np.roll(still.u.values, 3, axis=1) - turned.u.values).max() < 1e-6
 
 
-@pytest.mark.parametrize("alpha", [1.2, 1.5, 1.8])
-@pytest.mark.parametrize("kind", ["disc", "square"])
+@pytest.mark.parametrize(
+    ("kind", "alpha"), [("disc", 1.2), ("disc", 1.8), ("square", 1.2), ("square", 1.5)]
+)
 def test_a_velocity_in_the_plane(kind, alpha):
     """u = e^-t (1 - r^2)^p, on the disc with p = alpha/2 + 1, on the square zero near its edges, p = 5."""
     p = 0.5 * alpha + 1.0 if kind == "disc" else 5.0
@@ -276,20 +278,38 @@ def test_the_data_set_says_where_its_particles_are(kind, tmp_path):
     write(run, tmp_path / "run.nc")
 
 
+def test_a_source_that_is_faster_than_all_else_is_taken_implicitly():
+    """u' = .. - 1e6 (u - cos t): u is cos t, but where it is zero outside within a layer of d ~ 1e-4."""
+    run = solve_problem(Problem(**LINE, source="-1e6*(u - cos(t))"), lambda x: 1.0 + 0.0 * x)
+    assert run.integrator == "radau"
+    assert np.abs(run.u.values[np.abs(run.x) < 0.5] - np.cos(1.0)).max() < 1e-5
+
+
 # --- what warns, and what is refused --------------------------------------------------------------
 
 
 def test_what_the_particles_do_not_resolve_warns():
     narrow = Problem(
-        **{**LINE, "particles": 40}, velocity="exp(-((x - 0.013)/0.003)**2)", diffusivity=1.0
+        **{**LINE, "particles": 40, "t_final": 0.1},
+        velocity="exp(-((x - 0.013)/0.003)**2)",
+        diffusivity=1.0,
     )
     with pytest.warns(AccuracyWarning, match="do not resolve the velocity"):
         solve_problem(narrow, bell)
+    steps = {"diffusivity": "where(x > 0.1, 2, 1)", "source": "1000*exp(-((x - 0.013)/0.003)**2)"}
+    for field, text in steps.items():
+        with pytest.warns(AccuracyWarning, match=f"do not resolve the {field}"):
+            solve_problem(
+                Problem(**{**LINE, "particles": 40, "t_final": 0.1}, **{field: text}), bell
+            )
     with pytest.warns(AccuracyWarning, match="do not resolve the initial data"):
         solve_problem(
-            Problem(**{**LINE, "particles": 40}), lambda x: np.exp(-(((x - 0.1) / 0.004) ** 2))
+            Problem(**{**LINE, "particles": 40, "t_final": 0.1}),
+            lambda x: np.exp(-(((x - 0.1) / 0.004) ** 2)),
         )
-    front = Problem(**{**LINE, "particles": 40}, diffusivity=1e-5, velocity="-20*tanh(20*x)")
+    front = Problem(
+        **{**LINE, "particles": 40, "t_final": 0.1}, diffusivity=1e-5, velocity="-20*tanh(20*x)"
+    )
     with pytest.warns(AccuracyWarning, match="do not resolve the solution"):
         solve_problem(front, bell)
 

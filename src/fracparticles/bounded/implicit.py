@@ -33,7 +33,7 @@ class ImplicitSteps:
     rest : callable
         N.
     beside : callable
-        P(t), shape (N, N): what is to be taken implicitly of the derivative of N.
+        P(t, u), shape (N, N): what is to be taken implicitly of the derivative of N.
     tolerance, size : float
         Of each step, relative to the norm of u, or to `size` where u is smaller.
 
@@ -49,7 +49,7 @@ class ImplicitSteps:
         self,
         modes: Modes,
         rest: Rest,
-        beside: Callable[[float], FloatArray],
+        beside: Callable[[float, FloatArray], FloatArray],
         tolerance: float,
         size: float,
     ) -> None:
@@ -79,7 +79,7 @@ class ImplicitSteps:
             solver = Radau(
                 rate, start, y, start + span, rtol=self._tolerance,
                 atol=self._tolerance * size / np.sqrt(y.size),
-                jac=lambda t, y: self._beside(t) - diagonal,
+                jac=lambda t, y: self._beside(t, modes.back(y)) - diagonal,
                 first_step=None if self._h is None else min(self._h, span),
             )  # fmt: skip
             for _ in range(_MOST):

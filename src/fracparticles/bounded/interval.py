@@ -47,6 +47,8 @@ __all__ = ["Interval"]
 
 _SHORTEST = 1e-9  # time times the slowest rate: before, modes matter that are not told apart
 _UNRESOLVED = 0.01  # of int |u|, what initial data may hold that the particles do not see
+_FINE = 4001  # points at which a coefficient is looked at
+_COEFFICIENT = 0.05  # of the range of a coefficient, the same
 _EACH = 8  # particles for a mode; higher ones are off by more than 0.1 per cent
 
 
@@ -235,14 +237,27 @@ class Interval(ModalDomain):
         return self._scaled(*inverse.modes(), self._half * volumes)
 
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
-        """Warn if the particles do not resolve f, unless it is a source."""
-        if name == "source":  # may be infinite at the ends
-            return
-        named = "the initial data" if name == "initial" else f"the {name}"
-        if (share := unseen_share(f, self.x, values)) > _UNRESOLVED:
-            text = (
-                f"the particles do not resolve {named}, by {share:.1g} of its integral. Take more."
-            )
+        """Warn if the particles do not resolve f.
+
+        Initial data by their integral; a source by the integral of what straight lines between the particles miss of
+        it, a coefficient by the greatest of that.
+        """
+        named, of, limit = f"the {name}", "of its range", _COEFFICIENT
+        if name == "initial":
+            named, of, limit = "the initial data", "of int |u|", _UNRESOLVED
+            share = unseen_share(f, self.x, values)
+        else:
+            fine = np.linspace(self.x[0], self.x[-1], _FINE)
+            seen = check.sampled(name, f, fine)
+            missed = np.abs(seen - np.interp(fine, self.x, values))
+            if name == "source":
+                of, limit = "of its integral", _UNRESOLVED
+                off, size = np.trapezoid(missed, fine), np.trapezoid(np.abs(seen), fine)
+            else:
+                off, size = missed.max(), max(np.ptp(seen), 1e-6 * np.abs(seen).max())
+            share = float(off / size) if size > 0.0 else 0.0
+        if share > limit:
+            text = f"the particles do not resolve {named}, by {share:.1g} {of}. Take more."
             warnings.warn(text, AccuracyWarning, stacklevel=4)
 
     def _lasting(self, time: float) -> float:

@@ -41,6 +41,8 @@ __all__ = ["DomainRates", "solve_on_domain"]
 
 _LOOKS = 33  # at a diffusivity that depends on time
 _KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
+_SMALL = 1e-8  # a difference of u over u
+_FAST = 100.0  # rates of a source times the time of the run
 _UNRESOLVED = 0.02  # of the norm of v, in modes that the particles do not tell apart
 
 
@@ -129,13 +131,25 @@ class DomainRates:
         """Return dv/dt without what is in the modes."""
         return self._forcing(t, v) + self.modes.back(self._in_modes(t, v))
 
-    def lower_in_modes(self, t: float) -> np.ndarray:
-        """Return the matrix of what is linear beside the modes, between their amplitudes, shape (N, N)."""
+    def derivative_in_modes(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return the derivative of what is beside the modes, between their amplitudes, shape (N, N)."""
+        modes = self.modes
         if not self._steady_matrix or self._matrix is None:
-            rates = self.modes.rates
-            columns = (self._in_modes(t, self.modes.back(e)) for e in np.eye(rates.size))
-            self._matrix = np.stack(list(columns), axis=1) * (rates < self._known)
-        return self._matrix
+            columns = (self._in_modes(t, modes.back(e)) for e in np.eye(modes.rates.size))
+            self._matrix = np.stack(list(columns), axis=1) * (modes.rates < self._known)
+        if self.problem.is_linear:
+            return self._matrix
+        slope = self.source_slope(t, v)
+        columns = (modes.into(slope * modes.back(e)) for e in np.eye(modes.rates.size))
+        return self._matrix + np.stack(list(columns), axis=1)
+
+    def source_slope(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return df/du at the particles, by a difference."""
+        if self._source is None or self.problem.is_linear:
+            return np.zeros(v.shape)
+        u = v + self.lift(t).base
+        small = _SMALL * max(float(np.abs(u).max()), _SMALL)
+        return np.asarray((self._source(t, u + small) - self._source(t, u)) / small)
 
     def _in_modes(self, t: float, v: np.ndarray) -> Any:
         """What is linear beside the modes, left out of those so fast that no more is known of their rates."""
@@ -207,10 +221,13 @@ def _in_modes(problem: Problem, rates: DomainRates, u0: np.ndarray, v0: np.ndarr
         size = np.full(u0.shape, problem.atol / problem.rtol)
     steps: Steps = domain.steps_with(modes, rates.beside_modes, problem.rtol, size)
     method = "exponential"
-    moves = problem.transport or "t" in problem.diffusion.depends_on
+    fastest = problem.span * float(np.abs(rates.source_slope(problem.t_initial, v0)).max())
+    moves = problem.transport or "t" in problem.diffusion.depends_on or fastest > _FAST
     if moves and problem.domain == "interval":
         least = float(np.linalg.norm(modes.into(size)))
-        steps = ImplicitSteps(modes, rates.beside_modes, rates.lower_in_modes, problem.rtol, least)
+        steps = ImplicitSteps(
+            modes, rates.beside_modes, rates.derivative_in_modes, problem.rtol, least
+        )
         method = "radau"
     outputs = advanced(problem, steps, v0, sudden_changes(problem, u0))
     return Integration(
@@ -231,14 +248,23 @@ def _outside(problem: Problem) -> Outside | None:
 
 
 def _look_at_coefficients(problem: Problem) -> None:
-    """Warn if the particles do not resolve what varies in space, at the start."""
-    for one in (problem.diffusion, *problem.transport):
-        if one.depends_on - {"t"}:
-            level = float(np.abs(one({**problem.places, "t": np.array(problem.t_initial)})).max())
+    """Warn if the particles do not resolve what varies in space, in three moments."""
+    every = [problem.diffusion, *problem.transport]
+    if problem.reaction is not None and problem.is_linear:
+        every.append(problem.reaction)
+    for one in every:
+        if not one.depends_on - {"t"}:
+            continue
+        for share in (0.0, 0.5, 1.0) if "t" in one.depends_on else (0.0,):
+            now = {"t": np.array(problem.t_initial + share * problem.span), "u": np.array(0.0)}
+            level = float(np.abs(one({**problem.places, **now})).max())
 
-            def at(*place: np.ndarray, one: Any = one, level: float = level) -> np.ndarray:
-                named = dict(zip(one.variables, place, strict=False))
-                return one({**named, "t": np.array(problem.t_initial)}) + level
+            def at(
+                *place: np.ndarray, one: Any = one, now: Any = now, level: float = level
+            ) -> np.ndarray:
+                # What is compared is int |..|, whose kinks are no matter.
+                lifted = 0.0 if one.field == "source" else level
+                return one({**dict(zip(("x", "y"), place, strict=False)), **now}) + lifted
 
             problem.bounded_domain.seen(one.field, at)
 
