@@ -210,7 +210,9 @@ def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str
     waves: dict[tuple[int, bool], list[str]] = {}
     for name, scene in scenes.items():
         waves.setdefault((_depth(name, scenes), bool(scene.all_benchmarks)), []).append(name)
-    parts = [names[k::_SMOKE_JOBS] for _, names in sorted(waves.items()) for k in range(_SMOKE_JOBS)]
+    parts = [
+        names[k::_SMOKE_JOBS] for _, names in sorted(waves.items()) for k in range(_SMOKE_JOBS)
+    ]
     return {f"part_{k}": names for k, names in enumerate(filter(None, parts), start=1)}
 
 
