@@ -1,14 +1,17 @@
-"""What a call of the workflow ends with in the terminal: what came of the claims, what took longest, where to look."""
+"""What a call of the workflow says in the terminal.
+
+It begins with what is there already, and ends with what came of the claims, what took longest, where to look.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from fracstudy.ledger_text import read_ledger, summary_line
 
-__all__ = ["slowest", "summary"]
+__all__ = ["already", "slowest", "summary"]
 
 
 def slowest(metadata: Path, since: float, count: int = 5) -> list[tuple[float, str]]:
@@ -44,3 +47,20 @@ def summary(claims: Path, pages: Iterable[Path], jobs: Iterable[tuple[float, str
     there = ", ".join(str(page) for page in pages if page.exists())
     lines += [f"Where to look: {there}."] if there else []
     return "\n".join(lines)
+
+
+def already(where: Path, kinds: Mapping[str, Iterable[Iterable[Path]]]) -> str:
+    """Return what a folder of results holds before a call, one count for each kind of thing.
+
+    Parameters
+    ----------
+    where : Path
+        The folder.
+    kinds : mapping
+        For each kind the things of it, each as the files that it consists of.
+    """
+    counts = []
+    for kind, things in kinds.items():
+        there = [all(file.exists() for file in files) for files in things]
+        counts.append(f"{sum(there)} of {len(there)} {kind}")
+    return f"Already in {where}: {', '.join(counts)}; what is up to date is not made again."

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from fracstudy.ledger_text import read_ledger, summary_line
-from fracstudy.summary import slowest, summary
+from fracstudy.summary import already, slowest, summary
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,3 +28,14 @@ def test_the_summary_says_what_came_of_it_and_where_to_look(tmp_path):
     assert "overlap 9 s" in text
     assert "gone" not in text
     assert summary(tmp_path / "gone", [], []) == ""
+
+
+def test_what_is_there_already_is_counted_whole(tmp_path):
+    for name in ("a.csv", "a.svg", "b.csv", "run.nc"):
+        (tmp_path / name).touch()
+    scenes = [[tmp_path / f"{name}.{end}" for end in ("csv", "svg")] for name in "abc"]
+    said = already(tmp_path, {"runs": [[tmp_path / "run.nc"]], "scenes": scenes})
+    assert said == (
+        f"Already in {tmp_path}: 1 of 1 runs, 1 of 3 scenes; what is up to date is not made again."
+    )
+    assert "0 of 0 runs" in already(tmp_path, {"runs": []})

@@ -23,7 +23,7 @@ from fracstudy.criteria import CONVENTIONS
 from fracstudy.make import made
 from fracstudy.report import pages
 from fracstudy.sources import sources_of
-from fracstudy.summary import slowest, summary
+from fracstudy.summary import already, slowest, summary
 
 try:
     STUDY, SCENES = read_config(config)
@@ -70,6 +70,9 @@ def claim_folder():
 
 onstart:
     claim_folder()
+    runs = [[RESULTS / "runs" / case.path] for cases in BATCHES.values() for case in cases]
+    scenes = [made(scene, RESULTS) for scene in SCENES.values()]
+    print(already(RESULTS, {"runs": runs, "scenes": scenes}))
 
 
 onsuccess:

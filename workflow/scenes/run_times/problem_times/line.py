@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -22,8 +23,15 @@ from scenes.run_times.problem_times.line_peers import (
 __all__ = ["drawn_back", "variable_diffusivity"]
 
 Answer = tuple[int, tuple[np.ndarray, np.ndarray]]
+Function = Callable[[np.ndarray], np.ndarray]
+Rates = Callable[..., tuple[np.ndarray, Rate]]
 
 _OURS = {f"{form} {order}": (form, order) for form in ("FPSE", "DD") for order in (4, 12)}
+_PEERS: dict[str, Rates] = {
+    "Fourier, circle": pseudo_spectral,
+    "rational functions": rational,
+    "differences": differences,
+}
 
 
 class _Source:
@@ -52,33 +60,14 @@ def variable_diffusivity(alpha: float) -> Contest:
     def diffusivity(x: np.ndarray) -> np.ndarray:
         return 1.0 + 0.5 * bell(x)
 
-    def ours(
-        form: str, order: int, half_width: float, spacing: float, rtol: float, overlap: float = 2.0
-    ) -> Answer:
-        problem = Problem(
-            alpha=alpha, form=form, order=order, half_width=half_width, spacing=spacing, rtol=rtol, overlap=overlap,
-            diffusivity=diffusivity, source=lambda x, t: source(x, t), t_final=1.0,
-        )  # fmt: skip
-        run = solve_problem(problem, bell)
-        return run.x.size, (run.x.values, run.u.values)
-
-    def peer(
-        rates: Callable[..., tuple[np.ndarray, Rate]],
-        half_width: float,
-        spacing: float,
-        rtol: float,
-    ) -> Answer:
-        x, rate = rates(alpha, half_width, spacing, diffusivity, None)
-        return _run(x, lambda t, u: rate(t, u) + source(x, t), bell, (0.0, 1.0), rtol)
-
-    return Contest(
-        greatest_error(lambda x: np.exp(-1.0) * bell(x)),
-        {
-            **{name: Contender(OURS, partial(ours, *which)) for name, which in _OURS.items()},
-            "Fourier, circle": Contender(PEER, partial(peer, pseudo_spectral)),
-            "rational functions": Contender(PEER, partial(peer, rational)),
-            "differences": Contender(PEER, partial(peer, differences)),
-        },
+    fields: dict[str, Any] = {
+        "alpha": alpha,
+        "diffusivity": diffusivity,
+        "source": lambda x, t: source(x, t),
+        "t_final": 1.0,
+    }
+    return _contest(
+        fields, bell, lambda x: np.exp(-1.0) * bell(x), (diffusivity, None), _PEERS, source
     )
 
 
@@ -88,48 +77,49 @@ def drawn_back(alpha: float) -> Contest:
     It keeps its shape: u = green(x, s), s(t) = 1 / alpha + (1 - 1 / alpha) exp(-alpha (t - 1)).
     """
     last = 1.0 / alpha + (1.0 - 1.0 / alpha) * np.exp(-alpha)
+    fields = {"alpha": alpha, "velocity": "-x", "far_terms": 3, "t_initial": 1.0, "t_final": 2.0}
+    peers = _PEERS | {"differences, upwind": partial(differences, upwind=True)}
+    return _contest(
+        fields,
+        lambda x: np.asarray(green(x, 1.0, alpha)),
+        lambda x: np.asarray(green(x, last, alpha)),
+        (None, np.negative),
+        peers,
+    )
 
-    def start(x: np.ndarray) -> np.ndarray:
-        return np.asarray(green(x, 1.0, alpha))
+
+def _contest(
+    fields: Mapping[str, Any],
+    start: Function,
+    end: Function,
+    coefficients: tuple[Function | None, Function | None],
+    peers: Mapping[str, Rates],
+    source: Callable[[np.ndarray, float], np.ndarray] | None = None,
+) -> Contest:
+    """Set forms of ours, with the fields of the problem, against peers, which take diffusivity, velocity and source."""
 
     def ours(
         form: str, order: int, half_width: float, spacing: float, rtol: float, overlap: float = 2.0
     ) -> Answer:
         problem = Problem(
-            alpha=alpha, form=form, order=order, half_width=half_width, spacing=spacing, rtol=rtol, overlap=overlap,
-            velocity="-x", far_terms=3, t_initial=1.0, t_final=2.0,
+            form=form, order=order, half_width=half_width, spacing=spacing, rtol=rtol, overlap=overlap, **fields
         )  # fmt: skip
         run = solve_problem(problem, start)
         return run.x.size, (run.x.values, run.u.values)
 
     def peer(
-        rates: Callable[..., tuple[np.ndarray, Rate]],
+        rates: Rates,
         half_width: float,
         spacing: float,
         rtol: float,
     ) -> Answer:
-        x, rate = rates(alpha, half_width, spacing, None, np.negative)
-        return _run(x, rate, start, (1.0, 2.0), rtol)
+        x, rate = rates(fields["alpha"], half_width, spacing, *coefficients)
+        full = rate if source is None else lambda t, u: rate(t, u) + source(x, t)
+        times = fields.get("t_initial", 0.0), fields["t_final"]
+        return x.size, (x, integrated(full, start(x), times, rtol))
 
     return Contest(
-        greatest_error(lambda x: np.asarray(green(x, last, alpha))),
-        {
-            **{name: Contender(OURS, partial(ours, *which)) for name, which in _OURS.items()},
-            "Fourier, circle": Contender(PEER, partial(peer, pseudo_spectral)),
-            "rational functions": Contender(PEER, partial(peer, rational)),
-            "differences": Contender(PEER, partial(peer, differences)),
-            "differences, upwind": Contender(
-                PEER, partial(peer, partial(differences, upwind=True))
-            ),
-        },
+        greatest_error(end),
+        {name: Contender(OURS, partial(ours, *which)) for name, which in _OURS.items()}
+        | {name: Contender(PEER, partial(peer, rates)) for name, rates in peers.items()},
     )
-
-
-def _run(
-    x: np.ndarray,
-    rate: Rate,
-    start: Callable[[np.ndarray], np.ndarray],
-    times: tuple[float, float],
-    rtol: float,
-) -> Answer:
-    return x.size, (x, integrated(rate, start(x), times, rtol))
