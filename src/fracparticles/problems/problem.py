@@ -8,18 +8,17 @@ alpha = 1 + beta, in one and two dimensions.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.order import with_any_order
 from fracparticles.run.case import Case
-from fracparticles.run.complaints import allowed, first_complaint
+from fracparticles.run.checked import Checked
 from fracparticles.run.parameters import OVERLAPS, SIZES
 from fracparticles.run.times import with_times
 
@@ -35,7 +34,7 @@ _LOOKS = 33  # between t_initial and t_final, at coefficients that depend on tim
 _FUNCTION = "a function, which the file does not hold"  # in JSON
 
 
-class Problem(BaseModel):
+class Problem(Checked):
     """One problem; the fields are the parameters, keyword only.
 
     A text is an expression, see `expressions`: "1 + 0.5*sin(x)*exp(-t)". A function takes arrays x, t on the line and
@@ -47,8 +46,6 @@ class Problem(BaseModel):
     InvalidInput
         With the field, the value, what is allowed and what to do; of a coefficient with the place where it is wrong.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     beta: Any = Field(
         description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive); a number, or for a variable order "
@@ -116,21 +113,13 @@ class Problem(BaseModel):
         description="Time integrator. By Krylov spaces if all is linear and constant in time; stabilised; of order 8.",
     )
 
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise first_complaint(error, type(self)) from None
+    def __init__(self, **data: Any) -> None:  # alpha is no field, for those who check types
+        super().__init__(**data)
 
     @model_validator(mode="before")
     @classmethod
     def _plain(cls, data: dict[str, Any]) -> dict[str, Any]:
-        for name in ("dim", "order", "far_terms"):
-            if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
-                raise InvalidInput(
-                    name, data[name], allowed(cls.model_fields[name]), "Give such a value."
-                )
-        plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+        plain = cls._plain_values(data)
         if isinstance(plain.get("velocity"), list | np.ndarray):
             plain["velocity"] = tuple(plain["velocity"])
         return with_times(with_any_order(plain))
@@ -257,10 +246,6 @@ class Problem(BaseModel):
             scheme=scheme, beta=beta, integrator="exponential", diffusivity=d or 1.0, **fields,
         )  # fmt: skip
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Problem:
-        """Return the problem with other values of some fields, checked as a new one; raises as that."""
-        return type(self)(**{**self.model_dump(exclude_unset=True), **(update or {})})
-
     def to_json(self) -> str:
         """Return the problem as one JSON object; `from_json` reads it, unless a coefficient is a function."""
         return json.dumps(
@@ -276,14 +261,7 @@ class Problem(BaseModel):
         InvalidInput
             If the text is not such an object, its problem is not valid, or a coefficient was a function.
         """
-        try:
-            fields = json.loads(text)
-        except (TypeError, ValueError, RecursionError):
-            fields = None
-        if not isinstance(fields, dict):
-            raise InvalidInput(
-                "problem", text, "a JSON object", "Give what Problem.to_json returns."
-            )
+        fields = cls._read(text)
         for name, value in fields.items():
             if _FUNCTION in (value if isinstance(value, list) else [value]):
                 remedy = "Make the problem again, with the function."
