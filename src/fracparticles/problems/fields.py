@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from fracparticles.run.checked import Checked
 from fracparticles.run.parameters import OVERLAPS, SIZES
 
 __all__ = ["ProblemFields"]
@@ -13,10 +14,8 @@ __all__ = ["ProblemFields"]
 _COEFFICIENT = "A number, an expression in x, y and t, or a function of them."
 
 
-class ProblemFields(BaseModel):
+class ProblemFields(Checked):
     """What a problem is given as."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     beta: Any = Field(
         description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive); a number, or for a variable order "

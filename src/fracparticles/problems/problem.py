@@ -8,12 +8,11 @@ alpha = 1 + beta, in one and two dimensions: on the whole space, or on an interv
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError, model_validator
+from pydantic import model_validator
 
 from fracparticles.bounded.domain import Domain
 from fracparticles.errors import InvalidInput
@@ -28,7 +27,6 @@ from fracparticles.problems.domains import (
 )
 from fracparticles.problems.order import with_any_order
 from fracparticles.run.case import Case
-from fracparticles.run.complaints import allowed, first_complaint
 from fracparticles.run.parameters import SIZES
 from fracparticles.run.times import with_times
 
@@ -55,21 +53,13 @@ class Problem(WithCoefficients):
         With the field, the value, what is allowed and what to do; of a coefficient with the place where it is wrong.
     """
 
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise first_complaint(error, type(self)) from None
+    def __init__(self, **data: Any) -> None:  # alpha is no field, for those who check types
+        super().__init__(**data)
 
     @model_validator(mode="before")
     @classmethod
     def _plain(cls, data: dict[str, Any]) -> dict[str, Any]:
-        for name in ("dim", "order", "far_terms", "particles"):
-            if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
-                raise InvalidInput(
-                    name, data[name], allowed(cls.model_fields[name]), "Give such a value."
-                )
-        plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+        plain = cls._plain_values(data)
         if isinstance(plain.get("velocity"), list | np.ndarray):
             plain["velocity"] = tuple(plain["velocity"])
         return with_times(with_any_order(with_dim(plain)))
@@ -168,10 +158,6 @@ class Problem(WithCoefficients):
             scheme=scheme, beta=beta, integrator="exponential", diffusivity=d or 1.0, **fields,
         )  # fmt: skip
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Problem:
-        """Return the problem with other values of some fields, checked as a new one; raises as that."""
-        return type(self)(**{**self.model_dump(exclude_unset=True), **(update or {})})
-
     def to_json(self) -> str:
         """Return the problem as one JSON object; `from_json` reads it, unless a coefficient is a function."""
         absent = set(OF_A_LATTICE) if self.is_bounded else set()
@@ -187,14 +173,7 @@ class Problem(WithCoefficients):
         InvalidInput
             If the text is not such an object, its problem is not valid, or a coefficient was a function.
         """
-        try:
-            fields = json.loads(text)
-        except (TypeError, ValueError, RecursionError):
-            fields = None
-        if not isinstance(fields, dict):
-            raise InvalidInput(
-                "problem", text, "a JSON object", "Give what Problem.to_json returns."
-            )
+        fields = cls._read(text)
         for name, value in fields.items():
             if _FUNCTION in (value if isinstance(value, list) else [value]):
                 remedy = "Make the problem again, with the function."

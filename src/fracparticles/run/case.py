@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from hashlib import sha256
 from typing import Any
 from urllib.parse import quote
 
-import numpy as np
-from pydantic import ValidationError, model_validator
+from pydantic import model_validator
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.checks import check
-from fracparticles.run.complaints import allowed, first_complaint
 from fracparticles.run.fractional_order import with_beta
 from fracparticles.run.parameters import FUNDAMENTAL, Parameters, fastest_evaluation
 from fracparticles.run.times import parts, with_times
@@ -38,19 +35,13 @@ class Case(Parameters):
         With the field, the value, what is allowed and what to do.
     """
 
-    def __init__(self, **data: Any) -> None:
-        try:
-            super().__init__(**data)
-        except ValidationError as error:
-            raise first_complaint(error, type(self)) from None
+    def __init__(self, **data: Any) -> None:  # alpha is no field, for those who check types
+        super().__init__(**data)
 
     @model_validator(mode="before")
     @classmethod
     def _plain(cls, data: dict[str, Any]) -> dict[str, Any]:
-        for name, field in cls.model_fields.items():
-            if isinstance(data.get(name), bool | np.bool_):  # True == 1, which Literal takes
-                raise InvalidInput(name, data[name], allowed(field), "Give such a value.")
-        plain = {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+        plain = cls._plain_values(data)
         if isinstance(plain.get("evaluation"), str) and plain["evaluation"] == "auto":
             plain["evaluation"] = fastest_evaluation(plain)
         return with_times(with_beta(plain))
@@ -61,13 +52,6 @@ class Case(Parameters):
         if self.times is not None:
             parts(self)  # each of them is checked
         return self
-
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Case:
-        """Return the case with other values of some fields, checked as a new one; raises as that.
-
-        Pydantic's own copies what was cached, too: the old time step of another dt.
-        """
-        return type(self)(**{**self.model_dump(exclude_unset=True), **(update or {})})
 
     def refuse_point_mass(self) -> None:
         """Refuse to start from the fundamental solution at t = 0, where it is a point mass.
@@ -111,13 +95,7 @@ class Case(Parameters):
         InvalidInput
             If the text is not such an object, or its case is not valid.
         """
-        try:
-            fields = json.loads(text)
-        except (TypeError, ValueError, RecursionError):
-            fields = None
-        if not isinstance(fields, dict):
-            raise InvalidInput("case", text, "a JSON object", "Give what Case.to_json returns.")
-        return cls(**fields)
+        return cls(**cls._read(text))
 
     @property
     def path(self) -> str:

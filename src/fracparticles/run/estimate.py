@@ -29,8 +29,9 @@ from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidI
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.initial import Initial, resolved
 from fracparticles.run.measured import Measured
+from fracparticles.run.prepared import scheme_amplification
 from fracparticles.run.solution import Solution
-from fracparticles.run.solver import compute, scheme_amplification
+from fracparticles.run.solver import compute
 from fracparticles.special.stable import green
 from fracparticles.time.whole_space import WholeSpace
 
@@ -128,14 +129,16 @@ def estimate_error(
     return estimate_of(compute(case, source), source, within)
 
 
-def estimate_of(solution: Solution, source: Initial, within: float | None = None) -> ErrorEstimate:
-    """Return the estimate for a run that is done, from these initial data."""
+def estimate_of(
+    solution: Solution, source: Initial, within: float | None = None, most: int = _MOST_POINTS
+) -> ErrorEstimate:
+    """Return the estimate for a run that is done, from these initial data, by so many points at most."""
     case, data = solution.case, _function(solution, source)
     if within is None:
         standard = case.is_graded or (isinstance(source, str) and source == FUNDAMENTAL)
         within = case.error_radius if standard else case.reach
     distance = _Distance(case, within)
-    truth = _Truth(case, data, distance)
+    truth = _Truth(case, data, distance, most)
     known, change = truth.beside(solution.u)
     total = distance(solution.u, known)
     time = domain = 0.0
@@ -201,7 +204,7 @@ class _Truth:
     the half-width w h, what stands for the truth is R(1, w) + R(f, w0) - R(1, w0).
     """
 
-    def __init__(self, case: Case, data: Data, distance: _Distance) -> None:
+    def __init__(self, case: Case, data: Data, distance: _Distance, most: int) -> None:
         self._case, self._data, self._distance = case, data, distance
         spread = (case.diffusivity * case.span) ** (1.0 / case.alpha)
         half = max(0.0 if case.is_graded else case.reach, 2.0 * distance.radius, 4.0 * spread)
@@ -209,7 +212,7 @@ class _Truth:
         eighth = np.ceil(_ROOM[case.dim] * half / self._h / _EIGHTHS)
         self._least = _EIGHTHS * int(eighth)  # w0
         self._fine, self._wide = 2, 2 * self._least
-        self._most = max(_MOST_POINTS, 8 * case.particles)
+        self._most = max(most, 8 * case.particles)
         self._tail = _tail(data, case)
         self._reached = lru_cache(maxsize=4)(self._at_particles)
 

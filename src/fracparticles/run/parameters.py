@@ -7,12 +7,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from fracparticles.errors import spelled
 from fracparticles.graded.particles import graded_particles
 from fracparticles.moving.dvm import largest_gap
 from fracparticles.moving.lagrangian import REMESHING, THRESHOLD
+from fracparticles.run.checked import Checked
 from fracparticles.run.times import legs, steps_in
 from fracparticles.schemes import ALL_SCHEMES, Scheme, Setting
 from fracparticles.schemes.stability import stability_limit, symbol_range
@@ -58,15 +59,13 @@ def fastest_evaluation(fields: Mapping[str, Any]) -> str | None:
     return "convolution" if allowed else None
 
 
-class Parameters(BaseModel):
+class Parameters(Checked):
     """What a `Case` holds; see there. Not checked here against each other.
 
     The `description` of a field is written once. (pydantic would take docstrings, too, but reads the source for them in
     each process, 40 ms.) Its first sentence names the field: it is the label in a data set. All of it is the help of
     the flag, and stands in the table of the configuration.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     scheme: SchemeName = Field(description=f"Particle scheme. The paper rejects {_REJECTED}.")
     order: Literal[2, 4, 6, 8, 10, 12] = Field(

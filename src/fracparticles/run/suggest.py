@@ -18,8 +18,8 @@ import numpy as np
 from fracparticles.arguments import dimension, positive_real, real_between
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.run.estimate import estimate_error
-from fracparticles.run.initial import Initial
+from fracparticles.run.estimate import estimate_of
+from fracparticles.run.initial import Initial, resolved
 from fracparticles.run.measured import Measured
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
@@ -42,7 +42,9 @@ _FAR = 10.0  # from the error that is asked for: two steps at once
 _BACK = 1.2  # by which spacing and half-width are taken back at a time
 _SAFE = 0.7  # of the error that is asked for
 _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
+_LOWER, _MOST_IN_VAIN = 0.9, 5  # trials one after the other that do not lower the error
 _HELD = 0.97  # of the mass of a point, where no radius is given
+_POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate: many are made
 _SMALLEST = 1e-11
 _START = 6.0  # intervals within the radius of interest,
 _FEWEST = 8.0  # and on either side of the lattice
@@ -75,7 +77,8 @@ def suggest(
         As for `Case`. Of several times the first and the last must meet the error: the others lie between.
     within : float, optional
         The radius of interest. Left out: that which holds nine tenths of the data, and (D T)^(1/alpha) twice more; and
-        then the lattice holds nearly all of the solution.
+        then the lattice holds nearly all of the solution,
+        and the error is met on all of it.
 
     Raises
     ------
@@ -85,7 +88,7 @@ def suggest(
     Warns
     -----
     AccuracyWarning
-        If measured data leave more than the error open.
+        If measured data leave more than the error open; if the error is not met on all of the lattice.
 
     Examples
     --------
@@ -125,7 +128,10 @@ def suggest(
     for way in _WAYS:
         case = _search(way | fields | more, initial, within, least, spread, error, reached)
         if case is not None:
-            return case if least == 0.0 else _widened(case, initial, way | fields | more, spread)
+            if least == 0.0:
+                return case
+            whole = _met_everywhere(case, initial, way | fields | more, spread, error)
+            return _widened(whole, initial, way | fields | more, spread)
     best = f"an error that can be reached: the best found is {min(reached):.2g}"
     raise InvalidInput("error", error, best, "Ask for less, or for less of the space.")
 
@@ -143,6 +149,7 @@ def _search(
     half = max(1.2 * within, 1.5 * spread, least)
     h = min(within / _START, half / _FEWEST)
     best: Case | None = None
+    lowest, in_vain = np.inf, 0
     for _ in range(_MOST_TRIALS):
         trial = _trial(fields, h, half, spread)
         if isinstance(trial, InvalidInput):
@@ -157,6 +164,10 @@ def _search(
             continue
         total, spacing, domain = _errors(trial, initial, within)
         reached.append(total)
+        in_vain = in_vain + 1 if total > _LOWER * lowest and np.isfinite(total) else 0
+        lowest = min(lowest, total)
+        if in_vain > _MOST_IN_VAIN:
+            return None
         if total <= _SAFE * error:
             best = trial
             break
@@ -195,6 +206,35 @@ def _widened(case: Case, initial: Initial, fields: dict[str, Any], spread: float
     return case
 
 
+def _met_everywhere(
+    case: Case, initial: Initial, fields: dict[str, Any], spread: float, error: float
+) -> Case:
+    """Return the case on a lattice on all of which the error is met: what is far out may be finer than the rest.
+
+    Warns
+    -----
+    AccuracyWarning
+        If there is none within reach.
+    """
+    h, half = case.spacing, case.reach
+    for _ in range(_MOST_WIDENINGS):
+        total, spacing, domain = _errors(case, initial, None)
+        if total <= error:
+            return case
+        h, half = (h, _WIDER * half) if domain > spacing else (_FINER * h, half)
+        trial = _trial(fields, h, half, spread)
+        if isinstance(trial, InvalidInput):
+            break
+        case = trial
+    warnings.warn(
+        f"over the whole lattice the error is {total:.2g}, more than {error:.2g}: the data hold something far out that "
+        "is finer than the rest. Give within, or a case of your own.",
+        AccuracyWarning,
+        stacklevel=3,
+    )
+    return case
+
+
 def _trial(fields: dict[str, Any], h: float, half: float, spread: float) -> Case | InvalidInput:
     """Return the case on this lattice, or why there is none."""
     own = (
@@ -212,7 +252,7 @@ def _alpha(fields: dict[str, Any]) -> float:
     return float(fields["alpha"] if "alpha" in fields else 1.0 + fields["beta"])
 
 
-def _errors(case: Case, initial: Initial, within: float) -> tuple[float, float, float]:
+def _errors(case: Case, initial: Initial, within: float | None) -> tuple[float, float, float]:
     """Return the error and what spacing and half-width leave of it, at the worst of the first and the last time."""
     times = {case.t_final} if case.times is None else {case.times[0], case.times[-1]}
     found = []
@@ -220,7 +260,9 @@ def _errors(case: Case, initial: Initial, within: float) -> tuple[float, float, 
         warnings.simplefilter("ignore", FracparticlesWarning)
         for time in times:
             try:
-                one = estimate_error(case.until(time), initial, within=within)
+                source = resolved(case, initial)
+                run = compute(case.until(time), source)
+                one = estimate_of(run, source, within, _POINTS[case.dim])
             except InvalidInput as refused:
                 if refused.field != "initial":
                     raise

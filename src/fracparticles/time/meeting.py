@@ -87,4 +87,5 @@ def _least_squares(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Return the matrix from values to amplitudes of the columns, the misfits times a weight least."""
     weighted = columns * weight
     scale = np.abs(weighted).max(axis=0, initial=0.0)
+    scale[scale == 0.0] = 1.0  # a term that vanishes at all of the points, and stays out
     return np.asarray(np.linalg.pinv(weighted / scale) / scale[:, None] * weight.T)

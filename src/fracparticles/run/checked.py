@@ -1,0 +1,62 @@
+"""A model of pydantic that is refused in one line of ours: what a `Case` and a `Problem` have in common."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, Self
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from fracparticles.errors import InvalidInput
+from fracparticles.run.complaints import allowed, first_complaint
+
+__all__ = ["Checked"]
+
+
+class Checked(BaseModel):
+    """Fields that are checked when it is made, keyword only, and do not change.
+
+    Raises
+    ------
+    InvalidInput
+        With the field, the value, what is allowed and what to do.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise first_complaint(error, type(self)) from None
+
+    @classmethod
+    def _plain_values(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """Return the fields with NumPy scalars taken for what they hold; True is no number."""
+        for name, field in cls.model_fields.items():
+            truth = isinstance(data.get(name), bool | np.bool_)  # True == 1, which Literal takes
+            if truth and field.annotation is not Any:
+                raise InvalidInput(name, data[name], allowed(field), "Give such a value.")
+        return {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return it with other values of some fields, checked as a new one; raises as that.
+
+        Pydantic's own copies what was cached, too: the old time step of another dt.
+        """
+        return type(self)(**{**self.model_dump(exclude_unset=True), **(update or {})})
+
+    @classmethod
+    def _read(cls, text: str) -> dict[str, Any]:
+        """Return the fields that `to_json` wrote."""
+        try:
+            fields = json.loads(text)
+        except (TypeError, ValueError, RecursionError):
+            fields = None
+        if not isinstance(fields, dict):
+            name = cls.__name__
+            remedy = f"Give what {name}.to_json returns."
+            raise InvalidInput(name.lower(), text, "a JSON object", remedy)
+        return fields
