@@ -283,6 +283,8 @@ def test_a_source_that_is_faster_than_all_else_is_taken_implicitly():
     run = solve_problem(Problem(**LINE, source="-1e6*(u - cos(t))"), lambda x: 1.0 + 0.0 * x)
     assert run.integrator == "radau"
     assert np.abs(run.u.values[np.abs(run.x) < 0.5] - np.cos(1.0)).max() < 1e-5
+    with pytest.raises(InvalidInput, match=r"^source = .*on the disc"):
+        solve_problem(Problem(**DISC, source="-1e6*(u - cos(t))"), 1.0)
 
 
 # --- what warns, and what is refused --------------------------------------------------------------

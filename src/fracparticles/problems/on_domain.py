@@ -42,7 +42,7 @@ __all__ = ["DomainRates", "solve_on_domain"]
 _LOOKS = 33  # at a diffusivity that depends on time
 _KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
 _SMALL = 1e-8  # a difference of u over u
-_FAST = 100.0  # rates of a source times the time of the run
+_FAST, _FASTEST = 100.0, 2e4  # rates of a source times the time of the run
 _UNRESOLVED = 0.02  # of the norm of v, in modes that the particles do not tell apart
 
 
@@ -222,6 +222,10 @@ def _in_modes(problem: Problem, rates: DomainRates, u0: np.ndarray, v0: np.ndarr
     steps: Steps = domain.steps_with(modes, rates.beside_modes, problem.rtol, size)
     method = "exponential"
     fastest = problem.span * float(np.abs(rates.source_slope(problem.t_initial, v0)).max())
+    if fastest > _FASTEST and problem.domain == "disc":
+        shown = f"a rate of {fastest / problem.span:.3g}"
+        what = f"a source whose rates times the time of the run are below {_FASTEST:g} on the disc"
+        raise InvalidInput("source", shown, what, "End before, or take the square.")
     moves = problem.transport or "t" in problem.diffusion.depends_on or fastest > _FAST
     if moves and problem.domain == "interval":
         least = float(np.linalg.norm(modes.into(size)))
