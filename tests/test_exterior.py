@@ -163,7 +163,7 @@ def test_the_terms_of_the_exterior_leave_the_operator_dissipative(scheme, order,
 def test_terms_are_for_an_open_exterior_on_the_line():
     given = {"scheme": "KPSE", "beta": 0.5, "truncation": 10.0, "spacing": 0.5, "dt": 0.01}
     for wrong in ({"exterior": "truncated"}, {"exterior": "open", "dim": 2}):
-        with pytest.raises(InvalidInput, match=r"far_terms.*exterior='open' and dim=1"):
+        with pytest.raises(InvalidInput, match=r"far_terms.*exterior='open', with dim=1"):
             Case(**given, **wrong, far_terms=2)
     assert "_open3_" in Case(**given, exterior="open", far_terms=3).path
 

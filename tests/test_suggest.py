@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -38,11 +40,20 @@ def test_met_where_the_data_are_rough(name, beta, error):
     assert true <= error
 
 
-@pytest.mark.parametrize("error", [1e-3, 1e-6])
-@pytest.mark.parametrize("name", ["fundamental", "mixture", "other tail"])
+@pytest.mark.parametrize(
+    ("name", "error"),
+    [*product(["fundamental", "mixture", "other tail"], [1e-3, 1e-6]), ("mixture", 1e-9)],
+)
 def test_met_in_the_plane(name, error):
     _, true = asked_and_met(PROBLEMS[name](0.5, 2), error)
     assert true <= error
+
+
+def test_nine_digits_in_the_plane_take_no_wide_lattice():
+    """With one power beyond it, not three, it has 287^2 particles."""
+    case, true = asked_and_met(PROBLEMS["fundamental"](0.5, 2), 1e-9)
+    assert true <= 1e-9
+    assert case.particles < 120**2
 
 
 @pytest.mark.parametrize("error", [1e-3, 1e-6])

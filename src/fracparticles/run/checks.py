@@ -68,8 +68,9 @@ def _rules(case: Parameters) -> Iterator[Rule]:
     scheme, kind, nothing = case.scheme, case.kind, (None,)
     closure = f"The far-field closure exists for {spelled(_OPEN, ' and ')}."
     yield Rule("exterior", kind.exteriors, scheme, closure)
-    if case.exterior != "open" or case.dim != 1:
-        yield Rule("far_terms", nothing, "any other than exterior='open' and dim=1")
+    if case.exterior != "open" or (case.dim != 1 and case.evaluation != "convolution"):
+        whom = "any other than exterior='open', with dim=1 or evaluation='convolution'"
+        yield Rule("far_terms", nothing, whom)
     if not kind.has_kernel:
         yield Rule("overlap", nothing, f"{scheme}, which has no kernel")
     if not kind.tabulated:

@@ -158,7 +158,7 @@ class Parameters(Checked):
     far_terms: Literal[1, 2, 3] | None = Field(
         default=None,
         description="Terms that continue the solution beyond the lattice. For an open exterior on "
-        "the line; 1 if left out.",
+        "the line, or by convolution; 1 if left out.",
     )
     kernel_table: float | None = Field(
         default=None,

@@ -45,6 +45,7 @@ _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
 _LOWER, _MOST_IN_VAIN = 0.9, 5  # trials one after the other that do not lower the error
 _HELD = 0.97  # of the mass of a point, where no radius is given
 _POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate: many are made
+_TERMS = {1: 3, 2: 3, 3: 2}
 _SMALLEST = 1e-11
 _START = 6.0  # intervals within the radius of interest,
 _FEWEST = 8.0  # and on either side of the lattice
@@ -123,7 +124,7 @@ def suggest(
             AccuracyWarning,
             stacklevel=2,
         )
-    more = {"far_terms": 3} if dim == 1 else {}
+    more = {"far_terms": _TERMS[dim]}
     reached = [np.inf]
     for way in _WAYS:
         case = _search(way | fields | more, initial, within, least, spread, error, reached)
