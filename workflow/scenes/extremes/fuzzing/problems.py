@@ -37,7 +37,7 @@ _VELOCITIES = (None, 0.5, "-0.3*x", "sin(x)", "where(x > 0, -0.5, 0.5)", "x/(1 +
 _SOURCES = (None, None, "exp(-x**2)", "1/(1 + (x - 1)**2)", "where(x > 0.3, 0.1, 0)")
 _IN_TIME = ("1 + 0.5*cos(3*t)", "(1 + 0.5*tanh(x))*(1.1 + sin(t))")
 _NEAR = 0.1  # of a run with three particles and more across, in the relative 1-norm
-_UNITS = (2.0**-20, 2.0**-7, 2.0**7, 2.0**20)  # of length and time
+_UNITS = (2.0**-100, 2.0**-20, 2.0**-7, 2.0**7, 2.0**20, 2.0**100)  # of length and time
 
 
 @st.composite
