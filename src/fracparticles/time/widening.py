@@ -42,7 +42,9 @@ _DOUBTFUL = 2e-6  # likewise; measured, at least the error
 _GREATEST = 5.0  # of the gamma, once the tail is known
 _SHORTEST = 1e-12  # scaled time of a step that only moves the solution
 _TINY = float(np.finfo(float).tiny)
-_NARROW = 10.0  # half the lattice over the spread at a doubling: measured, less loses the sixth digit
+_NARROW = (
+    10.0  # half the lattice over the spread at a doubling: measured, less loses the sixth digit
+)
 
 
 def evolve_long(
