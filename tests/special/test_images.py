@@ -69,7 +69,7 @@ def test_the_series_is_the_sum(dim, exponent, tolerance):
 
 
 def test_derivatives_of_a_series():
-    """Of exp(x^2) and x exp(x^2); their series to T_17 are exact to round-off, which a derivative magnifies by 17^4."""
+    """Of exp(x^2) and x exp(x^2): the series to T_17 is exact to round-off, which a derivative magnifies by 17^2."""
     count, x = 18, np.linspace(-0.5, 0.5, 9)
     series = np.polynomial.chebyshev.chebinterpolate(lambda s: np.exp((s + 1.0) / 8.0), count - 1)
     first, second = series_derivatives(count)
