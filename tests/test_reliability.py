@@ -10,7 +10,7 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.run.reliability import estimates, wave_error, wavenumber
+from fracparticles.run.reliability import between_particles, estimates, wave_error, wavenumber
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.special.stable import green
@@ -326,7 +326,7 @@ def test_a_function_is_asked_between_the_particles(dim):
     def spike(*x):
         return bump(*x) + 50.0 * bump(*(20.0 * (part - 2.25) for part in x))
 
-    with pytest.warns(AccuracyWarning, match="half-way between the particles"):
+    with pytest.warns(AccuracyWarning, match="data between the particles"):
         run = compute(case, spike)
     assert run.estimates["between_particles"][0] > 0.5
     assert "between_particles" not in compute(case, bump(*case.positions)).estimates
@@ -343,7 +343,7 @@ def test_a_graded_peak_that_hides_is_named():
     case = fp.Case(
         scheme="GPSE", beta=0.5, half_width=1e4, spacing=0.5, graded_scale=1.0, t_initial=1.0, t_final=2.0
     )  # fmt: skip
-    with pytest.warns(AccuracyWarning, match="half-way between the particles"):
+    with pytest.warns(AccuracyWarning, match="data between the particles"):
         compute(case, lambda x: green(x - 1.28e3, 1.0, 1.5))
 
 
@@ -415,3 +415,15 @@ def test_an_open_exterior_is_advised_where_there_is_one(scheme, open_):
         compute(case_of(scheme=scheme, half_width=4.0, spacing=0.1, t_final=1.0), bump)
     (text,) = [str(one.message) for one in said if "does not fit" in str(one.message)]
     assert ("or exterior='open'" in text) == open_
+
+
+def test_waves_of_the_spacing_are_seen():
+    """sin(2 pi x / h) is zero at the particles and half-way between them."""
+    case = case_of(half_width=10.0, spacing=0.1)
+    u0 = np.exp(-(case.x**2))
+
+    def hidden(x):
+        return np.exp(-(x**2)) * (1.0 + np.sin(20.0 * np.pi * x))
+
+    assert between_particles(case, u0, hidden) > 0.1
+    assert between_particles(case, u0, lambda x: np.exp(-(x**2))) < 1e-4

@@ -35,6 +35,7 @@ from fracparticles.problems.problem import Problem
 from fracparticles.problems.transport import Transport
 from fracparticles.run.reliability import (
     LIMITS,
+    PARTS,
     between_four,
     between_particles,
     outside_share,
@@ -51,7 +52,6 @@ Estimates = dict[str, tuple[list[float], str]]
 
 _LEAST_SMOOTHING = 1.1  # as there
 _LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": 0.01}
-_PARTS = 0.5, 0.381966  # of the spacing: half-way, waves of period h may have their zeros, too
 _MOST = 2.0  # of the error of a wave over it
 _CONSTANT = 1e-9  # of a coefficient, a variation that is round-off
 
@@ -93,7 +93,7 @@ def estimates(problem: Problem, solutions: list[np.ndarray], initial: Any = None
     if varying:
         times = (problem.t_initial, *problem.output_times)
         misfits = [
-            max(_coefficient_misfit(problem, one, t, u, part) for one in varying for part in _PARTS)
+            max(_coefficient_misfit(problem, one, t, u, part) for one in varying for part in PARTS)
             for t, u in zip(times, solutions, strict=True)
         ]
         meaning = "misfit of a coefficient between the particles"

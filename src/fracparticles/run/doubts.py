@@ -51,7 +51,7 @@ def _complaints(
         )
     if "between_particles" in large:
         yield (
-            f"the initial data half-way between the particles, of spacing h = {h:.3g}, differ by "
+            f"the initial data between the particles, of spacing h = {h:.3g}, differ by "
             f"{value['between_particles']:.2g} from what those at the particles say. Take a smaller spacing, or wider "
             "data."
         )

@@ -7,8 +7,9 @@ resolution
     |delta u| / (2 |u|), delta the difference of neighbours, |.| the 2-norm. A kernel of order r damps a wave like
     (s theta / 2)^r. A peak in the middle between two particles, of which they see the tails |x|^-2, has theta = 0.92.
 between_particles
-    int |I - u| / int (|I| + |u|) of initial data that are a function u, by its values half-way between the particles,
-    where I interpolates those at the particles. What lies between them no other estimate can see.
+    int |I - u| / int (|I| + |u|) of initial data that are a function u, by its values at two places between each two
+    particles (half-way, waves of period h may be zero, too), where I interpolates those at the particles: the larger.
+    What lies between them no other estimate can see.
 wave_error
     sum |u^| |p(A dt)^n - exp(-T D |k|^alpha)| / sum |u^| exp(-T D |k|^alpha), with p from the symbol of A and the
     transform u^ of the initial data: the error of a peak, where all waves are in phase, over the peak. It sees a
@@ -58,9 +59,11 @@ from fracparticles.time import STEP_POLYNOMIALS
 if TYPE_CHECKING:
     from fracparticles.run.case import Case
 
-__all__ = ["LIMITS", "ULPS", "Estimates", "between_four", "estimates", "growth"]
+__all__ = ["LIMITS", "PARTS", "ULPS", "Estimates", "between_four", "estimates", "growth"]
 
 Estimates = dict[str, tuple[float, str]]
+
+PARTS = 0.5, 0.381966  # of the spacing: where data and coefficients are looked at between particles
 
 # Above these a warning is given.
 LIMITS = {
@@ -184,7 +187,12 @@ def between_particles(case: Case, u0: np.ndarray, initial: Any) -> float:
     """Return int |I - u| / int (|I| + |u|), see the module; 0 if the data cannot be asked for at other points."""
     if not callable(initial):
         return 0.0
-    x, volumes = _half_way(case)
+    parts = PARTS if case.graded_scale is None else PARTS[:1]
+    return max(_hidden(case, u0, initial, part) for part in parts)
+
+
+def _hidden(case: Case, u0: np.ndarray, initial: Any, part: float) -> float:
+    x, volumes = _between(case, part)
     try:
         with np.errstate(all="ignore"):
             values = initial(*np.meshgrid(*(x,) * case.dim, indexing="ij", sparse=True))
@@ -196,15 +204,15 @@ def between_particles(case: Case, u0: np.ndarray, initial: Any) -> float:
         return 0.0
     interpolated, u = u0 / greatest, u / greatest
     for axis in range(case.dim):
-        interpolated = between_four(interpolated, axis)
+        interpolated = between_four(interpolated, axis, part)
     difference, size = np.abs(interpolated - u), np.abs(interpolated) + np.abs(u)
     return _ratio((volumes * difference).sum(), (volumes * size).sum())
 
 
-def _half_way(case: Case) -> tuple[np.ndarray, np.ndarray | float]:
-    """The points half-way between neighbours, in s for graded particles, and what they stand for; not the outermost."""
+def _between(case: Case, part: float) -> tuple[np.ndarray, np.ndarray | float]:
+    """The points between neighbours, of graded particles half-way in s, and what they stand for; not the outermost."""
     if case.graded_scale is None:
-        return case.x[1:-2] + 0.5 * case.particle_spacing, 1.0
+        return case.x[1:-2] + part * case.particle_spacing, 1.0
     x, volumes = graded_particles(2 * case.particles - 1, case.reach, case.graded_scale)
     return x[3:-3:2], volumes[3:-3:2] / case.reach
 

@@ -32,7 +32,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     low, high = pick(series, panel="time")["y"].agg(["min", "max"])
     axes[1].set_ylim(0.3 * low, 10.0 * high)
     axes[1].legend(loc="upper left", fontsize=7, ncols=3)
-    panel_title(axes[1], "b", "error, placed again and again")
+    panel_title(axes[1], "b", "error over time, particles placed anew")
     for name, points in pick(series, panel="spacing").groupby("series"):
         axes[2].plot(points["x"], points["y"], marker=".", linewidth=0.8, label=name)
     axes[2].set(xlabel="position $x$", ylabel="volume $V_i$", yscale="log")

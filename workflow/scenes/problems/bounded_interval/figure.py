@@ -23,7 +23,7 @@ from fracstudy.style import (
 __all__ = ["figure"]
 
 _MARKERS = "osD^vP"
-_ENDS = {"absorbing": "-", "reflecting": "--", "given": "-.", "no flux, last": ":"}
+_ENDS = {"absorbing": "-", "reflecting": "--", "given": "-.", "no flux, final state": ":"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

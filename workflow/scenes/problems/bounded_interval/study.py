@@ -194,4 +194,4 @@ def _profiles(alpha: float, particles: int, panels: Panels) -> None:
         panels.add("profile", exterior, line.x, line.evolve(start, 0.2, outside=outside))
     inner = line.x[np.abs(line.x) < 0.995]
     mass = line.total(start)
-    panels.add("profile", "no flux, last", inner, no_flux_state(inner, alpha, mass))
+    panels.add("profile", "no flux, final state", inner, no_flux_state(inner, alpha, mass))

@@ -29,6 +29,6 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         log_log(ax, xlabel="particle spacing $h$")
         name_ticks(ax, sorted(series["x"].unique()))
         panel_title(ax, letter, title)
-    axes[0].set_ylabel("error, of the peak")
+    axes[0].set_ylabel("error relative to the peak")
     axes[0].legend(loc="lower right", fontsize=7)
     return drawn
