@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.lattice.banded import BandedConvolution
-from fracparticles.moving.remeshing import REMESHINGS, remesh
+from fracparticles.moving.remeshing import remesh
 from fracparticles.schemes import SCHEMES, Setting, Sum, dpse, fpse
 from fracparticles.schemes.base import OnePass
 from fracparticles.special.stable import central_mass
@@ -16,6 +16,8 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 
 __all__ = ["study", "weight_sum"]
+
+_REMESHINGS = "M4'", "Lambda3"  # the interpolation functions of the paper's time
 
 NEEDS: dict[str, list[Any]] = {
     "scheme": ["DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM"],
@@ -175,7 +177,7 @@ def _moments() -> Finding:
     random = np.random.default_rng(1)
     x, strength = random.uniform(-1.0, 1.0, 200), random.uniform(0.5, 1.5, 200)
     kept = {}
-    for name in REMESHINGS:
+    for name in _REMESHINGS:
         z, moved = remesh(x, strength, 0.1, name)
         scale = [(strength * np.abs(x) ** m).sum() for m in range(6)]
         off = [(moved * z**m).sum() - (strength * x**m).sum() for m in range(6)]

@@ -28,7 +28,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         part = pick(series, panel="tolerance", series=name)
         axes[2].plot(part["x"], part["y"], color=colour, marker=marker, label=label)
     log_log(
-        axes[2], xlabel="evaluations of the right-hand side", ylabel="error relative to the greatest $u$"
+        axes[2],
+        xlabel="evaluations of the right-hand side",
+        ylabel="error relative to the greatest $u$",
     )
     name_ticks(axes[2], (100, 300, 1000, 3000))
     axes[2].legend(loc="upper right")

@@ -20,6 +20,7 @@ _WAYS: dict[str, dict[str, Any]] = {
     "lattice, order 8": {"color": "#009E73", "marker": "D"},
     "lattice, order 12": {"color": "#0072B2", "marker": "o"},
     "particles, Lambda3": {"color": "#D55E00", "marker": "s", "linestyle": "--"},
+    "particles, Lambda6,4": {"color": "#E69F00", "marker": "P", "linestyle": "--"},
     "particles, M4'": {"color": "#CC79A7", "marker": "v", "linestyle": "--"},
 }
 _LEVELS = (0.03, 0.05)
