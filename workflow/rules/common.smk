@@ -72,7 +72,7 @@ onstart:
     claim_folder()
     runs = [[RESULTS / "runs" / case.path] for cases in BATCHES.values() for case in cases]
     scenes = [made(scene, RESULTS) for scene in SCENES.values()]
-    print(already(RESULTS, {"runs": runs, "scenes": scenes}))
+    print(already(RESULTS, {"runs": runs, "scenes": scenes}), flush=True)
 
 
 onsuccess:

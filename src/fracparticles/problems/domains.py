@@ -46,9 +46,11 @@ def is_bounded(exterior: str) -> bool:
 
 def with_dim(fields: dict[str, Any]) -> dict[str, Any]:
     """Return the fields with the dimension and the domain that the others say."""
-    if fields.get("domain") in ("square", "disc"):
+    domain, exterior, dim = fields.get("domain"), fields.get("exterior"), fields.get("dim", 1)
+    if isinstance(domain, str) and domain in ("square", "disc"):
         fields.setdefault("dim", 2)
-    if fields.get("exterior") in EXTERIORS and fields.get("dim", 1) == 1:
+    # Nothing is checked yet: each may be anything.
+    elif isinstance(exterior, str) and exterior in EXTERIORS and isinstance(dim, int) and dim == 1:
         fields.setdefault("domain", "interval")
     return fields
 
