@@ -9,7 +9,7 @@ import numpy as np
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
-from fracparticles.time.sudden import sudden_times
+from fracparticles.time.sudden import LOOKS, irregular_times, sudden_times
 
 __all__ = ["sudden_changes"]
 
@@ -17,11 +17,7 @@ Index = tuple[Any, ...]
 Places = dict[str, np.ndarray]
 
 _PLACES = 33  # equally spaced, and as many by the mass of the data
-_LOOKS, _NUMBERS, _FEWEST = (
-    1024,
-    2**21,
-    64,
-)  # times, fewer where a function is evaluated at all particles
+_NUMBERS, _FEWEST = 2**21, 64  # where a function is evaluated at all particles: values, times
 
 
 def sudden_changes(problem: Problem, u0: np.ndarray) -> list[float]:
@@ -48,12 +44,15 @@ def _changes(
     one: Coefficient, problem: Problem, lattice: Places, some: Places, chosen: Index
 ) -> list[float]:
     start, span = problem.t_initial, problem.span
-    if isinstance(one.given, str):
-        at_once = lambda t: one.checked(_of(one, some, t))  # noqa: E731
-        return sudden_times(lambda t: at_once(np.array(t)), start, span, at_once=at_once)
+
+    def at_once(t: Any) -> np.ndarray:
+        return one.checked(_of(one, some, np.asarray(t)))
+
+    if isinstance(one.given, str) or _takes_many_times(one, some, start, span):
+        return sudden_times(at_once, start, span, at_once=at_once)
     if _takes_any_points(one, some, lattice, chosen, np.array(start)):
-        return sudden_times(lambda t: one.checked(_of(one, some, np.array(t))), start, span)
-    looks = max(_FEWEST, min(_LOOKS, _NUMBERS // lattice["u"].size))
+        return sudden_times(at_once, start, span)
+    looks = max(_FEWEST, min(LOOKS, _NUMBERS // lattice["u"].size))
     return sudden_times(
         lambda t: one.checked(_of(one, lattice, np.array(t)))[chosen], start, span, looks=looks
     )
@@ -68,6 +67,17 @@ def _takes_any_points(
     except InvalidInput:
         return False
     return np.array_equal(alone, all_of_them[chosen], equal_nan=True)
+
+
+def _takes_many_times(one: Coefficient, some: Places, start: float, span: float) -> bool:
+    """Whether a function can be evaluated at many times at once, and then says what it says at each."""
+    few = irregular_times(start, span, 4)
+    try:
+        together = one(_of(one, some, few[:, None]))
+        alone = [one(_of(one, some, np.array(t))) for t in few]
+    except InvalidInput:
+        return False
+    return np.array_equal(together, alone, equal_nan=True)
 
 
 def _places(u0: np.ndarray) -> Index:

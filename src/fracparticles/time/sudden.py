@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-__all__ = ["sudden_times"]
+__all__ = ["LOOKS", "irregular_times", "sudden_times"]
 
 Look = Callable[[float], np.ndarray]
 
-_LOOKS = 1024
+LOOKS = 1024
 _GOLDEN = 0.6180339887498949
 _SUDDEN = 0.1  # of the range of a value
 _NOTICED = 1e-6  # of the greatest value, a range that counts
@@ -31,7 +31,7 @@ def sudden_times(
     span: float,
     *,
     at_once: Callable[[np.ndarray], np.ndarray] | None = None,
-    looks: int = _LOOKS,
+    looks: int = LOOKS,
 ) -> list[float]:
     """Return the times before and after each sudden change, ascending, after `start` and before `start + span`.
 
@@ -45,9 +45,7 @@ def sudden_times(
     looks : int
         How many intervals are looked at.
     """
-    k = np.arange(1.0, looks)
-    within = (k + 0.5 * (k * _GOLDEN % 1.0)) / looks
-    times = start + span * np.concatenate([[0.0], within, [1.0]])
+    times = irregular_times(start, span, looks)
     values = np.array([look(t) for t in times]) if at_once is None else at_once(times[:, None])
     scale = np.ptp(values, axis=0)
     seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max(initial=0.0))
@@ -64,6 +62,13 @@ def sudden_times(
         low, high = times[interval : interval + 2]
         found |= set(_narrowed(look, int(seen[change[interval].argmax()]), low, high, width))
     return sorted(t for t in found if start < t < start + span)
+
+
+def irregular_times(start: float, span: float, looks: int = LOOKS) -> np.ndarray:
+    """Return times that are not equally spaced, and with both ends, shape (looks + 1,)."""
+    k = np.arange(1.0, looks)
+    within = (k + 0.5 * (k * _GOLDEN % 1.0)) / looks
+    return start + span * np.concatenate([[0.0], within, [1.0]])
 
 
 def _narrowed(look: Look, one: int, low: float, high: float, width: float) -> tuple[float, float]:
