@@ -92,7 +92,7 @@ BLOBS = st.lists(
 )  # fmt: skip
 
 
-@settings(max_examples=100)
+@settings(max_examples=180)
 @given(
     st.floats(0.05, 0.95),
     BLOBS,
@@ -106,7 +106,7 @@ def test_any_mixture_on_the_line(beta, blobs, way, half_width, spacing):
     assert true / 3.0 <= estimate.total <= 3.0 * true + SETTLED
 
 
-@settings(max_examples=12)
+@settings(max_examples=20)
 @given(
     st.floats(0.05, 0.95),
     BLOBS,
