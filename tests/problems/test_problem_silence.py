@@ -197,3 +197,19 @@ def test_the_error_of_the_waves_is_that_of_the_peak(spacing, velocity):
     assert any("waves that the solution holds" in str(one.message) for one in caught) == (
         run.wave_error > 0.05
     )
+
+
+@pytest.mark.parametrize("domain", ["interval", "square", "disc"])
+def test_what_fades_on_a_domain_is_right_or_warned_of(domain):
+    fields = {
+        "alpha": 1.5,
+        "exterior": "absorbing",
+        "domain": domain,
+        "half_width": 1.0,
+        "t_final": 1.0,
+    }
+    particles = {"interval": 60, "square": 16, "disc": 16}[domain]
+    problem = Problem(**fields, particles=particles, source="-20*u")
+    with pytest.warns(AccuracyWarning, match="steps are accurate to"):
+        run = solve_problem(problem, lambda *place: np.prod([1.0 - x**2 for x in place], axis=0))
+    assert float(run.atol_share) > 0.01

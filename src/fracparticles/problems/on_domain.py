@@ -43,6 +43,7 @@ _LOOKS = 33  # at a diffusivity that depends on time
 _KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
 _SMALL = 1e-8  # a difference of u over u
 _FAST, _FASTEST = 100.0, 2e4  # rates of a source times the time of the run
+_FADED = 0.01  # of the greatest |u|, the absolute tolerance
 _UNRESOLVED = 0.02  # of the norm of v, in modes that the particles do not tell apart
 
 
@@ -202,9 +203,17 @@ def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
         waves = rates.domain.unresolved(v)
         v += rates.lift(t).base
         shares.append(waves / max(rates.domain.norm(v), 1e-300))
+    # The steps are accurate to this, whatever becomes of u.
+    atol = problem.atol or problem.rtol * float(np.abs(u0).max())
+    faded = [atol / max(float(np.abs(v).max()), 1e-300) for v in fields]
     found = {
-        "unresolved_share": (shares, "share of u in waves that the particles do not tell apart")
+        "unresolved_share": (shares, "share of u in waves that the particles do not tell apart"),
+        "atol_share": (faded, "absolute tolerance over the greatest |u|"),
     }
+    if max(faded) > _FADED:
+        text = f"the steps are accurate to {atol:.2g}, {max(faded):.2g} of the greatest |u| at an output time."
+        remedy = "Take a smaller rtol, or atol, or an earlier end."
+        warnings.warn(f"{text} {remedy}", AccuracyWarning, stacklevel=3)
     for t, share in zip(problem.output_times, shares, strict=True):
         if share > _UNRESOLVED:
             text = f"by t = {t:.4g} the particles do not resolve the solution: {share:.2g} of it is in waves that they"
