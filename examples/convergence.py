@@ -15,7 +15,11 @@ common = {"scheme": "KPSE", "beta": 0.5, "truncation": 20.0, "store": "metrics"}
 common |= {"integrator": "exponential", "exterior": "open", "far_terms": 3}
 runs = [[fp.solve(fp.Case(order=order, spacing=h, **common)) for h in spacings] for order in orders]
 cube = xr.combine_nested(
-    runs, ["order", "particle_spacing"], coords="different", combine_attrs="drop"
+    runs,
+    ["order", "particle_spacing"],
+    coords="different",
+    compat="no_conflicts",
+    combine_attrs="drop",
 )
 errors = cube.relative_l1_error
 slopes = np.log2(errors.shift(particle_spacing=1) / errors)

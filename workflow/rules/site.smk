@@ -1,24 +1,22 @@
 # The worked examples, run as anyone would run them; then the site of all pages.
 
 
-rule example:
+rule examples:
     input:
-        script="examples/{example}.py",
+        scripts=expand("examples/{example}.py", example=EXAMPLES),
         compiled=rules.compile.output,
     output:
-        text=RESULTS / "examples/{example}.txt",
-        figure=RESULTS / "examples/{example}.svg",
+        texts=expand(RESULTS / "examples/{example}.txt", example=EXAMPLES),
+        figures=expand(RESULTS / "examples/{example}.svg", example=EXAMPLES),
     log:
-        RESULTS / "logs/example_{example}.log",
+        RESULTS / "logs/examples.log",
     resources:
         runtime=5,
-        mem_mb=1500,
+        mem_mb=2000,
     params:
         code=code(SOLVER),
-        python=sys.executable,
-    shell:
-        "script=$PWD/{input.script}; output=$PWD/{output.text}; log=$PWD/{log}; cd $(dirname {output.figure}) && "
-        "MPLBACKEND=svg {params.python} $script > $output 2> $log"
+    script:
+        "../scripts/examples.py"
 
 
 rule site:
@@ -27,7 +25,7 @@ rule site:
         ["README.md", "INDEX.md", "CONTRIBUTING.md", "CHANGELOG.md", "config/README.md"],
         "src/fracparticles/README.md",
         [path for path in Path("docs").rglob("*") if path.suffix in SITE_SUFFIXES],
-        expand(RESULTS / "examples/{example}.svg", example=EXAMPLES),
+        rules.examples.output,
         ledger=LEDGER[0],
     output:
         SITE / "index.html",
