@@ -13,10 +13,9 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-import yaml
-
 from fracstudy.claims import Value, read_printed
 from fracstudy.config import read_config
+from fracstudy.read_yaml import read_yaml
 from fracstudy.scene import Scene
 
 __all__ = ["index"]
@@ -30,7 +29,7 @@ _SPAN = re.compile(rf"({_NUMBER})(?:\s*(-|to)\s*({_NUMBER}))?")
 
 def index(project: Path) -> str:
     """Return the text of INDEX.md for the project in that folder."""
-    config = yaml.safe_load((project / "config/study.yaml").read_text("utf-8"))
+    config = read_yaml(project / "config/study.yaml")
     config["scenes_dir"] = str(project / config.get("scenes_dir", "workflow/scenes"))
     study, scenes = read_config(config)
     lines = [

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import yaml
-
 from fracparticles.errors import InvalidInput, one_of
 from fracstudy.config import read_config
+from fracstudy.read_yaml import read_yaml
 
 __all__ = ["listed", "scenes"]
 
@@ -31,7 +30,7 @@ def listed(project: Path, document: str | None = None) -> list[str]:
     if not config.is_file():
         found = f"a folder that holds {_CONFIG}"
         raise InvalidInput("folder", str(project), found, "Change to the folder of the study.")
-    settings = yaml.safe_load(config.read_text("utf-8"))
+    settings = read_yaml(config)
     settings["scenes_dir"] = str(project / settings.get("scenes_dir", "workflow/scenes"))
     study, every = read_config(settings)
     if document is not None and document not in study.documents:

@@ -20,9 +20,9 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import yaml
 
 from fracstudy.config import read_config
+from fracstudy.read_yaml import read_yaml
 from fracstudy.scene import Scene
 
 __all__ = ["agreement", "compare", "main", "sample"]
@@ -75,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the sample")
     parser.add_argument("--scenes", type=int, default=10, help="how many")
     given = parser.parse_args(arguments)
-    study, scenes = read_config(yaml.safe_load(Path("config/study.yaml").read_text("utf-8")))
+    study, scenes = read_config(read_yaml(Path("config/study.yaml")))
     names = sample(scenes, given.scenes, given.seed)
     print(f"seed {given.seed}: {', '.join(names)}")
     with tempfile.TemporaryDirectory() as folder:
