@@ -99,7 +99,8 @@ def _amplification(
         last *= -tau
         return np.exp(last, out=last)
     # |theta| is the same on either side of zero: one side of each axis is computed, and the other is its mirror.
-    square = reduce(np.add.outer, [last * last] * dim)
+    along = last * last
+    square = reduce(lambda before, axis: before[..., None] + axis, [along] * dim)
     square **= 0.5 * alpha
     square *= -tau
     decay = np.exp(square, out=square)

@@ -174,6 +174,9 @@ class WholeSpace:
         length = points if longer == 1.0 else next_fast_len(int(longer * points), real=True)
         self._points, self._dim, self._length = points, dim, length
         self._start = length // 2 - points // 2  # of the lattice in the circle
+        self._inside: tuple[Any, ...] | None = None  # the lattice in a longer circle
+        if length != points:
+            self._inside = (..., *(slice(self._start, self._start + points),) * dim)
         self._decay = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
         self._continued: Continued | None = None
         self._circle: Circle | None = None
@@ -217,7 +220,7 @@ class WholeSpace:
 
     def _run(self, u: np.ndarray, judged: bool) -> tuple[np.ndarray, np.ndarray | None, float]:
         """Return the solution, the numbers of its tail if it has one, and what the data lack if that is asked for."""
-        points, dim, length = self._points, self._dim, self._length
+        points, dim = self._points, self._dim
         shape = (points,) * dim
         if u.ndim < dim or u.shape[u.ndim - dim :] != shape:
             allowed = f"the shape {shape}, after what counts the data"
@@ -227,15 +230,14 @@ class WholeSpace:
             result, numbers = self._continued(each)
             return result.reshape(u.shape), numbers, unresolved(each) if judged else 0.0
         assert self._circle is not None
-        longer = u
-        inside: tuple[Any, ...] = (..., *(slice(self._start, self._start + points),) * dim)
-        if length != points:
-            longer = np.zeros((*u.shape[: u.ndim - dim], *(length,) * dim))
+        longer, inside = u, self._inside
+        if inside is not None:
+            longer = np.zeros((*u.shape[: u.ndim - dim], *(self._length,) * dim))
             longer[inside] = u
         spectrum = self._circle.spectrum(longer)
-        lacking = unresolved_of(spectrum, dim, _NOTICED) if judged else 0.0
+        lacking = unresolved_of(spectrum, dim) if judged else 0.0
         result = self._circle.result(spectrum)
-        return result if length == points else result[inside], None, lacking
+        return result if inside is None else result[inside], None, lacking
 
     def _miss(self, result: np.ndarray, numbers: np.ndarray | None) -> float:
         """Return how far the tail is from the result in the middles of the faces, over its maximum."""
