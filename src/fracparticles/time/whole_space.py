@@ -178,14 +178,13 @@ class WholeSpace:
         if length != points:
             self._inside = (..., *(slice(self._start, self._start + points),) * dim)
         self._decay = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
-        self._continued: Continued | None = None
-        self._circle: Circle | None = None
+        self._circle: Circle | Continued
         if terms:
             fundamental = tail_exponents(alpha, terms)
             before = fundamental if tail is None else powers(tail, dim)
             greatest = max([*fundamental, *before], default=0.0)
             after = later_exponents(before, alpha, greatest)
-            self._continued = Continued(
+            self._circle = Continued(
                 points, length, dim, alpha, scaled_time, before, after, amplification=amplification
             )
         else:
@@ -225,19 +224,18 @@ class WholeSpace:
         if u.ndim < dim or u.shape[u.ndim - dim :] != shape:
             allowed = f"the shape {shape}, after what counts the data"
             raise InvalidInput("u", u.shape, allowed, "Give a value at each lattice point.")
-        if self._continued is not None:
-            each = u.reshape(_count(u, dim), *shape)
-            result, numbers = self._continued(each)
-            return result.reshape(u.shape), numbers, unresolved(each) if judged else 0.0
-        assert self._circle is not None
-        longer, inside = u, self._inside
-        if inside is not None:
-            longer = np.zeros((*u.shape[: u.ndim - dim], *(self._length,) * dim))
-            longer[inside] = u
-        spectrum = self._circle.spectrum(longer)
-        lacking = unresolved_of(spectrum, dim) if judged else 0.0
-        result = self._circle.result(spectrum)
-        return result if inside is None else result[inside], None, lacking
+        if self._inside is None and isinstance(self._circle, Circle):
+            spectrum = self._circle.spectrum(u)
+            lacking = unresolved_of(spectrum, dim) if judged else 0.0
+            return self._circle.result(spectrum), None, lacking
+        each, numbers = u.reshape(_count(u, dim), *shape), None
+        if isinstance(self._circle, Continued):
+            result, numbers = self._circle(each)
+        else:
+            longer = np.zeros((len(each), *(self._length,) * dim))
+            longer[self._inside] = each
+            result = self._circle(longer)[self._inside]
+        return result.reshape(u.shape), numbers, unresolved(each) if judged else 0.0
 
     def _miss(self, result: np.ndarray, numbers: np.ndarray | None) -> float:
         """Return how far the tail is from the result in the middles of the faces, over its maximum."""
@@ -245,9 +243,8 @@ class WholeSpace:
         middle, steps = points // 2, [points**k for k in reversed(range(dim))]
         centre = middle * sum(steps)
         ends = [centre + by * step for by in (-middle, points - 1 - middle) for step in steps]
-        if (
-            numbers is None and result.size == points**dim
-        ):  # one datum: the value in the middle may do
+        if numbers is None and result.size == points**dim:
+            # One datum: the value in the middle may do.
             worst, peak = max(abs(result.item(k)) for k in ends), abs(result.item(centre))
             if worst > _NOTICED * peak:
                 peak = max(result.max(), -result.min())
@@ -255,11 +252,9 @@ class WholeSpace:
         each = result.reshape(-1, points**dim)
         size = np.maximum(each.max(axis=1), -each.min(axis=1))[:, None]
         miss = each[:, ends]
-        if self._continued is not None and numbers is not None:
+        if isinstance(self._circle, Continued) and numbers is not None:
             faces = np.unravel_index(ends, (points,) * dim)
-            miss = miss - self._continued.tails.result_at(
-                np.transpose(faces) + self._start, numbers
-            )
+            miss = miss - self._circle.tails.result_at(np.transpose(faces) + self._start, numbers)
         miss = np.abs(miss) / np.maximum(size, _TINY)
         return float(miss.max(initial=0.0))
 
