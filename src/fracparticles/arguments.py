@@ -17,6 +17,7 @@ raises `InvalidInput` with that name before any work starts. Nothing else is rai
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Any, TypeVar
@@ -56,7 +57,7 @@ def finite_array(
     With a `shape` they have that; a single number stands for an array of equal ones.
     """
     array = _numbers(field, value, "iufc" if complex_too else "iuf")
-    if not np.isfinite(array).all():
+    if not all_finite(array):
         index = np.argwhere(~np.isfinite(array))[0].tolist()
         shown = f"{array[tuple(index)]} at index {index}"
         raise InvalidInput(field, shown, "finite numbers", "Mend the data.")
@@ -169,8 +170,11 @@ def _numbers(field: str, value: Any, kinds: str) -> NDArray[Any]:
     if array.dtype.kind not in kinds:
         named = "real or complex numbers" if "c" in kinds else "real numbers"
         raise InvalidInput(field, value, named, "Give a number or an array of numbers.")
+    wanted = np.complex128 if array.dtype.kind == "c" else np.float64
+    if array.dtype == wanted:
+        return array
     with np.errstate(over="ignore"):  # of a wider type; it is infinite then
-        return array.astype(np.complex128 if array.dtype.kind == "c" else np.float64, copy=False)
+        return array.astype(wanted, copy=False)
 
 
 def _misfit(field: str, array: NDArray[Any], wanted: str) -> InvalidInput:
@@ -189,6 +193,8 @@ def _interval(field: str, low: float, high: float, inside: bool) -> str:
 
 def _real(value: Any) -> float:
     """The number as a float; nan if it is none."""
+    if type(value) is float:
+        return value
     if not isinstance(value, Real) or isinstance(value, bool | np.bool_):
         return np.nan
     try:
@@ -211,7 +217,7 @@ def real_between(
     """Return a finite number from low to high as a float; strictly between them with `inside`."""
     number = _real(value)
     good = low < number < high if inside else low <= number <= high
-    if not (good and np.isfinite(number)):
+    if not (good and math.isfinite(number)):
         allowed = allowed or f"a finite number with {_interval(field, low, high, inside)}"
         raise InvalidInput(field, value, allowed, remedy)
     return number
@@ -333,6 +339,11 @@ def fields(record: Any, **checks: Callable[[str, Any], Any]) -> None:
 # --- what comes back ------------------------------------------------------------------------------
 
 
+def all_finite(array: NDArray[Any]) -> bool:
+    """Return whether no entry is infinite or nan. So it is if the sum of squares is finite, which is one pass."""
+    return math.isfinite(np.vdot(array, array).real) or bool(np.isfinite(array).all())
+
+
 def sampled(field: str, f: Any, *points: NDArray[Any]) -> NDArray[Any]:
     """Return f(*points), the values of a function of the caller's, finite and of the shape of the points."""
     try:
@@ -351,7 +362,7 @@ def sampled(field: str, f: Any, *points: NDArray[Any]) -> NDArray[Any]:
 
 def finite_result(field: str, result: Any) -> Any:
     """Return sums of what was given for `field`, if they have not overflowed."""
-    if not np.isfinite(result).all():
+    if not all_finite(np.asarray(result)):
         allowed = "numbers whose sums do not overflow"
         raise InvalidInput(field, "numbers of this size", allowed, "Change the units.")
     return result

@@ -208,7 +208,7 @@ def test_small_data_beside_large_ones_are_warned_of():
     x, h = line(128, 3.0)
     narrow, wide = mixture(x, 0.5, 1.5), 1e6 * np.exp(-((x / 0.1) ** 2))
     run = WholeSpace(128, 1, 1.5, h**-1.5)
-    alone, both = (run.solve_and_compare(data)[1] for data in (narrow, np.array([narrow, wide])))
+    alone, both = (run.solve_and_judge(data)[1] for data in (narrow, np.array([narrow, wide])))
     assert both >= alone * (1.0 - 1e-9)
 
 
@@ -325,3 +325,43 @@ def test_a_time_that_is_no_time_at_all_leaves_the_data():
 
 def test_no_data_at_all():
     assert evolve(np.ones((0, 16)), 1.0, 1.5, 1.0, dim=1).shape == (0, 16)
+
+
+# --- a short solve, judged --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize("points", [9, 12])
+def test_one_side_of_the_waves_is_the_mirror_of_the_other(dim, points):
+    """The decay of every wave from its own wavenumber: what a point mass becomes is its transform."""
+    alpha, tau = 1.3, 0.7
+    theta = np.fft.fftfreq(points) * 2.0 * np.pi
+    square = sum(np.square(one) for one in np.meshgrid(*(theta,) * dim, indexing="ij"))
+    mass = np.zeros((points,) * dim)
+    mass[(0,) * dim] = 1.0
+    u = WholeSpace(points, dim, alpha, tau, terms=0).solve(mass)
+    assert_allclose(np.fft.fftn(u), np.exp(-tau * square ** (0.5 * alpha)), atol=1e-15 * u.size)
+
+
+@pytest.mark.parametrize("dim", [1, 2])
+@pytest.mark.parametrize("stretch", [None, 1.5])
+@pytest.mark.parametrize("terms", [0, 2])
+def test_the_doubts_of_many_data_are_the_greatest_of_each(dim, stretch, terms):
+    run = WholeSpace(24, dim, 1.5, 2.0, terms=terms, stretch=stretch)
+    x = np.arange(24) - 12.0
+    at = np.meshgrid(*(x,) * dim, indexing="ij", sparse=True)
+    r2 = sum(np.square(one - 0.5) for one in at)
+    many = np.array([np.exp(-r2 / 4.0), np.exp(-r2), 1.0 / (1.0 + r2) ** 2, np.zeros_like(r2)])
+    result, miss, lacking = run.solve_and_judge(many)
+    each = [run.solve_and_judge(one) for one in many]
+    assert_allclose(result, [one[0] for one in each], atol=1e-15)
+    assert lacking == pytest.approx(max(one[2] for one in each), rel=1e-9)
+    worst = max(one[1] for one in each)  # of one datum it may be a bound above, below a thousandth
+    assert miss == pytest.approx(worst, rel=1e-9) if miss > 1e-3 else miss <= worst <= 1e-3
+
+
+def test_without_a_tail_the_miss_is_the_value_at_the_ends_over_the_greatest():
+    x, h = line(64, 4.0)
+    u, miss, _ = WholeSpace(64, 1, 1.5, h**-1.5, terms=0).solve_and_judge(mixture(x, 0.5, 1.5))
+    assert miss == pytest.approx(max(abs(u[0]), abs(u[-1])) / u.max(), rel=1e-14)
+    assert miss > 1e-3

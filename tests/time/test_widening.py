@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.time import widening
+from fracparticles.time import continued
 from fracparticles.time.widening import evolve_long
 
 
@@ -151,7 +151,7 @@ def test_doublings_and_not_units_of_time_are_paid_for(monkeypatch):
     """Three runs are made ready, whatever the time; each doubling is one pair of transforms."""
     made, done = [], []
 
-    class Counted(widening.Circle):
+    class Counted(continued.Circle):
         def __init__(self, *given, **more):
             made.append(self)
             super().__init__(*given, **more)
@@ -160,7 +160,7 @@ def test_doublings_and_not_units_of_time_are_paid_for(monkeypatch):
             done.append(self)
             return super().__call__(u)
 
-    monkeypatch.setattr(widening, "Circle", Counted)
+    monkeypatch.setattr(continued, "Circle", Counted)
     alpha, h = 1.5, 0.1
     _, wide = evolve_long(blob(800, h, 0.2, alpha, 1, 0.0), h, alpha, 1e6)
     assert len(made) == 3

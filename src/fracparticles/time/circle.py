@@ -59,13 +59,24 @@ class Circle:
 
     def __call__(self, u: np.ndarray) -> np.ndarray:
         """Return the result from u, shape (.., L, .., L)."""
-        if len(self._axes) == 1 and self._every == 1:
-            return np.asarray(irfft(rfft(u) * self._amplification, u.shape[-1]))
-        spectrum = rfftn(u, axes=self._axes)
+        return self.result(self.spectrum(u))
+
+    def spectrum(self, u: np.ndarray) -> np.ndarray:
+        """Return u^ from u, shape (.., L, .., L); the last axis as of a real transform."""
+        return np.asarray(rfft(u) if len(self._axes) == 1 else rfftn(u, axes=self._of(u)))
+
+    def result(self, spectrum: np.ndarray) -> np.ndarray:
+        """Return the result from u^, whose array may be overwritten."""
         if self._every > 1:
             spectrum = self._long_waves(spectrum)
         spectrum *= self._amplification
-        return np.asarray(irfftn(spectrum, self._shape, axes=self._axes))
+        if len(self._axes) == 1:
+            return np.asarray(irfft(spectrum, self._shape[0]))
+        return np.asarray(irfftn(spectrum, self._shape, axes=self._of(spectrum)))
+
+    def _of(self, u: np.ndarray) -> tuple[int, ...] | None:
+        """The axes of space, None if they are all: then they need not be looked for."""
+        return None if u.ndim == len(self._axes) else self._axes
 
     def _long_waves(self, spectrum: np.ndarray) -> np.ndarray:
         half = self._shape[0] // 2
@@ -81,14 +92,30 @@ def _amplification(
 ) -> np.ndarray:
     """Return f at theta = 2 pi m / L, the last axis as of a real transform."""
     last = np.arange(points // 2 + 1) * (2.0 * np.pi / points)
+    if given is not None:
+        return given(last) if dim == 1 else given(_waves(last, points, dim))
     if dim == 1:
-        return np.exp(-tau * last**alpha) if given is None else given(last)
+        last **= alpha
+        last *= -tau
+        return np.exp(last, out=last)
+    # |theta| is the same on either side of zero: one side of each axis is computed, and the other is its mirror.
+    along = last * last
+    square = reduce(lambda before, axis: before[..., None] + axis, [along] * dim)
+    square **= 0.5 * alpha
+    square *= -tau
+    decay = np.exp(square, out=square)
+    for axis in range(dim - 1):
+        ahead, behind = [slice(None)] * dim, [slice(None)] * dim
+        ahead[axis], behind[axis] = slice((points + 1) // 2), slice(points // 2, 0, -1)
+        decay = np.concatenate([decay[tuple(ahead)], decay[tuple(behind)]], axis)
+    return decay
+
+
+def _waves(last: np.ndarray, points: int, dim: int) -> np.ndarray:
+    """Return the vectors theta, shape (L, .., L // 2 + 1, n)."""
     every = np.fft.fftfreq(points, 1.0 / points) * (2.0 * np.pi / points)
     axes = np.meshgrid(*[every] * (dim - 1), last, indexing="ij", sparse=True)
-    if given is None:
-        square = sum(axis * axis for axis in axes)
-        return np.exp(-tau * np.power(square, 0.5 * alpha, out=square), out=square)
-    return given(np.stack(np.broadcast_arrays(*axes), axis=-1))
+    return np.stack(np.broadcast_arrays(*axes), axis=-1)
 
 
 def _displacement(points: int, moved: Sequence[float]) -> np.ndarray:

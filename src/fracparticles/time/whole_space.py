@@ -18,21 +18,23 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.fft import next_fast_len, rfft
+from scipy.fft import next_fast_len
 
 from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.circle import Amplification, Circle
+from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import MOST_TERMS, later_exponents, powers, tail_exponents
-from fracparticles.time.tails import Tails
+from fracparticles.time.short_waves import unresolved, unresolved_of
 
-__all__ = ["WholeSpace", "evolve", "tail_exponents", "unresolved"]
+__all__ = ["WholeSpace", "evolve", "tail_exponents"]
 
 _NOTICED = (
     1e-3  # of the maximum: a tail that misses the solution by more, or waves that the lattice lacks
 )
 _FEWEST = 8  # points an axis: the tail meets the data at six depths
 _OUTGROWN = 0.9
+_TINY = float(np.finfo(float).tiny)
 _TIMES = 1e-300, 1e300  # scaled: beyond, all stays as it is, or has outgrown the lattice
 _STRETCH = {1: 3.0, 2: 2.0, 3: 1.5}  # the longer lattice over the given one
 
@@ -102,9 +104,7 @@ def evolve(
     points = u.shape[-1] if u.ndim else 0
     scaled_time = min(max(span * h**-alpha, _TIMES[0]), _TIMES[1])
     run = WholeSpace(points, dim, alpha, scaled_time, terms=terms, tail=tail, stretch=stretch)
-    with np.errstate(over="ignore", invalid="ignore"):
-        result, miss = run.solve_and_compare(u)
-    check.finite_result("u", result)
+    result, miss, lacking = run.solve_and_judge(u)
     if miss > _NOTICED:
         warnings.warn(
             f"beyond the lattice the solution is continued by powers that miss it at the ends by {miss:.2g} of its "
@@ -112,9 +112,6 @@ def evolve(
             AccuracyWarning,
             stacklevel=2,
         )
-    lacking = unresolved(u.reshape(_count(u, dim), *(points,) * dim)) * min(
-        1.0, scaled_time * np.pi**alpha
-    )
     if lacking > _NOTICED:
         warnings.warn(
             f"the lattice does not resolve the data: {lacking:.2g} of the solution may be of waves shorter than two "
@@ -123,23 +120,6 @@ def evolve(
             stacklevel=2,
         )
     return result
-
-
-def unresolved(u: np.ndarray) -> float:
-    """Return what the data, shape (data, N, .., N), may have at the wavenumber 2 K, K = pi / h, over their greatest.
-
-    That looks like a constant. u^ is known up to K along each axis, from the sums over the others; at 2 K it is the
-    square of that at K if it falls like an exponential, and less if it falls like a Gaussian.
-    """
-    total = np.zeros(len(u))
-    for axis in range(1, u.ndim):
-        line = u.sum(axis=tuple(other for other in range(1, u.ndim) if other != axis))
-        size = np.abs(rfft(line))
-        greatest = size.max(axis=1)
-        # Of some waves: at K itself the two aliases of data centred between two points cancel.
-        last = size[:, int(0.8 * (size.shape[1] - 1)) :].max(axis=1)
-        total += 2.0 * np.divide(last, greatest, where=greatest > 0.0, out=np.zeros(len(u))) ** 2
-    return min(1.0, float(total.max(initial=0.0)))
 
 
 class WholeSpace:
@@ -191,22 +171,24 @@ class WholeSpace:
         if (longer * points) ** dim > check.MOST:
             most = f"for {points} points an axis a lattice of at most {check.MOST} in all"
             raise InvalidInput("stretch", longer, most, "Take fewer points, or a smaller stretch.")
-        circle = points if longer == 1.0 else next_fast_len(int(longer * points), real=True)
-        start = circle // 2 - points // 2
-        self._shape, self._circle = (points,) * dim, (circle,) * dim
-        self._axes = tuple(range(-dim, 0))
-        self._start = start
-        inside = (slice(start, start + points),) * dim
-        self._inside: tuple[Any, ...] = (..., *inside)
-        self._periodic = Circle(circle, dim, alpha, scaled_time, amplification)
-        self._tails = None
+        length = points if longer == 1.0 else next_fast_len(int(longer * points), real=True)
+        self._points, self._dim, self._length = points, dim, length
+        self._start = length // 2 - points // 2  # of the lattice in the circle
+        self._inside: tuple[Any, ...] | None = None  # the lattice in a longer circle
+        if length != points:
+            self._inside = (..., *(slice(self._start, self._start + points),) * dim)
+        self._decay = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
+        self._circle: Circle | Continued
         if terms:
             fundamental = tail_exponents(alpha, terms)
             before = fundamental if tail is None else powers(tail, dim)
             greatest = max([*fundamental, *before], default=0.0)
             after = later_exponents(before, alpha, greatest)
-            time = scaled_time * float(circle) ** -alpha
-            self._tails = Tails(inside, inside, circle, alpha, time, before, after)
+            self._circle = Continued(
+                points, length, dim, alpha, scaled_time, before, after, amplification=amplification
+            )
+        else:
+            self._circle = Circle(length, dim, alpha, scaled_time, amplification)
 
     def solve(self, u: np.ndarray) -> np.ndarray:
         """Return the solution from u, both of shape (..., N, .., N).
@@ -216,44 +198,65 @@ class WholeSpace:
         InvalidInput
             If u has another shape.
         """
-        return self._run(u)[0]
+        return self._run(u, judged=False)[0]
 
-    def solve_and_compare(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """Return the solution, and how far its tail is from it at the faces of the lattice, over its maximum.
+    def solve_and_judge(self, u: np.ndarray) -> tuple[np.ndarray, float, float]:
+        """Return the solution, and two doubts.
 
-        Of several data, the worst.
+        How far its tail is from it at the faces of the lattice, over its maximum; and what of it may be of waves that
+        the lattice does not hold, see `short_waves`. Of several data, the worst. A doubt below a thousandth may be an
+        upper bound.
+
+        Raises
+        ------
+        InvalidInput
+            If u has another shape, or sums of it overflow.
         """
-        result, numbers = self._run(u)
-        each = result.reshape(_count(u, len(self._axes)), *self._shape)
-        size = np.abs(each).max(axis=tuple(self._axes), keepdims=True).reshape(-1, 1)
-        found = each[(slice(None), *self._faces(0).T)]
-        tail: np.ndarray | float = 0.0
-        if self._tails is not None:
-            tail = self._tails.result_at(self._faces(self._start), numbers)
-        miss = np.abs(found - tail) / np.where(size > 0.0, size, 1.0)
-        return result, float(miss.max(initial=0.0))
+        with np.errstate(over="ignore", invalid="ignore"):
+            result, numbers, lacking = self._run(u, judged=True)
+        check.finite_result("u", result)
+        return result, self._miss(result, numbers), self._decay * lacking
 
-    def _faces(self, start: int) -> np.ndarray:
-        """The indices of the middles of the faces, shape (2 n, n); of the lattice, or in a circle where it starts."""
-        dim, points = len(self._axes), self._shape[0]
-        faces = np.full((2, dim, dim), points // 2)
-        faces[0][np.diag_indices(dim)], faces[1][np.diag_indices(dim)] = 0, points - 1
-        return faces.reshape(-1, dim) + start
-
-    def _run(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        dim = len(self._axes)
-        if u.ndim < dim or u.shape[u.ndim - dim :] != self._shape:
-            allowed = f"the shape {self._shape}, after what counts the data"
+    def _run(self, u: np.ndarray, judged: bool) -> tuple[np.ndarray, np.ndarray | None, float]:
+        """Return the solution, the numbers of its tail if it has one, and what the data lack if that is asked for."""
+        points, dim = self._points, self._dim
+        shape = (points,) * dim
+        if u.ndim < dim or u.shape[u.ndim - dim :] != shape:
+            allowed = f"the shape {shape}, after what counts the data"
             raise InvalidInput("u", u.shape, allowed, "Give a value at each lattice point.")
-        if self._tails is None and self._shape == self._circle:
-            return self._periodic(u), np.zeros(0)
-        each = u.reshape(_count(u, dim), *self._shape)
-        if self._tails is None:
-            longer = np.zeros((len(each), *self._circle))
+        if self._inside is None and isinstance(self._circle, Circle):
+            spectrum = self._circle.spectrum(u)
+            lacking = unresolved_of(spectrum, dim) if judged else 0.0
+            return self._circle.result(spectrum), None, lacking
+        each, numbers = u.reshape(_count(u, dim), *shape), None
+        if isinstance(self._circle, Continued):
+            result, numbers = self._circle(each)
+        else:
+            longer = np.zeros((len(each), *(self._length,) * dim))
             longer[self._inside] = each
-            return self._periodic(longer)[self._inside].reshape(u.shape), np.zeros(0)
-        longer, images, numbers = self._tails.complete(each)
-        return (self._periodic(longer)[self._inside] - images).reshape(u.shape), numbers
+            result = self._circle(longer)[self._inside]
+        return result.reshape(u.shape), numbers, unresolved(each) if judged else 0.0
+
+    def _miss(self, result: np.ndarray, numbers: np.ndarray | None) -> float:
+        """Return how far the tail is from the result in the middles of the faces, over its maximum."""
+        points, dim = self._points, self._dim
+        middle, steps = points // 2, [points**k for k in reversed(range(dim))]
+        centre = middle * sum(steps)
+        ends = [centre + by * step for by in (-middle, points - 1 - middle) for step in steps]
+        if numbers is None and result.size == points**dim:
+            # One datum: the value in the middle may do.
+            worst, peak = max(abs(result.item(k)) for k in ends), abs(result.item(centre))
+            if worst > _NOTICED * peak:
+                peak = max(result.max(), -result.min())
+            return float(worst / peak) if peak else 0.0
+        each = result.reshape(-1, points**dim)
+        size = np.maximum(each.max(axis=1), -each.min(axis=1))[:, None]
+        miss = each[:, ends]
+        if isinstance(self._circle, Continued) and numbers is not None:
+            faces = np.unravel_index(ends, (points,) * dim)
+            miss = miss - self._circle.tails.result_at(np.transpose(faces) + self._start, numbers)
+        miss = np.abs(miss) / np.maximum(size, _TINY)
+        return float(miss.max(initial=0.0))
 
 
 def _refuse_outgrown(points: int, spread: float) -> None:

@@ -27,10 +27,9 @@ from scipy.fft import next_fast_len
 
 from fracparticles.arguments import finite_array, fractional_order, positive_real
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.time.circle import Circle
+from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import later_exponents, powers, tail_exponents
-from fracparticles.time.tails import Tails
-from fracparticles.time.whole_space import unresolved
+from fracparticles.time.short_waves import unresolved
 
 __all__ = ["evolve_long"]
 
@@ -110,12 +109,12 @@ def evolve_long(
     before = tail_exponents(alpha, _TERMS[dim]) if tail is None else powers(tail, dim)
     after = later_exponents(before, alpha, max([_GREATEST, *before]))
     first = partial(
-        _Step, points, dim, alpha, before=before, after=after, middle=middle, outer=True
+        _step, points, dim, alpha, before=before, after=after, middle=middle, outer=True
     )
     if left <= doubling * h**alpha:
         only = first(left * h**-alpha, moved=None)
         _warn_of_tails(only, u, points)
-        return only(u)[0], h
+        return _onward(only, u)[0], h
     if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
         least = int(np.ceil(2.0 * _NARROW * doubling ** (1.0 / alpha)))
         warnings.warn(
@@ -126,71 +125,33 @@ def evolve_long(
         )
     start = first(doubling, every=2)
     _warn_of_tails(start, u, points)
-    u, b = start(u)
+    u, b = _onward(start, u)
     moved = -h * np.array(middle)  # back to the middle of the lattice that was given
     left, h = left - doubling * h**alpha, 2.0 * h
     between = doubling * (1.0 - 2.0**-alpha)
-    later = partial(_Step, points, dim, alpha, before=after, after=after)
+    later = partial(_step, points, dim, alpha, before=after, after=after)
     if left > between * h**alpha:
         widen = later(between, every=2)
         while left > between * h**alpha:
-            u, b = widen(u, b)
+            u, b = _onward(widen, u, b)
             left, h = left - between * h**alpha, 2.0 * h
     last = later(max(left * h**-alpha, _SHORTEST), moved=(moved / h).tolist())
-    return last(u, b)[0], h
+    return _onward(last, u, b)[0], h
 
 
-class _Step:
-    """A run on the whole space, see `whole_space`, whose tail goes on from that of the run before.
+def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
+    """Return a run on a circle some twice as long as the lattice; see `Continued`."""
+    half = 2 * every  # of the points that are left every second one is one of them
+    length = half * next_fast_len(-(-int(_STRETCH * points) // half), real=True)
+    return Continued(points, length, *given, every=every, **more)
 
-    Parameters
-    ----------
-    points, dim, alpha, scaled_time
-        See `WholeSpace`.
-    before, after : arrays
-        The gamma of the data and of the result.
-    every : int
-        The result has as many points so many spacings apart, if not one, about the middle of the tails.
-    middle : sequence of int, optional
-        Where the tails start, in points from the middle of the data; there, if left out.
-    moved, outer
-        See `Tails`.
-    """
 
-    def __init__(
-        self,
-        points: int,
-        dim: int,
-        alpha: float,
-        scaled_time: float,
-        *,
-        before: np.ndarray,
-        after: np.ndarray,
-        every: int = 1,
-        middle: Sequence[int] | None = None,
-        moved: Sequence[float] | None = None,
-        outer: bool = False,
-    ) -> None:
-        half = 2 * every  # of the points that are left every second one is one of them
-        circle = half * next_fast_len(-(-int(_STRETCH * points) // half), real=True)
-        starts = [circle // 2 - points // 2 - by for by in middle or (0,) * dim]
-        inside = tuple(slice(start, start + points) for start in starts)
-        shown = inside
-        self._shown: tuple[Any, ...] = (..., *inside)
-        if every > 1:
-            first = circle // 2 - every * (points // 2)
-            shown = (slice(first, first + every * (points - 1) + 1, every),) * dim
-            self._shown = (..., *(slice(first // every, first // every + points),) * dim)
-        time = scaled_time * float(circle) ** -alpha
-        self.tails = Tails(inside, shown, circle, alpha, time, before, after, moved, outer)
-        self._periodic = Circle(circle, dim, alpha, scaled_time, every=every, moved=moved)
-        self._every = every
-
-    def __call__(self, u: np.ndarray, b: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Return the result and the amplitudes of its tail, from those of the data; or from the data alone."""
-        longer, images, numbers = self.tails.complete(u[None], b)
-        result = self._periodic(longer)[self._shown] - images
-        return result[0], self.tails.result(numbers, self._every)
+def _onward(
+    step: Continued, u: np.ndarray, b: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the result and the amplitudes of its tail, from those of the data; or from the data alone."""
+    result, numbers = step(u[None], b)
+    return result[0], step.amplitudes(numbers)
 
 
 def _warn_of_short_waves(u: np.ndarray) -> None:
@@ -205,7 +166,7 @@ def _warn_of_short_waves(u: np.ndarray) -> None:
         )
 
 
-def _warn_of_tails(step: _Step, u: np.ndarray, points: int) -> None:
+def _warn_of_tails(step: Continued, u: np.ndarray, points: int) -> None:
     """Warn if the powers do not say what lies beyond the lattice."""
     doubt = step.tails.meeting.doubt(u)
     if doubt > _DOUBTFUL:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.arguments import finite_array
 from fracparticles.time.whole_space import WholeSpace
 from fracstudy.race.contender import Contender, Ready, lattices
 from fracstudy.race.problem import Problem, lattice
@@ -38,6 +39,6 @@ class Evolve(Contender):
         run = WholeSpace(points, dim, problem.alpha, tau, terms=terms, tail=problem.tail)
 
         def solve(u0: np.ndarray) -> np.ndarray:
-            return run.solve_and_compare(u0)[0]  # as `evolve` does
+            return run.solve_and_judge(finite_array("u", u0))[0]  # as `evolve` does
 
         return Ready(lattice(points, half_width, dim), h**dim, solve, batched=True)

@@ -1,0 +1,82 @@
+"""Data on a part of a circle, continued by their tails: one pair of transforms, and the images taken off again.
+
+The lattice lies in a longer circle. There powers continue the data, and the images of the data are added; after the
+transforms those of the result are taken off, see `tails`. `whole_space` and `widening` are runs of this kind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fracparticles.time.circle import Amplification, Circle
+from fracparticles.time.tails import Tails
+
+__all__ = ["Continued"]
+
+
+class Continued:
+    """A run made ready, in units of the spacing.
+
+    Parameters
+    ----------
+    points, length : int
+        N of the lattice and L of the circle, along each axis.
+    dim : int
+        n.
+    alpha, scaled_time, amplification, every, moved
+        See `Circle`.
+    before, after : arrays
+        The gamma of the data and of the result, see `Tails`.
+    middle : sequence of int, optional
+        Where the tails start, in points from the middle of the data; there, if left out.
+    outer : bool
+        See `Meeting`.
+
+    Attributes
+    ----------
+    tails : Tails
+    """
+
+    def __init__(
+        self,
+        points: int,
+        length: int,
+        dim: int,
+        alpha: float,
+        scaled_time: float,
+        before: np.ndarray,
+        after: np.ndarray,
+        *,
+        amplification: Amplification | None = None,
+        every: int = 1,
+        middle: Sequence[int] | None = None,
+        moved: Sequence[float] | None = None,
+        outer: bool = False,
+    ) -> None:
+        starts = [length // 2 - points // 2 - by for by in middle or (0,) * dim]
+        inside = tuple(slice(start, start + points) for start in starts)
+        shown = inside
+        self._shown: tuple[Any, ...] = (..., *inside)
+        if every > 1:
+            first = length // 2 - every * (points // 2)
+            shown = (slice(first, first + every * (points - 1) + 1, every),) * dim
+            self._shown = (..., *(slice(first // every, first // every + points),) * dim)
+        time = scaled_time * float(length) ** -alpha
+        self.tails = Tails(inside, shown, length, alpha, time, before, after, moved, outer)
+        self._circle = Circle(length, dim, alpha, scaled_time, amplification, every, moved)
+        self._every = every
+
+    def __call__(self, u: np.ndarray, b: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Return the result from data of shape (data, N, .., N), and the numbers on which its tail depends.
+
+        With the amplitudes b of the tail of the data nothing is fitted.
+        """
+        longer, images, numbers = self.tails.complete(u, b)
+        return self._circle(longer)[self._shown] - images, numbers
+
+    def amplitudes(self, numbers: np.ndarray) -> np.ndarray:
+        """Return those of the tail of the result, shape (data, terms), in units of its spacing."""
+        return self.tails.result(numbers, self._every)
