@@ -1,7 +1,5 @@
 """The kernels of Fig. 1."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, legend_below
-
-__all__ = ["figure"]
 
 # One colour a beta; no schemes are drawn here.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")

@@ -5,8 +5,6 @@ or Bessel function that the angles leave is smooth in t, so that the rule is exa
 used. Kernels as the paper prints them come from scipy's 1F1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from math import factorial, gamma, pi, sqrt
@@ -19,8 +17,6 @@ from scipy.special import hyp1f1, j0, j1, roots_genlaguerre
 from fracparticles.kernels.families import kernel
 from fracparticles.special.stable import green
 from fracstudy.findings import Finding, measured
-
-__all__ = ["formulas", "from_transform", "gaussian_integral", "printed_kernel"]
 
 _NODES = 60
 _RADII = np.linspace(0.1, 3.0, 30)

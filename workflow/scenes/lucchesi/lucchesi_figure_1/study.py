@@ -1,7 +1,5 @@
 """Fig. 1: the kernels of the schemes, and what the paper says of their shape."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,8 +9,6 @@ from fracparticles.kernels.families import kernel
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from scenes.lucchesi.lucchesi_figure_1.formulas import formulas
-
-__all__ = ["study", "tail_exponent"]
 
 _NEAREST, _FARTHEST = 1e-4, 1e6
 _TAIL = (1e5, 1e6)  # the exponent is taken between these; what it lacks there is of order 1e-10

@@ -1,7 +1,5 @@
 """DVM in the reference case, Secs. 3.3, 4.1, 4.2 and 6: its domain, and what its lattice needs remeshing for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,8 +10,6 @@ from fracparticles.run.dataset import read_run
 from fracparticles.special.stable import mean_radius
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs
-
-__all__ = ["lagrangian_domain", "truncation_effect"]
 
 _FREE, _REMESHED = "without remeshing", "remeshed"
 

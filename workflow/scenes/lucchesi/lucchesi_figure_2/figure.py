@@ -1,15 +1,11 @@
 """Fig. 2: exact and computed solutions of the reference case, at the peak and at the boundary."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, MARKERS, axes_row, legend_below
-
-__all__ = ["figure"]
 
 _SCHEMES = {
     "DD": "DD",

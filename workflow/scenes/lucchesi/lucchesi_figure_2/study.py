@@ -1,7 +1,5 @@
 """The reference case, Fig. 2 and Sec. 4.1: exact and computed solutions at the peak and at the boundary."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -18,8 +16,6 @@ from scenes.lucchesi.lucchesi_figure_2.dvm_domain import lagrangian_domain
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = ["study"]
 
 NEEDS = {
     "scheme": ["DD", "FPSE", "KPSE", "GPSE", "FD", "DVM"],
