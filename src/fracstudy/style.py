@@ -22,9 +22,18 @@ from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.inputs import NUMERALS
 
 __all__ = [
+    "BLUE",
     "COLOURS",
+    "ERROR",
+    "GREEN",
     "MARKERS",
+    "ORANGE",
+    "PINK",
+    "RED",
+    "SKY",
+    "UNDERLAID",
     "axes_row",
+    "draw",
     "entry",
     "guide",
     "legend_below",
@@ -44,23 +53,43 @@ __all__ = [
 mpl.use("Agg")
 mpl.style.use(Path(__file__).with_name("fracstudy.mplstyle"))
 
-# Okabe & Ito (2008), one colour and one marker for each scheme, everywhere.
+# Okabe & Ito (2008); one colour and one marker for each scheme, everywhere.
+BLUE, RED, GREEN = "#0072B2", "#D55E00", "#009E73"
+PINK, SKY, ORANGE = "#CC79A7", "#56B4E9", "#E69F00"
 COLOURS = {name: scheme.colour for name, scheme in ALL_SCHEMES.items()} | {"exact": "#000000"}
 MARKERS = {name: scheme.marker for name, scheme in ALL_SCHEMES.items()} | {"exact": ""}
+
+UNDERLAID: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
+"""The exact solution, below what is computed."""
+ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def axes_row(
-    panels: int = 1, height: float = 3.4, width: float = 4.2, **options: Any
+    panels: int | Sequence[str] = 1,
+    height: float = 3.4,
+    width: float = 4.2,
+    rows: int = 1,
+    **options: Any,
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure with a row of panels, lettered (a), (b), ... if there is more than one."""
-    figure = Figure(figsize=(width * panels, height), layout="constrained")
-    axes = list(np.atleast_1d(figure.subplots(1, panels, **options)))
-    if panels > 1:
-        for letter, ax in zip("abcdefgh", axes, strict=False):
-            ax.set_title(f"({letter})", loc="left")
+    """Return a figure with a row of panels, or more, and the panels, lettered (a), (b), ... if there are several.
+
+    `panels` is how many there are, or the title of each.
+    """
+    titles = [""] * panels if isinstance(panels, int) else panels
+    columns = len(titles) // rows
+    figure = Figure(figsize=(width * columns, height * rows), layout="constrained")
+    axes = list(np.ravel(figure.subplots(rows, columns, **options)))
+    for letter, ax, title in zip("abcdefgh", axes, titles, strict=False):
+        if len(axes) > 1 or title:
+            ax.set_title(f"({letter}) {title}".strip(), loc="left")
     return figure, axes
+
+
+def draw(ax: Axes, points: pd.DataFrame, *line: str, **style: Any) -> None:
+    """Draw y against x."""
+    ax.plot(points["x"], points["y"], *line, **style)
 
 
 def panel_title(ax: Axes, letter: str, text: str) -> None:

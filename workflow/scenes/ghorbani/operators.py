@@ -1,7 +1,5 @@
 """What the SPH scenes share: the operators, the order alpha(x), and how functions and sums are named and drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
@@ -11,18 +9,6 @@ import numpy as np
 
 from fracparticles.sph import caputo_derivative, rl_derivative, rl_integral
 from fracparticles.sph.closed_forms import Function
-
-__all__ = [
-    "CURVATURES",
-    "LABELS",
-    "OPERATORS",
-    "SLOPES",
-    "SUMS",
-    "TITLES",
-    "Operator",
-    "Order",
-    "order_at",
-]
 
 _STEP = 1e-4  # of differences: they keep some eight digits
 

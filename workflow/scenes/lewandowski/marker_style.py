@@ -1,7 +1,5 @@
 """How the figures of the marker method look."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,18 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, panel_title
-
-__all__ = [
-    "EXACT",
-    "HOLLOW",
-    "LOADING_LOOKS",
-    "SHAPE_COLOURS",
-    "draw",
-    "four_panels",
-    "shape_panels",
-    "strokes",
-    "symbol",
-]
 
 # One colour for each shape function in all figures of the marker method.
 SHAPE_COLOURS = {

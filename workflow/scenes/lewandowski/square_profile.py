@@ -3,13 +3,11 @@
 The text leaves open where the markers start. Each of `LOADINGS` is run, the random one with several seeds.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pandas as pd
@@ -30,19 +28,6 @@ from fracparticles.markers import (
 )
 from fracparticles.markers.clusters import emptiness
 from fracparticles.moving.lagrangian import FieldNotPositive
-
-__all__ = [
-    "INFINITE",
-    "LOADINGS",
-    "SHAPES",
-    "SQUARE",
-    "SquareRuns",
-    "Starts",
-    "Trace",
-    "delay",
-    "load",
-    "shape",
-]
 
 SQUARE = Square()
 LOADINGS = {
@@ -131,9 +116,9 @@ class SquareRuns(BaseModel):
         """Return the exact solution at the end."""
         return SQUARE.value(x, self.t_final)
 
-    def having(self, **changes: Any) -> SquareRuns:
+    def having(self, **changes: Any) -> Self:
         """Return other runs, with some values changed."""
-        return SquareRuns(**{**self.model_dump(), **changes})
+        return type(self)(**{**self.model_dump(), **changes})
 
     def relative_error(self, f: np.ndarray) -> float:
         """Return the distance of f from the exact solution on the fixed grid, as part of its norm."""

@@ -1,7 +1,5 @@
 """Two panels of the error (48): the paper's truncated lattice beside the open exterior."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, log_log, panel_title, scheme_lines
-
-__all__ = ["ERROR", "exterior_panels"]
 
 ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 _TITLES = {"truncated": "truncated (the paper's)", "open": "open exterior (ours)"}

@@ -1,7 +1,5 @@
 """What the scenes of the note share: functions and particles that sums are tried on, and how accuracies are drawn."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,17 +7,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fracparticles.pse import GAUSSIAN_20, Kernel, cell_volumes, derivative, lattice
-
-__all__ = [
-    "LINES",
-    "SEED",
-    "Skewed",
-    "arranged",
-    "heat",
-    "heat_second",
-    "second_derivative_error",
-    "wave",
-]
 
 SEED = 20  # of particles at random
 

@@ -1,7 +1,5 @@
 """The particles of DVM: paths and lattice."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, axes_row, entry, note, panel_title
-
-__all__ = ["figure"]
 
 _REMESHED = "#D55E00"
 _ABOVE = 1.5  # the spacing that calls for remeshing, in units of h

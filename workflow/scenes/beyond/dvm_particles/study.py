@@ -4,8 +4,6 @@ For the fundamental solution the velocity (44) is x / (alpha t): the paths are x
 spacings grow in proportion.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,8 +14,6 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import advect, initial_strengths
 from fracparticles.special.stable import mean_radius
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["spread", "study"]
 
 NEEDS = {"scheme": ["DVM"], "remeshing": ["none", "M4'"]}
 

@@ -1,7 +1,5 @@
 """What remeshing does to the error of DVM."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, log_log, name_ticks, note, panel_title, slope_triangle
-
-__all__ = ["figure"]
 
 _REMESHINGS = {  # colour, marker, label
     "M4'": ("#0072B2", "o", "$M_4'$"),

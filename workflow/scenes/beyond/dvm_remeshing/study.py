@@ -4,8 +4,6 @@
 three, or as the four-moment Lambda_3: both are run, and none at all.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -18,8 +16,6 @@ from fracparticles.run.orders import observed_order
 from fracparticles.run.strengths import lattice_strengths
 from fracparticles.special.stable import central_mass, green, mean_radius
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["DVM"]}
 

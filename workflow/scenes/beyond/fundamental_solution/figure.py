@@ -1,7 +1,5 @@
 """The relative error of two evaluations of the fundamental solution."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,8 +7,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, legend_below, log_log
-
-__all__ = ["figure"]
 
 _FLOOR = 2.0**-54  # where errors of zero are drawn
 _CURVES: dict[str, dict[str, Any]] = {

@@ -1,14 +1,10 @@
 """How accurate our evaluation of the fundamental solution is, and scipy's."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
 from fracparticles.special import reduced_green
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs, *, reference: str) -> Result:

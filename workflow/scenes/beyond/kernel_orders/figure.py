@@ -1,7 +1,5 @@
 """Error (48) against h for kernels of order 2 to 12, down to the floor."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl
@@ -18,8 +16,6 @@ from fracstudy.style import (
     name_ticks,
     slope_triangle,
 )
-
-__all__ = ["figure"]
 
 _SHADES = mpl.colormaps["viridis_r"]
 _STYLES = ("-", "--", ":")

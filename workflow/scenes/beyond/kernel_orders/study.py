@@ -5,8 +5,6 @@ things ends it: the model of the exterior, the alias of the lattice, or rounding
 error and shows what the first and the last leave.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -14,8 +12,6 @@ import pandas as pd
 
 from fracparticles.run.orders import observed_order
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 _KEY = ["scheme", "overlap", "order"]
 

@@ -1,7 +1,5 @@
 """Maps of the solution and of its relative error in two dimensions."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,6 @@ from matplotlib.patches import Circle
 from fracstudy.inputs import ORDERS
 from fracstudy.panels import pick
 from scenes.plane import DISK
-
-__all__ = ["figure"]
 
 _EXTERIORS = {"truncated": "truncated", "open": "open exterior"}
 _ERRORS = 10.0 ** np.arange(-4.0, 1.1, 0.5)  # two steps of colour a decade

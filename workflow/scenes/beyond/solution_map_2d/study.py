@@ -1,7 +1,5 @@
 """The solution of the two-dimensional problem of Sec. 5 and its errors, over the whole square."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,6 @@ from fracparticles.special.plane import square_exchange_error, square_tail_mass
 from fracparticles.special.stable import green
 from fracstudy.inputs import ORDERS, Inputs, Result
 from scenes.plane import DISK, particles_per_side
-
-__all__ = ["study"]
 
 NEEDS = {"exterior": ["truncated", "open"]}
 

@@ -1,7 +1,5 @@
 """Errors on a cube, against h and against the work."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -20,8 +18,6 @@ from fracstudy.style import (
     scheme_style,
     slope_triangle,
 )
-
-__all__ = ["figure"]
 
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
 _SIZES = {"truncated": 7.0, "open": 3.6}

@@ -4,8 +4,6 @@ The schemes are those of the paper with the kernels for n = 3; the error is (59)
 counted, not timed, so that the same runs give the same table; for times see the benchmark.
 """
 
-from __future__ import annotations
-
 from math import log2
 from typing import Any
 
@@ -18,8 +16,6 @@ from fracparticles.special import green
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
 from scenes.plane import particles_per_side
-
-__all__ = ["bytes_kept", "operations", "study"]
 
 _KEY = ["scheme", "order", "exterior"]
 _ROWS, _COLUMNS = 16, 8  # lines and wave numbers that the sums transform together

@@ -1,7 +1,5 @@
 """Sec. 5: the forms (33)-(36) without a singular kernel, and the two lines of (4) and (6), against the definitions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
@@ -15,8 +13,6 @@ from fracparticles.sph.definition import defining_integral
 from fracstudy.findings import Finding, measured
 from scenes.ghorbani.operators import CURVATURES, LABELS, SLOPES, Order, central_slope, order_at
 from scenes.ghorbani.sph_closed_forms import definitions as by
-
-__all__ = ["findings"]
 
 _NEAR = np.array([1e-8, 1e-6])  # points next to x = a
 _CELLS = 400

@@ -1,7 +1,5 @@
 """The closed forms of the Appendix and the non-singular ones of Sec. 5, against the definitions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import pi, sqrt
 from typing import Any
@@ -18,8 +16,6 @@ from scenes.ghorbani.operators import LABELS, Order, central_slope, order_at
 from scenes.ghorbani.sph_closed_forms import definitions as by
 from scenes.ghorbani.sph_closed_forms import non_singular
 from scenes.ghorbani.sph_closed_forms.definitions import deviation
-
-__all__ = ["PRINTED", "study"]
 
 _EQUATIONS = {
     "sin": ("A1", "A5"), "cos": ("A2", "A6"), "exp": ("A3", "A7"), "cubic": ("A4", "A8"),

@@ -1,7 +1,5 @@
 """The convergence of the SPH operators."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, legend_below, log_log, slope_triangle
 from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
-
-__all__ = ["figure"]
 
 _PANELS = (("rl_integral", "sin"), ("caputo", "cos"), ("rl_derivative", "sin"))
 _FAINT: dict[str, Any] = {"color": SUMS["modified"][1], "alpha": 0.35}

@@ -1,7 +1,5 @@
 """Convergence of the SPH operators with the particle spacing: what the half volumes and the midpoints repair."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -14,8 +12,6 @@ from fracparticles.sph.integrals import METHODS
 from fracparticles.sph.norms import relative_l2
 from fracstudy.inputs import Inputs, Result
 from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
-
-__all__ = ["study"]
 
 # Side, operator, function and order: of the left-handed ones the worst functions, of the right-handed exp.
 _CASES = (

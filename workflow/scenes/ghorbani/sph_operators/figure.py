@@ -1,7 +1,5 @@
 """An SPH operator on the four functions: Figs. 3 to 9."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import entry, legend_below
 from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
-
-__all__ = ["figure"]
 
 _LEAST = 1e-9  # a smaller error, where a curve happens to cross zero, is not drawn
 _HOLLOW: dict[str, Any] = {

@@ -1,7 +1,5 @@
 """The SPH approximation of fractional operators: Figs. 3 to 9, and the repair of the integral."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from itertools import product
 from typing import Any, Literal
@@ -16,8 +14,6 @@ from fracparticles.sph.norms import r2_score, relative_l2
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
-
-__all__ = ["study"]
 
 _MARGIN = 5  # particles within 4 h, 4.4 s, of an end: their sums of sums see it
 

@@ -1,7 +1,5 @@
 """Secs. 3.1, 3.2: the kernel approximation of a function, its gradient and its integral, and their sums."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import sin
 
@@ -12,8 +10,6 @@ from fracparticles.sph.closed_forms import FUNCTIONS
 from fracparticles.sph.cubic_spline import spline, spline_gradient, spline_integral
 from fracstudy.findings import Finding, measured
 from scenes.ghorbani.operators import LABELS
-
-__all__ = ["findings"]
 
 _H, _POINT = 0.1, 0.7  # smoothing length, and the point where (11) and (13) are tried on cos x
 _PIECES = _H * np.array([-2.0, -1.0, 0.0, 1.0, 2.0])  # the spline is a polynomial between these

@@ -1,7 +1,5 @@
 """What the text leaves open about its sums, each choice changed in turn, and its equations as printed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -26,8 +24,6 @@ from scenes.ghorbani.operators import (
 )
 from scenes.ghorbani.sph_readings import kernel
 from scenes.ghorbani.sph_readings.sums import Reading, approximate
-
-__all__ = ["CASES", "READINGS", "study"]
 
 _OURS = Reading()
 READINGS = {

@@ -1,13 +1,9 @@
 """The cubic spline of Fig. 2, and its sums over the particles."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, note
-
-__all__ = ["figure"]
 
 # Label, colour and, in the first panel, place of the label.
 _KERNEL = {

@@ -1,7 +1,5 @@
 """The cubic spline of Fig. 2, and what it does on equally spaced particles."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -12,8 +10,6 @@ from fracparticles.sph.cubic_spline import SUPPORT, spline, spline_gradient, spl
 from fracparticles.sph.derivatives import correction
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["kernel_sums", "study"]
 
 _RADII = (0.0, 0.5, 1.0, 1.5, 2.0)
 _PIECES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])  # the spline is a polynomial between these

@@ -1,7 +1,5 @@
 """Markers per eps, the best eps, the parts of the error, and a field that turns negative."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,8 +8,6 @@ from fracstudy.panels import pick
 from fracstudy.style import name_ticks, note
 from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, four_panels, symbol
 from scenes.lewandowski.square_profile import LOADINGS, SquareRuns
-
-__all__ = ["figure"]
 
 _MARKERS = {"S1": "s", "S2": "D", "S3": "v", "S4": "o", "S8": "^"}
 _RED = "#D55E00"

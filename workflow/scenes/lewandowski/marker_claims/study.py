@@ -1,7 +1,5 @@
 """Sections 2.1, 2.3 and 2.4: markers per eps, the error law (19), position errors, and the denominator of (7)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -23,8 +21,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.lewandowski.square_profile import LOADINGS, SQUARE, SquareRuns, Trace, load
-
-__all__ = ["study"]
 
 _NEAR = ("midpoints", "random")
 _COLUMNS = ["what", "S", "loading", "at", "ours", "predicted"]

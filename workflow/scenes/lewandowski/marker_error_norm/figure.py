@@ -1,7 +1,5 @@
 """Figs. 14-16: the error norm."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, entry, legend_below, name_ticks, note
 from scenes.lewandowski.marker_style import LOADING_LOOKS, draw, symbol
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

@@ -1,7 +1,5 @@
 """Figs. 14-16: the error norm E(t) of the square profile with S4, S7 and S8."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -19,8 +17,6 @@ from scenes.lewandowski.square_profile import (
     Trace,
     delay,
 )
-
-__all__ = ["study"]
 
 _LINEAR = 0.95  # correlation of E with t
 

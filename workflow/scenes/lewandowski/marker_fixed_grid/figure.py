@@ -1,15 +1,11 @@
 """Figs. 8-10: F on the fixed grid."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import entry, legend_below
 from scenes.lewandowski import marker_style as look
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

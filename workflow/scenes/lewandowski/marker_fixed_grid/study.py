@@ -1,15 +1,11 @@
 """Figs. 8-10: the square profile with S4, S7 and S8 on the fixed grid, and its wiggles."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.lewandowski.square_profile import INFINITE, SHAPES, SquareRuns, Starts
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int) -> Result:

@@ -1,7 +1,5 @@
 """Why markers cluster, and the time step."""
 
-from __future__ import annotations
-
 from itertools import cycle
 
 import pandas as pd
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, entry, legend_below, name_ticks, note
 from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
-
-__all__ = ["figure"]
 
 _HOLLOW = {"marker": "o", "markerfacecolor": "white", "linestyle": ""}
 

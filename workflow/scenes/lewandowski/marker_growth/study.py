@@ -1,7 +1,5 @@
 """The time step, and what perturbations of equally spaced markers do: -k^2 S^(k) against runs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,8 +13,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.lewandowski.square_profile import INFINITE, SquareRuns
-
-__all__ = ["study"]
 
 
 def study(

@@ -1,14 +1,10 @@
 """Figs. 1-4: the initial loading."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from scenes.lewandowski.marker_style import EXACT, SHAPE_COLOURS, draw
-
-__all__ = ["figure"]
 
 _LOADINGS = {
     "uniform": ("uniform", "#0072B2", ":"),

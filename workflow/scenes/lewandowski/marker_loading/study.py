@@ -1,7 +1,5 @@
 """Figs. 1-4: x exp(-x^2) by 32 markers, uniform and of equal weight, for every x_0 that the figures may mean."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -18,8 +16,6 @@ from fracparticles.markers import (
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _POINTS = 801
 # Figure: shape function, factor of the support parameter, factor of the number of markers.

@@ -1,7 +1,5 @@
 """Figs. 11-13: F on the moving grid of the markers, and their spectrum."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,6 @@ from matplotlib.figure import Figure
 from fracstudy.panels import pick
 from fracstudy.style import entry, legend_below, note
 from scenes.lewandowski import marker_style as look
-
-__all__ = ["figure"]
 
 _REPRESENTED = {"color": "0.55", "linewidth": 0.9}
 

@@ -1,7 +1,5 @@
 """Figs. 11-13: F at the markers, their clusters, and what represents f there."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -21,8 +19,6 @@ from scenes.lewandowski.square_profile import (
     Trace,
     shape,
 )
-
-__all__ = ["study"]
 
 _K = np.linspace(3.0, 12.0, 181)  # eps q of the spectra
 _CLUSTER = ("S4", "S7")

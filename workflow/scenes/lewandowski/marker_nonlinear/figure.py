@@ -1,7 +1,5 @@
 """Nonlinear diffusion by markers, Figs. 17 and 18, with the limit of the step and the equation's own solution."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,6 @@ from matplotlib.figure import Figure
 from fracstudy.panels import pick
 from fracstudy.style import name_ticks, note, slope_triangle
 from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels
-
-__all__ = ["figure"]
 
 _BLUE, _RED, _GREEN, _PINK, _ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
 _SMALL: dict[str, Any] = {"fontsize": 7.5}

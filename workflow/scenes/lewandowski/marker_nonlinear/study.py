@@ -1,11 +1,9 @@
 """Nonlinear diffusion with a source by markers, Sec. 3, Figs. 17 and 18: as printed, and at a stable step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pandas as pd
@@ -19,8 +17,6 @@ from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["Evolution", "Markers", "study"]
 
 _MARGIN = 1.5  # of the stability interval, for what the linear limit leaves out
 # A scanned step is stable if F is that close to f_inf, the runs that are not are far off.
@@ -86,7 +82,7 @@ class Evolution:
         """The markers at the time kept nearest to t."""
         return self.positions[int(np.argmin(np.abs(np.array(self.times) - t)))]
 
-    def to(self, until: float, keep: Iterable[float] = ()) -> Evolution:
+    def to(self, until: float, keep: Iterable[float] = ()) -> Self:
         """Run, and keep the markers at these times, at the end, and where the run stops."""
         wanted = np.sort([t for t in {*keep, until} if t <= until * (1.0 + 1e-9)])
         x, weights, velocity = self.markers.x, self.markers.weights, self.markers.velocity()

@@ -1,7 +1,5 @@
 """Loading in the plane: the markers of three loadings, and their errors."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 from fracstudy.panels import pick
 from fracstudy.style import axes_row
 from scenes.lewandowski.marker_style import EXACT, draw
-
-__all__ = ["figure"]
 
 _LOOKS = {
     "decoupled": ("#D55E00", "o"),

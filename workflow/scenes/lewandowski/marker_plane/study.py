@@ -1,7 +1,5 @@
 """Loading markers in the plane by decoupled marginals, Sec. 2.2."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -13,8 +11,6 @@ from fracparticles.markers.plane import TwoBlobs, decoupled, reconstruct, sequen
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels, pick
-
-__all__ = ["study"]
 
 Loading = tuple[np.ndarray, np.ndarray, np.ndarray]
 

@@ -1,7 +1,5 @@
 """The shape functions and their Fourier transforms."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -11,8 +9,6 @@ from fracstudy.panels import pick
 from fracstudy.style import axes_row, legend_below, note
 from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
 from scenes.lewandowski.square_profile import SHAPES
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, wavenumbers: float) -> Figure:

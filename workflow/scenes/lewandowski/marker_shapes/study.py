@@ -1,7 +1,5 @@
 """The shape functions S1 to S8: their constants, moments, smoothness and Fourier transforms."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,8 +10,6 @@ from fracparticles.markers.stability import extremes
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _SEARCHED = 30.0  # the largest k that is looked at for the largest growth
 _CONSTANTS = {"S5": "mu", "S6": "beta", "S7": "alpha"}  # what a shape function's own is called

@@ -1,7 +1,5 @@
 """Figs. 5-7: the square profile with a small, a large and an intermediate support parameter."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,8 +13,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.lewandowski.square_profile import LOADINGS, SQUARE, SquareRuns, Trace, delay
-
-__all__ = ["study"]
 
 _COARSE = 1.0  # the half-width of the square: what "large scale features" are
 

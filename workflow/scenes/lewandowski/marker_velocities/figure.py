@@ -1,7 +1,5 @@
 """Burgers, Korteweg-de Vries and a source by one marker solver."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 from fracstudy.panels import pick
 from fracstudy.style import legend_below, name_ticks, note, slope_triangle
 from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels
-
-__all__ = ["figure"]
 
 _BLUE, _RED, _GREEN, _PINK, _SKY, _ORANGE = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00",

@@ -1,7 +1,5 @@
 """One marker solver for other equations, Secs. 2.1 and 4: Burgers, Korteweg-de Vries, a source."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -25,8 +23,6 @@ from fracparticles.markers.source import GaussianSource, advance_weights, source
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["kdv_residual", "study"]
 
 _STEP = 1e-3  # of difference quotients
 _SOURCES = {

@@ -1,7 +1,5 @@
 """The change of the total strength over time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,8 +7,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, log_log, name_ticks, note, scheme_style
-
-__all__ = ["figure"]
 
 _FLOOR = float(np.finfo(float).eps) / 2.0  # a change of zero is drawn here
 _OUTFLOW: dict[str, Any] = {"color": "black", "linewidth": 4.0, "alpha": 0.25}

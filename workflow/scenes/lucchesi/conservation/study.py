@@ -1,7 +1,5 @@
 """Total strength over time, Eq. (18): which schemes keep it, and what the others lose."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -14,8 +12,6 @@ from fracparticles.schemes.base import OnePass
 from fracparticles.special.stable import central_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study", "weight_sum"]
 
 _REMESHINGS = "M4'", "Lambda3"  # the interpolation functions of the paper's time
 

@@ -1,7 +1,5 @@
 """The stability of DVM and GPSE against the limit of DD."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, MARKERS, axes_row, log_log, name_ticks, panel_title
-
-__all__ = ["figure"]
 
 _STOPPED = 3.0  # where the marks of runs that stop are drawn
 _DVM: dict[str, Any] = {"color": COLOURS["DVM"], "marker": MARKERS["DVM"]}

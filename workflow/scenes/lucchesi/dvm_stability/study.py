@@ -7,8 +7,6 @@ the rate -D |k|^alpha eta^(k epsilon) xi, which is DD's symbol: a midpoint step 
 z = dt A_DD(k h), and that exceeds one where D dt / h^alpha exceeds DD's limit a.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -28,8 +26,6 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["displacement_growth", "gpse_factors", "study", "worst_wave"]
 
 _STEPS = 3  # of which a measured growth is the mean
 _XI = 1e-5  # displacement of a wave, in spacings: its square is what linearity neglects

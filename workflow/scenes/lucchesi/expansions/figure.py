@@ -1,7 +1,5 @@
 """Figs A.10-A.12: the reduced Green's function and its two representations."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl
@@ -10,8 +8,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, axes_row, entry, legend_below, log_log
-
-__all__ = ["figure"]
 
 _FLOOR = 2.0**-54  # where errors of zero are drawn
 _CEILING = 1e6  # above both panels, below where the axes would overflow

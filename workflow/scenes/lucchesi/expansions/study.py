@@ -1,9 +1,7 @@
 """Figs A.10-A.12: how far the series (A.1) and the asymptotic expansion (A.2) of the Green's function reach."""
 
-from __future__ import annotations
-
 from math import log, pi
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 import pandas as pd
@@ -12,8 +10,6 @@ from scipy.special import gammaln
 from fracparticles.special import green_asymptotic, green_series, reduced_green
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 _TOLERANCES = (1e-3, 1e-6)
 _X = np.geomspace(1e-2, 1e7, 9001)
@@ -123,7 +119,7 @@ class _Reach(NamedTuple):
     expansion: pd.Series
 
     @classmethod
-    def of(cls, table: pd.DataFrame, tolerance: str) -> _Reach:
+    def of(cls, table: pd.DataFrame, tolerance: str) -> Self:
         reach, start = table[f"series to x ({tolerance})"], table[f"expansion from x ({tolerance})"]
         return cls(
             reach.iloc[: max(int(reach.idxmax()), 1) + 1],

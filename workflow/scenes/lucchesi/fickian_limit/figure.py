@@ -1,7 +1,5 @@
 """The Fickian limit of the single expression (35)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, entry, legend_below, log_log, name_ticks, note, slope_triangle
-
-__all__ = ["figure"]
 
 _LINES = {2: ("-", "order II"), 4: ("--", "order IV")}
 

@@ -1,7 +1,5 @@
 """The Fickian limit: the single expression (35), K -> Phi as alpha -> 2, and the moments of both."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import gamma, pi, sqrt
 
@@ -18,8 +16,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import Panels
-
-__all__ = ["decade_moments", "fickian_error", "heat_kernel", "kernel_distance", "study"]
 
 NEEDS = {"scheme": ["KPSE"], "order": [2, 4]}
 

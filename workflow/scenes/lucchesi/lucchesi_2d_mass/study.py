@@ -1,7 +1,5 @@
 """Where the mass goes in two dimensions, Sec. 5: what the truncation leaves out, and what DD loses."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,6 @@ from fracparticles.special.stable import tail_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from scenes.plane import particles_per_side
-
-__all__ = ["study"]
 
 NEEDS: dict[str, list[Any]] = {"scheme": ["DD"], "dim": [1, 2], "exterior": ["truncated"]}
 

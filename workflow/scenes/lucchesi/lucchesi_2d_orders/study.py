@@ -1,7 +1,5 @@
 """Order of self-convergence (49) in two dimensions, Sec. 5, in every reading of the printed numbers."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -12,8 +10,6 @@ from fracparticles.run.orders import self_convergence_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from scenes.plane import DISK, particles_per_side, stored_field
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["DD", "FPSE"]}
 

@@ -1,14 +1,10 @@
 """The errors of DD and FPSE with exact kernels and with kernels from tables."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, axes_row, panel_title, scheme_style, slope_triangle
 from scenes.plane import spacing_axes
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

@@ -1,7 +1,5 @@
 """Kernels interpolated in tables, the remark of Sec. 5: what the step of the table does to DD and FPSE."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -15,8 +13,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from scenes.plane import particles_per_side
-
-__all__ = ["spurious_rate", "study"]
 
 _KERNELS = {"DD": "G", "FPSE": "F"}
 NEEDS: dict[str, list[Any]] = {"scheme": list(_KERNELS), "kernel_table": [None]}

@@ -1,14 +1,10 @@
 """Phi_2 over Phi_2(0) beside Phi_1, near and far, and three other ways to compute it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, log_log, note
-
-__all__ = ["figure"]
 
 _FLOOR = 2.0**-53  # where smaller deviations are drawn
 # By dimension: colour, name, and the power of the tail, with the side of the curve that it is named on.

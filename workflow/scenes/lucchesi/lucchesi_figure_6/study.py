@@ -1,7 +1,5 @@
 """The fundamental solution in two dimensions, (57), (58), Fig. 6."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import pi
 
@@ -13,8 +11,6 @@ from fracparticles.special.plane import planar_asymptotic, planar_integral, plan
 from fracparticles.special.stable import reduced_green, tail_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["fractional_laplacian", "study"]
 
 _STEP = 1e-2  # in time, of differences of sixth order
 # Of the quadrature of (4): radii around a point, and numbers of radii and angles.

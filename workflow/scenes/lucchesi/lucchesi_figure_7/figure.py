@@ -1,7 +1,5 @@
 """Flux and rates along y = 0 on the printed lattices, and how fast they converge."""
 
-from __future__ import annotations
-
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import panel_title, scheme_style, slope_triangle
 from scenes.plane import spacing_axes
-
-__all__ = ["figure"]
 
 _RATE = r"$\Delta^\alpha u(r, t = {time:g})$"
 # Panel, by quantity: its title, what is on the axis, the colours, and the place of the legend.

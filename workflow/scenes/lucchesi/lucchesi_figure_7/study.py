@@ -1,7 +1,5 @@
 """Radial flux and diffusion rate of the initial condition in two dimensions, Fig. 7."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -16,8 +14,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from scenes.plane import DISK
-
-__all__ = ["flux_along_axis", "study"]
 
 _ERROR, _ORDER = "largest error / largest value, r <= 5", "observed order"
 _QUANTITIES = {

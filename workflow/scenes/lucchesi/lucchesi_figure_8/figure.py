@@ -1,7 +1,5 @@
 """The solution along two lines, and its error, truncated and open."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import entry, legend_below, note, panel_title, scheme_style
 from scenes.plane import DISK
-
-__all__ = ["figure"]
 
 _EXACT: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 _NOTE = {

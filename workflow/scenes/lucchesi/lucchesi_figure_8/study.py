@@ -1,7 +1,5 @@
 """Profiles along y = 0 and y = x in two dimensions, Fig. 8, and what the truncation does to them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from fracparticles.special.stable import green
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from scenes.plane import DISK
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["DD", "FPSE"], "exterior": ["truncated", "open"]}
 

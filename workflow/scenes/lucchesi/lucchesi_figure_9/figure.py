@@ -1,7 +1,5 @@
 """Error (59) against the particle spacing: the paper's runs, and all schemes."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 
@@ -19,8 +17,6 @@ from fracstudy.style import (
     slope_triangle,
 )
 from scenes.plane import spacing_axes
-
-__all__ = ["figure"]
 
 _PAPER = ("DD", "FPSE")
 _SCHEMES = ("DD", "FPSE", "KPSE", "GPSE")

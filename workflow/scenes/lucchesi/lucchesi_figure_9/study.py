@@ -1,7 +1,5 @@
 """Error (59) in two dimensions against the particle spacing, Fig. 9, and what the truncation adds to it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
 from scenes.plane import DISK, particles_per_side, stored_field
-
-__all__ = ["study"]
 
 _PAPER = ["DD", "FPSE"]
 NEEDS: dict[str, list[Any]] = {"scheme": _PAPER, "dim": [1, 2], "exterior": ["truncated", "open"]}

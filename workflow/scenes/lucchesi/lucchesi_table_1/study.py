@@ -1,7 +1,5 @@
 """Table 1: the schemes, each held against the paper's own sum over all pairs of particles."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import cos, gamma, pi
 
@@ -16,8 +14,6 @@ from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special.stable import green
 from fracstudy.findings import measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["PAIR_SUMS", "consistency_order", "diffusion_velocity", "study", "velocity_order"]
 
 # A sum of N terms, of which the largest are some 1e3 times the result: N 1e3 roundings of 1e-16.
 _ROUND_OFF = 1e-11

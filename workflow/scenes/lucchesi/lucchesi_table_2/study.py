@@ -1,7 +1,5 @@
 """Order of self-convergence in space, Eq. (49), Table 2."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from typing import Any
 
@@ -14,8 +12,6 @@ from fracparticles.run.strengths import lattice_strengths
 from fracparticles.special.stable import green, mean_radius
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result
-
-__all__ = ["self_convergence_order", "study"]
 
 # The print does not say which of the three levels its h is, nor over which particles (49) sums.
 _READINGS = {"middle": 1, "coarse": 0, "fine": 2}

@@ -1,7 +1,5 @@
 """The stability limit against beta and the symbols behind it (Table 3)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,8 +7,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, MARKERS, axes_row, entry, legend_below, note
-
-__all__ = ["figure"]
 
 _LINES: dict[str, Any] = {"II": "-", "IV": "--"}
 _ABOVE = {"FPSE": 0.45, "DD": 0.2, "KPSE": 0.2}  # where the name of a scheme stands over its curve

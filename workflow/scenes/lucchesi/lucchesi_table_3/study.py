@@ -1,7 +1,5 @@
 """Table 3: the stability limit, the spectrum behind it, and whether (54) is the criterion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -18,8 +16,6 @@ from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.criteria import judge_value
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
 
 _SCHEMES = ("DD", "FPSE", "KPSE")
 _STEPS = ("euler", "rk2")

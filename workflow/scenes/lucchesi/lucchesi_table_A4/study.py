@@ -1,7 +1,5 @@
 """Table A.4: the mean radius R_alpha in closed form, and by the paper's sums (A.5), (A.7), (A.8)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from math import log, pi
 from typing import NamedTuple
@@ -14,8 +12,6 @@ from scipy.special import gammaln, roots_legendre
 from fracparticles.special import mean_radius, reduced_green
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["SplitRadius", "inner_moment", "outer_moment", "split_radius", "study"]
 
 _ROUNDING = 2.0**-53
 _TERM_ROUNDING = 100.0 * _ROUNDING  # of a term whose logarithm is a sum of some hundreds

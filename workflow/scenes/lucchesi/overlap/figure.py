@@ -1,7 +1,5 @@
 """Error (48) against the overlap epsilon / h."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import name_ticks, note, scheme_legend, slope_triangle
 from scenes.lucchesi.exteriors import exterior_panels
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown_beta: float) -> Figure:

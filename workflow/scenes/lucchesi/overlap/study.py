@@ -1,7 +1,5 @@
 """Effect of the smoothing length: error (48) against epsilon / h at fixed h, Sec. 4.3 (not shown there)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
@@ -11,8 +9,6 @@ from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result
-
-__all__ = ["study"]
 
 NEEDS = {"exterior": ["truncated", "open"]}
 

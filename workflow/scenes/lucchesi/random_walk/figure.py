@@ -1,7 +1,5 @@
 """The random walk beside the particle schemes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, MARKERS, axes_row, log_log, note, slope_triangle
-
-__all__ = ["figure"]
 
 _GREEN = COLOURS["KPSE"]
 _WALKERS = (("#E69F00", 3.0, -2), ("#0072B2", 2.0, -26))  # colour, size of a dot, drop of the note

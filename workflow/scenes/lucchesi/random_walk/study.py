@@ -1,7 +1,5 @@
 """The random walk beside the particle schemes, Sec. 4.1 (asserted there after Ref. [14], not shown)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -23,8 +21,6 @@ from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
 from fracparticles.special.stable import green, mean_radius, tail_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["KPSE"], "order": [4], "exterior": ["truncated", "open"]}
 

@@ -1,7 +1,5 @@
 """Why the scheme (29) is unstable."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, log_log, note, panel_title, scheme_style
-
-__all__ = ["figure"]
 
 _COLOUR = "#D55E00"  # of the scheme
 _SHADES = ("#F0A868", "#E58338", "#C65A11", "#8A3A05")  # one hue, light to dark

@@ -1,7 +1,5 @@
 """The scheme of Eq. (29), which the paper rejects for its instability: eigenvalues above zero, runs that grow."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -20,8 +18,6 @@ from fracparticles.special.stable import green
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["PSE29", "DD"]}
 

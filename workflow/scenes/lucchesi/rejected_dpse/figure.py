@@ -1,7 +1,5 @@
 """What the end of the lattice does to DPSE, and to the others."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, legend_below, log_log, panel_title, scheme_style
-
-__all__ = ["figure"]
 
 _SCALE = 1e4
 _DISTANCE = r"distance from the end, $(D - x) / \epsilon$"

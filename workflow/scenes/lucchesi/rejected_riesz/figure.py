@@ -1,7 +1,5 @@
 """How badly the cut-off potential approximates flux and solution."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, entry, legend_below, log_log, note, panel_title, scheme_style
-
-__all__ = ["figure"]
 
 _EXACT: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 _PROFILE: dict[str, dict[str, Any]] = {

@@ -1,7 +1,5 @@
 """The cut-off Riesz potential, which the paper rejects without showing why, and the flux from it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
@@ -13,8 +11,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["RIESZ", "KPSE"]}
 

@@ -1,7 +1,5 @@
 """Figs. 3b, 4b, 5b: error (48) against the particle spacing h."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import COLOURS, entry, scheme_legend, slope_triangle
 from scenes.lucchesi.exteriors import exterior_panels
-
-__all__ = ["figure"]
 
 _RING: dict[str, Any] = {
     "linestyle": "none",

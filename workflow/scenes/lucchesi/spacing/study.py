@@ -1,7 +1,5 @@
 """Effect of the particle spacing: error (48) against h, Figs. 3b, 4b, 5b."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -10,8 +8,6 @@ import pandas as pd
 from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result
-
-__all__ = ["settled", "study"]
 
 NEEDS: dict[str, list] = {
     "exterior": ["truncated", "open"],

@@ -1,7 +1,5 @@
 """What Sec. 4.3 concludes from Figs. 3b, 4b and 5b, all beta together, and Sec. 6 of the domain that this takes."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from typing import Any
@@ -18,8 +16,6 @@ from fracparticles.run.solver import compute
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from scenes.lucchesi.spacing.study import settled
-
-__all__ = ["study"]
 
 _FAR = 6.0  # epsilon: what is farther away is not nearby
 

@@ -1,7 +1,5 @@
 """Error in time against the time step."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -17,8 +15,6 @@ from fracstudy.style import (
     scheme_style,
     slope_triangle,
 )
-
-__all__ = ["figure"]
 
 _SIZES = (8.0, 5.5, 3.5)
 _INTEGRATORS: dict[str, tuple[str, Any, int]] = {

@@ -1,7 +1,5 @@
 """Order of self-convergence in time, Eq. (49), Sec. 4.3 (not shown there)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
@@ -9,8 +7,6 @@ from fracparticles.run.dataset import read_run
 from fracparticles.run.orders import observed_order, self_convergence_order
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 NEEDS = {"integrator": ["exponential"]}
 

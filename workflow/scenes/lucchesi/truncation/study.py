@@ -1,7 +1,5 @@
 """Effect of the domain truncation: error (48) against C, Figs. 3a, 4a, 5a."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -10,8 +8,6 @@ import pandas as pd
 from fracparticles.special.tails import exchange_truncation_error
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import NUMERALS, Inputs, Result
-
-__all__ = ["study"]
 
 NEEDS = {"exterior": ["truncated", "open"]}
 

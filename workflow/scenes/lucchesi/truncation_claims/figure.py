@@ -1,7 +1,5 @@
 """Sec. 4.2: the truncation errors of KPSE and GPSE on the closed form."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -18,8 +16,6 @@ from fracstudy.style import (
     scheme_style,
 )
 from scenes.lucchesi.exteriors import ERROR
-
-__all__ = ["figure"]
 
 _SHOWN = {"KPSE II": ("KPSE", "II"), "KPSE IV": ("KPSE", "IV"), "GPSE": ("GPSE", "II")}
 _PREDICTED: dict[str, Any] = {"color": "0.6", "linewidth": 4}

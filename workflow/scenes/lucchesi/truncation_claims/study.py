@@ -1,7 +1,5 @@
 """What Sec. 4.2 concludes from Figs. 3a, 4a and 5a, all beta together."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -11,8 +9,6 @@ from fracparticles.run.orders import observed_order
 from fracparticles.special.stable import mean_radius
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
 
 _KEY = ["scheme", "order", "beta"]
 _NAMES = {

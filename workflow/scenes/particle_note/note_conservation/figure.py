@@ -1,7 +1,5 @@
 """Particle strength exchange on particles anywhere."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, legend_below, log_log, name_ticks, note, slope_triangle
-
-__all__ = ["figure"]
 
 _BLUE = "#0072B2"
 _LOOKS: dict[str, dict[str, Any]] = {

@@ -1,7 +1,5 @@
 """Particle strength exchange (26) on particles anywhere (Sec. 3): what it conserves, and what irregularity costs."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 
@@ -29,8 +27,6 @@ from scenes.particle_note.waves import (
     heat_second,
     second_derivative_error,
 )
-
-__all__ = ["study"]
 
 _EPS = float(np.finfo(float).eps)
 _START = 0.5

@@ -1,7 +1,5 @@
 """The error law of the note, its two terms apart and together."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, log_log, name_ticks, note, slope_triangle
 from scenes.particle_note.waves import LINES
-
-__all__ = ["figure"]
 
 _DERIVATIVES = {0: "*", 1: "s", 2: "o", 3: "^", 4: "D"}
 _BY_SPACING = ("#0072B2", "#009E73", "#E69F00", "#D55E00")

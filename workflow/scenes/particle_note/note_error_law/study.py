@@ -1,7 +1,5 @@
 """The error law of the lecture note, C_1 eps^r + C_2 (h/eps)^m (Sec. 2.2), its two terms measured one by one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
@@ -27,8 +25,6 @@ from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from scenes.particle_note.waves import wave
-
-__all__ = ["study"]
 
 
 def study(

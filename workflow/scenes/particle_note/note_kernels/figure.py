@@ -1,14 +1,10 @@
 """Kernels from moment conditions."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, legend_below, panel_title
 from scenes.particle_note.waves import LINES
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[int]) -> Figure:

@@ -1,7 +1,5 @@
 """Kernels from moment conditions (Sec. 2.2, 2.3 of the lecture note)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from math import factorial
@@ -26,8 +24,6 @@ from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from scenes.particle_note.waves import Skewed, second_derivative_error
-
-__all__ = ["study"]
 
 _HIGHEST = 12  # the moments that "for all k > 3" is checked up to
 _DEGREE = 8  # of the polynomials that (15) is tried on

@@ -1,7 +1,5 @@
 """Fig. 2 of the note: the kernel (27) for a lattice, and other stencils."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, log_log, name_ticks, note, slope_triangle
 from scenes.particle_note.waves import LINES
-
-__all__ = ["figure"]
 
 _BLUE, _RED = LINES[2]["color"], LINES[4]["color"]
 _LOOKS: dict[str, dict[str, Any]] = {

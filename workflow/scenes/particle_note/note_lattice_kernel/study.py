@@ -1,7 +1,5 @@
 """The lattice kernel (27) of the lecture note (Sec. 3.1), and the finite differences that discrete moments give."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
@@ -31,8 +29,6 @@ from scenes.particle_note.waves import (
     heat_second,
     second_derivative_error,
 )
-
-__all__ = ["SCHEMES", "study"]
 
 _EPS = float(np.finfo(float).eps)
 _WANTED = required_moments(2, 2)[2]

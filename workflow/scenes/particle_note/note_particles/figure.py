@@ -1,7 +1,5 @@
 """Fig. 1 of the note: a function by point particles and by smooth ones."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,8 +7,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, panel_title
-
-__all__ = ["figure"]
 
 _POINTS, _SUM = "#0072B2", "#D55E00"
 _ONE: dict[str, Any] = {"color": "#56B4E9", "linewidth": 0.8}

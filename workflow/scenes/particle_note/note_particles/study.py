@@ -1,7 +1,5 @@
 """Fig. 1 of the lecture note "Particle Approximations": point and smooth particles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from fractions import Fraction
 
@@ -12,8 +10,6 @@ from fracparticles.pse import GaussianKernel, cell_volumes, lattice, reconstruct
 from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 _SMALL = 1e-4  # a radius that stands for zero
 _UNIT = GaussianKernel((Fraction(1),))  # exp(-z^2), of unit mass
