@@ -10,7 +10,12 @@ import pandas as pd
 from fracparticles.run.orders import observed_order
 from fracstudy.inputs import ORDERS
 
-__all__ = ["orders_by", "orders_of"]
+__all__ = ["observed", "orders_by", "orders_of"]
+
+
+def observed(h: Sequence[float], errors: Sequence[float]) -> list[float]:
+    """Return for each level the observed order between it and the one before; nan for the first."""
+    return [np.nan, *observed_order(h, errors)]
 
 
 def orders_by(table: pd.DataFrame, by: str | Sequence[str], error: str, h: str = "h") -> pd.Series:

@@ -33,6 +33,7 @@ __all__ = [
     "SKY",
     "UNDERLAID",
     "axes_row",
+    "curves",
     "draw",
     "entry",
     "guide",
@@ -63,6 +64,7 @@ UNDERLAID: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 """The exact solution, below what is computed."""
 ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 
+_CURVES = "osD^vPX"
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -90,6 +92,15 @@ def axes_row(
 def draw(ax: Axes, points: pd.DataFrame, *line: str, **style: Any) -> None:
     """Draw y against x."""
     ax.plot(points["x"], points["y"], *line, **style)
+
+
+def curves(
+    ax: Axes, points: pd.DataFrame, *line: str, name: str | None = "{}", **style: Any
+) -> None:
+    """Draw a curve for each series, in their order, with a colour and a marker of its own; `name` makes its label."""
+    for k, (series, own) in enumerate(points.groupby("series", sort=False)):
+        label = name and name.format(series)
+        draw(ax, own, *line, **{"color": f"C{k}", "marker": _CURVES[k], "label": label, **style})
 
 
 def panel_title(ax: Axes, letter: str, text: str) -> None:

@@ -1,11 +1,7 @@
 """What the trials of the races say: who is fastest with an error, who is on the front."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
-
-__all__ = ["TIMES", "best", "duration", "front", "trials_of"]
 
 TIMES = {
     "total_time": "time of one solve with set-up / s",

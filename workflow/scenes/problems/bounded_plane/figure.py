@@ -1,7 +1,5 @@
 """Eigenvalues of the disc and the square, decay in the disc, and the box of truncated schemes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import COLOURS, MARKERS, axes_row, log_log, name_ticks, panel_title
-
-__all__ = ["figure"]
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73")
 _MARKERS = "osD"

@@ -1,7 +1,5 @@
 """A disc against closed forms and a spectral method, a square by refinement, and the box of truncated schemes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import gamma
 from typing import Any
@@ -17,8 +15,6 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.setting import Setting
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 
 def study(

@@ -1,15 +1,11 @@
 """Errors on the interval and in the plane, and a bump that is carried."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, log_log, name_ticks, panel_title, slope_triangle
-
-__all__ = ["figure"]
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73")
 _MARKERS = "osD"

@@ -16,8 +16,6 @@ from fracparticles.variable.closed_forms import Cauchy
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
-__all__ = ["study"]
-
 _COLUMNS = [
     "domain", "problem", "exterior", "alpha", "particles", "error", "mean error", "observed order", "of theory",
     "drift of the total",

@@ -1,14 +1,10 @@
 """Errors of the plane and the line against the spacing."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, log_log, name_ticks, panel_title
-
-__all__ = ["figure"]
 
 _TITLES = {
     "none, open": "open, not remeshed",

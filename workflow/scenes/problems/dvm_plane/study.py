@@ -1,7 +1,5 @@
 """The error of DVM in the plane and on the line at the same h, with remeshing and without."""
 
-from __future__ import annotations
-
 import warnings
 from typing import Any
 
@@ -15,8 +13,6 @@ from fracparticles.run.orders import observed_order
 from fracparticles.special.stable import green
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _STEP = 0.5  # D dt / h^alpha
 _WAYS = (

@@ -1,7 +1,5 @@
 """A front with a tail of a power of x, its rate, and what a digit costs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, guide, log_log, name_ticks, note, panel_title
-
-__all__ = ["figure"]
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
 _MARKERS = "osD^v"

@@ -1,7 +1,5 @@
 """Reactions and sources: the fractional Fisher-KPP front, decay, a manufactured source, blow-up."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from typing import Any
@@ -18,8 +16,6 @@ from fracparticles.special import green
 from fracparticles.variable.closed_forms import Gaussian
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["front", "study"]
 
 _LEVEL = 0.5  # of the front
 _DRAWN = 1.5  # the order whose front is drawn

@@ -1,7 +1,5 @@
 """A solution that stays stable, errors of two ways of transport, and a blob that turns."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, legend_below, log_log, name_ticks, panel_title
-
-__all__ = ["figure"]
 
 _TIMES = ("#56B4E9", "#009E73", "#E69F00", "#D55E00")
 _WAYS: dict[str, dict[str, Any]] = {

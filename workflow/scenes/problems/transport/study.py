@@ -1,7 +1,5 @@
 """Transport of fractional diffusion: on the lattice and by moving particles, on the line and in the plane."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -18,8 +16,6 @@ from fracparticles.special import green
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _THETA = 1.0  # of the linear field
 _SPREAD = 0.2  # diffusivity in the plane

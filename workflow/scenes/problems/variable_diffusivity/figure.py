@@ -1,7 +1,5 @@
 """Errors of the forms on the line and in the plane, and the two equations."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -23,8 +21,6 @@ from fracstudy.style import (
     panel_title,
     slope_triangle,
 )
-
-__all__ = ["figure"]
 
 _SCHEMES = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 

@@ -5,8 +5,6 @@ D = 1 + c u. The error is the greatest over the particles, over the greatest val
 tested is the operator alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -21,8 +19,6 @@ from fracparticles.variable import VariableDiffusivity
 from fracparticles.variable.closed_forms import Cauchy, Gaussian, KnownField, exchange_limit
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _FLUX, _MEAN = "div(D grad^beta u)", "(D L u + L(D u) - u L D) / 2"
 _RUN = "u_t = div(D grad^beta u) + f"

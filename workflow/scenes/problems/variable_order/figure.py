@@ -1,7 +1,5 @@
 """Errors against the spacing, the interpolation in the order, the tails of either end, and the exterior."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,6 @@ from matplotlib.ticker import MaxNLocator
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, log_log, name_ticks, panel_title, slope_triangle
-
-__all__ = ["figure"]
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
 _MARKERS = "osD^v"

@@ -4,8 +4,6 @@ alpha(x) = mean + change tanh(x) on the line, mean + change exp(-|x|^2) in the p
 particles, over the greatest value of the exact right-hand side.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -24,8 +22,6 @@ from fracparticles.variable.closed_forms import Cauchy, Gaussian
 from fracparticles.variable.order import interpolation_bound
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _ROWS = 60  # half the particles on which rows are compared with those of their own order
 _MOMENTS = 16  # intervals of time over which the mass is integrated

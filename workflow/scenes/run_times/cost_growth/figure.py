@@ -1,7 +1,5 @@
 """Run time and memory against the number of particles."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import zip_longest
 from typing import Any
@@ -22,8 +20,6 @@ from fracstudy.style import (
     scheme_style,
     slope_triangle,
 )
-
-__all__ = ["figure"]
 
 _SHAPES = {1: "lines", 2: "squares", 3: "cubes"}
 # The truncated points are hollow and larger, so that an open one that agrees fills it.

@@ -1,12 +1,8 @@
 """The first call of a fresh process."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs) -> Result:

@@ -19,8 +19,6 @@ from scenes.run_times.problem_times.two_widths import two_widths
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["CONTESTS", "benchmark"]
-
 CONTESTS: dict[str, Callable[[float], Contest]] = {
     "variable diffusivity": variable_diffusivity,
     "Ornstein-Uhlenbeck": drawn_back,

@@ -6,9 +6,7 @@ particles of `adaptive.splitting` do:
     half of the source (classical Runge-Kutta), exp(-t (-Laplacian)^(alpha/2)), half of the source.
 
 Fourier: the exponential is exact for each wave. When the narrow blob has doubled its width every other point goes, as
-long as there are enough for a width of one. With a velocity the steps are as short as its waves are fast; these are
-Lawson's, the classical Runge-Kutta scheme for exp(t k^alpha) u^. The velocity is mended beyond four fifths of the
-circle, so that it has no jump where the ends meet.
+long as there are enough for a width of one. With a velocity the steps are Lawson's, as short as its waves are fast.
 
 Linear elements on a mesh given once, zero beyond it: the exponential is by the eigenvectors of stiffness and mass.
 """
@@ -25,8 +23,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from scipy.linalg import eigh
 
 from scenes.run_times.problem_times.interval_peers import stiffness
-
-__all__ = ["Answer", "Circle", "State", "on_circle", "on_elements"]
+from scenes.run_times.problem_times.waves import lawson, mended
 
 # A time, the points then, u, and what the points stand for.
 State = tuple[float, np.ndarray, np.ndarray, np.ndarray | float]
@@ -36,8 +33,6 @@ Rate = Callable[[float, np.ndarray], np.ndarray]
 
 _MOST_STEPS = 6
 _PARTS = 2  # of the Runge-Kutta scheme in each half of a step
-_STABLE = 2.5  # of the scheme's 2.8 on the imaginary axis
-_MENDED = 0.8  # of the half-width: where a velocity is still what it is
 
 
 @dataclass(frozen=True)
@@ -121,28 +116,16 @@ def _carried(
     share: float,
 ) -> np.ndarray:
     """Lawson's scheme in steps of at most a share of the time, and as the velocity allows."""
-    far = (np.abs(x - circle.middle) / circle.half_width - _MENDED) / (1.0 - _MENDED)
-    a = velocity(x) * 0.5 * (1.0 + np.cos(np.pi * np.clip(far, 0.0, 1.0)))
+    a = mended(velocity(x), np.abs(x - circle.middle) / circle.half_width)
     slope = -1j * k
     slope[-1] = 0.0  # the wave of two points has no slope at them
     fastest = float(np.abs(a).max() * k[-1])
-    steps = max(int(np.ceil(1.0 / share)), int(np.ceil(time * fastest / _STABLE)))
-    dt = time / steps
-    half = np.exp(-0.5 * dt * k**circle.alpha)
 
     def rate(waves: np.ndarray) -> np.ndarray:
         return np.asarray(slope * rfft(a * irfft(waves, x.size)))
 
-    waves = rfft(u)
-    for _ in range(steps):
-        first = rate(waves)
-        second = rate(half * (waves + 0.5 * dt * first))
-        third = rate(half * waves + 0.5 * dt * second)
-        fourth = rate(half * (half * waves + dt * third))
-        waves = (
-            half * (half * (waves + dt / 6.0 * first) + dt / 3.0 * (second + third))
-            + dt / 6.0 * fourth
-        )
+    least = int(np.ceil(1.0 / share))
+    waves = lawson(rate, k**circle.alpha, rfft(u), time, fastest, least)
     return np.asarray(irfft(waves, x.size))
 
 

@@ -1,7 +1,5 @@
 """Error against run time: a panel a problem, a line a contender."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -10,8 +8,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fracstudy.panels import pick
 from fracstudy.style import COLOURS, MARKERS, entry, legend_below, log_log, note_below, panel_title
-
-__all__ = ["figure"]
 
 _COLUMNS = 3
 _FLOOR = 1e-14  # errors below are drawn there

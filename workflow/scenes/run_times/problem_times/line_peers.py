@@ -21,8 +21,6 @@ The diffusion is D div grad^beta u + D' grad^beta u there: the flux itself falls
 hold badly, and its derivative worse.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import gamma
 
@@ -30,8 +28,6 @@ import numpy as np
 from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
 from scipy.integrate import solve_ivp
 from scipy.special import eval_laguerre, roots_genlaguerre
-
-__all__ = ["centred_weights", "differences", "integrated", "pseudo_spectral", "rational"]
 
 Field = Callable[[np.ndarray], np.ndarray]
 Rate = Callable[[float, np.ndarray], np.ndarray]

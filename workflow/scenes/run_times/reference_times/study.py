@@ -1,12 +1,8 @@
 """The reference problem: its run times as people read them."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
 
 # Column of the table -> that of the benchmark, and its unit in the table.
 _COLUMNS = {

@@ -1,12 +1,8 @@
 """Sums over scattered particles: the times of both ways as people read them."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs) -> Result:

@@ -1,12 +1,8 @@
 """The fundamental solution: the times of an evaluation as people read them."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs) -> Result:

@@ -19,8 +19,6 @@ from fracstudy.race.problems.fundamental import Fundamental
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 _STEP = 0.001
 _LABELS = {"method": "method", "dim": "number of dimensions"}
 _VARIABLES = {

@@ -1,12 +1,8 @@
 """The time of a step where the operator changes, or the particles move."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs) -> Result:

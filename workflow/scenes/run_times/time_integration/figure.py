@@ -1,7 +1,5 @@
 """Error of the time integration against run time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fracstudy.style import axes_row, legend_below, log_log, note, note_below, slope_triangle
-
-__all__ = ["figure"]
 
 # Colours of Okabe & Ito again: no scheme has a curve here, one panel is one operator.
 _LINES: dict[str, dict[str, Any]] = {

@@ -1,13 +1,9 @@
 """One operator, every time integrator: what a digit costs in time and in operator applications."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
-
-__all__ = ["study"]
 
 _SERIES = "Chebyshev series"  # what the others are compared with
 

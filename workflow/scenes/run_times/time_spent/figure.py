@@ -1,7 +1,5 @@
 """Shares of the parts of set-up and solve."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,6 @@ from matplotlib.patches import Patch
 
 from fracstudy.style import legend_below, note, note_below, panel_title
 from scenes.run_times.contests import duration
-
-__all__ = ["figure"]
 
 # Colours of Okabe & Ito, in which no scheme has a bar here; what is not taken apart further is grey.
 _COLOURS = {

@@ -1,13 +1,9 @@
 """Where the time of a run goes: the parts of its set-up and of its solve."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
-
-__all__ = ["PARTS", "study"]
 
 # Columns of the benchmark: what is taken apart -> its parts, in the order in which they are drawn.
 PARTS = {

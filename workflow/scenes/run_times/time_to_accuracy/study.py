@@ -1,13 +1,9 @@
 """The least time to an error: who comes in first, second and third."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from scenes.run_times.contests import best, trials_of
-
-__all__ = ["study"]
 
 _PLACES = ("first", "second", "third")
 

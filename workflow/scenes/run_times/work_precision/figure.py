@@ -1,7 +1,5 @@
 """Error against run time: the front of each contender, a row for each problem, a column for each beta."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,8 +13,6 @@ from fracstudy.race.contenders import CONTENDERS
 from fracstudy.race.problems import PROBLEMS
 from fracstudy.style import legend_below, log_log, note_below
 from scenes.run_times.contests import TIMES, front
-
-__all__ = ["figure"]
 
 _FRONT: dict[str, Any] = {"color": "0.85", "linewidth": 7.0, "solid_capstyle": "round", "zorder": 0}
 _FLOOR = 1e-13
