@@ -49,6 +49,7 @@ __all__ = [
     "scheme_lines",
     "scheme_style",
     "slope_triangle",
+    "small_legend",
 ]
 
 mpl.use("Agg")
@@ -187,6 +188,11 @@ def scheme_legend(
 ) -> None:
     """Name schemes and orders, see `legend_entries`, and what else is given below the panels."""
     legend_below(figure, [*legend_entries(pairs), *extra], columns)
+
+
+def small_legend(ax: Axes, place: Any, **more: Any) -> None:
+    """Name what has a label in small print, at a place within the panel."""
+    ax.legend(loc=place, **{"fontsize": 7, **more})
 
 
 def legend_below(

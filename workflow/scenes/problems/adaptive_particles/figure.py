@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, curves, log_log, name_ticks
+from fracstudy.style import axes_row, curves, log_log, name_ticks, small_legend
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -27,5 +27,5 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     for ax, place, columns in zip(
         axes, ("upper left", "upper left", "lower right"), (1, 3, 1), strict=True
     ):
-        ax.legend(loc=place, fontsize=7, ncols=columns)
+        small_legend(ax, place, ncols=columns)
     return drawn

@@ -91,7 +91,7 @@ def _row(alpha: float, step: float | str, state: Followed, error: float) -> dict
 
 
 def _followed(blobs: Blobs, times: list[float], step: float) -> list[Followed]:
-    start = {"alpha": blobs.alpha, "window": blobs.window}
+    start: dict[str, Any] = {"alpha": blobs.alpha, "window": blobs.window}
     return follow(lambda x: blobs(x, 0.0), times, step=step, **start)
 
 

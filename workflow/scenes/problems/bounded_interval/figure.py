@@ -15,6 +15,7 @@ from fracstudy.style import (
     name_ticks,
     note,
     slope_triangle,
+    small_legend,
 )
 
 _ENDS = {"absorbing": "-", "reflecting": "--", "given": "-.", "no flux, final state": ":"}
@@ -39,7 +40,7 @@ def _eigenvalues(ax: Axes, part: pd.DataFrame) -> None:
     log_log(ax, xlabel="particles $N$", ylabel=r"relative error of $\lambda_1$")
     ax.set_ylim(top=300.0)
     name_ticks(ax, sorted(part["x"].astype(int).unique()))
-    ax.legend(loc="upper right", ncols=2, fontsize=7)
+    small_legend(ax, "upper right", ncols=2)
 
 
 def _truncated(ax: Axes, part: pd.DataFrame) -> None:
@@ -52,7 +53,7 @@ def _truncated(ax: Axes, part: pd.DataFrame) -> None:
         finest = pick(part, series=name).sort_values("x").iloc[0]
         slope_triangle(ax, finest["x"], below * finest["y"], order)
     name_ticks(ax, (0.003, 0.01, 0.03))
-    ax.legend(loc="upper left", fontsize=7)
+    small_legend(ax, "upper left")
     ax.set_ylim(0.15 * part["y"].min(), 20.0 * part["y"].max())
 
 
@@ -61,4 +62,4 @@ def _profiles(ax: Axes, part: pd.DataFrame) -> None:
         draw(ax, pick(part, series=name), linestyle=line, marker="", label=name)
     ax.set(xlabel="position $x$", ylabel="$u$", ylim=(0.0, 1.5 * part["y"].median() + 0.4))
     note(ax, "given: 0.2 outside", (0.0, 0.02), (0, 0), ha="center")
-    ax.legend(loc="upper left", fontsize=7, ncols=2)
+    small_legend(ax, "upper left", ncols=2)

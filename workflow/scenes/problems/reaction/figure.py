@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, guide, log_log, name_ticks, note, panel_title
+from fracstudy.style import axes_row, guide, log_log, name_ticks, note, panel_title, small_legend
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
 _MARKERS = "osD^v"
@@ -35,7 +35,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     for (name, points), colour, marker in zip(followed, _COLOURS, _MARKERS, strict=False):
         axes[3].plot(points["x"], points["y"], color=colour, marker=marker, label=name)
     axes[3].set(xlabel="time $t$", ylabel="relative distance from $1/(1+\\alpha)$", yscale="log")
-    axes[3].legend(loc="lower left", fontsize=7)
+    small_legend(axes[3], "lower left")
     panel_title(axes[3], "d", "rate of the front, by particles")
     return drawn
 
@@ -60,7 +60,7 @@ def _front(ax: Axes, part: pd.DataFrame) -> None:
     top = 3.0 * far["y"] * (far["x"] / ends[0]) ** 2.5
     note(ax, "$x^{-1-\\alpha}$", (ends[0], top), (5, -2))
     log_log(ax, xlabel="position $x$", ylabel="$u(x, t)$")
-    ax.legend(loc="lower left", fontsize=7)
+    small_legend(ax, "lower left")
     panel_title(ax, "a", r"front, $\alpha = 1.5$")
 
 
@@ -71,5 +71,5 @@ def _rates(ax: Axes, part: pd.DataFrame) -> None:
         ax.plot(points["x"], points["y"], label=name, **style)
         ax.axhline(points["exact"].iloc[0], color=colour, linestyle=":", linewidth=0.9)
     ax.set(xlabel="time $t$", ylabel=r"rate $\Delta \ln x_{1/2} / \Delta t$")
-    ax.legend(loc="lower right", fontsize=7)
+    small_legend(ax, "lower right")
     panel_title(ax, "b", r"rate of the front, and $1 / (n + \alpha)$")

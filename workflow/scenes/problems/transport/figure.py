@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below, log_log, name_ticks, panel_title
+from fracstudy.style import axes_row, legend_below, log_log, name_ticks, panel_title, small_legend
 
 _TIMES = ("#56B4E9", "#009E73", "#E69F00", "#D55E00")
 _WAYS: dict[str, dict[str, Any]] = {
@@ -49,7 +49,7 @@ def _linear(ax: Axes, part: pd.DataFrame) -> None:
         some = ours.iloc[:: max(1, len(ours) // 24)]
         ax.plot(some["x"], some["y"], color=colour, linestyle="", marker="o", markersize=3.0)
     ax.set(xlabel="position $x$", ylabel="$u(x, t)$", xlim=(-6.0, 6.0), ylim=(0.0, None))
-    ax.legend(loc="upper right", fontsize=7)
+    small_legend(ax, "upper right")
     panel_title(ax, "a", "linear field $a = -x$")
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, log_log, name_ticks, panel_title, slope_triangle
+from fracstudy.style import axes_row, log_log, name_ticks, panel_title, slope_triangle, small_legend
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
 _MARKERS = "osD^v"
@@ -27,7 +27,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         axes[3].plot(points["x"], points["y"], label=_TAILS[name], **style)
     log_log(axes[3], xlabel="half-width of the lattice", ylabel="error of $du/dt$, relative")
     name_ticks(axes[3], sorted(pick(series, panel="exterior")["x"].unique()))
-    axes[3].legend(loc="lower left", fontsize=7, title="tail", title_fontsize=7)
+    small_legend(axes[3], "lower left", title="tail", title_fontsize=7)
     panel_title(axes[3], "d", "tail beyond the lattice")
     return drawn
 
@@ -59,7 +59,7 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
     log_log(ax, xlabel="particle spacing $h$", ylabel="error of $du/dt$, relative")
     ax.set_xlim(0.6 * ticks[0], 1.3 * ticks[-1])
     name_ticks(ax, ticks)
-    ax.legend(loc="lower right", fontsize=7)
+    small_legend(ax, "lower right")
     panel_title(ax, "a", "error")
 
 
@@ -73,7 +73,7 @@ def _interpolation(ax: Axes, part: pd.DataFrame) -> None:
         ylabel="difference of rows; bound (dotted)",
     )
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-    ax.legend(loc="upper right", fontsize=7, title=r"range of $\alpha$", title_fontsize=7)
+    small_legend(ax, "upper right", title=r"range of $\alpha$", title_fontsize=7)
     panel_title(ax, "b", r"interpolation in $\alpha$")
 
 
@@ -83,5 +83,5 @@ def _tails(ax: Axes, part: pd.DataFrame) -> None:
         ax.plot(points["x"], points["y"], label=label, linestyle="", **style)
         ax.plot(points["x"], points["theory"], color=style["color"], linestyle=":", marker="")
     log_log(ax, xlabel="distance $|x|$", ylabel="$u(x, t)$")
-    ax.legend(loc="lower left", fontsize=7)
+    small_legend(ax, "lower left")
     panel_title(ax, "c", "tails of a run")
