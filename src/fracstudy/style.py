@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any
 
 import matplotlib as mpl
@@ -15,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, LogLocator, NullFormatter
 
 from fracparticles.files import replacing
 from fracparticles.schemes import ALL_SCHEMES
@@ -44,6 +45,7 @@ __all__ = [
     "note",
     "note_below",
     "panel_title",
+    "plain_times",
     "save",
     "scheme_legend",
     "scheme_lines",
@@ -84,7 +86,7 @@ def axes_row(
     columns = len(titles) // rows
     figure = Figure(figsize=(width * columns, height * rows), layout="constrained")
     axes = list(np.ravel(figure.subplots(rows, columns, **options)))
-    for letter, ax, title in zip("abcdefgh", axes, titles, strict=False):
+    for letter, ax, title in zip(ascii_lowercase, axes, titles, strict=False):
         if len(axes) > 1 or title:
             ax.set_title(f"({letter}) {title}".strip(), loc="left")
     return figure, axes
@@ -119,6 +121,13 @@ def name_ticks(ax: Axes, values: Iterable[float], axis: str = "x", form: str = "
     named = {value: f"{value:{form}}" for value in values}
     ax.set(**{f"{axis}ticks": list(named), f"{axis}ticklabels": list(named.values())})
     getattr(ax, f"{axis}axis").minorticks_off()
+
+
+def plain_times(ax: Axes) -> None:
+    """Label the powers of ten along a logarithmic axis of times as plain numbers, 0.1, 1, 10, and nothing between."""
+    ax.xaxis.set_major_locator(LogLocator(numticks=8))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def note(ax: Axes, text: str, at: tuple[Any, Any], shift: tuple[float, float], **more: Any) -> None:
