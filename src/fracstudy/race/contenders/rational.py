@@ -11,30 +11,21 @@ u (1 - i x/L) is a Fourier series in theta, whose coefficients are those of phi_
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 from scipy.fft import fft, ifft
 from scipy.special import roots_laguerre
 
-from fracstudy.race.contender import Contender, Ready, maps
+from fracstudy.race.contender import Mapped, Ready
 from fracstudy.race.problem import Problem
 
-_COUNTS = (16, 24, 32, 48, 64, 96, 128, 192)
-_SCALES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0)
 
-
-class Rational(Contender):
+class Rational(Mapped):
     """One transform, a real matrix, and back."""
 
     name = label = "rational functions"
     reference = "Christov (1982), SIAM J. Appl. Math. 42, 1337; Iserles & Webb (2020), J. Fourier Anal. Appl. 26, 19"
     place, colour, marker = 3, "#2E6E6E", "P"
-
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return numbers of points and scales."""
-        return maps(problem, _COUNTS, _SCALES)
+    counts, scales = (16, 24, 32, 48, 64, 96, 128, 192), (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0)
 
     def prepare(self, problem: Problem, variant: str, points: int, scale: float) -> Ready:
         """Return the matrix of the run made ready."""

@@ -50,10 +50,9 @@ def _panel(ax: Axes, part: pd.DataFrame, contenders: Mapping[str, type[Contender
     for name, contender in contenders.items():
         own = pick(part, contender=name)
         shown = own[front(own, "time") & (own["error"] > _FLOOR)].sort_values("time")
-        look = {"label": contender.label, "color": contender.colour, "marker": contender.marker}
-        hollow = contender.group in ("peers", "papers")
-        line = _HOLLOW if hollow else {"linewidth": 1.4}
-        ax.plot(shown["time"], shown["error"], markersize=4.0, **look, **line)
+        look: dict[str, Any] = {"color": contender.colour, "marker": contender.marker}
+        look |= _HOLLOW if contender.group in ("peers", "papers") else {"linewidth": 1.4}
+        ax.plot(shown["time"], shown["error"], label=contender.label, markersize=4.0, **look)
     log_log(ax, ylim=(_FLOOR, 2.0), xlabel="")
     ax.xaxis.set_major_locator(LogLocator(numticks=20))
     ax.grid(visible=True, which="major", color="0.92", linewidth=0.6)
