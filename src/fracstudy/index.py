@@ -13,10 +13,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-import yaml
-
 from fracstudy.claims import Value, read_printed
-from fracstudy.config import read_config
+from fracstudy.config import read_project
 from fracstudy.scene import Scene
 
 __all__ = ["index"]
@@ -30,9 +28,7 @@ _SPAN = re.compile(rf"({_NUMBER})(?:\s*(-|to)\s*({_NUMBER}))?")
 
 def index(project: Path) -> str:
     """Return the text of INDEX.md for the project in that folder."""
-    config = yaml.safe_load((project / "config/study.yaml").read_text("utf-8"))
-    config["scenes_dir"] = str(project / config.get("scenes_dir", "workflow/scenes"))
-    study, scenes = read_config(config)
+    study, scenes = read_project(project)
     lines = [
         "# Index",
         "",

@@ -9,6 +9,7 @@ import pytest
 from fracparticles.errors import FracparticlesError
 from fracstudy.inputs import Inputs
 from fracstudy.style import save
+from scene_functions import measured
 from scenes.run_times.contests import best, duration, front, trials_of
 from scenes.run_times.first_call import benchmark as programs
 from scenes.run_times.first_call.study import study as first_calls
@@ -136,15 +137,10 @@ def test_a_situation_may_be_timed_by_a_table():
     table = pd.DataFrame(rows, columns=["contender", "group", "to 1e-06 / ms"]).assign(problem="p")
     given = Inputs(scene="s", tables={"least": table})
     where = {"measured": "least", "problem": "p"}
-    (row,) = which_method(given, situations=[situation(contender="a", **where)]).table.to_dict(
-        "records"
-    )
-    assert row["cost"] == "3.0 ms to 1e-06"
-    assert row["faster"] == "c (1.5 times)"
-    (slow,) = which_method(given, situations=[situation(contender="b", **where)]).table.to_dict(
-        "records"
-    )
-    assert slow["cost"] == "4.0 s to 1e-06"
+    both = [situation(contender=name, **where) for name in "ab"]
+    found = which_method(given, situations=both).table
+    assert found["cost"].tolist() == ["3.0 ms to 1e-06", "4.0 s to 1e-06"]
+    assert found["faster"][0] == "c (1.5 times)"
     with pytest.raises(FracparticlesError, match="no trial of e in least"):
         which_method(given, situations=[situation(contender="e", **where)])
 
@@ -183,9 +179,7 @@ def test_goals_are_met_or_not():
         "naive": 1e4,
         "first call": 0.7,
     }
-    races = {
-        name: frame() for name in ("work_precision", "work_precision_plane", "work_precision_space")
-    }
+    races = {f"work_precision{where}": frame() for where in ("", "_plane", "_space")}
     calls = pd.DataFrame({"call": ["an empty program", "fp.evolve"], "process_time": [0.01, 0.8]})
     given = inputs(**races, reference_times=reference(), first_call=calls)
     table = run_time_goals(given, goals=goals, errors=[1e-4, 1e-9]).table
@@ -216,14 +210,12 @@ def test_a_first_call_and_a_step_are_timed(monkeypatch):
     """The benchmarks themselves, as small as they can be; every program of the first is in each smoke run."""
     few = dict(list(programs._CALLS.items())[:3])
     monkeypatch.setattr(programs, "_CALLS", few)
-    calls = programs.benchmark(repeats=1).to_dataframe().reset_index()
+    calls = measured(programs.benchmark(repeats=1))
     table = first_calls(inputs(first_call=calls)).table
     assert (table["process, min / s"] > 0.0).all()
     assert table["beyond an empty program / s"].iloc[0] == 0.0
-    data = step_times(line=201, plane=21, repeats=1).to_dataframe().reset_index()
+    data = measured(step_times(line=201, plane=21, repeats=1))
     found = steps(inputs(step_times=data)).table
     assert set(found["dim"]) == {1, 2}
-    assert found[found["method"].str.startswith("exact")]["time / exact symbol"].tolist() == [
-        1.0,
-        1.0,
-    ]
+    exact = found[found["method"].str.startswith("exact")]
+    assert exact["time / exact symbol"].tolist() == [1.0, 1.0]

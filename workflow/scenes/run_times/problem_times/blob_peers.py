@@ -30,6 +30,8 @@ State = tuple[float, np.ndarray, np.ndarray, np.ndarray | float]
 Answer = tuple[int, list[State]]
 Source = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
 Rate = Callable[[float, np.ndarray], np.ndarray]
+Flow = Callable[[np.ndarray, float], np.ndarray]
+Advance = Callable[[np.ndarray, float, float], np.ndarray]
 
 _MOST_STEPS = 6
 _PARTS = 2  # of the Runge-Kutta scheme in each half of a step
@@ -88,8 +90,8 @@ def on_circle(
         k = np.pi / circle.half_width * np.arange(count // 2 + 1.0)
         if t == 0.0:
             u = initial(x)
-        elif count != u.size:
-            u = _thinned(waves, count)
+        elif count != u.size:  # fewer points of the same circle
+            u = np.asarray(irfft(waves[: count // 2 + 1], count) * (count / u.size))
 
         def diffused(u: np.ndarray, dt: float, decay: np.ndarray = k**circle.alpha) -> np.ndarray:
             return np.asarray(irfft(np.exp(-dt * decay) * rfft(u), u.size))
@@ -97,7 +99,7 @@ def on_circle(
         if velocity is not None:
             u = _carried(x, k, circle, velocity, u, end - t, tolerance)
         elif source is not None:
-            u = _extrapolated(diffused, partial(source, x), u, t, end, tolerance)
+            u = _extrapolated(diffused, partial(source, x), tolerance)(u, t, end)
         else:
             u = diffused(u, end - t)
         t, waves = end, rfft(u)
@@ -146,55 +148,39 @@ def on_elements(
     def diffused(u: np.ndarray, dt: float) -> np.ndarray:
         return np.asarray(modes @ (np.exp(-dt * rates) * (back @ u)))
 
-    u = initial(x)
+    u, advance = initial(x), _extrapolated(diffused, partial(source, x), tolerance)
     states: list[State] = []
     for start, end in pairwise([0.0, *times]):
-        u = _extrapolated(diffused, partial(source, x), u, start, end, tolerance)
+        u = advance(u, start, end)
         states.append((end, x, u, 0.5 * (h[1:] + h[:-1])))
     return x.size, states
 
 
-def _thinned(waves: np.ndarray, count: int) -> np.ndarray:
-    """u at fewer points of the same circle."""
-    old = 2 * (waves.size - 1)
-    return np.asarray(irfft(waves[: count // 2 + 1], count) * (count / old))
+def _extrapolated(diffused: Flow, source: Rate, tolerance: float) -> Advance:
+    """Return the way from one time to another, to within a share of sum |u|."""
 
+    def steps(u: np.ndarray, start: float, end: float, count: int) -> np.ndarray:
+        dt = (end - start) / count
+        for n in range(count):
+            t = start + n * dt
+            u = _runge_kutta(source, u, t, t + 0.5 * dt)
+            u = _runge_kutta(source, diffused(u, dt), t + 0.5 * dt, t + dt)
+        return u
 
-def _extrapolated(
-    diffused: Callable[[np.ndarray, float], np.ndarray],
-    source: Rate,
-    u: np.ndarray,
-    start: float,
-    end: float,
-    tolerance: float,
-) -> np.ndarray:
-    """u at the end, within a share of sum |u|; the time is halved where six steps do not do."""
-    row: list[np.ndarray] = []
-    for n in range(1, _MOST_STEPS + 1):
-        above, row = row, [_steps(diffused, source, u, start, end, n)]
-        for k, last in enumerate(above, start=1):
-            row.append(row[-1] + (row[-1] - last) / ((n / (n - k)) ** 2 - 1.0))
-        if n > 2 and np.abs(row[-1] - row[-2]).sum() <= tolerance * np.abs(row[-1]).sum() < np.inf:
-            return row[-1]
-    middle = 0.5 * (start + end)
-    u = _extrapolated(diffused, source, u, start, middle, tolerance)
-    return _extrapolated(diffused, source, u, middle, end, tolerance)
+    def advance(u: np.ndarray, start: float, end: float) -> np.ndarray:
+        row: list[np.ndarray] = []
+        for n in range(1, _MOST_STEPS + 1):
+            above, row = row, [steps(u, start, end, n)]
+            for k, last in enumerate(above, start=1):
+                row.append(row[-1] + (row[-1] - last) / ((n / (n - k)) ** 2 - 1.0))
+            size = tolerance * np.abs(row[-1]).sum()
+            if n > 2 and np.abs(row[-1] - row[-2]).sum() <= size < np.inf:
+                return row[-1]
+        # The time is halved where six steps do not do.
+        middle = 0.5 * (start + end)
+        return advance(advance(u, start, middle), middle, end)
 
-
-def _steps(
-    diffused: Callable[[np.ndarray, float], np.ndarray],
-    source: Rate,
-    u: np.ndarray,
-    start: float,
-    end: float,
-    count: int,
-) -> np.ndarray:
-    dt = (end - start) / count
-    for n in range(count):
-        t = start + n * dt
-        u = _runge_kutta(source, u, t, t + 0.5 * dt)
-        u = _runge_kutta(source, diffused(u, dt), t + 0.5 * dt, t + dt)
-    return u
+    return advance
 
 
 def _runge_kutta(rate: Rate, u: np.ndarray, start: float, end: float) -> np.ndarray:
