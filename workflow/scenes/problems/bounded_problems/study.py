@@ -42,10 +42,10 @@ def study(
 
 
 def _row(
-    domain: str, problem: str, exterior: str, alpha: float, particles: int, **found: float
+    domain: str, problem: str, exterior: str, alpha: float, n: int, found: dict[str, float]
 ) -> dict[str, Any]:
     row = {"domain": domain, "problem": problem, "exterior": exterior, "alpha": alpha}
-    return {**row, "particles": particles, **{k.replace("_", " "): v for k, v in found.items()}}
+    return {**row, "particles": n, **found}
 
 
 def _on(domain: str, alpha: float, particles: int, **fields: Any) -> Problem:
@@ -165,10 +165,9 @@ def _levels(
     orders = observed([1.0 / n for n in counts], means)
     theory = {"interval": 8.0 - alpha, "disc": 4.0 - alpha}.get(domain, np.nan)
     for count, most, mean, order in zip(counts, greatest, means, orders, strict=True):
-        yield _row(
-            domain, name, fields["exterior"], alpha, count, error=three_digits(most),
-            mean_error=three_digits(mean), observed_order=order, of_theory=theory,
-        )  # fmt: skip
+        errors = {"error": three_digits(most), "mean error": three_digits(mean)}
+        found = {**errors, "observed order": order, "of theory": theory}
+        yield _row(domain, name, fields["exterior"], alpha, count, found)
 
 
 def _bell(*place: Any) -> Any:
@@ -188,8 +187,8 @@ def _kept(alpha: float, counts: dict[str, list[int]]) -> Iterator[dict[str, Any]
         kept = {"exterior": "reflecting", "form": "exchange"}
         run = solve_problem(_on(domain, alpha, count, **kept, **acts), _bell)
         drift = power_of_ten(float(run.mass_final / run.mass_initial) - 1.0, _ROUNDING)
-        of = {"drift of the total": drift}
-        yield _row(domain, "D(x, t), a", "reflecting", alpha, count, **of)
+        found = {"drift of the total": drift}
+        yield _row(domain, "D(x, t), a", "reflecting", alpha, count, found)
 
 
 def _turned(alpha: float, rings: int) -> dict[str, Any]:
@@ -199,8 +198,8 @@ def _turned(alpha: float, rings: int) -> dict[str, Any]:
     speed = 2.0 * np.pi * _TURN / still.sizes["angle"] / 0.5
     fields["velocity"] = (f"-{speed}*y", f"{speed}*x")
     turned = solve_problem(_on("disc", alpha, rings, **fields), _bell)
-    error = off(turned.u.values, np.roll(still.u.values, _TURN, axis=1))
-    return _row("disc", "rotation", "absorbing", alpha, rings, error=three_digits(error))
+    error = three_digits(off(turned.u.values, np.roll(still.u.values, _TURN, axis=1)))
+    return _row("disc", "rotation", "absorbing", alpha, rings, {"error": error})
 
 
 def _profiles(alpha: float, particles: int, panels: Panels) -> None:
