@@ -31,9 +31,9 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
@@ -105,6 +105,18 @@ class Value(_Claim):
 
     where: str = Field(pattern=_TEXT)
     printed: str = Field(pattern=PRINTED_NUMBER)
+    name: ClassVar[str] = ""
+    """It stands in no sentence."""
+
+    @property
+    def words(self) -> str:
+        """What is printed."""
+        return self.printed
+
+    @property
+    def claims(self) -> Sequence[Self]:
+        """It claims itself."""
+        return [self]
 
 
 class Table(_Record):
@@ -218,9 +230,19 @@ class Sentence(_Record):
     by: list[str] = []
 
     @property
+    def name(self) -> str:
+        """Its name."""
+        return self.sentence
+
+    @property
     def words(self) -> str:
         """The quote on one line."""
         return " ".join(self.quote.split())
+
+    @property
+    def claims(self) -> Sequence[Statement]:
+        """What it says."""
+        return self.statements
 
 
 def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
@@ -244,12 +266,13 @@ def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
         except (yaml.YAMLError, ValueError, KeyError) as error:  # no YAML, or no such record
             raise LedgerError(f"{path}: {error}") from error
         found += records
-        refuse_repeats([claim.id for _, claim in _pairs(found)], f"{path}: claimed twice")
-        sentences = [record for record in records if isinstance(record, Sentence)]
-        refuse_repeats([sentence.sentence for sentence in sentences], f"{path}: named twice")
-        for sentence in sentences:
-            if quotes.setdefault(sentence.sentence, sentence.words) != sentence.words:
-                raise LedgerError(f"{path}: {sentence.sentence} is quoted in other words elsewhere")
+        ids = [claim.id for record in found for claim in record.claims]
+        refuse_repeats(ids, f"{path}: claimed twice")
+        sentences = {record.name: record.words for record in records if record.name}
+        refuse_repeats([r.name for r in records if r.name], f"{path}: named twice")
+        for name, words in sentences.items():
+            if quotes.setdefault(name, words) != words:
+                raise LedgerError(f"{path}: {name} is quoted in other words elsewhere")
     return found
 
 
@@ -266,19 +289,9 @@ def _records(record: dict[str, Any]) -> list[Value] | list[Sentence]:
     return [Value.model_validate(record)]
 
 
-def _pairs(
-    records: Iterable[Value | Sentence],
-) -> Iterator[tuple[Value | Sentence, Value | Statement]]:
-    for record in records:
-        if isinstance(record, Value):
-            yield record, record
-        else:
-            yield from ((record, statement) for statement in record.statements)
-
-
 def read_claims(*paths: str | os.PathLike[str]) -> list[Value | Statement]:
     """Read the values and statements of documents, without the sentences that hold them."""
-    return [claim for _, claim in _pairs(read_printed(*paths))]
+    return [claim for record in read_printed(*paths) for claim in record.claims]
 
 
 def read_conventions(path: str | os.PathLike[str] = CONVENTIONS) -> dict[str, Convention]:

@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from fracstudy.claims import Value, read_printed
+from fracstudy.claims import read_printed
 from fracstudy.config import read_project
 from fracstudy.scene import Scene
 
@@ -59,7 +59,7 @@ def index(project: Path) -> str:
 def _items(printed: list[Path], scenes: dict[str, Scene], project: Path) -> Iterator[str]:
     by_item = defaultdict(list)
     for record in read_printed(*printed):
-        for claim in [record] if isinstance(record, Value) else record.statements:
+        for claim in record.claims:
             by_item[claim.item].append((record.where, claim.id))
     home = {item: scene for scene in scenes.values() for item in scene.items}
     for item, claims in by_item.items():
