@@ -72,7 +72,7 @@ def _least(square: SquareRuns, dt: float, name: str, loading: str, seed: int) ->
 
 
 def draw_last_field(panels: Panels, stops: Traces, epsilon: float) -> None:
-    """Draw F of the first run that stopped, half a step after the last that it could take: on a grid, at the markers."""
+    """F of the first run that stopped, on a grid and at the markers, half a step after the last that it could take."""
     failed = [(dt, trace) for dt, of_step in stops.items() for trace in of_step if not trace.run]
     for dt, trace in failed[:1]:
         velocity = MarkerVelocity(shape_function(trace.shape), epsilon)

@@ -16,6 +16,7 @@ from scenes.lewandowski.square_profile import (
     Starts,
     Trace,
     delay,
+    with_other_seeds,
 )
 
 _LINEAR = 0.95  # correlation of E with t
@@ -35,11 +36,8 @@ def study(inputs: Inputs, *, run: SquareRuns, long: SquareRuns, seed: int, seeds
     of_infinite = [_turn(trace)["E grows"] for trace in infinite.runs if trace.loading == "random"]
     numbers = _numbers(starts)
     numbers["M-F14.traced"]["infinite"] = np.mean(of_infinite)
-    findings = [
-        measured(claim, others={"other seeds": others[claim]}, **of_claim)
-        for claim, of_claim in numbers.items()
-    ]
-    findings.append(_law(starts, SquareRuns.model_validate(long)))
+    law = _law(starts, SquareRuns.model_validate(long))
+    findings = [*with_other_seeds(numbers, others), law]
     panels = Panels()
     for trace in starts.runs:
         where = {"loading": trace.loading, "seed": trace.seed}
@@ -92,11 +90,7 @@ def _numbers(starts: Starts) -> dict[str, dict[str, Any]]:
             "correlation": np.nan_to_num(np.corrcoef(rank.T)[0, 1]),
         },
         "M-F15.grows": _growth("S7", starts),
-        "M-F16.exponential": {
-            "left": np.median(left),
-            "most": max(left),
-            "number": len(s8),
-        },
+        "M-F16.exponential": {"left": np.median(left), "most": max(left), "number": len(s8)},
     }
 
 

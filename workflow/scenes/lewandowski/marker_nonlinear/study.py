@@ -220,12 +220,9 @@ def _set_up(setting: Markers, half_width: float, off: float) -> Iterator[Finding
     gap = float(np.abs(np.cumsum(integral - np.diff(closed))).max()) / float(np.abs(closed).max())
     yield measured("M-F17.steady", gap=gap)
     yield measured("M-F17.velocity", apart=off)
-    points = _quadrature(p, setting.x)
-    terms = {
-        "by quadrature from far left": points / setting.x.size,
-        "in closed form": 1.0 / setting.x.size,
-    }
-    yield measured("M-F17.integral", work=terms, gap=gap, points=points, markers=setting.x.size)
+    points, markers = _quadrature(p, setting.x), setting.x.size
+    work = {"by quadrature from far left": points / markers, "in closed form": 1.0 / markers}
+    yield measured("M-F17.integral", work=work, gap=gap, points=points, markers=markers)
     misfit = np.abs(setting.field(setting.x) - Gaussian().value(setting.x)).max()
     yield measured("M-F17.initial", misfit=misfit, epsilon=setting.epsilon)
 
@@ -262,19 +259,15 @@ def _time_stepping(
         good=max(good, default=0.0),
         bad=min((e.dt for e in scans if e.dt not in good), default=0.0),
     )
-    titles = (
-        "as printed, midpoint rule",
-        "midpoint rule at a smaller step",
-        "stabilised integrator",
-    )
-    off = {
-        title: setting.deviation(run.end, everywhere=True) / peak
-        for title, run in zip(titles, runs.values(), strict=True)
+    titled = {
+        "as printed, midpoint rule": printed,
+        "midpoint rule at a smaller step": small,
+        "stabilised integrator": stable,
     }
-    last = {title: run.last for title, run in zip(titles, runs.values(), strict=True)}
-    yield measured(
-        "M-F18.agreement", apart=off, last=last, stages=stable.stages, dt=small.dt, same=same
-    )
+    off = {name: setting.deviation(e.end, everywhere=True) / peak for name, e in titled.items()}
+    last = {name: e.last for name, e in titled.items()}
+    more = {"stages": stable.stages, "dt": small.dt, "same": same}
+    yield measured("M-F18.agreement", apart=off, last=last, **more)
 
 
 def _long_time(setting: Markers, stable: Evolution, lost: Sequence[float]) -> Finding:
