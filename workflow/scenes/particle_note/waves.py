@@ -6,7 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fracparticles.pse import GAUSSIAN_20, Kernel, cell_volumes, derivative, lattice
+from fracparticles.pse import (
+    GAUSSIAN_20,
+    Kernel,
+    StrengthExchange,
+    cell_volumes,
+    derivative,
+    lattice,
+)
 
 SEED = 20  # of particles at random
 
@@ -83,3 +90,13 @@ def arranged(
     else:
         x = np.sort(random.uniform(-half_width, half_width, n))
     return x, cell_volumes(x)
+
+
+def rms_error(
+    exchange: StrengthExchange, x: np.ndarray, v: np.ndarray, t: float, within: float
+) -> float:
+    """Return the root mean square error of f'' by (26), for the heat kernel at t, |x| < within, relative."""
+    inside = np.abs(x) < within
+    exact = heat_second(x, t)[inside]
+    off = (exchange.apply(v * heat(x, t)) / v)[inside] - exact
+    return np.sqrt((off**2).mean() / (exact**2).mean())
