@@ -11,6 +11,7 @@ from fracparticles.sph.closed_forms import FUNCTIONS
 from fracparticles.sph.integrals import METHODS
 from fracparticles.sph.norms import relative_l2
 from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import Panels
 from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
 
 # Side, operator, function and order: of the left-handed ones the worst functions, of the right-handed exp.
@@ -20,9 +21,7 @@ _CASES = (
     ("left", "rl_derivative", "sin", "constant"),
     ("left", "rl_integral", "sin", "variable"),
     ("left", "caputo", "cos", "variable"),
-    ("right", "rl_integral", "exp", "constant"),
-    ("right", "caputo", "exp", "constant"),
-    ("right", "rl_derivative", "exp", "constant"),
+    *(("right", operator, "exp", "constant") for operator in OPERATORS),
 )
 
 
@@ -45,27 +44,25 @@ def study(
     orders: dict[str, Order] = {"constant": order, "variable": variable}
     spacing = np.array([line.spacing for line in lines])
     at = counts.index(shown)
-    rows, curves = [], []
+    rows, panels = [], Panels()
     for (side, operator, name, varies), method in product(_CASES, METHODS):
         errors = [_errors(line, side, operator, name, orders[varies], method) for line in lines]
         whole, real = np.array(errors).T
-        rows.append(
-            {
-                "operator": OPERATORS[operator].name,
-                "side": side,
-                "function": LABELS[name],
-                "α": varies,
-                "sums": method,
-                f"L2, s = {spacing[at]:g}": whole[at],
-                "order": observed_order(spacing, whole)[-1],
-                "L2 of the real part": real[at],
-                "order of the real part": observed_order(spacing, real)[-1],
-            }
-        )
+        row = {
+            "operator": OPERATORS[operator].name,
+            "side": side,
+            "function": LABELS[name],
+            "α": varies,
+            "sums": method,
+            f"L2, s = {spacing[at]:g}": whole[at],
+            "order": observed_order(spacing, whole)[-1],
+            "L2 of the real part": real[at],
+            "order of the real part": observed_order(spacing, real)[-1],
+        }
+        rows.append(row)
         key = {"operator": operator, "function": name, "side": side, "order": varies}
-        columns = {"method": method, "x": spacing, "y": whole, "real": real}
-        curves.append(pd.DataFrame({**key, **columns}))
-    return Result(pd.DataFrame(rows), (), pd.concat(curves, ignore_index=True))
+        panels.add(**key, method=method, x=spacing, y=whole, real=real)
+    return Result(pd.DataFrame(rows), (), panels.frame)
 
 
 def _errors(
