@@ -23,12 +23,8 @@ from fracstudy.style import (
 _SIZES = {"truncated": 7.0, "open": 3.6}
 _NAMES = {"truncated": "truncated", "open": "open exterior"}
 _TRIANGLES = (("FPSE", 2, "truncated", 1.9), ("KPSE", 4, "open", 0.45))
-_SMALL: dict[str, Any] = {
-    "xycoords": ("data", "axes fraction"),
-    "ha": "center",
-    "fontsize": 7.5,
-    "color": COLOURS["GPSE"],
-}
+_SMALL: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "center", "fontsize": 7.5}
+_SMALL["color"] = COLOURS["GPSE"]
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["GPSE"], "shrinkB": 0.0}
 
 
@@ -39,11 +35,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     # GPSE with the open exterior has errors so small that the rest would be crowded: they are named instead.
     small = (series["scheme"] == "GPSE") & (series["exterior"] == "open")
     errors = series.loc[~small, "error"]
+    curves = series[~small].groupby(["scheme", "order", "exterior"])
     for ax, x in zip(axes, ("h", "work"), strict=True):
-        for (scheme, order, exterior), points in series[~small].groupby(
-            ["scheme", "order", "exterior"]
-        ):
-            ax.plot(points[x], points["error"], **_look(scheme, order, exterior))
+        for key, points in curves:
+            ax.plot(points[x], points["error"], **_look(*key))
         log_log(ax, ylim=(0.05 * errors.min(), 2.5 * errors.max()))
         _name_below(ax, series[small], x)
     _sizes(axes[0], series)
@@ -80,7 +75,7 @@ def _sizes(ax: Axes, series: pd.DataFrame) -> None:
     ticks = series.groupby("N")["h"].first()
     ax.set_xticks(ticks, [f"{h:.2g}\n{n}³" for n, h in ticks.items()])
     ax.minorticks_off()
-    ax.set(xlim=(0.8 * ticks.min(), 1.25 * ticks.max()))
+    ax.set_xlim(0.8 * ticks.min(), 1.25 * ticks.max())
     ax.set_xlabel("particle spacing $h$, and number of particles")
 
 
