@@ -6,14 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    Kernel,
-    StrengthExchange,
-    cell_volumes,
-    derivative,
-    lattice,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, cell_volumes, derivative
 
 SEED = 20  # of particles at random
 
@@ -36,7 +30,7 @@ def second_derivative_error(kernel: Kernel, h: float, overlap: float) -> float:
     epsilon = overlap * h
     x = h * np.round(np.linspace(0.0, 2.0 * np.pi, 17) / h)
     margin = kernel.reach * epsilon
-    particles = lattice(-margin, 2.0 * np.pi + margin, h)
+    particles = pse.lattice(-margin, 2.0 * np.pi + margin, h)
     found = derivative(x, wave(x), particles, wave(particles), h, epsilon, kernel, 2)
     return float(np.abs(found - wave(x, order=2)).max())
 

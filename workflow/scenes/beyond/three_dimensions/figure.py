@@ -7,17 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from fracstudy import style
 from fracstudy.inputs import NUMERALS
 from fracstudy.panels import pick
-from fracstudy.style import (
-    COLOURS,
-    axes_row,
-    entry,
-    legend_below,
-    log_log,
-    scheme_style,
-    slope_triangle,
-)
+from fracstudy.style import COLOURS, axes_row, entry, legend_below, log_log, scheme_style
 
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
 _SIZES = {"truncated": 7.0, "open": 3.6}
@@ -46,7 +39,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         points = pick(series, scheme=scheme, order=order, exterior=exterior)
         if len(points) > 1:
             h, error = points.iloc[0][["h", "error"]]
-            slope_triangle(axes[0], h, shift * error, order, above=order == 2)
+            style.slope_triangle(axes[0], h, shift * error, order, above=order == 2)
     axes[0].set_ylabel(r"relative error in the ball $|x| \leq 5$, Eq. (59)")
     axes[1].set_xlabel("floating-point operations of the run")
     legend_below(figure, _entries(series), columns=5)

@@ -12,15 +12,8 @@ from fracparticles.sph.derivatives import correction, gradient, second_derivativ
 from fracparticles.sph.norms import relative_l2
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-from scenes.ghorbani.operators import (
-    CURVATURES,
-    LABELS,
-    OPERATORS,
-    SLOPES,
-    Order,
-    central_slope,
-    order_at,
-)
+from scenes.ghorbani import operators
+from scenes.ghorbani.operators import CURVATURES, LABELS, OPERATORS, SLOPES, Order, order_at
 from scenes.ghorbani.sph_readings import kernel
 from scenes.ghorbani.sph_readings.sums import Reading, approximate
 
@@ -148,7 +141,7 @@ def _double_sum(line: ParticleLine, order: float, variable: dict[str, float]) ->
 
     printed, meant = errors(order, sine.rl(here, order))
     # There is no closed form for the derivative of variable order, but for the integral.
-    exact = central_slope(lambda x: sine.rl(x, order_at(variable, x) - 1.0), here)
+    exact = operators.central_slope(lambda x: sine.rl(x, order_at(variable, x) - 1.0), here)
     both = dict(zip(("printed", "meant"), errors(variable, exact), strict=True))
     return measured("S-EQ.double_sum", printed=printed, meant=meant, variable=both)
 

@@ -10,16 +10,8 @@ from fracparticles.markers.stability import extremes
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import (
-    INFINITE,
-    LOADINGS,
-    SHAPES,
-    SquareRuns,
-    Starts,
-    Trace,
-    shape,
-    with_other_seeds,
-)
+from scenes.lewandowski import square_profile
+from scenes.lewandowski.square_profile import INFINITE, LOADINGS, SHAPES, SquareRuns, Starts, shape
 
 _K = np.linspace(3.0, 12.0, 181)  # eps q of the spectra
 _CLUSTER = ("S4", "S7")
@@ -42,7 +34,7 @@ def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int, compared: l
     others = _numbers(square, Starts(square, shapes, again), again, compared)
     change = {s: _step_change(square, starts, s) for s in _CLUSTER}
     integration = measured("M-F11.integration", change=change)
-    findings = [*with_other_seeds(ours, others), integration]
+    findings = [*square_profile.with_other_seeds(ours, others), integration]
     table = starts.table(["relative error", "representation", "empty"])
     apart = ours["M-F11.distance"]["apart"]
     peaks = [apart.get(s, np.nan) for s in table["S"]]
@@ -100,7 +92,7 @@ def _representations(square: SquareRuns, starts: Starts) -> list[float]:
     return [square.relative_error(_represented(trace, square, square.z)) for trace in starts.runs]
 
 
-def _represented(trace: Trace, square: SquareRuns, z: np.ndarray) -> np.ndarray:
+def _represented(trace: square_profile.Trace, square: SquareRuns, z: np.ndarray) -> np.ndarray:
     """f at the markers of the end, each with its cell, as they represent it at z."""
     x = np.sort(trace.end.x)
     return trace.end.velocity.fields(x, square.f(x) * np.gradient(x), z)[0]

@@ -7,20 +7,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    PINK,
-    RED,
-    axes_row,
-    draw,
-    log_log,
-    name_ticks,
-    note,
-    slope_triangle,
-)
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, axes_row, draw, log_log, note
 from scenes.lewandowski.marker_style import HOLLOW
 
 _SMALL: dict[str, Any] = {"fontsize": 7.5}
@@ -54,9 +43,9 @@ def _profiles(ax: Axes, series: pd.DataFrame) -> None:
         part = pick(series, series=name).sort_values("x")
         part = part[part["x"].abs() < 3.0].iloc[::every]
         when = "" if name == "initial" else rf", $t = {part['t'].iloc[0]:.3g}$"
-        style = {"color": colour, "markerfacecolor": face, "markeredgewidth": 0.8}
+        look = {"color": colour, "markerfacecolor": face, "markeredgewidth": 0.8}
         size = 3.2 if name == "printed" else 4.2
-        draw(ax, part, marker, label=label + when, markersize=size, **style)
+        draw(ax, part, marker, label=label + when, markersize=size, **look)
     ax.set(xlabel="$x$", ylabel="$F$ at the markers", xlim=(-3.0, 3.0), ylim=(-0.1, 2.55))
     ax.legend(loc="upper left", **_SMALL)
 
@@ -75,7 +64,7 @@ def _steps(ax: Axes, series: pd.DataFrame, printed: float) -> None:
         ax.axvline(place, color="0.4", linewidth=0.9, linestyle="--")
         note(ax, text, (place, 1.0), (-4, -4), **beside)
     low, high = 0.99 * scan["x"].min(), 1.01 * scan["x"].max()
-    name_ticks(ax, [t for t in (0.0025, 0.003, 0.004, 0.006, 0.01, 0.02) if low <= t <= high])
+    style.name_ticks(ax, [t for t in (0.0025, 0.003, 0.004, 0.006, 0.01, 0.02) if low <= t <= high])
     ax.set(xlabel=r"time step $\Delta t$", ylabel=r"max $|F - f_\infty|$ in the core / peak")
     ax.legend(loc="center left", bbox_to_anchor=(0.4, 0.5), **_SMALL)
 
@@ -105,6 +94,6 @@ def _approach(ax: Axes, series: pd.DataFrame) -> None:
     ax.set_ylim(0.6 * core["y"].min(), 2.0 * excess["y"].max())
     above, below = (part[["x", "y"]].iloc[len(part) // 2] for part in (excess, core))
     note(ax, r"mass in the flanks, minus that of $f_\infty$", above, (0, 12), color=GREEN)
-    text, style = r"max $|F - f_\infty|$ in the core", {"ha": "right", "va": "top"}
-    note(ax, text, below, (-6, -12), color=BLUE, **style)
-    slope_triangle(ax, 0.3 * excess["x"].iloc[-1], 0.62 * excess["y"].iloc[-2], -0.25)
+    text, look = r"max $|F - f_\infty|$ in the core", {"ha": "right", "va": "top"}
+    note(ax, text, below, (-6, -12), color=BLUE, **look)
+    style.slope_triangle(ax, 0.3 * excess["x"].iloc[-1], 0.62 * excess["y"].iloc[-2], -0.25)

@@ -7,17 +7,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    axes_row,
-    draw,
-    entry,
-    legend_below,
-    log_log,
-    name_ticks,
-    note,
-    slope_triangle,
-)
+from fracstudy.style import axes_row, draw, entry, legend_below, log_log, name_ticks, note
 
 _LINES = {2: ("-", "order II"), 4: ("--", "order IV")}
 
@@ -33,12 +25,12 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         for alpha, (shade, marker) in zip(below, looks, strict=False)
     }
     styles[limit] = {"color": "black", "marker": "*"}
-    for alpha, style in styles.items():
+    for alpha, look in styles.items():
         here = pick(series, alpha=alpha)
-        draw(kernels, pick(here, panel="kernel"), color=style["color"])
-        draw(moments, pick(here, panel="moment"), markersize=3.5, **style)
+        draw(kernels, pick(here, panel="kernel"), color=look["color"])
+        draw(moments, pick(here, panel="moment"), markersize=3.5, **look)
         for order, (line, _) in _LINES.items():
-            draw(errors, pick(here, panel="error", series=order), line, markersize=3.5, **style)
+            draw(errors, pick(here, panel="error", series=order), line, markersize=3.5, **look)
     log_log(kernels, xlabel="distance $r$", xlim=(0.1, 100.0), ylim=(1e-10, 5.0))
     kernels.set_ylabel(r"kernel $K(r)$, and $\Phi(r)$ at $\alpha = 2$")
     moments.set(xscale="log", xlabel="distance $r$", ylabel=r"second moment up to $r$")
@@ -49,9 +41,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         points = pick(shown, alpha=limit, series=order).sort_values("x")[["x", "y"]].to_numpy()
         if len(points) > 1:
             x, y = points[-2]
-            slope_triangle(errors, 1.2 * x, 0.4 * y, order)
+            style.slope_triangle(errors, 1.2 * x, 0.4 * y, order)
             note(errors, label, tuple(points[1]), (0, 7), ha="right", color="0.25")
     name_ticks(errors, sorted(shown["x"].unique()))
     errors.minorticks_off()
-    legend_below(figure, [entry(rf"$\alpha = {a:g}$", **style) for a, style in styles.items()])
+    legend_below(figure, [entry(rf"$\alpha = {a:g}$", **look) for a, look in styles.items()])
     return figure

@@ -6,16 +6,9 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    COLOURS,
-    axes_row,
-    entry,
-    legend_entries,
-    note,
-    scheme_style,
-    slope_triangle,
-)
+from fracstudy.style import COLOURS, axes_row, entry, note, scheme_style, slope_triangle
 from scenes.plane import spacing_axes
 
 _PAPER = ("DD", "FPSE")
@@ -25,7 +18,7 @@ _LEGEND: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (-0.08, -0.17)
 _POINT: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": ""}
 _FINER: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
 _KEY = [
-    *legend_entries((name, None) for name in _SCHEMES),
+    *style.legend_entries((name, None) for name in _SCHEMES),
     entry("order II", color="0.3"),
     entry("order IV", color="0.3", linestyle="--"),
     entry("truncated", **_POINT),
@@ -41,11 +34,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -
     figure, (paper, ours) = axes_row(titles, width=4.3, height=4.3)
     for scheme in _PAPER:
         part = groups[scheme, "II", "truncated"]
-        style = scheme_style(scheme)
-        paper.plot(part["h"], part["error (59)"], label=f"{scheme}, strengths", **style)
+        look = scheme_style(scheme)
+        paper.plot(part["h"], part["error (59)"], label=f"{scheme}, strengths", **look)
         part = part.dropna(subset=["error of the field (7)"])
-        style |= {"linestyle": "--", **_HOLLOW}
-        paper.plot(part["h"], part["error of the field (7)"], label=f"{scheme}, field (7)", **style)
+        look |= {"linestyle": "--", **_HOLLOW}
+        paper.plot(part["h"], part["error of the field (7)"], label=f"{scheme}, field (7)", **look)
     dd = groups["DD", "II", "truncated"]
     for h, error in pick(dd, N=max(particles))[["h", "error (59)"]].to_numpy():
         paper.axvspan(0.5 * series["h"].min(), h / 1.3, color="0.95", zorder=0)

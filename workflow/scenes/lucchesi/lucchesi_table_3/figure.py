@@ -6,17 +6,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    COLOURS,
-    MARKERS,
-    axes_row,
-    draw,
-    entry,
-    legend_below,
-    note,
-    scheme_style,
-)
+from fracstudy.style import COLOURS, MARKERS, axes_row, draw, entry, legend_below, note
 
 _LINES: dict[str, Any] = {"II": "-", "IV": "--"}
 _ABOVE = {"FPSE": 0.45, "DD": 0.2, "KPSE": 0.2}  # where the name of a scheme stands over its curve
@@ -31,7 +23,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> F
     for (scheme, order), curve in curves.groupby(["scheme", "order"]):
         draw(left, curve, _LINES[order], color=COLOURS[scheme])
     for scheme, points in panels.get("printed", series[:0]).groupby("scheme"):
-        draw(left, points, **scheme_style(scheme, markersize=6, **_PRINTED))
+        draw(left, points, **style.scheme_style(scheme, markersize=6, **_PRINTED))
     for scheme, above in _ABOVE.items():
         curve = pick(curves, scheme=scheme, order="II")
         y = float(np.interp(0.3, curve["x"], curve["y"]))
@@ -46,8 +38,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> F
     draw(right, exact, color=COLOURS["exact"], linewidth=1.0)
     for (scheme, order), curve in symbols.groupby(["scheme", "order"]):
         draw(right, curve, _LINES[order], color=COLOURS[scheme])
-        highest, style = curve.loc[curve["y"].idxmax()], {"color": COLOURS[scheme]}
-        right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, **style)
+        highest, look = curve.loc[curve["y"].idxmax()], {"color": COLOURS[scheme]}
+        right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, **look)
     edge = exact[exact["y"] <= top].iloc[-1]
     place = (edge["x"], edge["y"])
     note(right, r"exact, $\theta^\alpha$", place, (5, -4), va="top", color=None, fontsize=None)

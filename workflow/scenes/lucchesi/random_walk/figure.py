@@ -7,21 +7,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    COLOURS,
-    ERROR,
-    ORANGE,
-    PINK,
-    SKY,
-    axes_row,
-    draw,
-    log_log,
-    note,
-    scheme_style,
-    slope_triangle,
-)
+from fracstudy.style import BLUE, COLOURS, ERROR, ORANGE, PINK, SKY, axes_row, draw, log_log, note
 
 _GREEN = COLOURS["KPSE"]
 _WALKERS = ((ORANGE, 3.0, -2), (BLUE, 2.0, -26))  # colour, size of a dot, drop of the note
@@ -58,7 +46,7 @@ def _density(ax: Axes, series: pd.DataFrame, shown: list[int]) -> None:
         look = {"xycoords": ("data", "axes fraction"), "va": "top", "fontsize": 7.5}
         note(ax, "fewer than\n10 a cell →", (few, 1.0), (3, drop), color=colour, **look)
     draw(ax, exact, color=COLOURS["exact"], linewidth=1.0, label="exact, (36)")
-    draw(ax, scheme, label="KPSE IV", **scheme_style("KPSE", markersize=5, **_SOLUTION))
+    draw(ax, scheme, label="KPSE IV", **style.scheme_style("KPSE", markersize=5, **_SOLUTION))
     log_log(ax, xlabel="distance $x$", ylim=(least, 4.0 * exact["y"].max()))
 
 
@@ -83,7 +71,7 @@ def _error(ax: Axes, series: pd.DataFrame) -> None:
         f"equalled by {_scientific(opened['x'])} walkers)"
     )
     note(ax, text, edge, (0, -4), va="top", color=_GREEN, fontsize=7.5)
-    slope_triangle(ax, 3.0 * last["x"], 1.1 * last["y"], -0.5)
+    style.slope_triangle(ax, 3.0 * last["x"], 1.1 * last["y"], -0.5)
     log_log(ax, xlabel="number of walkers $n$")
     ax.set_ylabel(ERROR)
 

@@ -10,13 +10,8 @@ import numpy as np
 import pandas as pd
 from scipy.special import kolmogorov
 
-from fracparticles.moving.random_walk import (
-    cell_counts,
-    cell_masses,
-    expected_deviation,
-    kolmogorov_smirnov,
-    walk,
-)
+from fracparticles.moving import random_walk
+from fracparticles.moving.random_walk import cell_counts, cell_masses, expected_deviation, walk
 from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
 from fracparticles.special.stable import green, mean_radius, tail_mass
 from fracstudy.findings import Finding, measured
@@ -137,7 +132,7 @@ def _row(cells: _Cells, tail: float, dt: float, x: np.ndarray, n: int) -> dict[s
     beyond, width = tail * mean_radius(alpha), 2.0 * cells.half / cells.number
     probability = math.nan
     if n <= _TESTED:
-        probability = kolmogorov(math.sqrt(n) * kolmogorov_smirnov(x[:n], t, alpha))
+        probability = kolmogorov(math.sqrt(n) * random_walk.kolmogorov_smirnov(x[:n], t, alpha))
     return {
         "method": "random walk",
         "t": t,

@@ -5,17 +5,9 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    UNDERLAID,
-    axes_row,
-    draw,
-    entry,
-    legend_below,
-    log_log,
-    note,
-    scheme_style,
-)
+from fracstudy.style import UNDERLAID, axes_row, draw, entry, legend_below, log_log, scheme_style
 
 _PROFILE: dict[str, dict[str, Any]] = {
     "exact": UNDERLAID,
@@ -35,17 +27,19 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     profile = pick(series, panel="profile")
     titles = (rf"flux, $\alpha = {profile['alpha'].iloc[0]:g}$", "flux", "solution")
     figure, axes = axes_row(titles, width=3.4, height=3.6)
-    for name, style in _PROFILE.items():
-        draw(axes[0], pick(profile, series=name), **style)
+    for name, look in _PROFILE.items():
+        draw(axes[0], pick(profile, series=name), **look)
     axes[0].set(xlabel=r"position $x$", ylabel=r"flux $Q(x)$")
     for ax, panel in zip(axes[1:], titles[1:], strict=True):
         here = pick(series, panel=panel).sort_values("x")
         for (name, alpha), points in here.groupby(["series", "alpha"]):
-            style = scheme_style(name)
-            draw(ax, points, **style)
+            look = scheme_style(name)
+            draw(ax, points, **look)
             if name != "KPSE" or panel != "flux":  # much the same at every alpha
                 at = (points["x"].iloc[0], points["y"].iloc[0])
-                note(ax, f"{alpha:g}", at, (-5, 0), ha="right", va="center", color=style["color"])
+                style.note(
+                    ax, f"{alpha:g}", at, (-5, 0), ha="right", va="center", color=look["color"]
+                )
         log_log(ax, xlabel=r"particle spacing $h = \epsilon / 2$")
         ax.set_xlim(left=here["x"].min() / 1.8)
     axes[1].set_ylabel(r"relative $L_1$ error, $|x| \leq 5 R_\alpha$")

@@ -6,16 +6,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    axes_row,
-    draw,
-    entry,
-    legend_below,
-    log_log,
-    scheme_style,
-    slope_triangle,
-)
+from fracstudy.style import axes_row, draw, entry, legend_below, log_log, scheme_style
 
 _SIZES = (8.0, 5.5, 3.5)
 _INTEGRATORS: dict[str, tuple[str, Any, int]] = {
@@ -45,7 +38,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         for integrator, part in here.groupby("integrator"):
             lowest, order = part.groupby("x")["y"].min(), _INTEGRATORS[integrator][2]
             middle = len(lowest) // 2
-            slope_triangle(ax, lowest.index[middle], 0.3 * lowest.iloc[middle], float(order))
+            style.slope_triangle(ax, lowest.index[middle], 0.3 * lowest.iloc[middle], float(order))
     axes[0].set_ylabel("relative error in time,\nagainst the exponential")
     handles = [entry(s, **{**look, "linestyle": "none"}) for s, look in looks.items()]
     handles += [entry(name, color="0.3", linestyle=line) for name, line, _ in _INTEGRATORS.values()]

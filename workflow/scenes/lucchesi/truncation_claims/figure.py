@@ -5,16 +5,8 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fracstudy.style import (
-    COLOURS,
-    ERROR,
-    axes_row,
-    entry,
-    legend_below,
-    log_log,
-    name_ticks,
-    scheme_style,
-)
+from fracstudy import style
+from fracstudy.style import COLOURS, ERROR, axes_row, entry, legend_below, log_log, scheme_style
 
 _SHOWN = {"KPSE II": ("KPSE", "II"), "KPSE IV": ("KPSE", "IV"), "GPSE": ("GPSE", "II")}
 _PREDICTED: dict[str, Any] = {"color": "0.6", "linewidth": 4}
@@ -36,7 +28,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
                 points = here.loc[variable, scheme, order].T.to_numpy()
                 ax.plot(*points, **scheme_style(scheme, order, markerfacecolor=face))
         log_log(ax, xlabel="truncation factor $C$")
-        name_ticks(ax, sorted(here["C"].unique())[::2])
+        style.name_ticks(ax, sorted(here["C"].unique())[::2])
     axes[0].set_ylabel(ERROR)
     handles = [
         entry(name, **scheme_style(*pair, markerfacecolor=COLOURS[pair[0]]))

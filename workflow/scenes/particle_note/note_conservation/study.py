@@ -7,14 +7,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    Kernel,
-    StrengthExchange,
-    construct,
-    construct_laplacian,
-    moment,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, construct, moment
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.run.orders import observed_order
 from fracparticles.time import STEP_POLYNOMIALS, step
@@ -134,7 +128,7 @@ def _two_dimensions(n: int) -> _Case:
     """Uniform random particles in a square of side 4, equal volumes, the Laplacian of order 2."""
     x = np.random.default_rng(SEED).uniform(-2.0, 2.0, (n, 2))
     volume = 16.0 / n
-    exchange = StrengthExchange(x, volume, 2.0 * np.sqrt(volume), construct_laplacian(2, 2))
+    exchange = StrengthExchange(x, volume, 2.0 * np.sqrt(volume), pse.construct_laplacian(2, 2))
     strength = volume * np.exp(-((x - 0.5) ** 2).sum(axis=1))
     return ("random, 2-D", "Laplacian, r = 2"), exchange, strength
 

@@ -7,20 +7,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    RED,
-    axes_row,
-    draw,
-    entry,
-    log_log,
-    name_ticks,
-    note,
-    slope_triangle,
-)
+from fracstudy.style import BLUE, GREEN, ORANGE, RED, axes_row, draw, entry, log_log, note
 from scenes.particle_note.waves import LINES
 
 _DERIVATIVES = {0: "*", 1: "s", 2: "o", 3: "^", 4: "D"}
@@ -50,7 +39,7 @@ def _regularisation(ax: Axes, part: pd.DataFrame) -> None:
         note(ax, rf"$\epsilon^{int(r)}$", at, (-22, 0), color=LINES[r]["color"], **beside)
     log_log(ax, xlabel=r"kernel radius $\epsilon$")
     ax.set_xlim(0.55 * radii[0], 1.25 * radii[-1])
-    name_ticks(ax, radii)
+    style.name_ticks(ax, radii)
     ax.minorticks_off()
     ax.set_ylabel(r"regularisation error $/\ (C_1\, \|f^{(\beta+r)}\|)$")
     marks = [
@@ -93,5 +82,5 @@ def _total(ax: Axes, part: pd.DataFrame) -> None:
     draw(ax, lattice, "k*", markersize=7, label="moments met\non the lattice")
     log_log(ax, xlabel=r"kernel radius $\epsilon$  (dot: $\epsilon = h$)")
     ax.set(ylabel="error of $f''$, sum (21)", ylim=(1e-5, 4.0))
-    slope_triangle(ax, 0.35, 0.2 * 0.125 * 0.35**2, 2.0)
+    style.slope_triangle(ax, 0.35, 0.2 * 0.125 * 0.35**2, 2.0)
     ax.legend(loc="lower right", fontsize=7)

@@ -8,18 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    Kernel,
-    SplineKernel,
-    construct,
-    lattice,
-    lattice_moment,
-    moment,
-    reconstruct,
-    regularised,
-    required_moments,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, Kernel, SplineKernel, construct, lattice, regularised
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.pse.construction import taylor_constant
 from fracparticles.run.orders import observed_order
@@ -141,7 +131,7 @@ def _quadrature(
     rows = []
     for name, kernel in [*kernels.items(), ("Gaussian (20)", GAUSSIAN_20)]:
         error = np.array([_sum_error(kernel, epsilon, epsilon / s, 2) for s in overlap])
-        relative = np.abs(lattice_moment(kernel, 2, overlap) - 2.0) / 2.0
+        relative = np.abs(pse.lattice_moment(kernel, 2, overlap) - 2.0) / 2.0
         row: dict[str, Any] = {"term": "quadrature", "derivative": 2, "kernel": name}
         row["power of"] = "h/ε"
         row["power of κ"] = _kappa_power(kernel, epsilon, 2)
@@ -230,8 +220,8 @@ def _error_of_one(epsilon: float) -> float:
     h, kernel = epsilon / 1.5, SplineKernel(1)
     particles = lattice(-2.0 * epsilon, 2.0 * epsilon + h, h)
     x = np.linspace(0.0, h, 21)
-    mass = moment(kernel, 0)
-    found = reconstruct(x, particles, np.ones_like(particles), h, epsilon, kernel) / mass
+    mass = pse.moment(kernel, 0)
+    found = pse.reconstruct(x, particles, np.ones_like(particles), h, epsilon, kernel) / mass
     return float(np.abs(found - 1.0).max())
 
 
@@ -288,14 +278,14 @@ def _of_overlap(radii: np.ndarray, ratios: list[float], coarse: float) -> Findin
     errors = each(of_ratio, **{"h/eps": ratios})
     power = errors.map(partial(_power, radii))
     corrected = construct(2, 2, coarse)
-    wanted = required_moments(2, 2)[2]
+    wanted = pse.required_moments(2, 2)[2]
     return measured(
         "P-C1.overlap",
         apart=power[power.index >= 1.0],
         close=(power[power.index <= 0.5] - 2.0).abs(),
         power=power,
         last=errors.str[-1],
-        floor=abs(float(lattice_moment(GAUSSIAN_20, 2)) - wanted) / wanted,
+        floor=abs(float(pse.lattice_moment(GAUSSIAN_20, 2)) - wanted) / wanted,
         ratio=1.0 / coarse,
         corrected=_power(radii, [_sum_against_derivative(corrected, e, e / coarse) for e in radii]),
     )

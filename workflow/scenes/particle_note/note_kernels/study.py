@@ -8,16 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    GaussianKernel,
-    construct,
-    construct_laplacian,
-    gaussian_moment,
-    moment,
-    regularised,
-    required_moments,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, GaussianKernel, construct, moment, required_moments
 from fracparticles.pse.construction import taylor_constant
 from fracparticles.pse.moments import absolute_moment
 from fracparticles.run.orders import observed_order
@@ -58,7 +50,7 @@ def study(
     line = pd.DataFrame(rows)
     for dim, r in product((2, 3), accuracy):
         name = f"Laplacian, {dim}-D"
-        rows.append({"derivative": name, "r": r, **_solved(construct_laplacian(r, dim))})
+        rows.append({"derivative": name, "r": r, **_solved(pse.construct_laplacian(r, dim))})
     findings = [
         _gaussian(),
         _order(spacing, overlap),
@@ -93,7 +85,7 @@ def _gaussian() -> Finding:
     """The moments of (20), the higher ones against 4 (1/2) (3/2) ... (k/2 - 1/2)."""
     required = required_moments(2, 2)
     higher = {k: moment(GAUSSIAN_20, k) for k in range(4, _HIGHEST + 1)}
-    off = {k: abs(m - 4.0 * float(gaussian_moment(k))) for k, m in higher.items()}
+    off = {k: abs(m - 4.0 * float(pse.gaussian_moment(k))) for k, m in higher.items()}
     return measured(
         "P-C2.moments",
         error={f"M_{k}": abs(moment(GAUSSIAN_20, k) - wanted) for k, wanted in required.items()},
@@ -137,7 +129,7 @@ def _taylor() -> Finding:
     gaps = []
     for n in range(1, _DEGREE + 1):
         f = np.polynomial.Polynomial.basis(n)
-        integral = epsilon * regularised(f, x, epsilon, kernel, 1)[0]
+        integral = epsilon * pse.regularised(f, x, epsilon, kernel, 1)[0]
         factors = {k: f.deriv(k)(x[0]) / factorial(k) * (-epsilon) ** k for k in range(1, n + 1)}
         total = sum(c * moment(kernel, k) for k, c in factors.items())
         size = sum(abs(c) * absolute_moment(kernel, k) for k, c in factors.items())
@@ -155,7 +147,7 @@ def _exact(derivative: list[int], accuracy: list[int]) -> Finding:
         kernel = construct(beta, r)
         for k in range(1, beta + r + 1):
             f = np.polynomial.Polynomial.basis(k)
-            off = abs(regularised(f, x, epsilon, kernel, beta)[0] - f.deriv(beta)(0.0))
+            off = abs(pse.regularised(f, x, epsilon, kernel, beta)[0] - f.deriv(beta)(0.0))
             off /= absolute_moment(kernel, k) * epsilon ** (k - beta)
             (met if k < beta + r else unmet).append(off)
     return measured("P-C2.exact", met=max(met), unmet=min(unmet))

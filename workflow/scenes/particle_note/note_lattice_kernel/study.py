@@ -6,19 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    TENT_27,
-    Kernel,
-    SplineKernel,
-    Stencil,
-    StrengthExchange,
-    construct_stencil,
-    derivative,
-    lattice_moment,
-    moment,
-    required_moments,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, TENT_27, Kernel, lattice_moment, moment, required_moments
 from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
@@ -29,7 +18,7 @@ _EPS = float(np.finfo(float).eps)
 _WANTED = required_moments(2, 2)[2]
 _KERNELS: dict[str, Kernel] = {
     "(27)": TENT_27,
-    "tent, M₂ = 2": SplineKernel(1),
+    "tent, M₂ = 2": pse.SplineKernel(1),
     "Gaussian (20)": GAUSSIAN_20,
 }
 
@@ -84,7 +73,7 @@ def study(
         panels.add("moment", name, fine, lattice_moment(kernel, 2, fine) / _WANTED)
     orders = {}
     for r in accuracy:
-        error = [second_derivative_error(construct_stencil(2, r), h, 1.0) for h in spacing]
+        error = [second_derivative_error(pse.construct_stencil(2, r), h, 1.0) for h in spacing]
         orders[r] = float(observed_order(spacing, error)[-1])
         panels.add("error", str(r), spacing, error)
     findings = [
@@ -128,7 +117,7 @@ def _elsewhere(spacing: list[float]) -> Iterator[Finding]:
     errors = []
     for n in _NUMBERS:
         x, v = arranged("jittered", n, _HALF_WIDTH, _JITTER)
-        exchange = StrengthExchange(x, v, 2.0 * _HALF_WIDTH / n, TENT_27)
+        exchange = pse.StrengthExchange(x, v, 2.0 * _HALF_WIDTH / n, TENT_27)
         errors.append(rms_error(exchange, x, v, _START, _CENTRE))
     power = observed_order(1.0 / np.array(_NUMBERS), errors)[-1]
     yield measured("P-C4.regular_only", error=errors[-1], power=power, jitter=_JITTER)
@@ -137,7 +126,7 @@ def _elsewhere(spacing: list[float]) -> Iterator[Finding]:
 def _centred(spacing: list[float]) -> Finding:
     """The rows of (26) with (27) inside the lattice, times h^2, against (1, -2, 1)."""
     h, n = 0.125, 41  # distances without round-off
-    matrix = StrengthExchange(h * np.arange(n), h, h, TENT_27).matrix.toarray()[1:-1] * h * h
+    matrix = pse.StrengthExchange(h * np.arange(n), h, h, TENT_27).matrix.toarray()[1:-1] * h * h
     centred = sum(c * np.eye(n - 2, n, j) for j, c in enumerate((1.0, -2.0, 1.0)))
     error = [second_derivative_error(TENT_27, h, 1.0) for h in spacing]
     power, difference = float(observed_order(spacing, error)[0]), np.abs(matrix - centred).max()
@@ -162,8 +151,8 @@ def _schemes(orders: dict[int, float]) -> Iterator[Finding]:
     for name, (beta, weights) in {**SCHEMES, "f'', compact, 4th order": (2, _compact())}.items():
         reach = max(map(abs, weights))
         # (18) has eta at x_i - x_p: the weight of f(x_i + j h) is eta(-j).
-        kernel = Stencil(tuple(Fraction(weights.get(-j, 0)) for j in range(-reach, reach + 1)))
-        ours = derivative(particles[inside], f[inside], particles, f, h, h, kernel, beta)
+        kernel = pse.Stencil(tuple(Fraction(weights.get(-j, 0)) for j in range(-reach, reach + 1)))
+        ours = pse.derivative(particles[inside], f[inside], particles, f, h, h, kernel, beta)
         scheme = np.zeros(n)
         for j, weight in weights.items():
             scheme += float(weight) * np.roll(f, -j) / h**beta
@@ -171,7 +160,7 @@ def _schemes(orders: dict[int, float]) -> Iterator[Finding]:
     yield measured("P-C4.any_stencil", difference=difference)
     coefficient = {}
     for r in orders:
-        found = enumerate(construct_stencil(2, r).values, start=-r // 2)
+        found = enumerate(pse.construct_stencil(2, r).values, start=-r // 2)
         weights = SCHEMES[_CENTRED[r]][1]
         coefficient[f"r = {r}"] = max(abs(float(eta - weights[j])) for j, eta in found if j)
     off = {f"r = {r}": abs(power - r) for r, power in orders.items()}
