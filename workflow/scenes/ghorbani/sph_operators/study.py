@@ -14,7 +14,7 @@ from fracparticles.sph.norms import r2_score, relative_l2
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
+from scenes.ghorbani.operators import LABELS, OPERATORS, Order
 
 _MARGIN = 5  # particles within 4 h, 4.4 s, of an end: their sums of sums see it
 
@@ -38,7 +38,7 @@ def study(
     inner = slice(_MARGIN, -_MARGIN)
     rows, panels = [], Panels()
     for name, method in product(FUNCTIONS, METHODS):
-        x, exact, ours = _values(line, operator, order, name, method)
+        x, exact, ours = OPERATORS[operator].compared(line, name, order, method)
         error, figure = np.abs(ours - exact), item.get(method)
         curve = {"x": x, "exact": exact, "sph": ours.real, "error": error}
         panels.add(function=name, method=method, **curve)
@@ -62,16 +62,6 @@ def study(
         findings += _others(line, order, **item)
     shown = table.drop(columns="range").replace({"function": LABELS})
     return Result(shown, findings, panels.frame)
-
-
-def _values(
-    line: ParticleLine, operator: str, order: Order, name: str, method: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The particles that are judged, the closed form there, and the approximation."""
-    kind, function, alpha = OPERATORS[operator], FUNCTIONS[name], order_at(order, line.x_all)
-    ours = kind.approximate(line, function.value(line.x_all), alpha, method=method)
-    exact = kind.exact(function, line.x, alpha[line.inside])
-    return line.x[kind.first :], exact[kind.first :], ours[kind.first :]
 
 
 def _findings(
@@ -114,9 +104,9 @@ def _deviations(by_function: pd.Series, claimed: str) -> dict[str, Any]:
 def _others(line: ParticleLine, order: float, standard: str, modified: str) -> Iterator[Finding]:
     """The integral's errors beside those of the two derivatives, and what the modified form does to all three."""
     l2, real = {}, {}
-    for operator, name, method in product(OPERATORS, FUNCTIONS, ("standard", "modified")):
-        _, exact, ours = _values(line, operator, order, name, method)
-        case = OPERATORS[operator].name, LABELS[name], method
+    for operator, name, method in product(OPERATORS.values(), FUNCTIONS, ("standard", "modified")):
+        _, exact, ours = operator.compared(line, name, order, method)
+        case = operator.name, LABELS[name], method
         l2[case], real[case] = relative_l2(exact, ours), relative_l2(exact, ours.real)
     l2, real = (pd.Series(errors).unstack(sort=False) for errors in (l2, real))
     worst = l2["standard"].groupby(level=0, sort=False).max()

@@ -84,19 +84,13 @@ def study(
 
 def _errors(line: ParticleLine, orders: list[Order], reading: Reading) -> dict[str, float]:
     errors = {}
-    for case, (operator, name, _, modified) in CASES.items():
-        alpha, exact = _exact(line, orders, case)
-        judged = slice(0 if reading.first else OPERATORS[operator].first, None)
+    for case, (operator, name, varies, modified) in CASES.items():
+        kind, alpha = OPERATORS[operator], order_at(orders[varies], line.x_all)
+        judged = slice(0 if reading.first else kind.first, None)
+        exact = kind.exact(FUNCTIONS[name], line.x, alpha[line.inside])
         ours = approximate(line, name, operator, alpha, modified, reading)[judged]
         errors[case] = relative_l2(exact[judged], ours.real if reading.real else ours)
     return errors
-
-
-def _exact(line: ParticleLine, orders: list[Order], case: str) -> tuple[np.ndarray, np.ndarray]:
-    """The order on all particles, and the closed form on the real ones."""
-    operator, name, varies, _ = CASES[case]
-    alpha = order_at(orders[varies], line.x_all)
-    return alpha, OPERATORS[operator].exact(FUNCTIONS[name], line.x, alpha[line.inside])
 
 
 def _gradients(line: ParticleLine) -> Iterator[Finding]:
@@ -202,13 +196,10 @@ def _eta(line: ParticleLine, errors: Mapping[str, Mapping[str, float]]) -> Findi
 def _score(line: ParticleLine, orders: list[Order]) -> Finding:
     """(40), with the squares of the complex deviations as printed and with those of their absolute values."""
     plain, absolute = {}, {}
-    for case, (operator, name, _, _) in CASES.items():
-        (alpha, exact), kind = _exact(line, orders, case), OPERATORS[operator]
-        exact = exact[kind.first :]
-        spread = np.sum((exact - exact.mean()) ** 2)
+    for case, (operator, name, varies, _) in CASES.items():
         for method in ("standard", "modified"):
-            f = FUNCTIONS[name].value(line.x_all)
-            off = kind.approximate(line, f, alpha, method=method)[kind.first :] - exact
+            _, exact, ours = OPERATORS[operator].compared(line, name, orders[varies], method)
+            off, spread = ours - exact, np.sum((exact - exact.mean()) ** 2)
             plain[case, method] = 1.0 - np.sum(off**2).real / spread
             absolute[case, method] = 1.0 - np.sum(np.abs(off) ** 2) / spread
     return measured(
@@ -223,11 +214,8 @@ def _score(line: ParticleLine, orders: list[Order]) -> Finding:
 
 def _right_handed(line: ParticleLine, order: float) -> Finding:
     """The operators on [x, b] of exp x, whose mirror image has closed forms."""
-    function, alpha = FUNCTIONS["exp"], np.full(line.count, order)
     errors = {}
     for kind in OPERATORS.values():
-        ours = kind.approximate(line, function.value(line.x_all), order, side="right")[::-1]
-        terms = [c * kind.exact(g, line.x, alpha) for c, g in function.mirrored(line.b)]
-        exact = np.sum(terms, axis=0)
-        errors[kind.name] = relative_l2(exact[kind.first :], ours[kind.first :])
+        _, exact, ours = kind.compared(line, "exp", order, side="right")
+        errors[kind.name] = relative_l2(exact, ours)
     return measured("S-EQ.right_handed", error=errors)

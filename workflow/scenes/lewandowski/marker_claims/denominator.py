@@ -26,10 +26,9 @@ def traces(square: SquareRuns, small_dt: float, seeds: range) -> Traces:
 def findings(square: SquareRuns, stops: Traces, seed: int) -> Iterator[Finding]:
     """The least denominator over its first term, at the paper's time step and at a smaller one."""
     cases = {"S4": ("S4", "random"), "S7": ("S7", "random"), "S8, midpoints": ("S8", "midpoints")}
-    least = {
-        dt: {case: _least(square, dt, *of, seed) for case, of in cases.items()} for dt in stops
-    }
+    least = {}
     for dt, of_step in stops.items():
+        least[dt] = {case: _least(square, dt, *of, seed) for case, of in cases.items()}
         least[dt]["S8, random positions"] = min(
             _least(square, dt, "S8", "random", t.seed) if t.run else 0.0 for t in of_step
         )

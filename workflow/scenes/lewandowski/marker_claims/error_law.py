@@ -27,11 +27,8 @@ def rows(law: list[str], spacings: list[float]) -> Iterator[dict[str, Any]]:
         for h in spacings:
             shape = shape_function(name)
             plain, robust = accuracy.optimal_support(shape, h)
-            best = {
-                "ours": robust,
-                "plain": plain,
-                "predicted": accuracy.predicted_support(shape, h),
-            }
+            predicted = accuracy.predicted_support(shape, h)
+            best = {"ours": robust, "plain": plain, "predicted": predicted}
             yield {"what": "best ε", "S": name, "x": h, "at": f"h = {h:g}", **best}
 
 

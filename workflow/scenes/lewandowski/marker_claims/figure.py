@@ -55,10 +55,8 @@ def _best(ax: Axes, series: pd.DataFrame) -> None:
 
 
 def _parts(ax: Axes, series: pd.DataFrame) -> None:
-    looks = {
-        "position": ("-", r"position, $\hat e$ (18)"),
-        "representation": (":", "representation"),
-    }
+    looks = {"position": ("-", r"position, $\hat e$ (18)")}
+    looks["representation"] = (":", "representation")
     for name, part in series.groupby("series"):
         for what, (line, label) in looks.items():
             style = {"color": SHAPE_COLOURS[name], "markersize": 3.5}

@@ -15,11 +15,9 @@ _PROFILES: dict[str, tuple[str, dict[str, Any]]] = {
     "initial": ("$f_0$", {"color": "0.55", "linestyle": ":"}),
     "exact": ("exact", {"color": "black"}),
     "in the velocity": ("source in the velocity", {"color": style.RED, "linestyle": "--"}),
-    "in the weights": (
-        "source in the weights",
-        {"color": style.BLUE, "linestyle": (0, (1, 1.5)), "linewidth": 2.6},
-    ),
+    "in the weights": ("source in the weights", {"color": style.BLUE, "linestyle": (0, (1, 1.5))}),
 }
+_PROFILES["in the weights"][1]["linewidth"] = 2.6
 
 
 def figure(
@@ -43,9 +41,8 @@ def figure(
 
 
 def _burgers(ax: Axes, series: pd.DataFrame) -> None:
-    for (t, part), colour in zip(
-        series.groupby("t"), (style.ORANGE, style.GREEN, style.BLUE), strict=False
-    ):
+    colours = (style.ORANGE, style.GREEN, style.BLUE)
+    for (t, part), colour in zip(series.groupby("t"), colours, strict=False):
         exact, dots = pick(part, series="exact"), pick(part, series="markers").sort_values("x")
         draw(ax, exact, color="black", linewidth=0.9)
         draw(ax, dots.iloc[:: max(1, len(dots) // 40)], color=colour, **HOLLOW)

@@ -58,12 +58,8 @@ def study(
 ) -> Result:
     """Burgers against Cole-Hopf, KdV against the soliton, and a source in the velocity or in the weights."""
     errors = _Errors()
-    findings = [
-        *_burgers(errors, **burgers),
-        *_kdv(errors, **kdv),
-        *_source(errors, **source),
-        _carried(),
-    ]
+    findings = [*_burgers(errors, **burgers), *_kdv(errors, **kdv)]
+    findings += [*_source(errors, **source), _carried()]
     return Result(pd.DataFrame(errors.rows), inputs.judged(findings), errors.panels.frame)
 
 

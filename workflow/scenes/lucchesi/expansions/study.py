@@ -104,10 +104,8 @@ class _Reach(NamedTuple):
     @classmethod
     def of(cls, table: pd.DataFrame, tolerance: str) -> Self:
         reach, start = table[f"series to x ({tolerance})"], table[f"expansion from x ({tolerance})"]
-        return cls(
-            reach.iloc[: max(int(reach.idxmax()), 1) + 1],
-            start.iloc[: max(int(start.idxmin()), 1) + 1],
-        )
+        last, first = (max(int(k), 1) + 1 for k in (reach.idxmax(), start.idxmin()))
+        return cls(reach.iloc[:last], start.iloc[:first])
 
     @property
     def far(self) -> float:

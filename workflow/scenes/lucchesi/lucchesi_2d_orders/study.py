@@ -98,14 +98,8 @@ def _findings(
             yield measured(f"L-2D-ORD.spacing.h{h}", ours=spacing, particles=count)
     order = pick(table, N=table["N"].max()).set_index(["compared", "summed over", "scheme"])[_OURS]
     order = order.sort_index()
-    ours, strengths, everywhere = (
-        (order[reading] - 2.0).abs()
-        for reading in (
-            ("field (7)", "r <= 5"),
-            ("strengths", "r <= 5"),
-            ("field (7)", "all particles"),
-        )
-    )
+    readings = (("field (7)", "r <= 5"), ("strengths", "r <= 5"), ("field (7)", "all particles"))
+    ours, strengths, everywhere = ((order[reading] - 2.0).abs() for reading in readings)
     yield measured(
         "L-2D-ORD.second_order",
         runs=files,

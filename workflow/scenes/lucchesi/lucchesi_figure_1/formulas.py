@@ -278,9 +278,8 @@ def _appendix(alphas: Sequence[float]) -> Iterator[Finding]:
     four = {"15": "kappa", "21": "F", "12": "G"}
     yield measured("L-FORMULAS.B5", difference=each(partial(_general, slope=False), n=_DIMS))
     yield measured("L-FORMULAS.B6", difference=each(partial(_general, slope=True), n=_DIMS))
-    yield measured(
-        "L-FORMULAS.inverse", difference={name: off(kind, 2) for name, kind in two.items()}
-    )
+    inverse = {name: off(kind, 2) for name, kind in two.items()}
+    yield measured("L-FORMULAS.inverse", difference=inverse)
     meant = {name: off(kind, 4, 0.5) for name, kind in four.items()}
     for name, difference in meant.items():
         yield measured(f"L-FORMULAS.{name}", difference=difference)
@@ -301,10 +300,8 @@ def _general(n: int, slope: bool) -> float:
     value = pi ** (0.5 * n) * a**-top * gamma(top) / gamma(below)
     value = value * hyp1f1(top, below, -((b * _RADII) ** 2) / (4.0 * a))
     # int y |y|^mu exp(-a |y|^2 + i b x.y) dV = -i times the gradient of the integral without y; 2! is a factor below.
-    return _off(
-        -0.5 * b * _RADII * value if slope else value,
-        gaussian_integral(mu, b * _RADII, n, a, slope),
-    )
+    value = -0.5 * b * _RADII * value if slope else value
+    return _off(value, gaussian_integral(mu, b * _RADII, n, a, slope))
 
 
 def _powers(claim: str, equations: Mapping[str, str], alpha: float) -> Finding:

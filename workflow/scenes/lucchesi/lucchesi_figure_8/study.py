@@ -84,12 +84,8 @@ def _findings(series: pd.DataFrame, table: pd.DataFrame, files: list[str]) -> It
     ratio = ratio.groupby([truncated["scheme"], truncated["line"]])
     logarithms = np.log10(1.0 + median).abs() / decades
     found = partial(measured, runs=files)
-    yield found(
-        "L-F8.follow",
-        near=here[_NEAR],
-        far=by_curve(_plotted) / decades,
-        reach=here[_REACH],
-    )
+    far = by_curve(_plotted) / decades
+    yield found("L-F8.follow", near=here[_NEAR], far=far, reach=here[_REACH])
     yield found(
         "L-F8.radial",
         anisotropy={scheme: _anisotropy(curves, scheme) for scheme in paper},

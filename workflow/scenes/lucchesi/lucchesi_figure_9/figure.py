@@ -17,6 +17,7 @@ _HOLLOW: dict[str, Any] = {"markerfacecolor": "white"}
 _LEGEND: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (-0.08, -0.17)}
 _POINT: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": ""}
 _FINER: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
+_FINER |= {"color": "0.4", "fontsize": 7.5}
 _KEY = [
     *style.legend_entries((name, None) for name in _SCHEMES),
     entry("order II", color="0.3"),
@@ -42,15 +43,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -
     dd = groups["DD", "II", "truncated"]
     for h, error in pick(dd, N=max(particles))[["h", "error (59)"]].to_numpy():
         paper.axvspan(0.5 * series["h"].min(), h / 1.3, color="0.95", zorder=0)
-        note(
-            paper,
-            "finer than\nin the paper",
-            (h / 1.36, 0.98),
-            (0, 0),
-            color="0.4",
-            fontsize=7.5,
-            **_FINER,
-        )
+        note(paper, "finer than\nin the paper", (h / 1.36, 0.98), (0, 0), **_FINER)
         slope_triangle(paper, 1.1 * h, 0.4 * error, 2.0)
     spacing_axes(paper, dd["h"])
 

@@ -119,6 +119,7 @@ def study(inputs: Inputs, *, beta: list[float], particles: int, spacing: float) 
     rows = [_row(scheme, worst[name] <= _ROUND_OFF) for name, scheme in schemes.items()]
     velocity = each(lambda b: abs(velocity_order(1.0 + b) - 2.0), beta=beta)
     consistency = each(lambda b: consistency_order(1.0 + b), beta=beta)
+    all_pairs = {"all pairs in both sums": {"ratio": 2.0}}
     findings = [
         *(measured(f"L-T1.{s}", difference=worst[s]) for s in ("DD", "FPSE", "KPSE", "GPSE")),
         measured("L-T1.DVM", difference=worst["DVM"], order=velocity),
@@ -127,11 +128,7 @@ def study(inputs: Inputs, *, beta: list[float], particles: int, spacing: float) 
             measured(f"L-COST.{s}", defect=each(lambda b, s=s: _defect(s, setting(b)), beta=beta))
             for s in ("KPSE", "DPSE", "FPSE")
         ),
-        measured(
-            "L-COST.cheaper",
-            others={"all pairs in both sums": {"ratio": 2.0}},
-            ratio=_pairs_ratio(),
-        ),
+        measured("L-COST.cheaper", others=all_pairs, ratio=_pairs_ratio()),
     ]
     return Result(pd.DataFrame(rows), inputs.judged(findings))
 

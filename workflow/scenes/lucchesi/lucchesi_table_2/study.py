@@ -78,9 +78,8 @@ def study(inputs: Inputs, *, judged_remeshing: str, printed_spacing: dict[float,
 
 def _finding(claim: str, row: pd.Series, readings: dict[str, float], files: pd.Series) -> Finding:
     """Our order for a printed one, and which reading comes nearest."""
-    away, nearest = min(
-        (abs(p - row["printed"]), name) for name, p in readings.items() if not np.isnan(p)
-    )
+    known = {name: p for name, p in readings.items() if not np.isnan(p)}
+    away, nearest = min((abs(p - row["printed"]), name) for name, p in known.items())
     return measured(claim, runs=files, ours=row["ours"], nearest=nearest, away=away)
 
 
@@ -92,10 +91,8 @@ def _expected(judged: pd.DataFrame, files: pd.Series) -> Finding:
     def away(column: str) -> dict[str, pd.Series]:
         return {"away": (orders[column] - orders_of(orders.index)).abs().dropna()}
 
-    others = {
-        "the printed orders": away("printed"),
-        "sums over all particles": away("all particles"),
-    }
+    others = {"the printed orders": away("printed")}
+    others["sums over all particles"] = away("all particles")
     return measured("L-T2.expected", runs=files, others=others, **away("ours"))
 
 

@@ -90,10 +90,7 @@ def study(
         for b, h in zip(beta, spacing, strict=True)
         for scheme in _SCHEMES
     }
-    rows = [
-        _row(*key, of_key[-1], iterated.get(key[:2]), inputs.printed)
-        for key, of_key in spectra.items()
-    ]
+    rows = [_row(*of, s[-1], iterated.get(of[:2]), inputs.printed) for of, s in spectra.items()]
     limits = each(stability_limit, scheme=_SCHEMES, beta=beta)
     growths = {
         (s, b): _growths(_matrix(s, 1.0 + b, 2, size), spectra[s, b, 2][-2].lowest)
@@ -101,9 +98,7 @@ def study(
     }
     findings = [
         *(
-            measured(
-                f"L-T3.{s}.beta{b:g}", ours=a, power=iterated[s, b][0], iterations=iterated[s, b][1]
-            )
+            measured(f"L-T3.{s}.beta{b:g}", ours=a, **iterated[s, b]._asdict())
             for (s, b), a in limits.items()
         ),
         *_limits(limits, spacing[0]),
@@ -114,15 +109,17 @@ def study(
     return Result(pd.DataFrame(rows), findings, _series(beta, inputs.printed))
 
 
-def _iterate(
-    scheme: str, beta: float, h: float, truncation: float, tolerance: float
-) -> tuple[float, int]:
-    """a by power iteration, and the number of iterations."""
+class _Iterated(NamedTuple):
+    power: float  # a by power iteration
+    iterations: int
+
+
+def _iterate(scheme: str, beta: float, h: float, truncation: float, tolerance: float) -> _Iterated:
     given = {"scheme": scheme, "beta": beta, "truncation": truncation, "spacing": h}
     setting = Case(**given, integrator="exponential").setting
     operator = SCHEMES[scheme].operator(setting)
     eigenvalue, iterations = power_iteration(operator, tolerance=tolerance)
-    return -2.0 * setting.rate / eigenvalue, iterations
+    return _Iterated(-2.0 * setting.rate / eigenvalue, iterations)
 
 
 def _row(
@@ -130,7 +127,7 @@ def _row(
     beta: float,
     order: int,
     dense: Spectrum,
-    iterated: tuple[float, int] | None,
+    iterated: _Iterated | None,
     printed: Mapping[str, str],
 ) -> dict[str, object]:
     limit = stability_limit(scheme, beta, order)
@@ -146,7 +143,7 @@ def _row(
         "printed": theirs,
         "symbol": limit,
         "closed form": SCHEMES[scheme].closed_form_limit(beta, _OVERLAP) if paper else np.nan,
-        "power iteration": paper[0] if paper else np.nan,
+        "power iteration": paper.power if paper else np.nan,
         f"eigenvalues, N = {dense.particles}": -2.0 / dense.lowest,
         "deviation": limit / theirs - 1.0,
         "status": f"{status.sign} {status}" if status else "",

@@ -96,20 +96,14 @@ def study(inputs: Inputs, *, alpha: list[float]) -> Result:
     def outer_off(a: float) -> float:
         return abs(outer_moment(splits[a], a)[0] - 0.5 * mean_radius(a) + halves[a])
 
-    shares = {
-        name: each(partial(_tail_share, power=power), alpha=alpha)
-        for name, power in (("second", 2), ("first", 1))
-    }
+    first, second = (each(partial(_tail_share, power=p), alpha=alpha) for p in (1, 2))
+    inner, outer = each(inner_off, alpha=alpha), each(outer_off, alpha=alpha)
     ours = zip(claims, table["closed form"], strict=True)
     findings = [
         *(measured(claim, ours=value) for claim, value in ours),
         measured("L-TA4.series", difference=by_alpha["sums off by less than"], split=splits),
-        measured(
-            "L-TA4.moments",
-            inner=each(inner_off, alpha=alpha),
-            outer=each(outer_off, alpha=alpha),
-        ),
-        measured("L-TA4.second_moment", **shares),
+        measured("L-TA4.moments", inner=inner, outer=outer),
+        measured("L-TA4.second_moment", second=second, first=first),
         measured("L-TA4.unit_mass", difference=each(_mass_error, alpha=alpha)),
     ]
     return Result(table, inputs.judged(findings))

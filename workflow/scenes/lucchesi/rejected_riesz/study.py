@@ -89,7 +89,5 @@ def _findings(flux: pd.DataFrame) -> list[Finding]:
     error, ratio = finest[_CUT_OFF], by_alpha[_CUT_OFF] / by_alpha[_MOLLIFIED]
     poor = {"ratio": ratio.groupby("alpha").min(), "error": error}
     poor |= {"order": finest[_ORDER], "h": flux["h"].min()}
-    return [
-        measured("L-C16.poor", **poor),
-        measured("L-C16.worst_large_alpha", rise=rise, error=error),
-    ]
+    worst = measured("L-C16.worst_large_alpha", rise=rise, error=error)
+    return [measured("L-C16.poor", **poor), worst]

@@ -30,10 +30,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         log_log(ax, xlabel="truncation factor $C$")
         style.name_ticks(ax, sorted(here["C"].unique())[::2])
     axes[0].set_ylabel(ERROR)
-    handles = [
-        entry(name, **scheme_style(*pair, markerfacecolor=COLOURS[pair[0]]))
-        for name, pair in _SHOWN.items()
-    ]
+    filled = {name: {"markerfacecolor": COLOURS[scheme]} for name, (scheme, _) in _SHOWN.items()}
+    handles = [entry(name, **scheme_style(*of, **filled[name])) for name, of in _SHOWN.items()]
     handles += [
         entry("truncated", **_EITHER),
         entry("open exterior", markerfacecolor="none", **_EITHER),

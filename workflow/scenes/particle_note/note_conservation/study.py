@@ -229,10 +229,8 @@ def _anywhere(
             for n, e in zip(numbers, radii, strict=True)
         ]
         power[f"{kind}, {rule}"] = float(np.polyfit(np.log(radii), np.log(error), 1)[0])
-    short, solution = (
-        {case: 2.0 - p for case, p in power.items()},
-        order("solution error", "jittered"),
-    )
+    short = {case: 2.0 - p for case, p in power.items()}
+    solution = order("solution error", "jittered")
     return measured("P-C3.arbitrary_positions", short=short, power=power, solution=solution)
 
 

@@ -51,15 +51,14 @@ def study(
     for dim, r in product((2, 3), accuracy):
         name = f"Laplacian, {dim}-D"
         rows.append({"derivative": name, "r": r, **_solved(pse.construct_laplacian(r, dim))})
+    decay = GAUSSIAN_20(_REACH) / GAUSSIAN_20(0.0)
     findings = [
         _gaussian(),
         _order(spacing, overlap),
         *_construction(line, derivative, accuracy),
         _taylor(),
         _exact(derivative, accuracy),
-        measured(
-            "P-C2.support", far=GAUSSIAN_20(_FAR), decay=GAUSSIAN_20(_REACH) / GAUSSIAN_20(0.0)
-        ),
+        measured("P-C2.support", far=GAUSSIAN_20(_FAR), decay=decay),
     ]
     return Result(pd.DataFrame(rows), inputs.judged(findings), panels.frame)
 
