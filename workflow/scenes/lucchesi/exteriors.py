@@ -19,7 +19,7 @@ def exterior_panels(series: pd.DataFrame, **options: Any) -> tuple[Figure, list[
         here = pick(series, exterior=exterior)
         scheme_lines(ax, here[here["scheme"] != "GPSE"])
         # On a truncated lattice it lies on KPSE of order IV.
-        large = {"markersize": 8.0, "markerfacecolor": "none", "zorder": 3}
+        large: dict[str, Any] = {"markersize": 8.0, "markerfacecolor": "none", "zorder": 3}
         scheme_lines(ax, pick(here, scheme="GPSE"), **large)
         log_log(ax)
     axes[0].set_ylabel(ERROR)

@@ -44,7 +44,7 @@ def study(inputs: Inputs, *, smoothing_ratio: float, ratios: list[float]) -> Res
     gap = {"derivative": _largest_gap(spline_gradient, spline)}
     gap["integral"] = _largest_gap(spline, spline_integral)
     total, factor = kernel_sums(smoothing_ratio)
-    sums = {"ratio": smoothing_ratio, "total": total, "factor": factor}
+    sums: dict[str, Any] = {"ratio": smoothing_ratio, "total": total, "factor": factor}
     findings = [
         measured("S-F2.support", inside=inside, beyond=beyond),
         measured("S-F2.unit_mass", excess=excess),

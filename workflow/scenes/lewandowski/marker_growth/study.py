@@ -80,7 +80,8 @@ def _step(rates: pd.DataFrame, limits: pd.DataFrame, profile: pd.DataFrame) -> I
         measured=eta.mean(),
         off=(limits["η"] / limits["predicted"] - 1.0).abs().max(),
     )
-    growth, lattice = rates.groupby("S")["measured"].max(), {"spacing": 0.0625, "period": 16.0}
+    growth = rates.groupby("S")["measured"].max()
+    lattice: dict[str, Any] = {"spacing": 0.0625, "period": 16.0}
     _, growth[INFINITE.name] = measured_rate(INFINITE, 8, amplitude=1e-4, **lattice)
     yield measured("M-C1.ensures", growth=growth, predicted=extremes(INFINITE).growth)
     first, last = (getattr(profile.dropna().groupby("S")["E"], end)() for end in ("first", "last"))

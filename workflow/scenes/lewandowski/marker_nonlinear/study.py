@@ -266,7 +266,7 @@ def _time_stepping(
     }
     off = {name: setting.deviation(e.end, everywhere=True) / peak for name, e in titled.items()}
     last = {name: e.last for name, e in titled.items()}
-    more = {"stages": stable.stages, "dt": small.dt, "same": same}
+    more: dict[str, Any] = {"stages": stable.stages, "dt": small.dt, "same": same}
     yield measured("M-F18.agreement", apart=off, last=last, **more)
 
 

@@ -115,8 +115,8 @@ def _findings(
     yield found("M-F5.slope", small, 1.0, excess="largest slope / exact")
     yield found("M-F5.cause", small, error="coarse error", whole="relative error")
     yield found("M-F5.oscillates", small, maxima="maxima")
-    delayed = {"late": "delay", "left": "error left by the delay"}
-    yield found("M-F6.slope", large, slope="largest slope / exact", **delayed)
+    slope, left = "largest slope / exact", "error left by the delay"
+    yield found("M-F6.slope", large, slope=slope, late="delay", left=left)
     yield found("M-F6.smoothed", large, peak="F(0) / f(0)", distance="from the smoothed f")
     yield found("M-F7.good", middle, error="relative error")
     others = {title: supports(of) for title, of in readings.items() if middle in of.index}

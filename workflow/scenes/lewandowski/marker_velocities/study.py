@@ -103,11 +103,11 @@ def _burgers(
     falls = cases.map(lambda e: np.diff(e).max())
     # The jump is sqrt(2 M / t), the pulse sqrt(2 M t) long, the front 8 mu / jump wide.
     sharp, ends = reynolds[-1], [markers[0], markers[-1]]
-    wide = {"front": 2.0 / sharp, "support": epsilon / math.sqrt(2.0 * total * end)}
-    of_sharp = {"error": many[sharp], "change": falls[sharp], "few": few[sharp]}
+    of_sharp: dict[str, Any] = {"error": many[sharp], "change": falls[sharp], "few": few[sharp]}
+    of_sharp |= {"front": 2.0 / sharp, "support": epsilon / math.sqrt(2.0 * total * end)}
     return [
         measured("M-C6.burgers", error=many, few=few, change=falls, markers=ends),
-        measured("M-C6.shocks", **of_sharp, **wide),
+        measured("M-C6.shocks", **of_sharp),
     ]
 
 
@@ -150,7 +150,8 @@ def _kdv(
     reached = _bare_soliton(errors, Soliton(c), t_final, **bare)
     found, alone = errors.of(case), errors.rows[-1]
     (positive, signed), (finer, finer_signed) = _signed(128), _signed(256)
-    numbers = {"reached": reached, "stopped": alone["stopped"] or "it goes on to the end"}
+    stopped = alone["stopped"] or "it goes on to the end"
+    numbers: dict[str, Any] = {"reached": reached, "stopped": stopped}
     return [
         measured("M-C6.kdv_velocity", miss=kdv_residual(soliton, residual_half_width)),
         measured(
@@ -249,9 +250,9 @@ def _source(
         errors.panels.add(panel, "initial", z, Gaussian().value(z))
     gain = sources[_SOURCES[0]].total * t_final
     gained, most = gain / (Gaussian().total + gain), markers[-1]
-    by_way = {"error": last[_VELOCITY], "weights": last[_WEIGHTS]}
+    error, weights = last.values()
     return [
-        measured("M-C6.source", **by_way, gained=gained, markers=most),
+        measured("M-C6.source", error=error, weights=weights, gained=gained, markers=most),
         measured("M-C6.source_velocity", miss=max(map(_substituted, sources.values()))),
     ]
 

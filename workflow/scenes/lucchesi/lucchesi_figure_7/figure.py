@@ -1,5 +1,7 @@
 """Flux and rates along y = 0 on the printed lattices, and how fast they converge."""
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
@@ -12,7 +14,7 @@ from scenes.plane import spacing_axes
 
 _RATE = r"$\Delta^\alpha u(r, t = {time:g})$"
 # Panel, by quantity: its title, what is on the axis, the colours, and the place of the legend.
-_PANELS = {
+_PANELS: dict[str, tuple[str, str, str, Any]] = {
     "flux": ("radial flux, FPSE (19)", r"$Q_r^\beta(r, t = {time:g})$", "Oranges", "upper right"),
     "DD": ("diffusion rate, DD", _RATE, "Blues", "lower right"),
     "FPSE": ("diffusion rate, FPSE", _RATE, "Oranges", "lower right"),

@@ -69,7 +69,7 @@ def study(inputs: Inputs, *, judged_remeshing: str, printed_spacing: dict[float,
     if not inputs.items:
         return Result(table)
     files = {claim: part["run"] for claim, part in runs.groupby("claim", sort=False)}
-    findings = [_finding(*case, readings[case[0]], files[case[0]]) for case in judged.iterrows()]
+    findings = [_finding(c, row, readings[c], files[c]) for c, row in judged.iterrows()]
     findings.append(_expected(judged, runs["run"]))
     if rates:
         findings.append(_dvm_rate(rates, judged_remeshing, runs.loc[runs["moving"], "run"]))

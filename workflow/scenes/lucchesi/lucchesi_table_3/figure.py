@@ -38,8 +38,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> F
     draw(right, exact, color=COLOURS["exact"], linewidth=1.0)
     for (scheme, order), curve in symbols.groupby(["scheme", "order"]):
         draw(right, curve, _LINES[order], color=COLOURS[scheme])
-        highest, look = curve.loc[curve["y"].idxmax()], {"color": COLOURS[scheme]}
-        right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, **look)
+        highest, colour = curve.loc[curve["y"].idxmax()], COLOURS[scheme]
+        right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, color=colour)
     edge = exact[exact["y"] <= top].iloc[-1]
     place = (edge["x"], edge["y"])
     note(right, r"exact, $\theta^\alpha$", place, (5, -4), va="top", color=None, fontsize=None)

@@ -49,11 +49,16 @@ def study(inputs: Inputs, *, shown_beta: float, dense: int, history: dict[str, A
     table = _table(runs, greatest)
     deviation = _follow(panels, shown_beta, spectra["PSE29"][-1], history)
     predicted, message = _blow_up(shown_beta)
-    more = {"deviation": deviation, "predicted": predicted, "message": message}
     findings = [
         _kernel(kernels),
         _errors(table, list(runs["run"])),
-        measured("L-C15.instability", eigenvalue=greatest, **more),
+        measured(
+            "L-C15.instability",
+            eigenvalue=greatest,
+            deviation=deviation,
+            predicted=predicted,
+            message=message,
+        ),
     ]
     return Result(table, inputs.judged(findings), panels.frame)
 

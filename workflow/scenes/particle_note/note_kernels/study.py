@@ -139,7 +139,8 @@ def _taylor() -> Finding:
 def _exact(derivative: list[int], accuracy: list[int]) -> Finding:
     """(18) at 0 for z^k: up to the degree beta + r - 1, whose moments are met, and for z^(beta+r), whose is not."""
     x, epsilon = np.array([0.0]), 0.7
-    met, unmet = [], []
+    met: list[float] = []
+    unmet: list[float] = []
     for beta, r in product(derivative, accuracy):
         if beta == 0:  # (18) is for derivatives
             continue
