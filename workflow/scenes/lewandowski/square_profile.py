@@ -18,8 +18,6 @@ from scipy.optimize import minimize_scalar
 from fracparticles.markers import (
     MarkerRun,
     MarkerVelocity,
-    Shape,
-    Square,
     equal_weight,
     random,
     run,
@@ -27,6 +25,8 @@ from fracparticles.markers import (
     uniform,
 )
 from fracparticles.markers.clusters import emptiness
+from fracparticles.markers.profiles import Square
+from fracparticles.markers.shapes import Shape
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracstudy.findings import Finding, measured
 

@@ -6,25 +6,14 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    ERROR,
-    GREEN,
-    RED,
-    axes_row,
-    draw,
-    entry,
-    log_log,
-    name_ticks,
-    note,
-    slope_triangle,
-)
+from fracstudy.style import axes_row, draw, entry, log_log, name_ticks, note, slope_triangle
 
 _REMESHINGS = {  # colour, marker, label
-    "M4'": (BLUE, "o", "$M_4'$"),
-    "Lambda3": (RED, "s", r"$\Lambda_3$"),
-    "none": (GREEN, "^", "none"),
+    "M4'": (style.BLUE, "o", "$M_4'$"),
+    "Lambda3": (style.RED, "s", r"$\Lambda_3$"),
+    "none": (style.GREEN, "^", "none"),
 }
 _KINDS = {"II, field (7)": "-", "II, strengths": ":", "IV, field (7)": "--"}
 _BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 2}
@@ -43,21 +32,21 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: float) -> Figure
 
 def _look(remeshing: str, kind: str = "field", order: int = 2) -> dict[str, Any]:
     colour, marker, _ = _REMESHINGS[remeshing]
-    style = ":" if kind == "strengths" else "--" if order == 4 else "-"
+    line = ":" if kind == "strengths" else "--" if order == 4 else "-"
     face = colour if kind == "field" and order == 2 else "none"
-    return {"color": colour, "marker": marker, "linestyle": style, "markerfacecolor": face}
+    return {"color": colour, "marker": marker, "linestyle": line, "markerfacecolor": face}
 
 
 def _errors(ax: Axes, series: pd.DataFrame) -> None:
     for (kind, order, name), part in series.groupby(["kind", "order", "remeshing"]):
         if (kind, order) != ("strengths", 4):  # those of order II again
             draw(ax, part, **_look(name, kind, order))
-    log_log(ax, xlabel="particle spacing $h$", ylabel=ERROR)
+    log_log(ax, xlabel="particle spacing $h$", ylabel=style.ERROR)
     names = [
         entry(label, color=colour, marker=marker, linestyle="none")
         for colour, marker, label in _REMESHINGS.values()
     ]
-    lines = [entry(label, color="0.3", linestyle=style) for label, style in _KINDS.items()]
+    lines = [entry(label, color="0.3", linestyle=line) for label, line in _KINDS.items()]
     spacings = sorted(series["x"].unique())
     if len(spacings) > 1:
         x = spacings[-2]

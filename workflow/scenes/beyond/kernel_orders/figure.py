@@ -7,16 +7,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    ERROR,
-    axes_row,
-    legend_below,
-    log_log,
-    name_ticks,
-    scheme_style,
-    slope_triangle,
-)
+from fracstudy.style import axes_row, legend_below, log_log, name_ticks, scheme_style
 
 _SHADES = mpl.colormaps["viridis_r"]
 _STYLES = ("-", "--", ":")
@@ -35,7 +28,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         log_log(ax, xlabel="particle spacing $h$")
         name_ticks(ax, sorted(part["h"].unique()), form=".2g")
         ax.set_title(scheme, loc="right", color=scheme_style(scheme)["color"])
-    axes[0].set_ylabel(ERROR)
+    axes[0].set_ylabel(style.ERROR)
     legend_below(drawn, axes[0], columns=5)
     return drawn
 
@@ -46,9 +39,9 @@ def _panel(ax: Axes, part: pd.DataFrame, scheme: str, orders: list[int]) -> None
     look: dict[str, Any] = {"marker": marker, "markersize": 3.0, "linewidth": 1.2}
     for (order, overlap), points in part.groupby(["order", "overlap"]):
         colour = _SHADES(0.08 + 0.9 * orders.index(order) / max(len(orders) - 1, 1))
-        style = _STYLES[overlaps.index(overlap) % len(_STYLES)]
+        line = _STYLES[overlaps.index(overlap) % len(_STYLES)]
         label = rf"order {order}, $\epsilon / h = {overlap:g}$"
-        ax.plot(points["h"], points["error"], style, color=colour, label=label, **look)
+        ax.plot(points["h"], points["error"], line, color=colour, label=label, **look)
     finest = pick(part, order=orders[0], overlap=overlaps[0])
     h, error = finest.iloc[0][["h", "error"]]
-    slope_triangle(ax, h, 2.5 * error, float(orders[0]), above=True)
+    style.slope_triangle(ax, h, 2.5 * error, float(orders[0]), above=True)

@@ -6,14 +6,8 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from fracparticles.markers import (
-    SHAPES,
-    MarkerVelocity,
-    Ramp,
-    equal_weight,
-    shape_function,
-    uniform,
-)
+from fracparticles.markers import SHAPES, MarkerVelocity, equal_weight, shape_function, uniform
+from fracparticles.markers.profiles import Ramp
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels

@@ -8,18 +8,11 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.errors import NonFiniteSolution
-from fracparticles.markers import (
-    SHAPES,
-    Gaussian,
-    MarkerVelocity,
-    Square,
-    equal_weight,
-    run,
-    uniform,
-)
+from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, equal_weight, run, uniform
 from fracparticles.markers.burgers import PointSource, burgers
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.kdv import Soliton, kdv
+from fracparticles.markers.profiles import Square
 from fracparticles.markers.source import GaussianSource, advance_weights, source_flux
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result

@@ -27,6 +27,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import pick
 
 _STEPS = 3  # of which a measured growth is the mean
 _XI = 1e-5  # displacement of a wave, in spacings: its square is what linearity neglects
@@ -98,22 +99,20 @@ def study(
     grid = {"beta": beta, "truncation": truncation}
     waves = _growth(1.0 + beta, growth, half)
     runs = pd.concat([_runs(name, {**grid, "spacing": spacing}, factors) for name in _RUNS])
-    ruined, error = _ruined(runs) & runs["stopped"].isna(), runs["error"]
-    # Saturated chaos: its size is a result, its digits are nobody's.
-    shown = error.where(~ruined, error.map(lambda e: float(f"{e:.0e}")))
-    outcome = np.where(runs["stopped"].notna(), "stopped", np.where(ruined, "ruined", "fine"))
-    table = pd.DataFrame(
-        {
-            "run": runs["run"],
-            "step / limit of DD": runs["factor"],
-            "Δt": runs["dt"],
-            "error (48)": shown,
-            "steps": runs["steps"],
-            "outcome": outcome,
-            "after t": runs["stopped"],
-            "growth of the worst wave in a step": runs["growth"],
-        }
-    )
+    stopped, error = runs["stopped"].notna(), runs["error"]
+    ruined = _ruined(runs) & ~stopped
+    columns = {
+        "run": runs["run"],
+        "step / limit of DD": runs["factor"],
+        "Δt": runs["dt"],
+        # Saturated chaos: its size is a result, its digits are nobody's.
+        "error (48)": error.where(~ruined, error.map(lambda e: float(f"{e:.0e}"))),
+        "steps": runs["steps"],
+        "outcome": np.where(stopped, "stopped", np.where(ruined, "ruined", "fine")),
+        "after t": runs["stopped"],
+        "growth of the worst wave in a step": runs["growth"],
+    }
+    table = pd.DataFrame(columns)
 
     def limit(beta: float) -> float:
         return stability_limit("DD", beta) * printed_spacing[beta] ** (1.0 + beta) / printed_step
@@ -189,7 +188,7 @@ def _ruined(runs: pd.DataFrame) -> pd.Series:
 
 def _unseeded(grid: dict[str, float], runs: pd.DataFrame) -> pd.DataFrame:
     """The runs of DVM above the limit once more without a trace of the worst wave, beside that of the smallest step."""
-    factors = runs.loc[runs["run"] == "DVM, M4'", "factor"]
+    factors = pick(runs, run="DVM, M4'")["factor"]
     chosen = [factors.min(), *factors[factors > 1.0]]
     return pd.concat([_runs(name, grid, chosen, 0.0) for name in _RUNS if name.startswith("DVM")])
 
@@ -218,8 +217,7 @@ def _gpse(runs: pd.DataFrame, overlaps: list[float]) -> Iterator[Finding]:
     """The factors of a step over all waves, and the errors of runs with steps on both sides of DD's limit."""
     factors = [gpse_factors(1.0 + beta, s) for beta, s in product(_BETAS, overlaps)]
     here = runs[runs["run"].str.startswith("GPSE")]
-    error = here["error"]
-    change = error.max() / error.min() - 1.0
+    error, change = here["error"], here["error"].max() / here["error"].min() - 1.0
     ends = {"lowest": np.min(factors), "excess": np.max(factors) - 1.0}
     yield measured("L-C11.GPSE", **ends, change=change, factor=here["factor"].max())
     apart = here["dt"].max() / here["dt"].min()
@@ -279,8 +277,7 @@ def _weak(cases: list[Case]) -> Iterator[Finding]:
     """How strong the weakest particles are, and where the velocity is more than the exact x / (alpha t)."""
     least, ratios, stopped = {}, {}, 0
     for case in cases:
-        name = f"beta = {case.beta:g}"
-        u0 = initial_strengths(case)[0]
+        name, u0 = f"beta = {case.beta:g}", initial_strengths(case)[0]
         least[name] = u0.min() / u0.max()
         states: list[Any] = []
         with _no_warning():
