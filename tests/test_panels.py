@@ -1,11 +1,13 @@
-"""The points of a figure in long form."""
+"""The points of a figure in long form, and its panels."""
 
 from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+import pytest
 
 from fracstudy.panels import Panels, pick
+from fracstudy.style import axes_row
 
 
 def test_points_are_kept_in_order_with_what_else_is_said_of_them():
@@ -20,3 +22,25 @@ def test_points_are_kept_in_order_with_what_else_is_said_of_them():
     assert list(pick(frame, panel="a", series="line")["y"]) == [0.0, 1.0, 4.0]
     assert list(pick(frame, panel="b", series="S8")["x"]) == [2.0]
     assert frame["t"].notna().sum() == 3
+
+
+def test_points_may_be_given_by_name_and_have_the_columns_named_alone():
+    panels = Panels()
+    panels.add("a", beta=0.5, x=[1.0, 2.0], y=[3.0, 4.0])
+    assert list(panels.frame) == ["panel", "beta", "x", "y"]
+    assert list(panels.frame["beta"]) == [0.5, 0.5]
+
+
+@pytest.mark.parametrize(
+    ("panels", "titles"),
+    [(1, [""]), (2, ["(a)", "(b)"]), (["one"], ["(a) one"]), (["one", ""], ["(a) one", "(b)"])],
+)
+def test_panels_of_a_figure_are_lettered_and_titled(panels, titles):
+    _, axes = axes_row(panels)
+    assert [ax.get_title(loc="left") for ax in axes] == titles
+
+
+def test_panels_may_stand_in_rows_of_one_size():
+    figure, axes = axes_row(4, height=2.0, width=3.0, rows=2)
+    assert tuple(figure.get_size_inches()) == (6.0, 4.0)
+    assert [ax.get_subplotspec().rowspan.start for ax in axes] == [0, 0, 1, 1]

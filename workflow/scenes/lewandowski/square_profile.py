@@ -4,7 +4,7 @@ The text leaves open where the markers start. Each of `LOADINGS` is run, the ran
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
@@ -18,8 +18,6 @@ from scipy.optimize import minimize_scalar
 from fracparticles.markers import (
     MarkerRun,
     MarkerVelocity,
-    Shape,
-    Square,
     equal_weight,
     random,
     run,
@@ -27,7 +25,10 @@ from fracparticles.markers import (
     uniform,
 )
 from fracparticles.markers.clusters import emptiness
+from fracparticles.markers.profiles import Square
+from fracparticles.markers.shapes import Shape
 from fracparticles.moving.lagrangian import FieldNotPositive
+from fracstudy.findings import Finding, measured
 
 SQUARE = Square()
 LOADINGS = {
@@ -247,3 +248,13 @@ class Starts:
             row |= {column: int(part[column].sum()) for column in counted}
             rows.append(row)
         return pd.DataFrame(rows)
+
+
+def with_other_seeds(
+    ours: Mapping[str, Mapping[str, Any]], others: Mapping[str, Mapping[str, Any]]
+) -> list[Finding]:
+    """Return what was measured for each claim, beside the same numbers of other random starts."""
+    return [
+        measured(claim, others={"other seeds": others[claim]}, **numbers)
+        for claim, numbers in ours.items()
+    ]

@@ -21,12 +21,7 @@ _COLOURS: dict[str, dict[str, str]] = {  # of the maps, and of the disk of (59)
     "error": {"cmap": "magma", "disk": "0.9"},
 }
 _BARS: dict[str, dict[str, Any]] = {
-    "u": {
-        "label": r"strength $u(\mathbf{x}, t_f)$",
-        "shrink": 0.9,
-        "aspect": 18,
-        "extend": "min",
-    },
+    "u": {"label": r"strength $u(\mathbf{x}, t_f)$", "shrink": 0.9, "aspect": 18, "extend": "min"},
     "error": {"label": r"relative error $|u\,/\,G - 1|$", "shrink": 0.6, "aspect": 36},
 }
 
@@ -63,9 +58,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, maps: list[list[Any]]) 
 def _map(ax: Axes, part: pd.DataFrame, norm: Normalize, what: str) -> None:
     colours, ticks = _COLOURS[what], [-DISK, 0.0, DISK]
     x, field = _whole(part)
-    ax.pcolormesh(
-        x, x, field.T, norm=norm, cmap=colours["cmap"], shading="nearest", rasterized=True
-    )
+    look: dict[str, Any] = {"norm": norm, "cmap": colours["cmap"], "shading": "nearest"}
+    ax.pcolormesh(x, x, field.T, rasterized=True, **look)
     # What is not positive has no place on a logarithmic scale.
     ax.set_facecolor("#D55E00")
     disk = {"fill": False, "color": colours["disk"], "linewidth": 0.9, "linestyle": "--"}

@@ -79,12 +79,9 @@ def _at_the_end(orders: list[float]) -> Finding:
         (name, o): np.polyfit(np.log(_NEAR), np.log(np.abs(by.derivative(name, _NEAR, o))), 1)[0]
         for name, o in product(FUNCTIONS, orders)
     }
-    excess = {
-        LABELS[name]: max(abs(powers[name, o] + o) for o in orders)
-        for name in FUNCTIONS
-        if by.at_zero(name)
-    }
-    bounded = min(power for (name, _), power in powers.items() if not by.at_zero(name))
+    infinite = [name for name in FUNCTIONS if by.at_zero(name)]
+    excess = {LABELS[s]: max(abs(powers[s, o] + o) for o in orders) for s in infinite}
+    bounded = min(power for (name, _), power in powers.items() if name not in infinite)
     return measured("S-DEF.35_end", excess=excess, bounded=bounded)
 
 
@@ -114,10 +111,8 @@ def _memory(x: np.ndarray, variable: dict[str, float]) -> Finding:
     at = x[:, None] - distance
     gaps = {}
     # The order under the integral, and at x' = a.
-    for kind, argument, end in (
-        ("Type II, α(x′)", at, np.zeros_like(x)),
-        ("Type III, α(x − x′)", distance, x),
-    ):
+    kinds = {"Type II, α(x′)": (at, np.zeros_like(x)), "Type III, α(x − x′)": (distance, x)}
+    for kind, (argument, end) in kinds.items():
         alpha, first = order_at(variable, argument), order_at(variable, end)
         weight = measure * distance ** (alpha - 1.0) / gamma(alpha)
         part = measure * distance**alpha / gamma(1.0 + alpha)

@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, entry, legend_below, name_ticks, note
-from scenes.lewandowski.marker_style import LOADING_LOOKS, draw, symbol
+from fracstudy.style import axes_row, draw, entry, legend_below, name_ticks, note
+from scenes.lewandowski.marker_style import LOADING_LOOKS, symbol
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

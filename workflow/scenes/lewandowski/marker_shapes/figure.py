@@ -6,8 +6,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below, note
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
+from fracstudy.style import RED, axes_row, draw, legend_below, note
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 from scenes.lewandowski.square_profile import SHAPES
 
 
@@ -20,7 +20,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, wavenumbers: float) -> 
             draw(ax, pick(series, panel=panel, series=name), label=symbol(name), **style)
     shapes.set(xlabel=r"$x / \varepsilon$", ylabel=r"shape function $\varepsilon S_\varepsilon$")
     transforms.axhline(0.0, color="0.3", linewidth=0.8)
-    transforms.axhspan(-0.25, 0.0, color="#D55E00", alpha=0.07, linewidth=0)
+    transforms.axhspan(-0.25, 0.0, color=RED, alpha=0.07, linewidth=0)
     transforms.set(xlim=(0.0, wavenumbers), ylim=(-0.25, 0.4))
     transforms.set_xlabel(r"wavenumber $k = \varepsilon q$")
     transforms.set_ylabel(r"Fourier transform $\widehat{S}(k)$")

@@ -66,8 +66,6 @@ def _findings(rows: pd.DataFrame) -> Iterator[Finding]:
     slope = {name: abs(float(SHAPES[name](1.0, 1))) for name in ("S3", "S4")}
     yield measured("M-SHAPES.slope", slope=slope["S4"], quadratic=slope["S3"])
     hat, k = SHAPES["S2"], np.linspace(10.0, 20.0, 401)
-    rough = (
-        np.exp(-0.25 * k * k).max() / hat.transform(k).max()
-    )  # exp(-x^2) / sqrt(pi), the Gaussian
-    yield measured("M-SHAPES.smoother", tail=rough)
+    gaussian = np.exp(-0.25 * k * k)  # the transform of exp(-x^2) / sqrt(pi)
+    yield measured("M-SHAPES.smoother", tail=gaussian.max() / hat.transform(k).max())
     yield measured("M-SHAPES.demanding", neighbours=SHAPES["S8"].reach / hat.reach)

@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import entry, legend_below, name_ticks
-from scenes.lewandowski.marker_style import EXACT, LOADING_LOOKS, draw
+from fracstudy.style import draw, entry, legend_below, name_ticks
+from scenes.lewandowski.marker_style import EXACT, LOADING_LOOKS
 from scenes.lewandowski.square_profile import SquareRuns
 
 _TICKS = {"error": (0.02, 0.05, 0.1, 0.2, 0.5), "slope": (1, 2, 5, 10, 20, 50)}

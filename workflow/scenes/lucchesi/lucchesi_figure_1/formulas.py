@@ -1,26 +1,22 @@
-"""The formulas of Sections 2, 3 and Appendix B, each held against quadrature of what it stands for.
-
-The integrals are int |y|^power exp(-a |y|^2) exp(i x.y) dV over R^n, in t = a |y|^2 by Gauss and Laguerre: the cosine
-or Bessel function that the angles leave is smooth in t, so that the rule is exact to round-off for the x that are
-used. Kernels as the paper prints them come from scipy's 1F1.
-"""
+"""The formulas of Sections 2, 3 and Appendix B, each held against quadrature of what it stands for."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import product
-from math import factorial, gamma, pi, sqrt
+from math import gamma, pi, sqrt
 
 import numpy as np
 import pandas as pd
 from scipy.integrate import quad
-from scipy.special import hyp1f1, j0, j1, roots_genlaguerre
+from scipy.special import hyp1f1
 
 from fracparticles.kernels.families import kernel
 from fracparticles.special.stable import green
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS
+from scenes.lucchesi.lucchesi_figure_1 import integrals
+from scenes.lucchesi.lucchesi_figure_1.integrals import from_transform, moment, printed_kernel
 
-_NODES = 60
 _RADII = np.linspace(0.1, 3.0, 30)
 _DIMS = (1, 2, 3)
 _KERNELS = {"kappa": "(B.11)", "F": "(B.12)", "G": "(B.13)"}  # with the equation of their transform
@@ -29,65 +25,6 @@ _EPSILON = 0.5  # at which powers of epsilon are told from one another
 _FAR, _SMALL = 1e5, 1e-3
 _STEP = 1e-2  # of the differences of sixth order, exact to 1e-12 for functions of scale 1
 _SIXTH = {1: 45.0 / 60.0, 2: -9.0 / 60.0, 3: 1.0 / 60.0}
-
-
-def _sphere(n: int) -> float:
-    """The surface of the unit sphere in R^n."""
-    return 2.0 * pi ** (0.5 * n) / gamma(0.5 * n)
-
-
-def _angles(z: np.ndarray, n: int) -> np.ndarray:
-    """The mean of exp(i x.y) over the directions of y, z = |x| |y|."""
-    return (np.cos(z), j0(z), np.sinc(z / pi))[n - 1]
-
-
-def _angles_slope(z: np.ndarray, n: int) -> np.ndarray:
-    """Its derivative in z > 0."""
-    return (-np.sin(z), -j1(z), (np.cos(z) - np.sinc(z / pi)) / z)[n - 1]
-
-
-def gaussian_integral(
-    power: float, x: np.ndarray, n: int, a: float, slope: bool = False
-) -> np.ndarray:
-    """Return int |y|^power exp(-a |y|^2 + i x.y) dV(y) over R^n at |x| > 0, or its derivative in |x|; power > -n."""
-    exponent = 0.5 * (power + n) - 1.0
-    t, weight = roots_genlaguerre(_NODES, exponent)
-    y = np.sqrt(t / a)
-    z = np.multiply.outer(np.asarray(x, dtype=float), y)
-    integrand = y * _angles_slope(z, n) if slope else _angles(z, n)
-    return 0.5 * _sphere(n) * a ** -(exponent + 1.0) * (integrand @ weight)
-
-
-def _moment(power: float, n: int, a: float) -> float:
-    return float(gaussian_integral(power, np.zeros(1), n, a)[0])
-
-
-def from_transform(
-    name: str, x: np.ndarray, alpha: float, n: int, order: int = 2, epsilon: float = 1.0
-) -> np.ndarray:
-    """Return the inverse transform of the right side of (B.11), (B.12) or (B.13), the vector's component along x."""
-    power = alpha if name == "G" else alpha - 2.0
-    sign = -1.0 if name == "G" else 1.0
-
-    def one(width: float) -> np.ndarray:
-        return gaussian_integral(power, x, n, 0.25 * width**2, slope=name == "F")
-
-    value = one(epsilon) if order == 2 else 2.0 * one(epsilon) - one(sqrt(2.0) * epsilon)
-    return sign * value / (2.0 * pi) ** n
-
-
-def printed_kernel(
-    name: str, r: np.ndarray, alpha: float, n: int, wide: float | None = None
-) -> np.ndarray:
-    """Return (14), (20), (11); with `wide` those of order IV by the rule 2 1F1(x) - 2^-a 1F1(wide x) of (B.18)."""
-    forms = {"kappa": (alpha - 2.0, 0, 1.0), "F": (alpha, 2, -r), "G": (alpha, 0, -1.0)}
-    power, b, sign = forms[name]
-    a, c = 0.5 * (power + n), 0.5 * (n + b)
-    value = hyp1f1(a, c, -r * r)
-    if wide is not None:
-        value = 2.0 * value - 2.0**-a * hyp1f1(a, c, -wide * r * r)
-    constant = 2.0**power * gamma(a) / (pi ** (0.5 * n) * gamma(c) * factorial(b))  # (B.14)
-    return sign * constant * value
 
 
 def _off(ours: np.ndarray, theirs: np.ndarray) -> float:
@@ -141,7 +78,7 @@ def _riesz_constant(alpha: float, n: int) -> float:
 
 def _of_transform(alpha: float, n: int) -> float:
     """The fractional Laplacian (B.1) of exp(-|x|^2) at the origin."""
-    return -(pi ** (0.5 * n)) / (2.0 * pi) ** n * _moment(alpha, n, 0.25)
+    return -(pi ** (0.5 * n)) / (2.0 * pi) ** n * moment(alpha, n, 0.25)
 
 
 def _radial_integral(integrand: Callable[[float], float]) -> float:
@@ -152,14 +89,16 @@ def _radial_integral(integrand: Callable[[float], float]) -> float:
 def _laplacian(n: int, alpha: float) -> float:
     """(4) of exp(-|x|^2) at the origin against that of the transform (B.1)."""
     integral = _radial_integral(lambda r: np.expm1(-r * r) * r ** (-1.0 - alpha))
-    ours = alpha * _riesz_constant(alpha, n) * _sphere(n) * integral
+    ours = alpha * _riesz_constant(alpha, n) * integrals.sphere(n) * integral
     return abs(ours / _of_transform(alpha, n) - 1.0)
 
 
 def _divergence(n: int, alpha: float) -> float:
     """-div Q of (2) with D = 1, the derivatives taken of u under the integral, against that of the transform (B.1)."""
     integral = _radial_integral(lambda r: -2.0 * r ** (1.0 - alpha) * np.exp(-r * r))
-    return abs(_riesz_constant(alpha, n) * _sphere(n) * integral / _of_transform(alpha, n) - 1.0)
+    return abs(
+        _riesz_constant(alpha, n) * integrals.sphere(n) * integral / _of_transform(alpha, n) - 1.0
+    )
 
 
 def _laplacian_of_potential(n: int, alpha: float) -> float:
@@ -217,16 +156,16 @@ def _at_origin(name: str, n: int, epsilon: float) -> float:
     (24), or of (24) with n + 4 for 5, in the integral of (22).
     """
     a, unit = 1.0 + epsilon**2, pi ** (-0.5 * n)
-    narrow = unit * _moment(0.0, n, a)
+    narrow = unit * moment(0.0, n, a)
     if name == "(8)":
         return narrow
     if name == "(9)":
-        return 2.0 * narrow - (2.0 * pi) ** (-0.5 * n) * _moment(0.0, n, a - 0.5)
-    second = unit * _moment(2.0, n, a)
+        return 2.0 * narrow - (2.0 * pi) ** (-0.5 * n) * moment(0.0, n, a - 0.5)
+    second = unit * moment(2.0, n, a)
     if name == "(23)":
         return 2.0 * second / n
     constant = 5.0 if name == "(24)" else n + 4.0
-    return (constant * second - 2.0 * unit * _moment(4.0, n, a)) / n
+    return (constant * second - 2.0 * unit * moment(4.0, n, a)) / n
 
 
 def _observed(name: str, order: float) -> pd.Series:
@@ -278,9 +217,8 @@ def _appendix(alphas: Sequence[float]) -> Iterator[Finding]:
     four = {"15": "kappa", "21": "F", "12": "G"}
     yield measured("L-FORMULAS.B5", difference=each(partial(_general, slope=False), n=_DIMS))
     yield measured("L-FORMULAS.B6", difference=each(partial(_general, slope=True), n=_DIMS))
-    yield measured(
-        "L-FORMULAS.inverse", difference={name: off(kind, 2) for name, kind in two.items()}
-    )
+    inverse = {name: off(kind, 2) for name, kind in two.items()}
+    yield measured("L-FORMULAS.inverse", difference=inverse)
     meant = {name: off(kind, 4, 0.5) for name, kind in four.items()}
     for name, difference in meant.items():
         yield measured(f"L-FORMULAS.{name}", difference=difference)
@@ -301,10 +239,8 @@ def _general(n: int, slope: bool) -> float:
     value = pi ** (0.5 * n) * a**-top * gamma(top) / gamma(below)
     value = value * hyp1f1(top, below, -((b * _RADII) ** 2) / (4.0 * a))
     # int y |y|^mu exp(-a |y|^2 + i b x.y) dV = -i times the gradient of the integral without y; 2! is a factor below.
-    return _off(
-        -0.5 * b * _RADII * value if slope else value,
-        gaussian_integral(mu, b * _RADII, n, a, slope),
-    )
+    value = -0.5 * b * _RADII * value if slope else value
+    return _off(value, integrals.gaussian_integral(mu, b * _RADII, n, a, slope))
 
 
 def _powers(claim: str, equations: Mapping[str, str], alpha: float) -> Finding:

@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from fracparticles.kernels.families import kernel
 from fracstudy.findings import Finding, each, measured
@@ -45,7 +46,7 @@ def study(inputs: Inputs, *, beta: list[float], points: int) -> Result:
     return Result(table, inputs.judged(findings), panels.frame)
 
 
-def _values(name: str, r: np.ndarray, beta: float, order: int = 2, dim: int = 1) -> np.ndarray:
+def _values(name: str, r: ArrayLike, beta: float, order: int = 2, dim: int = 1) -> np.ndarray:
     return np.asarray(kernel(name, r, 1.0 + beta, dim, order))
 
 

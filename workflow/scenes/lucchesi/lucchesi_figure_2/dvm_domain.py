@@ -40,8 +40,8 @@ def lagrangian_domain(
         free=errors["DVM, none"],
         remeshed=errors[f"DVM, {first}"],
     )
-    overlaps = {"overlap": kept["overlap"], "free": free["overlap"]}
-    yield found("L-C1.redistribution_resolution", **overlaps)
+    overlap = kept["overlap"]
+    yield found("L-C1.redistribution_resolution", overlap=overlap, free=free["overlap"])
     yield found("L-C1.redistribution_domain", ratio=free["reach"] / kept["reach"])
     stretch = {_FREE: free["stretch"], _REMESHED: kept["stretch"]}
     away = {case: abs(by - 1.0) for case, by in stretch.items()}

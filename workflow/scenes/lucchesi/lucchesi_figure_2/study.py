@@ -124,15 +124,16 @@ def _errors_judged(main: Inputs, table: pd.DataFrame) -> Iterator[Finding]:
         rest = {name: numbers(errors) for name, errors in others}
         return measured(claim, runs=main.runs, others=rest, **numbers(judged))
 
+    def inside(e: pd.DataFrame) -> dict[str, Any]:
+        return {"inside": e[_INSIDE], "growth": e[_LAST] / e[_INSIDE]}
+
     def outwards(e: pd.DataFrame) -> dict[str, Any]:
         return {"outwards": e[boundary] / e[_INSIDE], "onwards": e[_LAST] / e[boundary]}
 
     yield by_scheme("L-F2.peak", lambda e: {"error": e[_PEAK]})
     yield by_scheme("L-F2.decay", lambda e: {"error": e[_DECAY]})
     yield by_scheme("L-F2.absolute_error", lambda e: {"error": e[_ABSOLUTE]})
-    yield by_scheme(
-        "L-F2.interior", lambda e: {"inside": e[_INSIDE], "growth": e[_LAST] / e[_INSIDE]}
-    )
+    yield by_scheme("L-F2.interior", inside)
     yield by_scheme("L-F2.relative_error", outwards)
 
     def over_exchange(error: pd.Series) -> pd.Series:

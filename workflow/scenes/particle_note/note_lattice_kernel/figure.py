@@ -6,7 +6,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, log_log, name_ticks, note, slope_triangle
+from fracstudy.panels import pick
+from fracstudy.style import axes_row, draw, log_log, name_ticks, note, slope_triangle
 from scenes.particle_note.waves import LINES
 
 _BLUE, _RED = LINES[2]["color"], LINES[4]["color"]
@@ -24,14 +25,13 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, claimed_moment: list[in
     curves = dict(tuple(series.groupby(["panel", "series"])))
     for name, look in _LOOKS.items():
         if name != "tent, M₂ = 2":
-            shape.plot(curves["shape", name]["x"], curves["shape", name]["y"], **look)
-        moments.plot(curves["moment", name]["x"], curves["moment", name]["y"], **look)
+            draw(shape, curves["shape", name], **look)
+        draw(moments, curves["moment", name], **look)
     seen = curves["points", "(27)"]
-    shape.plot(seen["x"], seen["y"], "o", color=_BLUE, markersize=6)
+    draw(shape, seen, "o", color=_BLUE, markersize=6)
     for i, eta in zip(seen["x"], seen["y"], strict=True):
         if i >= 0 and eta > 0:
-            text = rf"$\eta({i:g}) = {eta:g}$"
-            note(shape, text, (i, eta), (7, 2), color=_BLUE)
+            note(shape, rf"$\eta({i:g}) = {eta:g}$", (i, eta), (7, 2), color=_BLUE)
     shape.annotate("Gaussian (20)", (-0.8, 1.6), xytext=(-2.9, 1.9), color=_RED, fontsize=8)
     shape.annotate("kernel (27)", (-1.0, 1.0), xytext=(-2.9, 0.85), color=_BLUE, fontsize=8)
     shape.set(xlabel="$z = x / \\epsilon$", ylabel=r"kernel $\eta(z)$", ylim=(-0.1, 2.45))
@@ -41,13 +41,12 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, claimed_moment: list[in
     moments.axhline(far, color=_BLUE, linewidth=0.7, linestyle=(0, (1, 3)))
     note(moments, "$M_2/2$ of (27)", (widest, far), (0, 3), ha="right", color=_BLUE)
     moments.plot(1.0, 1.0, "o", color=_BLUE, markersize=6)
-    fits = r"(27) with $\epsilon = h$"
-    place = {"textcoords": "data", "color": _BLUE}
-    note(moments, fits, (1.0, 1.0), (2.0, 0.55), arrowprops=_ARROW, **place)
+    fits, look = r"(27) with $\epsilon = h$", {"color": _BLUE, "arrowprops": _ARROW}
+    note(moments, fits, (1.0, 1.0), (2.0, 0.55), textcoords="data", **look)
     moments.set(xlabel=r"overlap $\epsilon / h$", xlim=(0.4, widest), ylim=(0.0, 1.8))
     moments.set_ylabel(r"what $f''$ is multiplied by, $\hat M_2/2$")
     moments.legend(loc="lower right", fontsize=7)
-    _stencils(errors, series[series["panel"] == "error"])
+    _stencils(errors, pick(series, panel="error"))
     return drawn
 
 
