@@ -18,7 +18,7 @@ from fracparticles.special import (
     tail_constant,
     tail_mass,
 )
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha import references
 from scenes.extremes.ends_of_alpha.names import distance, written
 
@@ -69,19 +69,22 @@ def probes(betas: list[float], radii: list[float], dims: list[int]) -> Iterator[
 
     The second correction of the limits leaves some 100 distance^3, below round-off; far out it is the series.
     """
+    density = Kind("density", must=HELD)
     for beta in betas:
         alpha = 1.0 + beta
         exact = distance(beta) > 1e-4  # the quadrature costs a second a value: one radius
         for name in FUNCTIONS:
             for n in dims:
-                yield probe(
-                    "density",
+                yield density(
                     f"{name}, n = {n}, {written(beta)}",
-                    "limit and corrections" if not exact else "the Fourier integral",
-                    partial(errors, name, n, alpha, [1.1] if exact else radii),
-                    _BOUNDS.get(name, 1e-13),
+                    errors,
+                    name,
+                    n,
+                    alpha,
+                    [1.1] if exact else radii,
+                    expected="limit and corrections" if not exact else "the Fourier integral",
+                    bound=_BOUNDS.get(name, 1e-13),
                     source=references.source_of(alpha),
-                    must=Verdict.HELD,
                 )
         yield from _far(beta, dims)
         yield from _numbers(beta)
@@ -89,19 +92,17 @@ def probes(betas: list[float], radii: list[float], dims: list[int]) -> Iterator[
 
 def _far(beta: float, dims: list[int]) -> Iterator[Probe]:
     alpha = 1.0 + beta
+    far_tail = Kind("far tail", "three terms of the far series", 1e-13, "series, mpmath", HELD)
     for n in dims:
         for name, function, exact in (
             ("density", green, references.tail_density),
             ("tail mass", tail_mass, references.tail_mass),
         ):
-            yield probe(
-                "far tail",
+            yield far_tail(
                 f"{name}, n = {n}, r = 1e6, {written(beta)}",
-                "three terms of the far series",
-                partial(_relative, partial(function, _FAR, 1.0, alpha, n), exact(n, alpha, _FAR)),
-                1e-13,
-                source="series, mpmath",
-                must=Verdict.HELD,
+                _relative,
+                partial(function, _FAR, 1.0, alpha, n),
+                exact(n, alpha, _FAR),
             )
 
 
@@ -115,16 +116,9 @@ def _numbers(beta: float) -> Iterator[Probe]:
             "tail constant": (tail_constant, mp.gamma(1 + a) * mp.sin(mp.pi * a / 2) / mp.pi),
             "peak": (lambda alpha: green(0.0, 1.0, alpha), mp.gamma(1 + 1 / a) / mp.pi),
         }
+    number = Kind("number", "its closed form", 1e-14, "closed form, mpmath", HELD)
     for name, (function, exact) in cases.items():
-        yield probe(
-            "number",
-            f"{name}, {written(beta)}",
-            "its closed form",
-            partial(_relative, partial(function, alpha), exact),
-            1e-14,
-            source="closed form, mpmath",
-            must=Verdict.HELD,
-        )
+        yield number(f"{name}, {written(beta)}", _relative, partial(function, alpha), exact)
 
 
 def _relative(function: Callable[[], Any], exact: Any) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import cache, partial
+from functools import cache
 from typing import Any
 
 import mpmath as mp
@@ -11,7 +11,7 @@ import numpy as np
 
 from fracparticles.kernels.families import PAPER_ORDERS, kernel, kernel_transform
 from fracparticles.kernels.tabulated import tabulated
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha.names import written
 
 __all__ = ["exact", "exact_transform", "forms_of", "probes", "worst"]
@@ -93,35 +93,36 @@ def probes(betas: list[float], orders: list[int], dims: list[int]) -> Iterator[P
     the second derivative.
     """
     forms = forms_of(orders)
+    row = Kind("kernel", "its 1F1, r up to 100", 1e-12, "mpmath 1F1", HELD)
+    table = Kind("table", "the kernel within step^2 max|K''| / 8", 1.0 + 1e-6, "mpmath 1F1", HELD)
+    transform = Kind("transform", "a power of k times eta^", 1e-12, "mpmath", HELD)
     for beta in betas:
         for name in NAMES:
             for n in dims:
-                yield probe(
-                    "kernel",
+                yield row(
                     f"{name}, n = {n}, order {orders[0]} to {orders[-1]}, {written(beta)}",
-                    "its 1F1, r up to 100",
-                    partial(_greatest, worst, forms, name, beta, n),
-                    1e-12,
-                    source="mpmath 1F1",
-                    must=Verdict.HELD,
+                    _greatest,
+                    worst,
+                    forms,
+                    name,
+                    beta,
+                    n,
                 )
-            yield probe(
-                "table",
+            yield table(
                 f"{name}, step {STEP:g}, {written(beta)}",
-                "the kernel within step^2 max|K''| / 8",
-                partial(_greatest, _table_error, forms, name, beta),
-                1.0 + 1e-6,
-                source="mpmath 1F1",
-                must=Verdict.HELD,
+                _greatest,
+                _table_error,
+                forms,
+                name,
+                beta,
             )
-            yield probe(
-                "transform",
+            yield transform(
                 f"{name}, order {orders[0]} to {orders[-1]}, {written(beta)}",
-                "a power of k times eta^",
-                partial(_greatest, _transform_error, forms, name, beta),
-                1e-12,
-                source="mpmath",
-                must=Verdict.HELD,
+                _greatest,
+                _transform_error,
+                forms,
+                name,
+                beta,
             )
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 import fracparticles as fp
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha.names import distance, written
 
 __all__ = ["closed", "evolved", "probes"]
@@ -52,6 +51,7 @@ def _whole_space(betas: list[float], dims: list[int]) -> Iterator[Probe]:
     Near 1 the terms that are left out fall like (t / D)^(3 + n) on the line, 1e-7 of the peak and less, and the lattice
     does not hold waves of pi / h, exp(-pi / h) each. Near 2 the Gaussian at the ends, exp(-D^2 / 8), is 3e-4 in space.
     """
+    whole_space = Kind("whole space", source="closed form", must=HELD)
     for beta in betas:
         for dim in dims:
             points, half_width = _LATTICES[dim]
@@ -59,14 +59,14 @@ def _whole_space(betas: list[float], dims: list[int]) -> Iterator[Probe]:
             near = 4.0 * (2.0 / half_width) ** (3.0 + dim) + 40.0 * dim * np.exp(-2.0 * np.pi / h)
             bound = near if beta < 0.5 else 4.0 * np.exp(-(half_width**2) / 8.0)
             for terms in (1, 2, 6):
-                yield probe(
-                    "whole space",
+                yield whole_space(
                     f"evolve, n = {dim}, {terms} terms, {written(beta)}",
-                    "the solution of Cauchy" if beta < 0.5 else "the Gaussian",
-                    partial(evolved, beta, dim, terms),
-                    bound + 5.0 * distance(beta) + 1e-13,
-                    source="closed form",
-                    must=Verdict.HELD,
+                    evolved,
+                    beta,
+                    dim,
+                    terms,
+                    expected="the solution of Cauchy" if beta < 0.5 else "the Gaussian",
+                    bound=bound + 5.0 * distance(beta) + 1e-13,
                 )
 
 
@@ -86,39 +86,43 @@ def _one_step(beta: float, dim: int, half_width: float, spacing: float) -> float
 
 def _open(betas: list[float], dims: list[int]) -> Iterator[Probe]:
     """GPSE in one step, open: exact but for its quadrature, exp(-pi t / h), and the far field, (t / D)^3 of its own."""
+    open_exterior = Kind("open exterior", source="closed form")
     for beta in betas:
         for dim, half_width, spacing in ((1, 40.0, 0.1), (2, 12.0, 0.15)):
             if dim not in dims:
                 continue
-            bound = (
-                5.0 * distance(beta)
-                + 8.0 * half_width**-3.0
-                + 4.0 * dim * np.exp(-0.5 * np.pi / spacing)
-            )
-            yield probe(
-                "open exterior",
+            yield open_exterior(
                 f"GPSE, one step, n = {dim}, {written(beta)}",
-                "the solution of Cauchy" if beta < 0.5 else "the Gaussian",
-                partial(_one_step, beta, dim, half_width, spacing),
-                bound,
-                source="closed form",
+                _one_step,
+                beta,
+                dim,
+                half_width,
+                spacing,
+                expected="the solution of Cauchy" if beta < 0.5 else "the Gaussian",
+                bound=5.0 * distance(beta)
+                + 8.0 * half_width**-3.0
+                + 4.0 * dim * np.exp(-0.5 * np.pi / spacing),
             )
 
 
 def _continuous(betas: list[float], dims: list[int]) -> Iterator[Probe]:
     """Nothing happens at the end itself: the run at 10^-4 from it differs by that, times what a run differs by."""
+    open_exterior = Kind("open exterior", bound=1e-3)
     for beta in betas:
         other = 1e-4 if beta < 0.5 else 1.0 - 1e-4
         if distance(beta) > 1e-14:
             continue
         for scheme in ("DD", "FPSE", "KPSE"):
             for dim in dims:
-                yield probe(
-                    "open exterior",
+                # d ln u / d alpha is 6 at the peak in space
+                yield open_exterior(
                     f"{scheme}, order 2, n = {dim}, {written(beta)}",
-                    f"the run at {written(other)}",
-                    partial(_difference, scheme, dim, beta, other),
-                    1e-3,  # d ln u / d alpha is 6 at the peak in space
+                    _difference,
+                    scheme,
+                    dim,
+                    beta,
+                    other,
+                    expected=f"the run at {written(other)}",
                 )
 
 

@@ -12,13 +12,12 @@ from scipy.linalg import expm, toeplitz
 
 import fracparticles as fp
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 from scenes.extremes.ends_of_alpha import kernels
 from scenes.extremes.ends_of_alpha.names import written
 
 __all__ = ["probes"]
 
-EPS = float(np.finfo(float).eps)
 _N, _H, _OVERLAP = 20, 0.25, 2.0  # 41 particles
 _TIME = 0.5
 _ROUND_OFF = 64.0 * EPS  # of T |lambda|, measured, see `run.reliability`
@@ -70,17 +69,17 @@ def _against_matrix(scheme: str, beta: float, order: int) -> float:
 
 def _dense(betas: list[float]) -> Iterator[Probe]:
     """exp(A T) u0 with A element by element from mpmath: round-off of T |lambda| = 40, of DPSE over beta."""
+    row = Kind("scheme", "exp(A T) of its matrix", source="mpmath kernels, scipy expm", must=HELD)
     for beta in betas:
         for scheme, order in (("DD", 2), ("DD", 12), ("KPSE", 2), ("KPSE", 12), ("DPSE", 2)):
             kept = 1.0 / beta if scheme == "DPSE" and beta > 5e-3 else 1.0
-            yield probe(
-                "scheme",
+            yield row(
                 f"{scheme}, order {order}, 41 particles, {written(beta)}",
-                "exp(A T) of its matrix",
-                partial(_against_matrix, scheme, beta, order),
-                _ROUND_OFF * 40.0 * kept,
-                source="mpmath kernels, scipy expm",
-                must=Verdict.HELD,
+                _against_matrix,
+                scheme,
+                beta,
+                order,
+                bound=_ROUND_OFF * 40.0 * kept,
             )
 
 
@@ -90,6 +89,7 @@ def _limits(betas: list[float]) -> Iterator[Probe]:
     The transform is greatest at k^2 = 2 alpha and alpha; the aliases, exp(-(2 pi s - k)^2 / 4), are below 1e-22.
     GPSE: 1 - exp(-k^alpha) and its aliases, at theta = pi.
     """
+    limit = Kind("limit", "a from the transform", 1e-9, "closed form, mpmath", HELD)
     for beta in betas:
         alpha = mp.mpf(1.0 + beta)
         s = mp.mpf(_OVERLAP)
@@ -99,15 +99,13 @@ def _limits(betas: list[float]) -> Iterator[Probe]:
             "GPSE": _green_range(alpha, s),
         }
         for scheme, value in exact.items():
-            yield probe(
-                "limit",
+            # The extreme is looked for among samples, to 1 / 256 of their distance: the square of it.
+            yield limit(
                 f"{scheme}, order 2, {written(beta)}",
-                "a from the transform",
-                partial(_off_limit, scheme, beta, 2 * s**alpha / value),
-                # The extreme is looked for among samples, to 1 / 256 of their distance: the square of it.
-                1e-9,
-                source="closed form, mpmath",
-                must=Verdict.HELD,
+                _off_limit,
+                scheme,
+                beta,
+                2 * s**alpha / value,
             )
 
 
@@ -125,6 +123,7 @@ def _green_range(alpha: mp.mpf, s: mp.mpf) -> mp.mpf:
 def _beyond() -> Iterator[Probe]:
     """beta below half an ulp of 1 makes alpha 1, or 2 from the other side: there is no such equation here."""
     x = np.linspace(-4.0, 4.0, 33)
+    no_such_alpha = Kind("no such alpha", must=REFUSED)
     for beta in (0.0, 5e-324, 1e-17, 1e-16, 1.0 - 1e-16, 1.0, float(np.nextafter(1.0, 0.0))):
         alpha = 1.0 + beta
         case = {"scheme": "KPSE", "beta": beta, "half_width": 4.0, "spacing": 0.25, "dt": 1e-3}
@@ -137,14 +136,7 @@ def _beyond() -> Iterator[Probe]:
             "stability_limit": partial(fp.stability_limit, "KPSE", beta),
         }
         for name, call in calls.items():
-            yield probe(
-                "no such alpha",
-                f"{name}, beta = {beta!r}",
-                "refused",
-                partial(_accepted, call),
-                0.0,
-                must=Verdict.REFUSED,
-            )
+            yield no_such_alpha(f"{name}, beta = {beta!r}", _accepted, call)
 
 
 def _accepted(call: Callable[[], Any]) -> float:

@@ -6,7 +6,6 @@ import importlib.util
 import os
 import sys
 from collections.abc import Callable, Iterator
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
 from fracparticles.run.dataset import read_run
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.faults.processes import counted, forked
 from scenes.extremes.faults.writing import Setup, one_line
 
@@ -50,9 +49,7 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
             return "\n" not in str(error)
 
     def many(case: str, expected: str, of: list[bytes], look: Callable[[bytes], bool]) -> Probe:
-        return probe(
-            "damaged run", case, expected, lambda: counted(map(look, of)), 0.0, must=Verdict.HELD
-        )
+        return Kind("damaged run", expected, must=HELD)(case, lambda: counted(map(look, of)))
 
     cut = [right[: len(right) * part // parts] for part in range(parts)]
     lost = [data + right[len(data) + 1 :] for data in cut]
@@ -68,6 +65,7 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
         return status == 2 and one_line(text)
 
     yield many("shown, command line", "status 2 and a line", [*cut[::4], *changed[:2]], shown)
+    damaged_run = Kind("damaged run", must=REFUSED)
     for case, data in (
         ("empty", b""),
         ("text", b"not a run\n"),
@@ -78,12 +76,10 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
             ("read", read_run),
             ("as initial data", lambda path: compute(setup.case, path)),
         ):
-            run = partial(_used, look, copy, data)
-            yield probe("damaged run", f"{case}, {use}", "refused", run, 0.0, must=Verdict.REFUSED)
+            yield damaged_run(f"{case}, {use}", _used, look, copy, data)
     copy.unlink(missing_ok=True)
     for case, path in (("none", copy), ("a directory", setup.folder)):
-        run = partial(_used, read_run, path)
-        yield probe("damaged run", case, "refused", run, 0.0, must=Verdict.REFUSED)
+        yield damaged_run(case, _used, read_run, path)
 
 
 def _used(look: Callable[[Path], object], path: Path, data: bytes | None = None) -> float:
@@ -127,10 +123,9 @@ def of_the_cache(folder: Path, flips: int, parts: int, seed: int) -> Iterator[Pr
         return all(forked(_sum(source, 10.0 * factor)) == (0, "") for _ in range(2))
 
     def row(case: str, damages: list[dict[str, bytes]]) -> Probe:
-        return probe(
-            "damaged cache", case, "3 (0 + 1 + 2 + 3 + 4) = 30", lambda: counted(map(right, damages)), 0.0,
-            source="closed form", must=Verdict.HELD,
-        )  # fmt: skip
+        return Kind("damaged cache", "3 (0 + 1 + 2 + 3 + 4) = 30", source="closed form", must=HELD)(
+            case, lambda: counted(map(right, damages))
+        )
 
     cut = [
         {name: data[: len(data) * k // parts]} for name, data in new.items() for k in range(parts)

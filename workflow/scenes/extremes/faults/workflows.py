@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.faults.processes import counted
 
 __all__ = ["Project", "probes"]
@@ -106,7 +106,7 @@ def probes(folder: Path, root: Path) -> Iterator[Probe]:
     right = project.end()
 
     def row(case: str, expected: str, good: bool) -> Probe:
-        return probe("workflow", case, expected, lambda: counted([good]), 0.0, must=Verdict.HELD)
+        return Kind("workflow", expected, must=HELD)(case, counted, [good])
 
     same = "then the files of an undisturbed run"
     for name, by in (("SIGKILL", signal.SIGKILL), ("SIGINT", signal.SIGINT)):

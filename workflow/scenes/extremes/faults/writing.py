@@ -19,7 +19,7 @@ from fracparticles.run.cli import main
 from fracparticles.run.dataset import to_dataset, write
 from fracparticles.run.program import app
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.faults.processes import begun, counted, ended, forked, moments
 
 __all__ = ["FLAGS", "Setup", "probes"]
@@ -83,7 +83,7 @@ def probes(setup: Setup, kills: int, interrupts: int, parts: int, seed: int) -> 
         def run() -> tuple[float, str]:
             return counted(fault(setup, one) for one in over)
 
-        return probe(kind, case, expected, run, 0.0, must=Verdict.HELD)
+        return Kind(kind, expected, must=HELD)(case, run)
 
     killed, stopped = list(moments(kills, seed)), list(moments(interrupts, seed + 1))
     yield many("killed", f"SIGKILL at {kills} moments of a run", _killed, killed)

@@ -19,14 +19,13 @@ import fracparticles as fp
 from fracparticles.graded.particles import FORMS
 from fracparticles.kernels.families import FAMILIES, KERNELS
 from fracparticles.schemes import ALL_SCHEMES
-from fracstudy.probe import Verdict
+from fracstudy.probe import EPS, Verdict
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
 from scenes.extremes.fuzzing.harness import NotRun, Property
 from scenes.extremes.fuzzing.strategies import anything, between, chance, numbers, texts
 
 __all__ = ["PROPERTIES"]
 
-_EPS = 2.0**-52
 _ALPHAS = st.one_of(
     between(1.02, 1.98),
     between(1.02, 1.98),
@@ -202,7 +201,7 @@ def _rates(parts: tuple[float, float, float, int]) -> float:
 
 def _radius(alpha: float) -> float:
     return abs(fp.mean_radius(alpha) * math.pi / (2.0 * gamma(1.0 - 1.0 / alpha)) - 1.0) / (
-        16.0 * _EPS / (alpha - 1.0)
+        16.0 * EPS / (alpha - 1.0)
     )
 
 
@@ -245,7 +244,7 @@ def _graded(parts: tuple[int, float, float, float, str]) -> float:
     of_field = fp.green_step_of_field(count, reach, 1.0, alpha, time)
     mirrored = np.abs(of_field - of_field[::-1, ::-1]).max()
     size = max(1.0, float(np.abs(naive).max()))
-    return max(float(np.abs(matrix - naive).max()) / size, float(mirrored)) / (64.0 * _EPS * count)
+    return max(float(np.abs(matrix - naive).max()) / size, float(mirrored)) / (64.0 * EPS * count)
 
 
 def _kernel(parts: tuple[str, float, float, int, int]) -> float:

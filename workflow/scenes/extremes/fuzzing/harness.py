@@ -17,7 +17,7 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis.strategies import SearchStrategy
 
-from fracstudy.probe import BAD, Probe, Verdict, probe
+from fracstudy.probe import BAD, Kind, Probe, Verdict
 
 __all__ = ["NotRun", "Outcome", "Property", "draw", "judged", "outcome", "row"]
 
@@ -79,7 +79,7 @@ def judged(one: Property, case: Callable[[], Any]) -> Outcome:
             return one.holds(case())
 
     try:
-        found = probe(one.name, "", one.expected, run, 1.0)
+        found = Kind(one.name)("", one.expected, run, 1.0)
     except NotRun as why:
         return Outcome(0, None, str(why))
     except Hang:

@@ -21,13 +21,12 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.dpse import laplacian_weights, potential_weights
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS
-from fracstudy.probe import Verdict
+from fracstudy.probe import EPS, Verdict
 from scenes.extremes.fuzzing.cases import cases, changed, refuse_dear, runs
 from scenes.extremes.fuzzing.harness import NotRun, Property
 
 __all__ = ["PROPERTIES"]
 
-_EPS = 2.0**-52
 _LENGTHS = ("half_width", "spacing", "graded_scale")
 _TIMES = ("t_initial", "t_final", "times", "dt")
 # Of a run from the fundamental solution, (48): what the estimates together may leave without a word.
@@ -38,7 +37,7 @@ Run = tuple[Case, np.ndarray]
 def _round_off(case: Case) -> float:
     """Return what two ways to do the same sums may differ by, of the greatest strength: 64 T |A| eps and more."""
     if case.is_graded:
-        return 64.0 * _EPS * case.particles
+        return 64.0 * EPS * case.particles
     size = max(map(abs, case.symbol_range))
     if case.scheme == "DPSE":  # the norm of the sum that it does first, times that of the second
         m = np.arange(2.0 * case.n + 1.0)
@@ -47,7 +46,7 @@ def _round_off(case: Case) -> float:
     # In the exterior of a box smooth modes cancel that are some hundred times as large.
     cancelled = 100.0 if case.dim > 1 and case.exterior == "open" else 1.0
     stiffness = case.span * case.setting.rate * size
-    return 64.0 * _EPS * (16.0 + stiffness + 2.0 * case.steps) * cancelled
+    return 64.0 * EPS * (16.0 + stiffness + 2.0 * case.steps) * cancelled
 
 
 def _growth(case: Case) -> float:

@@ -16,7 +16,7 @@ from fracparticles.run.reliability import LIMITS
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import Kind, Probe, Verdict
 
 __all__ = ["Errors", "counts", "evolved", "graded", "lattices"]
 
@@ -83,12 +83,7 @@ def _case(scheme: str, beta: float, **given: Any) -> fp.Case:
 
 
 def _run(
-    errors: Errors,
-    kind: str,
-    scheme: str,
-    beta: float,
-    given: dict[str, Any],
-    centre: float | None,
+    errors: Errors, kind: str, scheme: str, beta: float, given: dict[str, Any], centre: float | None
 ) -> float:
     return errors.of_run(kind, _case(scheme, beta, **given), centre)
 
@@ -110,13 +105,11 @@ def lattices(
         for scheme in names:
             for kind, words, given, centre in _unsuitable(scheme, dim, wide, h):
                 function = centre is not None
-                yield probe(
-                    kind,
+                yield Kind(kind, source="closed form")(
                     f"{scheme}, n = {dim}, {words}",
                     "the exact solution",
                     partial(_run, errors, kind, scheme, beta, given, centre),
                     _OF_A_FUNCTION if function else _ALLOWED,
-                    source="closed form",
                 )
 
 
@@ -183,14 +176,11 @@ def counts(beta: float) -> Iterator[Probe]:
         (31.375, 0.125),
     ):
         case = _case("KPSE", beta, half_width=half, spacing=h)
-        yield probe(
-            "spacing",
+        yield Kind("spacing", source="closed form", must=Verdict.HELD)(
             f"D = {half:.4g}, h = {h:g}: N = {case.particles}, ends at D",
             "as with h = 1/8, D = 30",
             partial(_of_count, case, usual),
             1.0,
-            source="closed form",
-            must=Verdict.HELD,
         )
     for name, given in {
         "N = 15": {"spacing": 30.0 / 7.0},
@@ -206,8 +196,7 @@ def counts(beta: float) -> Iterator[Probe]:
         "1e12 particles": {"spacing": 1e-11},
         "half-width 1e-101": {"half_width": 1e-101, "spacing": 1e-103},
     }.items():
-        yield probe(
-            "refused",
+        yield Kind("refused", must=Verdict.REFUSED)(
             name,
             "refused",
             partial(
@@ -220,7 +209,6 @@ def counts(beta: float) -> Iterator[Probe]:
                 None,
             ),
             0.0,
-            must=Verdict.REFUSED,
         )
 
 
@@ -233,24 +221,19 @@ def evolved(beta: float, sizes: dict[int, list[int]]) -> Iterator[Probe]:
     alpha, half = 1.0 + beta, {1: 20.0, 2: 10.0, 3: 6.0}
     for dim, some in sizes.items():
         for count in some:
-            yield probe(
-                "evolve",
+            yield Kind("evolve", source="closed form", must=Verdict.REFUSED if count < 8 else None)(
                 f"n = {dim}, {count} points an axis",
                 "the exact solution",
                 partial(_of_evolve, alpha, dim, half[dim], count, 0.0),
                 5.0 * _TAIL,
-                source="closed form",
-                must=Verdict.REFUSED if count < 8 else None,
             )
     for dim, count in ((1, 401), (2, 41)):
         for share in (0.3, 0.5, 0.9, 1.0, 1.1, 3.0, 1e6) if dim in sizes else ():
-            yield probe(
-                "evolve",
+            yield Kind("evolve", source="closed form")(
                 f"n = {dim}, data at {share:g} of the half-width",
                 "the exact solution",
                 partial(_of_evolve, alpha, dim, half[dim], count, share * half[dim]),
                 5.0 * _TAIL,
-                source="closed form",
             )
 
 
@@ -280,13 +263,11 @@ def graded(errors: Errors, beta: float) -> Iterator[Probe]:
             ("data at D", {}, 1e3),
             ("data at 10 D", {}, 1e4),
         ):
-            yield probe(
-                "graded",
+            yield Kind("graded", source="closed form")(
                 f"{form}, {words}",
                 "the exact solution",
                 partial(_run, errors, "graded", "GPSE", beta, {**base, **given}, centre),
                 _ALLOWED if centre is None else _OF_A_FUNCTION,
-                source="closed form",
             )
     for words, count, reach, scale in (
         ("2 particles", 2, 1.0, 1.0),
@@ -295,23 +276,14 @@ def graded(errors: Errors, beta: float) -> Iterator[Probe]:
         ("reach 0", 3, 0.0, 1.0),
         ("scale nan", 3, 1.0, math.nan),
     ):
-        yield probe(
-            "refused",
-            f"graded, {words}",
-            "refused",
-            partial(_particles, count, reach, scale),
-            0.0,
-            must=Verdict.REFUSED,
+        yield Kind("refused", must=Verdict.REFUSED)(
+            f"graded, {words}", "refused", partial(_particles, count, reach, scale), 0.0
         )
-    yield probe(
-        "graded",
+    yield Kind("graded", source="closed form", must=Verdict.HELD)(
         "3 particles, exchange: sum V u is kept",
         "the sum before",
         partial(_of_three, 1.0 + beta),
-        # N roundings of the greatest term, that of the outer particles: V u to some ulp each.
         16.0 * float(np.finfo(float).eps),
-        source="closed form",
-        must=Verdict.HELD,
     )
 
 

@@ -16,12 +16,11 @@ from fracparticles.lattice.fourier import FourierConvolution
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.base import LatticeScheme
 from fracparticles.schemes.spectrum import dense_matrix
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 from scenes.extremes.geometry.printed import Kernels, matrix, places, power_sum
 
 __all__ = ["exteriors", "lattice_sums", "matrices"]
 
-_EPS = float(np.finfo(float).eps)
 _KERNELS = 1e-11  # the accuracy that `kernels.kernel` promises
 _LINE: dict[str, Any] = {
     "fft": FourierConvolution,
@@ -36,7 +35,7 @@ def _rounding(terms: int) -> float:
 
     A transform of length L leaves some log2 L roundings (Higham 2002, Sec. 24.1), of at most 4 N here.
     """
-    return _EPS * (terms + 8.0 * np.log2(4.0 * terms))
+    return EPS * (terms + 8.0 * np.log2(4.0 * terms))
 
 
 def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe]:
@@ -45,25 +44,24 @@ def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe
     Also beyond the ends of the lattice, up to seven points; w even and odd.
     """
     expected = "the sum term by term"
+    sums = Kind("sums", source="numpy, dense", must=HELD)
     for kind, some in sizes.items():
         for name, convolution in _LINE.items():
-            yield probe(
-                "sums",
+            yield sums(
                 f"line, {name}, N {kind}: {', '.join(map(str, some))}",
-                expected,
-                partial(_worst, partial(_of_line, convolution), some),
-                _rounding(max(some)),
-                source="numpy, dense",
-                must=Verdict.HELD,
+                _worst,
+                partial(_of_line, convolution),
+                some,
+                expected=expected,
+                bound=_rounding(max(some)),
             )
-        yield probe(
-            "sums",
+        yield sums(
             f"line, banded, N {kind}: {', '.join(map(str, some))}, bands up to N",
-            expected,
-            partial(_worst, _of_band, some),
-            _rounding(2 * max(some)),
-            source="numpy, dense",
-            must=Verdict.HELD,
+            _worst,
+            _of_band,
+            some,
+            expected=expected,
+            bound=_rounding(2 * max(some)),
         )
     for dim in [d for d in dims if d > 1]:
         sides = (
@@ -72,14 +70,13 @@ def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe
             else [(1, 1), (3, 3), (13, 13), (5, 19), (17, 11)]
         )
         for name, box in _BOX.items():
-            yield probe(
-                "sums",
+            yield sums(
                 f"n = {dim}, {name}, from S^n to T^n: {', '.join(f'{a}-{b}' for a, b in sides)}",
-                expected,
-                partial(_worst, partial(_of_box, box, dim), sides),
-                _rounding(19**dim),
-                source="numpy, dense",
-                must=Verdict.HELD,
+                _worst,
+                partial(_of_box, box, dim),
+                sides,
+                expected=expected,
+                bound=_rounding(19**dim),
             )
 
 
@@ -143,19 +140,22 @@ def matrices(
 
     `half` has, by dimension, half the intervals of the lattices. The deviation is that of the greatest sum of a row.
     """
+    row = Kind("matrix", "the printed formula, entry by entry", _KERNELS, must=HELD)
     for name, one in SCHEMES.items():
         for dim in [d for d in one.dims if d in half]:
             for overlap in overlaps:
                 counts = [(2 * n + 1) ** dim for n in half[dim]]
-                yield probe(
-                    "matrix",
+                # An entry is the sum of N others in FPSE and DPSE, whose kernels cancel by some ten.
+                yield row(
                     f"{name}, n = {dim}, overlap {overlap:g}, N = {', '.join(map(str, counts))}",
-                    "the printed formula, entry by entry",
-                    partial(_of_matrices, one, beta, dim, orders, overlap, half[dim]),
-                    # An entry is the sum of N others in FPSE and DPSE, whose kernels cancel by some ten.
-                    _KERNELS,
+                    _of_matrices,
+                    one,
+                    beta,
+                    dim,
+                    orders,
+                    overlap,
+                    half[dim],
                     source="mpmath, dense" if name != "GPSE" else "QUADPACK, dense",
-                    must=Verdict.HELD,
                 )
 
 
@@ -189,24 +189,27 @@ def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
     term is 7 f''' / 5760: for f ~ y^-5 and y >= 3 n that is (3 n)^-4 of the sum.
     """
     alpha = 1.0 + beta
+    exterior = Kind("exterior", "the sum to infinity")
     for n in (1, 2, 8, 53):
         for overlap in overlaps:
-            yield probe(
-                "exterior",
+            yield exterior(
                 f"KPSE's kernel, n = {n}, overlap {overlap:g}",
-                "the sum to infinity",
-                partial(_of_exterior, alpha, n, overlap),
-                (3.0 * n) ** -4.0,
+                _of_exterior,
+                alpha,
+                n,
+                overlap,
+                bound=(3.0 * n) ** -4.0,
                 source="mpmath, QUADPACK",
             )
     for n, terms in ((0, 1), (1, 2), (2, 3)):
-        yield probe(
-            "exterior",
+        yield exterior(
             f"N = {2 * n + 1}, terms: {terms}",
-            "refused: too few particles to fit",
-            partial(_of_few, alpha, n, terms),
-            0.0,
-            must=Verdict.REFUSED,
+            _of_few,
+            alpha,
+            n,
+            terms,
+            expected="refused: too few particles to fit",
+            must=REFUSED,
         )
 
 

@@ -21,11 +21,10 @@ from fracparticles.pse import (
     derivative,
 )
 from fracparticles.sph.derivatives import gradient, second_derivative
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, WARNED, Kind, Probe
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _N = 120
 
 
@@ -54,42 +53,20 @@ def _scattered(jitter: float, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
 
 def _exchange() -> Iterator[Probe]:
     """Strength exchange (26) in one, two and three dimensions, on any places with any volumes: nothing is lost."""
+    conservation = Kind("conservation", "Σ Q kept", 64.0 * EPS, "exact sums", HELD)
     for dim, order in product((1, 2, 3), (2, 4)):
-        run = partial(_total_lost, dim, order)
-        case = f"PSE, {dim}-D, order {order}, random, any volumes"
-        yield probe(
-            "conservation",
-            case,
-            "Σ Q kept",
-            run,
-            64.0 * _EPS,
-            source="exact sums",
-            must=Verdict.HELD,
+        yield conservation(
+            f"PSE, {dim}-D, order {order}, random, any volumes", _total_lost, dim, order
         )
     for ratio in (1e100, 1e300):
-        run = partial(_uneven_lost, ratio)
-        case = f"PSE, volumes from 1 to {ratio:g}"
-        yield probe(
-            "conservation",
-            case,
-            "Σ Q kept",
-            run,
-            64.0 * _EPS,
-            source="exact sums",
-            must=Verdict.HELD,
-        )
+        yield conservation(f"PSE, volumes from 1 to {ratio:g}", _uneven_lost, ratio)
+    growth = Kind("growth", "no eigenvalue above zero", 64.0 * EPS, "dense eigenvalues", HELD)
     for jitter in (0.2, 0.5, 2.0):
-        run = partial(_greatest_eigenvalue, jitter)
-        case = f"PSE, kernel (20), {'random' if jitter > 1.0 else f'jitter {jitter:g} h'}"
         # An eigenvalue is known to some ulps of the greatest.
-        yield probe(
-            "growth",
-            case,
-            "no eigenvalue above zero",
-            run,
-            64.0 * _EPS,
-            source="dense eigenvalues",
-            must=Verdict.HELD,
+        yield growth(
+            f"PSE, kernel (20), {'random' if jitter > 1.0 else f'jitter {jitter:g} h'}",
+            _greatest_eigenvalue,
+            jitter,
         )
 
 
@@ -127,6 +104,7 @@ def _greatest_eigenvalue(jitter: float) -> float:
 
 def _growth() -> Iterator[Probe]:
     """Kernels of higher order are negative somewhere: on irregular particles strengths may grow, and that is said."""
+    growth = Kind("growth", bound=0.01, source="dense eigenvalues")
     for order, overlap, jitter in product((4, 6, 8), (1.0, 2.0, 4.0), (0.2, 0.5, 2.0)):
         x, v = _scattered(jitter)
         exchange = _quiet(x, v, overlap * 10.0 / _N, construct(2, order))
@@ -134,11 +112,12 @@ def _growth() -> Iterator[Probe]:
         grows = greatest > 1e-5 * exchange.rate
         run = partial(_growth_missed, x, v, order, overlap, greatest if grows else 0.0)
         words = "random" if jitter > 1.0 else f"jitter {jitter:g} h"
-        expected = "growth, at the rate said" if grows else "no growth, no word"
-        yield probe(
-            "growth", f"PSE, order {order}, ε = {overlap:g} h, {words}", expected, run, 0.01,
-            source="dense eigenvalues", must=Verdict.WARNED if grows else Verdict.HELD,
-        )  # fmt: skip
+        yield growth(
+            f"PSE, order {order}, ε = {overlap:g} h, {words}",
+            run,
+            expected="growth, at the rate said" if grows else "no growth, no word",
+            must=WARNED if grows else HELD,
+        )
 
 
 def _growth_missed(
@@ -157,6 +136,8 @@ def _growth_missed(
 def _steps() -> Iterator[Probe]:
     """A Green step by exchange keeps the total on any particles; where it amplifies, it says so, and by how much."""
     h = 10.0 / _N
+    conservation = Kind("conservation", "Σ V u kept", 64.0 * EPS, "exact sums", HELD)
+    growth = Kind("growth", bound=1e-6, source="dense eigenvalues")
     for kind, right, overlap in product(
         ("jittered", "random", "clustered", "one place"), (True, False), (0.5, 2.0)
     ):
@@ -166,23 +147,19 @@ def _steps() -> Iterator[Probe]:
         v = v if right else np.full(_N, h)
         run = partial(_columns_off, x, v, (overlap * h) ** 1.5)
         case = f"GPSE step, {kind}, {'right' if right else 'wrong'} volumes, ε = {overlap:g} h"
-        yield probe(
-            "conservation",
-            case,
-            "Σ V u kept",
-            run,
-            64.0 * _EPS,
-            source="exact sums",
-            must=Verdict.HELD,
-        )
+        yield conservation(case, run)
         greatest = _greatest_factor(x, v, (overlap * h) ** 1.5)
         grows = greatest > 1.0 + 1e-6
-        missed = partial(_factor_missed, x, v, (overlap * h) ** 1.5, greatest)
-        expected = "amplifies, and says so" if grows else "does not amplify"
-        yield probe(
-            "growth", case, expected, missed, 1e-6, source="dense eigenvalues",
-            must=Verdict.WARNED if grows else Verdict.HELD,
-        )  # fmt: skip
+        yield growth(
+            case,
+            _factor_missed,
+            x,
+            v,
+            (overlap * h) ** 1.5,
+            greatest,
+            expected="amplifies, and says so" if grows else "does not amplify",
+            must=WARNED if grows else HELD,
+        )
 
 
 def _crowd(kind: str) -> tuple[np.ndarray, np.ndarray]:
@@ -218,21 +195,20 @@ def _factor_missed(x: np.ndarray, v: np.ndarray, time: float, greatest: float) -
 
 def _graded() -> Iterator[Probe]:
     """Graded particles from 1e-100 to 1e100, steps from 1e-300 on: the exchange keeps constants."""
+    graded = Kind("graded", "rows are 1", 1e-9, "limit")
     for reach, scale in ((1e100, 1e-100), (1e-100, 1e-100), (1e100, 1e100), (1e-60, 1e60)):
-        run = partial(_graded_off, reach, scale)
-        case = f"graded, reach {reach:g}, scale {scale:g}"
-        yield probe(
-            "graded", case, "rows are 1", run, 1e-12, source="exact sums", must=Verdict.HELD
+        yield graded(
+            f"graded, reach {reach:g}, scale {scale:g}",
+            _graded_off,
+            reach,
+            scale,
+            bound=1e-12,
+            source="exact sums",
+            must=HELD,
         )
     for time in (1e-300, 1e-30):
-        run = partial(_identity_off, time)
-        yield probe(
-            "graded",
-            f"field step, D T = {time:g}",
-            "the identity inside",
-            run,
-            1e-9,
-            source="limit",
+        yield graded(
+            f"field step, D T = {time:g}", _identity_off, time, expected="the identity inside"
         )
 
 
@@ -251,38 +227,39 @@ def _identity_off(time: float) -> float:
 def _gaps() -> Iterator[Probe]:
     """Particles that do not reach one another, or whose volumes are not theirs: wrong by far only with a word."""
     lattice = np.linspace(-5.0, 5.0, 101)
+    gaps = Kind("gaps", "f'' = 2, or a word", source="x²")
     for case, epsilon, volume in (
         ("ε = h / 100", 0.001, 0.1),
         ("volumes five times too large", 0.2, 0.5),
         ("volumes of h", 0.2, 0.1),
     ):
-        run = partial(_exchange_error, lattice, volume, epsilon)
-        yield probe("gaps", f"PSE, {case}", "f'' = 2, or a word", run, 0.1, source="x²")
+        yield gaps(f"PSE, {case}", _exchange_error, lattice, volume, epsilon, bound=0.1)
     for case, z, epsilon in (
         ("among the particles", 0.05, 0.2),
         ("far from all", 50.0, 0.2),
         ("ε = h / 100", 0.0, 0.001),
     ):
-        run = partial(_derivative_error, lattice, z, epsilon)
-        yield probe("gaps", f"derivative (21), {case}", "f'' = 2, or a word", run, 0.1, source="x²")
+        yield gaps(f"derivative (21), {case}", _derivative_error, lattice, z, epsilon, bound=0.1)
     for case, x in (("neighbours", np.arange(-3.0, 4.0)), ("one at 1.999 h", np.array([1.999]))):
-        run = partial(_slope_error, x)
-        yield probe(
-            "gaps",
+        yield gaps(
             f"SPH gradient, {case}",
-            "0 of a constant, or a word",
-            run,
-            1e-12,
+            _slope_error,
+            x,
+            expected="0 of a constant, or a word",
+            bound=1e-12,
             source="constants",
         )
-        run = partial(_curvature_error, x)
-        yield probe(
-            "gaps", f"SPH second derivative, {case}", "f'' = 2, or a word", run, 1e-6, source="x²"
-        )
+        yield gaps(f"SPH second derivative, {case}", _curvature_error, x, bound=1e-6)
     for jitter in (0.2, 0.5):
-        run = partial(_line_error, jitter)
-        case = f"corrected SPH gradient, jitter {jitter:g} h"
-        yield probe("gaps", case, "exact for lines", run, 1e-9, source="lines", must=Verdict.HELD)
+        yield gaps(
+            f"corrected SPH gradient, jitter {jitter:g} h",
+            _line_error,
+            jitter,
+            expected="exact for lines",
+            bound=1e-9,
+            source="lines",
+            must=HELD,
+        )
 
 
 def _exchange_error(x: np.ndarray, volume: float, epsilon: float) -> float:
@@ -328,5 +305,6 @@ def _refused() -> Iterator[Probe]:
             green_step(x, np.full(9, 1e200), 1.5, 1.0)[0, 0]
         ),
     }
+    refused = Kind("refused", must=REFUSED)
     for case, run in cases.items():
-        yield probe("refused", case, "refused", run, 0.0, must=Verdict.REFUSED)
+        yield refused(case, run)

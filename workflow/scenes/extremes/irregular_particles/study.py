@@ -14,7 +14,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special.stable import green
 from fracstudy.inputs import Inputs, Result
-from fracstudy.probe import Probe, Verdict, frame, probe
+from fracstudy.probe import EPS, HELD, Kind, Probe, frame
 from scenes.extremes.irregular_particles import companions, theory
 from scenes.extremes.irregular_particles.operators import (
     CONSERVATIVE,
@@ -26,7 +26,6 @@ from scenes.extremes.irregular_particles.operators import (
 
 __all__ = ["study"]
 
-_EPS = float(np.finfo(float).eps)
 _ALPHA, _START = 1.5, 0.5
 _INNER = 0.5  # of the half-width: where errors are taken
 _FINER = 4  # lattice of a reference
@@ -61,20 +60,10 @@ def study(
 
 def _lattice(overlap: float) -> Iterator[Probe]:
     """On a lattice each form is the scheme of the library."""
+    lattice = Kind("lattice", "the scheme", 1e-12, "dense matrix", HELD)
     for form in FORMS:
-        run, bound = (
-            partial(_off_lattice, form, overlap),
-            1e-12,
-        )  # the sums of the library are transforms
-        yield probe(
-            "lattice",
-            f"{form}, written out",
-            "the scheme",
-            run,
-            bound,
-            source="dense matrix",
-            must=Verdict.HELD,
-        )
+        # the sums of the library are transforms
+        yield lattice(f"{form}, written out", _off_lattice, form, overlap)
 
 
 def _off_lattice(form: str, overlap: float) -> float:
@@ -88,15 +77,12 @@ def _off_lattice(form: str, overlap: float) -> float:
 def _conserved(x: np.ndarray, overlap: float) -> Iterator[Probe]:
     """sum V du/dt is round-off of its terms, whatever the positions, whatever the volumes; DD has no such luck."""
     arrangements = (("jittered", 0.1), ("jittered", 0.5), ("random", 0.0), ("clustered", 0.0))
+    conservation = Kind("conservation", "Σ V u kept", 64.0 * EPS, "exact sums", HELD)
     for form, (kind, jitter), right in product(CONSERVATIVE, arrangements, (True, False)):
         run = partial(_lost, form, x, overlap, kind, jitter, right)
         words = f"{kind} {jitter:g}" if jitter else kind
-        case = f"{form}, {words}, {'right' if right else 'wrong'} volumes"
         # Each term is rounded some times, and the sum of N^2 adds a digit.
-        bound = 64.0 * _EPS
-        yield probe(
-            "conservation", case, "Σ V u kept", run, bound, source="exact sums", must=Verdict.HELD
-        )
+        yield conservation(f"{form}, {words}, {'right' if right else 'wrong'} volumes", run)
 
 
 def _lost(form: str, x: np.ndarray, overlap: float, kind: str, jitter: float, right: bool) -> float:

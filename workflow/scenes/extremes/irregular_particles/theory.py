@@ -14,14 +14,13 @@ Places x_j = (j + xi_j) h, xi uniform in [-J, J], so that var xi = J^2 / 3:
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from itertools import product
 from math import sqrt
 
 import numpy as np
 
 from fracparticles.special.stable import green
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.irregular_particles.operators import arranged, matrix, rate_of_change, weight
 
 __all__ = ["predicted", "probes"]
@@ -38,19 +37,51 @@ def probes(x: np.ndarray, overlap: float, seeds: int) -> Iterator[Probe]:
     three times that is allowed, which is 0.27 for six; a power of h is that of two.
     """
     close = 3.0 / sqrt(20.0 * seeds)
-    source, must = "error theory", Verdict.HELD
+    source, must = "error theory", HELD
+    accuracy = Kind("accuracy", "the predicted error")
     for form, jitter, right in product(("KPSE", "GPSE"), (0.05, 0.2, 0.5), (True, False)):
-        run = partial(_ratio_off, form, x, overlap, "jittered", jitter, right, seeds)
-        case = f"{form}, jitter {jitter:g} h, {_words(right)}"
-        yield probe("accuracy", case, "the predicted error", run, close, source=source, must=must)
+        yield accuracy(
+            f"{form}, jitter {jitter:g} h, {_words(right)}",
+            _ratio_off,
+            form,
+            x,
+            overlap,
+            "jittered",
+            jitter,
+            right,
+            seeds,
+            bound=close,
+            source=source,
+            must=must,
+        )
     for form in ("KPSE", "GPSE"):
-        run = partial(_ratio_off, form, x, overlap, "random", 0.0, False, seeds)
-        case = f"{form}, random places, equal volumes"
-        yield probe("accuracy", case, "the predicted error", run, close, source=source, must=must)
+        yield accuracy(
+            f"{form}, random places, equal volumes",
+            _ratio_off,
+            form,
+            x,
+            overlap,
+            "random",
+            0.0,
+            False,
+            seeds,
+            bound=close,
+            source=source,
+            must=must,
+        )
+    order_lost = Kind("order lost", "the predicted power")
     for right in (True, False):
-        run = partial(_power_off, x, overlap, right, seeds)
-        case, bound = f"KPSE, ε = {overlap:g} h, jitter 0.3 h, {_words(right)}", 2.0 * close
-        yield probe("order lost", case, "the predicted power", run, bound, source=source, must=must)
+        yield order_lost(
+            f"KPSE, ε = {overlap:g} h, jitter 0.3 h, {_words(right)}",
+            _power_off,
+            x,
+            overlap,
+            right,
+            seeds,
+            bound=2.0 * close,
+            source=source,
+            must=must,
+        )
 
 
 def _words(right: bool) -> str:

@@ -13,11 +13,10 @@ from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, REFUSED, Kind, Probe
 
 __all__ = ["probes"]
 
-EPS = float(np.finfo(float).eps)
 _SMALL: dict[str, Any] = {"half_width": 10.0, "spacing": 0.2}
 
 
@@ -41,25 +40,20 @@ def _modes(beta: float, t: float) -> float:
 
 def _truncated(betas: list[float]) -> Iterator[Probe]:
     """At 10^4 times the time of the slowest mode; the series rounds T |lambda|, some 10^5, of the first strengths."""
+    truncated = Kind("truncated", "its modes, decayed", 1e-7, "dense eigenvalues")
     for beta in betas:
         for scheme in ("DPSE", "KPSE"):
-            yield probe(
-                "truncated",
+            yield truncated(
                 f"{scheme}, D = 10, beta = {beta:g}, t_f = 1e5",
-                "the mean of the data",
-                partial(_mean, scheme, beta, 1e5),
-                1e-7,
+                _mean,
+                scheme,
+                beta,
+                1e5,
+                expected="the mean of the data",
                 source="conservation, symmetry",
             )
         for t in (10.5, 100.5):
-            yield probe(
-                "truncated",
-                f"DD, D = 10, beta = {beta:g}, t_f = {t:g}",
-                "its modes, decayed",
-                partial(_modes, beta, t),
-                1e-7,
-                source="dense eigenvalues",
-            )
+            yield truncated(f"DD, D = 10, beta = {beta:g}, t_f = {t:g}", _modes, beta, t)
 
 
 def _kept(ratio: float) -> float:
@@ -136,40 +130,37 @@ def _refused() -> Iterator[Probe]:
         "GPSE, one step, epsilon / h = 1e6": partial(fp.Case, t_final=1e9, dt=1e9, **gpse),
         "graded, time 0": partial(fp.green_step_of_field, 101, 10.0, 1.0, 1.5, 0.0),
     }
+    refused = Kind("refused", must=REFUSED)
     for name, call in calls.items():
-        yield probe("refused", name, "refused", partial(_accepted, call), 0.0, must=Verdict.REFUSED)
+        yield refused(name, _accepted, call)
 
 
 def probes(betas: list[float], ratios: list[float]) -> Iterator[Probe]:
     """All of them."""
     yield from _truncated(betas)
-    yield probe(
-        "truncated",
-        "GPSE, one step, D = 4 widths, beta = 0.9, t_f / t_0 = 1e+03",
-        "spoken of: u_0 kept",
-        partial(_kept, 1e3),
-        0.05,
-        source="the fundamental solution",
+    yield Kind("truncated", "spoken of: u_0 kept", 0.05, "the fundamental solution")(
+        "GPSE, one step, D = 4 widths, beta = 0.9, t_f / t_0 = 1e+03", _kept, 1e3
     )
+    order = Kind("order", "the error (48) falls 4 times", 0.4, "order of the kernels")
     for beta in (0.01, 0.99):
         for scheme in ("DD", "FPSE", "KPSE"):
-            yield probe(
-                "order",
+            yield order(
                 f"{scheme}, order 2, open, beta = {beta:g}, h = 0.1 and 0.05",
-                "the error (48) falls 4 times",
-                partial(_fourfold, scheme, beta),
-                0.4,
-                source="order of the kernels",
+                _fourfold,
+                scheme,
+                beta,
             )
+    units = Kind("units", "the run at t_0 = 1, scaled")
     for beta in betas:
         for unit in (1e-12, 1e12, 1e-75, 1e75):
             for scheme in ("DD", "FPSE", "KPSE"):
-                yield probe(
-                    "units",
+                # The units round ln t, as in t^(1/alpha), and the series 40 of T |lambda|.
+                yield units(
                     f"{scheme}, open, beta = {beta:g}, t_0 = {unit:.0e}",
-                    "the run at t_0 = 1, scaled",
-                    partial(_scaled, scheme, beta, unit),
-                    # The units round ln t, as in t^(1/alpha), and the series 40 of T |lambda|.
-                    64.0 * EPS * (40.0 + abs(np.log(unit))),
+                    _scaled,
+                    scheme,
+                    beta,
+                    unit,
+                    bound=64.0 * EPS * (40.0 + abs(np.log(unit))),
                 )
     yield from _refused()

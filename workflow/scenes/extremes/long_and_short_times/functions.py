@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 import fracparticles as fp
 from fracparticles.special import central_mass, tail_mass
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 from scenes.extremes.long_and_short_times.profile import profile, rate, tail_constant
 
 __all__ = ["probes"]
 
 _RADII = np.array([0.0, 0.3, 1.0, 3.0, 10.0, 1e3, 1e6])
 _NEAR = _RADII[:5]
-EPS = float(np.finfo(float).eps)
 
 
 def _rounded(t: float) -> float:
@@ -81,27 +79,25 @@ _WHAT: dict[str, tuple[Callable[..., float], str, str, float]] = {
 
 def probes(betas: list[float], times: list[float], dims: list[int]) -> Iterator[Probe]:
     """Each against the profile at t = 1, scaled. In space t = 1e-75 makes rates of 1e280, which are numbers yet."""
+    fundamental_solution = Kind("fundamental solution", must=REFUSED)
     for beta in betas:
         for t in times:
             for n in dims:
                 for name, (function, expected, source, bound) in _WHAT.items():
-                    yield probe(
-                        "fundamental solution",
+                    yield fundamental_solution(
                         f"{name}, n = {n}, beta = {beta:g}, t = {t:.0e}",
-                        expected,
-                        partial(function, 1.0 + beta, n, t),
-                        bound + _rounded(t),
+                        function,
+                        1.0 + beta,
+                        n,
+                        t,
+                        expected=expected,
+                        bound=bound + _rounded(t),
                         source=source,
-                        must=Verdict.HELD,
+                        must=HELD,
                     )
     for t in (1e-305, 5e-324):
-        yield probe(
-            "fundamental solution",
-            f"peak, n = 3, beta = 0.1, t = {t:.0e}",
-            "refused: above 1e308",
-            partial(_peak, t),
-            0.0,
-            must=Verdict.REFUSED,
+        yield fundamental_solution(
+            f"peak, n = 3, beta = 0.1, t = {t:.0e}", _peak, t, expected="refused: above 1e308"
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,11 @@ import fracparticles as fp
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, REFUSED, Kind, Probe
 from scenes.extremes.long_and_short_times.profile import rate, solution, tail_constant
 
 __all__ = ["add_profiles", "long_probes", "short_probes"]
 
-EPS = float(np.finfo(float).eps)
 _WIDTH = 4.0  # half-width in units of t_f^(1/alpha): the second term of the tail is 4^-alpha of the first there
 _SPACING = {1: 0.5, 2: 0.5, 3: 0.6}  # in units of t_0^(1/alpha)
 _UNITS = (1.0, 1e-12, 1e12)  # t_0
@@ -98,24 +97,11 @@ def _on_lattices(beta: float, ratio: float, n: int, start: float) -> Iterator[Pr
     where = f"n = {n}, beta = {beta:g}, t_f / t_0 = {ratio:.0e}, t_0 = {start:.0e}"
     bound = 0.5 * _WIDTH ** (-1.0 - 2.0 * (1.0 + beta)) * n
     cheap = fields["half_width"] / fields["spacing"] < 1000.0
+    long_time = Kind("long time", "the profile for |x| < D / 2", source="quadrature, series")
     for name, method in _methods(n).items():
         if cheap or method.get("evaluation") == "convolution":
-            yield probe(
-                "long time",
-                f"{name}, {where}",
-                "the profile for |x| < D / 2",
-                partial(_solved, {**fields, **method}),
-                bound,
-                source="quadrature, series",
-            )
-    yield probe(
-        "long time",
-        f"evolve, {where}",
-        "the profile for |x| < D / 2",
-        partial(_evolved, fields),
-        bound,
-        source="quadrature, series",
-    )
+            yield long_time(f"{name}, {where}", _solved, {**fields, **method}, bound=bound)
+    yield long_time(f"evolve, {where}", _evolved, fields, bound=bound)
 
 
 @lru_cache(maxsize=4)
@@ -167,13 +153,15 @@ def _on_graded(beta: float, ratio: float) -> Iterator[Probe]:
     alpha = 1.0 + beta
     rounded = 1e3 * EPS * ratio ** (1.0 / alpha)
     beyond = 2.0 * tail_constant(alpha, 1) * 1e4**-alpha / alpha
+    long_time = Kind("long time", "the profile")
     for form, bound in (("interpolated", 1e-6 + rounded), ("exchange", 0.05)):
-        yield probe(
-            "long time",
+        yield long_time(
             f"GPSE, graded, {form}, {where}",
-            "the profile",
-            partial(_graded_error, beta, ratio, form),
-            bound,
+            _graded_error,
+            beta,
+            ratio,
+            form,
+            bound=bound,
             source="quadrature, series",
         )
     # At 1000 widths u is 10^-3 (2 + beta) of the peak: the line is straight where round-off is far below.
@@ -185,12 +173,13 @@ def _on_graded(beta: float, ratio: float) -> Iterator[Probe]:
     )
     for name, expected, function, bound, source in wanted:
         if straight or not name.startswith("tail"):
-            yield probe(
-                "long time",
+            yield long_time(
                 f"GPSE, graded, {name}, {where}",
-                expected,
-                partial(function, beta, ratio),
-                bound,
+                function,
+                beta,
+                ratio,
+                expected=expected,
+                bound=bound,
                 source=source,
             )
 
@@ -227,6 +216,7 @@ def short_probes(betas: list[float], shares: list[float], dims: list[int]) -> It
     Of order 2 the operator is wrong by (epsilon k / 2)^2 of each wave: a third of the rate on the line, where epsilon =
     0.4 and the rate is made of k = 2 to 3, nearly all of it in space. The step itself leaves T.
     """
+    short_time = Kind("short time", "u - u_0 is T dG/dt")
     for beta in betas:
         for share in shares:
             for n in dims:
@@ -244,34 +234,30 @@ def short_probes(betas: list[float], shares: list[float], dims: list[int]) -> It
                             "half_width": half,
                             "spacing": h,
                         }
-                        yield probe(
-                            "short time",
+                        yield short_time(
                             f"{scheme}, order 2, {exterior}, n = {n}, beta = {beta:g}, T / t_0 = {share:.0e}",
-                            "u - u_0 is T dG/dt",
-                            partial(
-                                _shift,
-                                {**fields, "exterior": exterior, "integrator": "exponential"},
-                                share,
-                            ),
-                            (0.35 if n == 1 else 0.9) + rounded,
+                            _shift,
+                            {**fields, "exterior": exterior, "integrator": "exponential"},
+                            share,
+                            bound=(0.35 if n == 1 else 0.9) + rounded,
                             source="quadrature",
                         )
-                yield probe(
-                    "short time",
+                yield short_time(
                     f"evolve, n = {n}, beta = {beta:g}, T / t_0 = {share:.0e}",
-                    "u - u_0 is T dG/dt",
-                    partial(_whole_shift, beta, n, share),
-                    0.05 + rounded,
+                    _whole_shift,
+                    beta,
+                    n,
+                    share,
+                    bound=0.05 + rounded,
                     source="quadrature",
                 )
     for share in shares:
-        yield probe(
-            "short time",
+        yield short_time(
             f"GPSE, T / t_0 = {share:.0e}, h = 0.2",
-            "refused: epsilon / h below 1/4",
-            partial(_gpse_is_taken, share),
-            0.0,
-            must=Verdict.REFUSED,
+            _gpse_is_taken,
+            share,
+            expected="refused: epsilon / h below 1/4",
+            must=REFUSED,
         )
 
 

@@ -18,12 +18,11 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import green
 from fracparticles.special.tails import tail_constant
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, WARNED, Kind, Probe
 from scenes.lucchesi.dvm_stability.study import worst_wave
 
 __all__ = ["growth_of_a_wave", "overlap_errors", "probes"]
 
-_EPS = float(np.finfo(float).eps)
 _START, _TIME, _ALPHA = 0.5, 0.5, 1.5
 _FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step
 _HALF, _STEPS, _XI = (
@@ -94,36 +93,40 @@ def _weak(cloud: _Cloud) -> Iterator[Probe]:
     bound = wide.smoothing(2.0)
     expected = "the Gaussian"
     case = "β = 1 - 1e-9, tail 1e-14 of the peak"
-    yield probe(
-        "weak field", f"{case}, transforms", "refused", partial(wide.error, **gaussian), 0.0,
-        must=Verdict.REFUSED,
-    )  # fmt: skip
+    weak_field = Kind("weak field")
+    yield weak_field(f"{case}, transforms", partial(wide.error, **gaussian), must=REFUSED)
     for how, options in (
         ("pairs", {"summation": "naive", "remeshing": "none"}),
         ("threshold 1e-8", {"threshold": 1e-8}),
     ):
-        run = partial(wide.error, **gaussian, **options)
-        case_ = f"{case}, {how}"
-        yield probe(
-            "weak field", case_, expected, run, bound, source="closed form", must=Verdict.HELD
+        yield weak_field(
+            f"{case}, {how}",
+            partial(wide.error, **gaussian, **options),
+            expected=expected,
+            bound=bound,
+            source="closed form",
+            must=HELD,
         )
     for unit in (1e-30, 1e30):
-        case_ = f"lengths times {unit:g}, times times {unit:g}^α"
-        run = partial(_other_units, cloud, unit)
         # The sums state 1e-11 of the peak; a velocity is a quotient of two of them, where u is 1e-3 of it.
-        yield probe("weak field", case_, "the same particles", run, 1e-7, source="scaling")
-    yield probe(
-        "weak field", "strengths of zero at the ends", "left out", partial(_kept, cloud, 0.0), 0.0,
-        must=Verdict.HELD,
-    )  # fmt: skip
-    yield probe(
-        "weak field", "strengths of 1e-320 at the ends", "refused", partial(_kept, cloud, 1e-320), 0.0,
-        must=Verdict.REFUSED,
-    )  # fmt: skip
-    yield probe(
-        "weak field", "strengths that all underflow", "refused",
-        lambda: float(cloud.run(1e-320 * cloud.u()).x.size), 0.0, must=Verdict.REFUSED,
-    )  # fmt: skip
+        yield weak_field(
+            f"lengths times {unit:g}, times times {unit:g}^α",
+            _other_units,
+            cloud,
+            unit,
+            expected="the same particles",
+            bound=1e-7,
+            source="scaling",
+        )
+    yield weak_field(
+        "strengths of zero at the ends", _kept, cloud, 0.0, expected="left out", must=HELD
+    )
+    yield weak_field("strengths of 1e-320 at the ends", _kept, cloud, 1e-320, must=REFUSED)
+    yield weak_field(
+        "strengths that all underflow",
+        lambda: float(cloud.run(1e-320 * cloud.u()).x.size),
+        must=REFUSED,
+    )
 
 
 def _gaussian(z: np.ndarray, t: float) -> np.ndarray:
@@ -148,10 +151,13 @@ def _kept(cloud: _Cloud, ends: float) -> float:
 
 def _signs(cloud: _Cloud) -> Iterator[Probe]:
     """A velocity Q / u has no meaning where u is zero, and does not know the sign of u."""
-    yield probe(
-        "sign", "a field that is negative everywhere", "the same paths, bit for bit",
-        lambda: float(np.abs(cloud.run(-cloud.u()).x - cloud.run().x).max()), 0.0, must=Verdict.HELD,
-    )  # fmt: skip
+    sign = Kind("sign")
+    yield sign(
+        "a field that is negative everywhere",
+        lambda: float(np.abs(cloud.run(-cloud.u()).x - cloud.run().x).max()),
+        expected="the same paths, bit for bit",
+        must=HELD,
+    )
     dipole = np.sin(cloud.x) * cloud.u()
     step = np.where(np.abs(cloud.x) < 1.0, 1.0, 0.0)
     for case, u in {
@@ -159,14 +165,18 @@ def _signs(cloud: _Cloud) -> Iterator[Probe]:
         "zero but for the middle, order IV": step,
     }.items():
         order = 4 if "IV" in case else 2
-        run = partial(cloud.error, u=u, order=order)
-        yield probe("sign", case, "refused", run, 0.0, must=Verdict.REFUSED)
+        yield sign(case, partial(cloud.error, u=u, order=order), must=REFUSED)
     # The flux of what is cut off at a distance r is A r^(1-alpha) / (alpha - 1); that of the other end goes against it.
     a = tail_constant(_ALPHA) / _ALPHA
     bound = _TIME * a * (0.5 * cloud.half_width) ** (1.0 - _ALPHA) / (_ALPHA - 1.0)
-    case, expected = "a uniform field between its ends", "no motion but for the ends"
-    run = partial(_uniform_moves, cloud)
-    yield probe("sign", case, expected, run, float(bound), source="closed form")
+    yield sign(
+        "a uniform field between its ends",
+        _uniform_moves,
+        cloud,
+        expected="no motion but for the ends",
+        bound=float(bound),
+        source="closed form",
+    )
 
 
 def _uniform_moves(cloud: _Cloud) -> float:
@@ -181,20 +191,27 @@ def _crossing(cloud: _Cloud) -> Iterator[Probe]:
     shuffled = np.random.default_rng(3).permutation(cloud.x.size)
     twice = np.repeat(np.arange(cloud.x.size), 2)
     # The sums state 1e-11 of the peak, and u at the ends is 1e-3 of it.
+    crossing = Kind("crossing", "the same paths", _SPOKEN, "fundamental solution")
     for case, places, shift in (
         ("in any order", shuffled, 0.0),
         ("each in two halves, in one place", twice, 0.0),
         ("each in two halves, 1e-14 apart", twice, 1e-14),
     ):
-        run = partial(_same_paths, cloud, places, shift, half)
-        yield probe(
-            "crossing", f"particles {case}", "the same paths", run, 1e-7, source="the plain run"
+        yield crossing(
+            f"particles {case}",
+            _same_paths,
+            cloud,
+            places,
+            shift,
+            half,
+            bound=1e-7,
+            source="the plain run",
         )
-    case = "steps of three times the limit"
-    yield probe(
-        "crossing", case, "within 5 %, or a word", partial(cloud.error, factor=3.0), _SPOKEN,
-        source="fundamental solution",
-    )  # fmt: skip
+    yield crossing(
+        "steps of three times the limit",
+        partial(cloud.error, factor=3.0),
+        expected="within 5 %, or a word",
+    )
 
 
 def _same_paths(cloud: _Cloud, places: np.ndarray, shift: float, how: dict[str, Any]) -> float:
@@ -209,6 +226,7 @@ def _remeshed(cloud: _Cloud, orders: Sequence[int]) -> Iterator[Probe]:
     """Remeshing at every step, when asked for, and never, onto either exterior."""
     bound = cloud.smoothing()
     when = {"every step": 1.0 + 1e-9, "by itself": None, "gaps of 5 h": 5.0}
+    remeshing_runs = Kind("remeshing runs", "the solution", source="fundamental solution")
     for order, exterior in product(orders, dvm.EXTERIORS):
         for name, (often, above) in product(("M4'", "Lambda3"), when.items()):
             options = {
@@ -217,23 +235,28 @@ def _remeshed(cloud: _Cloud, orders: Sequence[int]) -> Iterator[Probe]:
                 "remeshing": name,
                 "remesh_above": above,
             }
-            case = f"order {order}, {exterior}, {name}, {often}"
-            yield probe(
-                "remeshing runs", case, "the solution", partial(cloud.error, **options), bound,
-                source="fundamental solution", must=Verdict.HELD,
-            )  # fmt: skip
-        case = f"order {order}, {exterior}, never"
-        run = partial(cloud.error, order=order, exterior=exterior, remeshing="none")
-        yield probe(
-            "remeshing runs", case, "the solution", run, bound, source="fundamental solution",
-            must=Verdict.HELD,
-        )  # fmt: skip
+            yield remeshing_runs(
+                f"order {order}, {exterior}, {name}, {often}",
+                partial(cloud.error, **options),
+                bound=bound,
+                must=HELD,
+            )
+        yield remeshing_runs(
+            f"order {order}, {exterior}, never",
+            partial(cloud.error, order=order, exterior=exterior, remeshing="none"),
+            bound=bound,
+            must=HELD,
+        )
     for name in ("M4'", "Lambda3"):
-        run = partial(_unaccounted, cloud, name)
         # Each of some fifty remeshings rounds every strength some ten times.
-        case, bound = f"{name}, extended lattice", 500.0 * _EPS
-        yield probe(
-            "remeshing runs", case, "every strength is found", run, bound, source="exact sums"
+        yield remeshing_runs(
+            f"{name}, extended lattice",
+            _unaccounted,
+            cloud,
+            name,
+            expected="every strength is found",
+            bound=500.0 * EPS,
+            source="exact sums",
         )
 
 
@@ -246,17 +269,19 @@ def _unaccounted(cloud: _Cloud, name: str) -> float:
 
 def _growth(orders: Sequence[int]) -> Iterator[Probe]:
     """A displacement wave on a uniform field: 1 + z + z^2/2 a step, z = dt A(k) of DD; beyond the limit it is told."""
+    row = Kind("step", "grows by 1 + z + z²/2", source="Fourier symbol")
     for order, factor in product(orders, _FACTORS):
-        verdict = Verdict.WARNED if factor > 1.0 else Verdict.HELD
+        verdict = WARNED if factor > 1.0 else HELD
         run = partial(_wave_missed, order, factor)
         # The ends stretch the middle by 2 A r^-alpha t, and z = -2 dt / a changes by as much.
         dt = factor * stability_limit("DD", _ALPHA - 1.0, order)
         stretch = 2.0 * tail_constant(_ALPHA) / _ALPHA * _HALF**-_ALPHA * _STEPS * dt
-        bound = 2.0 * factor * abs(2.0 * factor - 1.0) * stretch
-        yield probe(
-            "step", f"order {order}, dt = {factor:g} a", "grows by 1 + z + z²/2", run, bound,
-            source="Fourier symbol", must=verdict,
-        )  # fmt: skip
+        yield row(
+            f"order {order}, dt = {factor:g} a",
+            run,
+            bound=2.0 * factor * abs(2.0 * factor - 1.0) * stretch,
+            must=verdict,
+        )
 
 
 def _wave_missed(order: int, factor: float) -> tuple[float, str]:
@@ -284,11 +309,12 @@ def growth_of_a_wave(order: int, factor: float) -> tuple[float, float]:
 
 def _overlaps(cloud: _Cloud, orders: Sequence[int]) -> Iterator[Probe]:
     """Smoothing lengths from a quarter of the spacing to twenty times: wrong by more than 5 % only with a word."""
+    row = Kind("overlap", "within 5 %, or a word", _SPOKEN, "fundamental solution")
     for order, overlap in product(orders, _OVERLAPS):
-        yield probe(
-            "overlap", f"order {order}, ε = {overlap:g} h", "within 5 %, or a word",
-            partial(_case_error, cloud, order=order, overlap=overlap), _SPOKEN, source="fundamental solution",
-        )  # fmt: skip
+        yield row(
+            f"order {order}, ε = {overlap:g} h",
+            partial(_case_error, cloud, order=order, overlap=overlap),
+        )
 
 
 def _case_error(cloud: _Cloud, **fields: Any) -> float:
@@ -325,27 +351,30 @@ def overlap_errors(half_width: float, spacing: float, orders: Sequence[int]) -> 
 def _ends(cloud: _Cloud) -> Iterator[Probe]:
     """Lattices too narrow, thresholds too large, data off the centre: wrong by more than 5 % only with a word."""
     source = "fundamental solution"
+    row = Kind("ends", "within 5 %, or a word", _SPOKEN)
     for exterior, threshold in product(dvm.EXTERIORS, (1e-300, 1e-6, 1e-3, 0.02, 0.2, 0.9)):
-        run = partial(cloud.error, exterior=exterior, threshold=threshold)
-        case = f"{exterior}, threshold {threshold:g}"
-        yield probe("ends", case, "within 5 %, or a word", run, _SPOKEN, source=source)
+        yield row(
+            f"{exterior}, threshold {threshold:g}",
+            partial(cloud.error, exterior=exterior, threshold=threshold),
+            source=source,
+        )
     for exterior, width, time in product(dvm.EXTERIORS, (1.0, 2.0, 5.0), (0.5, 10.0)):
         narrow = _Cloud(width, cloud.h)
-        run = partial(narrow.error, exterior=exterior, time=time)
-        case = f"{exterior}, |x| < {width:g}, T = {time:g}"
-        yield probe("ends", case, "within 5 %, or a word", run, _SPOKEN, source=source)
+        yield row(
+            f"{exterior}, |x| < {width:g}, T = {time:g}",
+            partial(narrow.error, exterior=exterior, time=time),
+            source=source,
+        )
     for centre in (3.0, 8.0):
-        run = partial(_off_centre, cloud, centre * 0.1 * cloud.half_width)
-        case = f"open, data at {centre / 10:g} of the half-width"
-        yield probe("ends", case, "within 5 %, or a word", run, _SPOKEN, source=source)
-    run = partial(_off_centre, cloud, 3.0 * cloud.half_width)
-    yield probe(
-        "ends",
-        "open, data beyond the lattice",
-        "within 5 %, or a word",
-        run,
-        _SPOKEN,
-        source=source,
+        yield row(
+            f"open, data at {centre / 10:g} of the half-width",
+            _off_centre,
+            cloud,
+            centre * 0.1 * cloud.half_width,
+            source=source,
+        )
+    yield row(
+        "open, data beyond the lattice", _off_centre, cloud, 3.0 * cloud.half_width, source=source
     )
 
 
@@ -359,14 +388,17 @@ def _off_centre(cloud: _Cloud, centre: float) -> float:
 def _orders_of_the_equation(cloud: _Cloud) -> Iterator[Probe]:
     """Orders next to 1 and 2 against the Cauchy and the Gaussian density; between, 1 - alpha of the difference."""
     cases = ((1.0 + 1e-9, _cauchy), (1.001, _cauchy), (1.999, _gaussian), (2.0 - 1e-9, _gaussian))
+    row = Kind("order", "the limit", source="closed form", must=HELD)
     for exterior, (alpha, exact) in product(dvm.EXTERIORS, cases):
         nearest = round(alpha)
         bound = cloud.smoothing(float(nearest)) + 2.0 * abs(alpha - nearest)
         # Transforms end at 1e-11 of the peak, where the Gaussian is below.
         narrow = _Cloud(min(cloud.half_width, 6.0), cloud.h) if nearest == 2 else cloud
-        run = partial(narrow.error, exact=exact, alpha=alpha, exterior=exterior, steps=20)
-        case = f"{exterior}, β = {_near(alpha - 1.0)}"
-        yield probe("order", case, "the limit", run, bound, source="closed form", must=Verdict.HELD)
+        yield row(
+            f"{exterior}, β = {_near(alpha - 1.0)}",
+            partial(narrow.error, exact=exact, alpha=alpha, exterior=exterior, steps=20),
+            bound=bound,
+        )
 
 
 def _near(beta: float) -> str:
@@ -379,20 +411,27 @@ def _cauchy(z: np.ndarray, t: float) -> np.ndarray:
 
 def _few(cloud: _Cloud) -> Iterator[Probe]:
     """One particle does not move, two move apart alike; the tails of an open exterior ask for sixteen."""
-    one = partial(_few_moved, cloud, 1)
-    yield probe("few", "one particle", "stays", one, 1e-12, source="symmetry")
-    yield probe(
-        "few",
+    few = Kind("few")
+    yield few(
+        "one particle", _few_moved, cloud, 1, expected="stays", bound=1e-12, source="symmetry"
+    )
+    yield few(
         "two particles",
-        "move apart alike",
-        partial(_few_moved, cloud, 2),
-        1e-12,
+        _few_moved,
+        cloud,
+        2,
+        expected="move apart alike",
+        bound=1e-12,
         source="symmetry",
     )
-    run = partial(_few_moved, cloud, 15, exterior="open")
-    yield probe("few", "15 particles, open", "refused", run, 0.0, must=Verdict.REFUSED)
-    run = partial(_few_moved, cloud, 17, exterior="open")
-    yield probe("few", "17 particles, open", "move apart alike", run, 1e-10, source="symmetry")
+    yield few("15 particles, open", partial(_few_moved, cloud, 15, exterior="open"), must=REFUSED)
+    yield few(
+        "17 particles, open",
+        partial(_few_moved, cloud, 17, exterior="open"),
+        expected="move apart alike",
+        bound=1e-10,
+        source="symmetry",
+    )
 
 
 def _few_moved(cloud: _Cloud, count: int, **options: Any) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
 from itertools import product
 
 import mpmath
@@ -17,11 +16,10 @@ from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
 from fracparticles.markers.source import GaussianSource, advance_weights
 from fracparticles.markers.stability import extremes
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, Verdict
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _SPOKEN = 0.1  # error of a run that must be spoken of
 _ETA = extremes(SHAPES["S8"]).eta
 _WORD = "within 10 %, or a word"
@@ -39,23 +37,18 @@ def probes(count: int, reynolds: Sequence[float]) -> Iterator[Probe]:
 
 def _exact() -> Iterator[Probe]:
     """The point source of Burgers from R = 1e-100 to 1e8, and the square from t = 1e-30 to 1e10, with many digits."""
+    row = Kind("exact", "f and its integral", 64.0 * EPS, "mpmath")
     for reynolds in (1e-100, 1e-10, 1.0, 299.0, 301.0, 1e5, 1e8):
         # The shock is R ulp wide.
-        run_, bound = partial(_source_off, reynolds), 1e-13 + 64.0 * _EPS * reynolds
-        yield probe(
-            "exact",
+        yield row(
             f"point source, R = {reynolds:g}",
-            "f and its integral",
-            run_,
-            bound,
-            source="mpmath",
+            _source_off,
+            reynolds,
+            bound=1e-13 + 64.0 * EPS * reynolds,
         )
     for t in (1e-30, 1e-6, 1.0, 99.9, 100.1, 1e10):
-        run_ = partial(_square_off, t)
         # The integral is known to some ulps of the total, over any stretch.
-        yield probe(
-            "exact", f"square, t = {t:g}", "f and its integral", run_, 64.0 * _EPS, source="mpmath"
-        )
+        yield row(f"square, t = {t:g}", _square_off, t)
 
 
 def _source_off(reynolds: float) -> float:
@@ -93,10 +86,15 @@ def _square_off(t: float) -> float:
 
 def _burgers(count: int, numbers: Sequence[float]) -> Iterator[Probe]:
     """A point source to its triangle: Reynolds numbers from a Gaussian to a shock narrower than epsilon, any step."""
+    row = Kind("Burgers", _WORD, _SPOKEN, "Cole-Hopf")
     for reynolds, factor in product(numbers, (0.5, 1.1, 3.0)):
-        run_ = partial(_shock_error, reynolds, factor, count)
-        case = f"Burgers, R = {reynolds:g}, dt = {factor:g} η ε²/μ"
-        yield probe("Burgers", case, _WORD, run_, _SPOKEN, source="Cole-Hopf")
+        yield row(
+            f"Burgers, R = {reynolds:g}, dt = {factor:g} η ε²/μ",
+            _shock_error,
+            reynolds,
+            factor,
+            count,
+        )
 
 
 def _shock_error(reynolds: float, factor: float, count: int) -> float:
@@ -114,15 +112,34 @@ def _shock_error(reynolds: float, factor: float, count: int) -> float:
 
 def _kdv(count: int) -> Iterator[Probe]:
     """Solitons, the shocks of this equation, from wide to narrower than epsilon; steps up to a hundredth."""
+    row = Kind("KdV")
     for c, background in ((1.0, 0.1), (4.0, 1.0), (16.0, 1.0), (100.0, 1.0)):
         for dt in (1e-4, 1e-3, 1e-2):
-            run_ = partial(_soliton_error, c, background, dt, 0.3, count)
-            case = f"soliton c = {c:g} on {background:g}, dt = {dt:g}"
-            yield probe("KdV", case, _WORD, run_, _SPOKEN, source="soliton")
-    run_ = partial(_soliton_error, 16.0, 1.0, 1e-3, 1.5, count)
-    yield probe("KdV", "soliton narrower than ε", _WORD, run_, _SPOKEN, source="soliton")
-    run_ = partial(_soliton_error, 16.0, 0.0, 1e-3, 0.1, count)
-    yield probe("KdV", "a soliton on nothing", "refused", run_, 0.0, must=Verdict.REFUSED)
+            yield row(
+                f"soliton c = {c:g} on {background:g}, dt = {dt:g}",
+                _soliton_error,
+                c,
+                background,
+                dt,
+                0.3,
+                count,
+                expected=_WORD,
+                bound=_SPOKEN,
+                source="soliton",
+            )
+    yield row(
+        "soliton narrower than ε",
+        _soliton_error,
+        16.0,
+        1.0,
+        1e-3,
+        1.5,
+        count,
+        expected=_WORD,
+        bound=_SPOKEN,
+        source="soliton",
+    )
+    yield row("a soliton on nothing", _soliton_error, 16.0, 0.0, 1e-3, 0.1, count, must=REFUSED)
 
 
 def _soliton_error(c: float, background: float, dt: float, epsilon: float, count: int) -> float:
@@ -138,30 +155,29 @@ def _soliton_error(c: float, background: float, dt: float, epsilon: float, count
 def _nonlinear(count: int) -> Iterator[Probe]:
     """The steady state of nonlinear diffusion at steps about the limit; beyond the time where f vanishes."""
     problem = NonlinearDiffusion()
+    nonlinear = Kind("nonlinear")
     for factor in (0.5, 0.9, 1.2, 3.0):
-        run_ = partial(_steady_error, problem, factor, count)
-        yield probe(
-            "nonlinear",
+        yield nonlinear(
             f"steady state, dt = {factor:g} of the limit",
-            _WORD,
-            run_,
-            _SPOKEN,
+            _steady_error,
+            problem,
+            factor,
+            count,
+            expected=_WORD,
+            bound=_SPOKEN,
             source="closed form",
         )
     lines = Lines(problem, 6.0, 60, 2.5)
-    run_ = partial(_lines_at, lines, 1e3)
-    case = "lines beyond the time where f vanishes"
-    yield probe("nonlinear", case, "refused", run_, 0.0, must=Verdict.REFUSED)
+    yield nonlinear("lines beyond the time where f vanishes", _lines_at, lines, 1e3, must=REFUSED)
     for f in (-1e4, 1e300):
-        must = Verdict.REFUSED if f < 0.0 else Verdict.HELD
+        must = REFUSED if f < 0.0 else HELD
         strong = NonlinearDiffusion(1e100, 1.0, 1.0)
-        run_ = partial(_diffusivity, strong, f)
-        yield probe(
-            "nonlinear",
+        yield nonlinear(
             f"D(f) of f = {f:g}, D₀ = 1e100",
-            "zero" if f > 0 else "refused",
-            run_,
-            0.0,
+            _diffusivity,
+            strong,
+            f,
+            expected="zero" if f > 0 else "refused",
             must=must,
         )
 
@@ -187,25 +203,28 @@ def _steady_error(problem: NonlinearDiffusion, factor: float, count: int) -> flo
 
 def _sources(count: int) -> Iterator[Probe]:
     """Sources that feed, drain, or take more in a step than there is; strengths beyond the numbers."""
+    row = Kind("source")
     for q, dt in ((1.0, 0.005), (-0.5, 0.005), (1.0, 0.1)):
-        run_ = partial(_fed_error, q, dt, count)
-        yield probe("source", f"q = {q:g}, dt = {dt:g}", _WORD, run_, _SPOKEN, source="closed form")
-    run_ = partial(_fed_error, -30.0, 0.02, count)
-    yield probe("source", "a sink of 30 times f", "refused", run_, 0.0, must=Verdict.REFUSED)
+        yield row(
+            f"q = {q:g}, dt = {dt:g}",
+            _fed_error,
+            q,
+            dt,
+            count,
+            expected=_WORD,
+            bound=_SPOKEN,
+            source="closed form",
+        )
+    yield row("a sink of 30 times f", _fed_error, -30.0, 0.02, count, must=REFUSED)
     strong: dict[str, tuple[Callable[[], float], Verdict]] = {
-        "q = 1e300 far out": (
-            lambda: float(abs(GaussianSource(1e300, 2).rate([1e100])[0])),
-            Verdict.HELD,
-        ),
+        "q = 1e300 far out": (lambda: float(abs(GaussianSource(1e300, 2).rate([1e100])[0])), HELD),
         "q = 1e300 for 1e100": (
             lambda: float(GaussianSource(1e300).solution([0.0], 1e100)[0]),
-            Verdict.REFUSED,
+            REFUSED,
         ),
     }
     for case, (call, must) in strong.items():
-        yield probe(
-            "source", case, "zero" if must is Verdict.HELD else "refused", call, 0.0, must=must
-        )
+        yield row(case, call, expected="zero" if must is HELD else "refused", must=must)
 
 
 def _fed_error(q: float, dt: float, count: int) -> float:
@@ -220,10 +239,7 @@ def _fed_error(q: float, dt: float, count: int) -> float:
 
 def _nothing() -> Iterator[Probe]:
     """What looks at markers needs some."""
-    run_ = partial(_spectrum, np.array([5.0]))
-    yield probe(
-        "marker tools", "a spectrum of no markers", "refused", run_, 0.0, must=Verdict.REFUSED
-    )
+    yield Kind("marker tools", must=REFUSED)("a spectrum of no markers", _spectrum, np.array([5.0]))
 
 
 def _spectrum(x: np.ndarray) -> float:

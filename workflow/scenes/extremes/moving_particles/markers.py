@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator, Sequence
-from functools import partial
 from itertools import product
 from typing import Any
 
@@ -28,11 +27,10 @@ from fracparticles.markers.accuracy import optimal_support
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.growth import largest_step, measured_rate
 from fracparticles.markers.stability import extremes, lattice_rate
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, WARNED, Kind, Probe
 
 __all__ = ["probes", "support_errors", "wave_growth"]
 
-_EPS = float(np.finfo(float).eps)
 _SPOKEN = 0.05  # error of a run that must be spoken of
 _FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step
 _SMOOTH = ("S4", "S6", "S8")  # with a second derivative, so that markers on a lattice have a rate
@@ -66,27 +64,25 @@ def _solutions(shapes: Sequence[str], count: int) -> Iterator[Probe]:
 
     as V = x / (s^2 + m eps^2). What is left is of the order eps^4, and the ripple between markers.
     """
+    solution = Kind("solution")
     for name in shapes:
         shape = SHAPES[name]
         if shape.smoothness == 0:
-            run_ = partial(_smoothed_off, name, count, 0.3)
-            yield probe(
-                "solution", f"{name}, whose F jumps", "refused", run_, 0.0, must=Verdict.REFUSED
-            )
+            yield solution(f"{name}, whose F jumps", _smoothed_off, name, count, 0.3, must=REFUSED)
             continue
         many, epsilon = 5 * count, 0.2 if name == "S8" else 0.3
         spacing = (_NARROW if name == "S8" else _WIDE) * 2.0 / many
         # The fourth moment over 24 times the fourth derivative, 12 at the peak; the markers as (h / eps)^M, twice.
         fourth = 0.5 * epsilon**4 * abs(_moment(name, 4))
         order = 6 if shape.smoothness is None else shape.smoothness + 1
-        bound = fourth + 8.0 * (spacing / epsilon) ** order
-        run_ = partial(_smoothed_off, name, many, epsilon)
-        yield probe(
-            "solution",
+        yield solution(
             f"{name}, ε = {epsilon / spacing:g} h",
-            "the smoothed Gaussian",
-            run_,
-            bound,
+            _smoothed_off,
+            name,
+            many,
+            epsilon,
+            expected="the smoothed Gaussian",
+            bound=fourth + 8.0 * (spacing / epsilon) ** order,
             source="closed form",
         )
 
@@ -121,13 +117,15 @@ def _smoothed_off(name: str, count: int, epsilon: float) -> float:
 
 def _growth() -> Iterator[Probe]:
     """The wave that decays fastest, at steps about the limit of the lattice: 1 + z + z^2/2, and a word beyond."""
+    step = Kind("step", "grows by 1 + z + z²/2", 1e-3, "lattice sum")
     for name, factor in product(_SMOOTH, _FACTORS):
-        verdict = Verdict.WARNED if factor > 1.0 else Verdict.HELD
-        run_ = partial(_wave_missed, name, factor)
         # Linear to the height of the wave; places are rounded to 1e-16 of 10, the wave is 1e-6.
-        case = f"{name}, dt = {factor:g} η ε²"
-        yield probe(
-            "step", case, "grows by 1 + z + z²/2", run_, 1e-3, source="lattice sum", must=verdict
+        yield step(
+            f"{name}, dt = {factor:g} η ε²",
+            _wave_missed,
+            name,
+            factor,
+            must=WARNED if factor > 1.0 else HELD,
         )
 
 
@@ -160,14 +158,17 @@ def wave_growth(
 
 def _clusters() -> Iterator[Probe]:
     """Waves whose transform is negative grow at any step, at the predicted rate, and the run says so."""
+    step = Kind("step", "grow at any step", 1e-3, "lattice sum", WARNED)
     for name in ("S4", "S6"):
         found = extremes(SHAPES[name])
         factor = 0.1
         steps = math.ceil(3.0 / (factor * found.eta * found.growth))
-        run_ = partial(_cluster_missed, name, factor, steps)
-        case = f"{name}, waves of {2.0 * math.pi / found.k_growth:.2f} ε"
-        yield probe(
-            "step", case, "grow at any step", run_, 1e-3, source="lattice sum", must=Verdict.WARNED
+        yield step(
+            f"{name}, waves of {2.0 * math.pi / found.k_growth:.2f} ε",
+            _cluster_missed,
+            name,
+            factor,
+            steps,
         )
 
 
@@ -178,20 +179,11 @@ def _cluster_missed(name: str, factor: float, steps: int) -> tuple[float, str]:
 
 def _supports(count: int, supports: Sequence[float]) -> Iterator[Probe]:
     """Support parameters from a tenth of the spacing to fifty times: wrong by more than 5 % only with a word."""
+    row = Kind("support", "within 5 %, or a word", _SPOKEN, "closed form")
     for name, support in product(("S4", "S8"), supports):
-        run_ = partial(_support_error, name, support, count)
-        case = f"{name}, ε = {support:g} h"
-        yield probe("support", case, "within 5 %, or a word", run_, _SPOKEN, source="closed form")
+        yield row(f"{name}, ε = {support:g} h", _support_error, name, support, count)
     for name, load in product(("S4", "S8"), ("quiet start", "random")):
-        run_ = partial(_load_error, name, load, count)
-        yield probe(
-            "support",
-            f"{name}, {load}",
-            "within 5 %, or a word",
-            run_,
-            _SPOKEN,
-            source="closed form",
-        )
+        yield row(f"{name}, {load}", _load_error, name, load, count)
 
 
 def _support_error(name: str, support: float, count: int) -> float:
@@ -237,13 +229,11 @@ def support_errors(count: int, supports: Sequence[float]) -> pd.DataFrame:
 
 def _signs(count: int) -> Iterator[Probe]:
     """F of one sign, whichever; a weight of zero counts for nothing."""
-    run_ = partial(_sign_seen, count)
-    case = "weights all negative"
-    yield probe("marker signs", case, "the same paths, bit for bit", run_, 0.0, must=Verdict.HELD)
-    run_ = partial(_zero_seen, count)
-    yield probe(
-        "marker signs", "weights of zero between", "the others' paths", run_, 0.0, must=Verdict.HELD
+    marker_signs = Kind("marker signs", must=HELD)
+    yield marker_signs(
+        "weights all negative", _sign_seen, count, expected="the same paths, bit for bit"
     )
+    yield marker_signs("weights of zero between", _zero_seen, count, expected="the others' paths")
     x, w = _gaussian(count, "S4")
     refused: dict[str, tuple[np.ndarray, np.ndarray, str]] = {
         "weights of both signs": (x, w * np.sign(x), "S4"),
@@ -252,17 +242,14 @@ def _signs(count: int) -> Iterator[Probe]:
         "a weight of nan": (x, np.where(x > 2.0, np.nan, w), "S4"),
     }
     for case, (places, weights, name) in refused.items():
-        run_ = partial(_run_once, places, weights, name)
-        yield probe("marker signs", case, "refused", run_, 0.0, must=Verdict.REFUSED)
+        yield marker_signs(case, _run_once, places, weights, name, must=REFUSED)
     fast = FourierMarkerVelocity(0.2)
-    run_ = partial(_fourier_once, fast, *uniform(Gaussian().value, (-7.0, 7.0), count))
-    yield probe(
-        "marker signs",
+    yield marker_signs(
         "S8 by transforms, F below 1e-11",
-        "refused",
-        run_,
-        0.0,
-        must=Verdict.REFUSED,
+        _fourier_once,
+        fast,
+        *uniform(Gaussian().value, (-7.0, 7.0), count),
+        must=REFUSED,
     )
 
 
@@ -293,30 +280,38 @@ def _zero_seen(count: int) -> float:
 
 def _units(count: int) -> Iterator[Probe]:
     """Lengths times a power of two change no bit; a total in other units neither; periods do not count."""
+    marker_units = Kind("marker units")
     for power in (-150, 150):
-        run_ = partial(_other_units, count, 2.0**power)
-        case = f"lengths times 2^{power}"
-        yield probe(
-            "marker units", case, "no bit changes", run_, 0.0, source="scaling", must=Verdict.HELD
+        yield marker_units(
+            f"lengths times 2^{power}",
+            _other_units,
+            count,
+            2.0**power,
+            expected="no bit changes",
+            source="scaling",
+            must=HELD,
         )
     for scale in (1e-290, 1e290):
-        run_ = partial(_other_weights, count, scale)
-        case = f"weights times {scale:g}"
         # F and F_x are rounded alike, their quotient once more.
-        yield probe("marker units", case, "the same paths", run_, 1e-12, source="scaling")
-    yield probe(
-        "marker units",
-        "weights of 1e308",
-        "refused",
-        partial(_other_weights, count, 1e309),
-        0.0,
-        must=Verdict.REFUSED,
-    )
+        yield marker_units(
+            f"weights times {scale:g}",
+            _other_weights,
+            count,
+            scale,
+            expected="the same paths",
+            bound=1e-12,
+            source="scaling",
+        )
+    yield marker_units("weights of 1e308", _other_weights, count, 1e309, must=REFUSED)
     for periods in (1, 10**6):
-        run_ = partial(_periods_off, periods)
-        case = f"periodic, {periods:g} periods away"
-        bound = 64.0 * _EPS * periods * 4.0
-        yield probe("marker units", case, "the same velocity", run_, bound, source="scaling")
+        yield marker_units(
+            f"periodic, {periods:g} periods away",
+            _periods_off,
+            periods,
+            expected="the same velocity",
+            bound=64.0 * EPS * periods * 4.0,
+            source="scaling",
+        )
 
 
 def _other_units(count: int, unit: float) -> float:
@@ -358,13 +353,19 @@ def _tools() -> Iterator[Probe]:
         "the best ε at h = 5": lambda: optimal_support(SHAPES["S8"], 5.0)[1],
         "a square of no markers": lambda: float(equal_weight(Square(), 0)[0].size),
     }
+    marker_tools = Kind("marker tools")
     for case, run_ in refused.items():
-        yield probe("marker tools", case, "refused", run_, 0.0, must=Verdict.REFUSED)
+        yield marker_tools(case, run_, must=REFUSED)
     for name in SHAPES:
-        run_ = partial(_end_off, name)
-        case = f"{name}, fastest wave with k < 1"
         # -k^2 S^ falls there; S^ by another rule.
-        yield probe("marker tools", case, "k² Ŝ at k = 1", run_, 1e-13, source="quadrature")
+        yield marker_tools(
+            f"{name}, fastest wave with k < 1",
+            _end_off,
+            name,
+            expected="k² Ŝ at k = 1",
+            bound=1e-13,
+            source="quadrature",
+        )
 
 
 def _end_off(name: str) -> float:

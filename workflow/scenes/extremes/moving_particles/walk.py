@@ -20,11 +20,10 @@ from fracparticles.moving.random_walk import (
     walk,
 )
 from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _SURE = (
     2.3  # sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov)
 )
@@ -42,6 +41,7 @@ def probes(walkers: int) -> Iterator[Probe]:
 
 def _laws(walkers: int) -> Iterator[Probe]:
     """Increments next to alpha = 1 and 2: Cauchy's law and the normal one of variance 2; in many steps as in one."""
+    row = Kind("walk", bound=_SURE, source="closed form", must=HELD)
     for alpha, law in (
         (float(np.nextafter(1.0, 2.0)), _cauchy),
         (1.0 + 1e-6, _cauchy),
@@ -49,10 +49,15 @@ def _laws(walkers: int) -> Iterator[Probe]:
         (float(np.nextafter(2.0, 1.0)), _normal),
     ):
         for steps in (1, 10):
-            run = partial(_distance, alpha, law, walkers, steps)
-            case = f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}"
-            expected = f"the law of α = {round(alpha)}"
-            yield probe("walk", case, expected, run, _SURE, source="closed form", must=Verdict.HELD)
+            yield row(
+                f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}",
+                _distance,
+                alpha,
+                law,
+                walkers,
+                steps,
+                expected=f"the law of α = {round(alpha)}",
+            )
 
 
 def _near(alpha: float) -> str:
@@ -76,13 +81,19 @@ def _distance(alpha: float, law: Law, walkers: int, steps: int) -> float:
 
 def _units() -> Iterator[Probe]:
     """The same numbers in other units, to the end of what is a length; beyond, the walk says so."""
+    row = Kind("walk")
     for alpha, unit in ((1.5, 1e-60), (1.5, 1e60), (1.001, 1e95)):
-        run = partial(_other_units, alpha, unit)
-        case = f"α = {alpha:g}, lengths times {unit:g}"
-        yield probe("walk", case, "the same walk", run, 64.0 * _EPS, source="scaling")
+        yield row(
+            f"α = {alpha:g}, lengths times {unit:g}",
+            _other_units,
+            alpha,
+            unit,
+            expected="the same walk",
+            bound=64.0 * EPS,
+            source="scaling",
+        )
     for case, time in (("(D dt)^(1/α) = 1e-120", 1e-100), ("(D dt)^(1/α) = 1e120", 1e100)):
-        run = partial(_walked, time)
-        yield probe("walk", case, "refused", run, 0.0, must=Verdict.REFUSED)
+        yield row(case, _walked, time, must=REFUSED)
 
 
 def _other_units(alpha: float, unit: float) -> float:
@@ -101,20 +112,30 @@ def _walked(time: float) -> float:
 def _cells() -> Iterator[Probe]:
     """Every walker inside is counted, also next to the end; masses of cells near and far are those of Cauchy's law."""
     ends = np.array([-1.0, np.nextafter(-1.0, -2.0), np.nextafter(1.0, 0.0), 1.0])
+    row = Kind("cells")
     for cells in (3, 7, 10, 1000):
-        run = partial(_miscounted, ends, cells)
-        case = f"walkers at the ends of {cells} cells"
-        yield probe("cells", case, "two are inside", run, 0.0, must=Verdict.HELD)
+        yield row(
+            f"walkers at the ends of {cells} cells",
+            _miscounted,
+            ends,
+            cells,
+            expected="two are inside",
+            must=HELD,
+        )
     edges = np.array([-np.inf, -1e100, -1e8, -1.0, 0.0, 1e-8, 1.0, 1e8, 1e100, np.inf])
     for k, (low, high) in enumerate(pairwise(edges)):
         run = partial(_mass_off, edges, k)
         case = f"cell from {low:g} to {high:g}, α = 1 + 1e-12"
         # Of a tail x^-alpha the small part of alpha is seen as its logarithm.
         nearest = min(max(abs(low), 1.0), max(abs(high), 1.0))
-        bound = 2e-12 * (1.0 + math.log(nearest))
-        yield probe("cells", case, "its mass, relative", run, bound, source="closed form")
-    run = partial(_mass_off, edges[::-1], 4)
-    yield probe("cells", "cells that fall", "refused", run, 0.0, must=Verdict.REFUSED)
+        yield row(
+            case,
+            run,
+            expected="its mass, relative",
+            bound=2e-12 * (1.0 + math.log(nearest)),
+            source="closed form",
+        )
+    yield row("cells that fall", _mass_off, edges[::-1], 4, must=REFUSED)
 
 
 def _miscounted(ends: np.ndarray, cells: int) -> float:
@@ -131,16 +152,27 @@ def _mass_off(edges: np.ndarray, k: int) -> float:
 
 def _numbers() -> Iterator[Probe]:
     """Deviations of counts and numbers of walkers for masses from 1e-300 to one."""
+    row = Kind("cells")
     for p, n in ((1e-300, 10), (1e-9, 1000), (0.5, 1), (0.3, 1000), (1.0 - 1e-12, 1000)):
-        run = partial(_deviation_off, p, n)
-        case = f"{n} walkers, p = {p:.3g}"
         # Logarithms of up to 1000 log 1000 are rounded.
-        yield probe("cells", case, "E |N/n - p|", run, 1e-11, source="scipy")
+        yield row(
+            f"{n} walkers, p = {p:.3g}",
+            _deviation_off,
+            p,
+            n,
+            expected="E |N/n - p|",
+            bound=1e-11,
+            source="scipy",
+        )
     for count in (1, 10**4, 10**12):
-        run = partial(_few_off, count)
-        yield probe(
-            "cells", f"{count:.0e} walkers, α = 1 + 1e-12", "where few are left", run, 1e-10, source="closed form"
-        )  # fmt: skip
+        yield row(
+            f"{count:.0e} walkers, α = 1 + 1e-12",
+            _few_off,
+            count,
+            expected="where few are left",
+            bound=1e-10,
+            source="closed form",
+        )
     refused: dict[str, Callable[[], float]] = {
         "no mass to equal": lambda: walkers_to_equal([0.0, 0.0], 0.1),
         "masses of 1e-320": lambda: walkers_to_equal([1e-320], 0.1),
@@ -148,7 +180,7 @@ def _numbers() -> Iterator[Probe]:
         "2.5 walkers": lambda: float(stable_variates(1.5, 2.5, np.random.default_rng())[0]),  # type: ignore[arg-type]
     }
     for case, call in refused.items():
-        yield probe("cells", case, "refused", call, 0.0, must=Verdict.REFUSED)
+        yield row(case, call, must=REFUSED)
 
 
 def _deviation_off(p: float, n: int) -> float:

@@ -12,7 +12,7 @@ import pandas as pd
 
 from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import Kind, Probe, Verdict
 from scenes.extremes.rough_data.cases import case_of, deviation, run
 
 __all__ = ["probes"]
@@ -24,28 +24,15 @@ def probes(beta: float) -> Iterator[Probe]:
     bump = np.round(100.0 * np.exp(-case.x * case.x))
     exact = run(case, bump)
     for words, data in _right(bump).items():
-        yield probe(
-            "kind of data",
-            words,
-            "as float64",
-            partial(_from, case, data, exact),
-            0.0,
-            must=Verdict.HELD,
+        yield Kind("kind of data", must=Verdict.HELD)(
+            words, "as float64", partial(_from, case, data, exact), 0.0
         )
     for words, make in _wrong(bump).items():
-        for entry, use in (
-            ("solve", partial(run, case)),
-            ("prepare", prepare(case).solve),
-        ):
+        for entry, use in (("solve", partial(run, case)), ("prepare", prepare(case).solve)):
             if entry == "prepare" and words.startswith("function"):
                 continue
-            yield probe(
-                "refused",
-                f"{words}, {entry}",
-                "refused",
-                partial(_used, use, make),
-                -1.0,
-                must=Verdict.REFUSED,
+            yield Kind("refused", must=Verdict.REFUSED)(
+                f"{words}, {entry}", "refused", partial(_used, use, make), -1.0
             )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ from scipy.linalg import expm
 from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
 from fracparticles.schemes import ALL_SCHEMES
-from fracstudy.probe import Probe, Verdict, probe
-from scenes.extremes.rough_data.cases import EPS, case_of, deviation, matrix_of, run
+from fracstudy.probe import HELD, REFUSED, Kind, Probe
+from scenes.extremes.rough_data.cases import case_of, deviation, matrix_of, run
 
 __all__ = ["exact", "sizes", "symmetries", "units"]
 
@@ -47,6 +46,7 @@ def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
 
     The estimates may warn of the data, but that excuses nothing: the discrete problem is solved.
     """
+    row = Kind("exact", "exp(A T) u0", source="scipy, dense")
     for scheme in schemes:
         for exterior in ALL_SCHEMES[scheme].exteriors:
             case = case_of(scheme, beta, exterior=exterior)
@@ -56,13 +56,8 @@ def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
             stiffness = case.span * float(np.abs(matrix_of(case)).sum(axis=1).max())
             bound = max(_SAME, 64.0 * EPS * stiffness)
             for words, u0 in _shapes(case.x).items():
-                yield probe(
-                    "exact",
-                    f"{scheme}, {exterior}, {words}",
-                    "exp(A T) u0",
-                    partial(_from, case, u0, whole @ u0),
-                    bound,
-                    source="scipy, dense",
+                yield row(
+                    f"{scheme}, {exterior}, {words}", _from, case, u0, whole @ u0, bound=bound
                 )
 
 
@@ -77,6 +72,7 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
 
     Sums of strengths near 1.8e308 overflow: refused. Zero stays zero.
     """
+    row = Kind("size")
     for scheme in schemes:
         for dim in [d for d in dims if d in ALL_SCHEMES[scheme].dims]:
             small = {} if dim == 1 else {"half_width": 3.0, "spacing": 0.375}
@@ -93,30 +89,33 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
                     digits = max(
                         1.0, math.ulp(abs(size)) / abs(size) / EPS
                     )  # lost to denormal numbers
-                    yield probe(
-                        "size",
+                    yield row(
                         f"{scheme}, n = {dim}, {exterior}, data times {size:g}",
-                        "the solution times the same",
-                        partial(_from_scaled, case, u0, size, usual),
-                        10.0 * _SAME * digits,
+                        _from_scaled,
+                        case,
+                        u0,
+                        size,
+                        usual,
+                        expected="the solution times the same",
+                        bound=10.0 * _SAME * digits,
                         source="scipy, dense" if dense else "",
-                        must=Verdict.HELD,
+                        must=HELD,
                     )
     for scheme in schemes:
         case = case_of(scheme, beta)
         for words, u0, must in (
-            ("1.7e308 everywhere", np.full(case.shape, 1.7e308), Verdict.REFUSED),
-            ("1e308, both signs", 1e308 * (-1.0) ** np.arange(case.particles), Verdict.REFUSED),
+            ("1.7e308 everywhere", np.full(case.shape, 1.7e308), REFUSED),
+            ("1e308, both signs", 1e308 * (-1.0) ** np.arange(case.particles), REFUSED),
             ("zero", np.zeros(case.shape), None),
             ("-0.0", -np.zeros(case.shape), None),
             ("5e-324 on one particle", np.where(case.x == 0.0, 5e-324, 0.0), None),
         ):
-            yield probe(
-                "size",
+            yield row(
                 f"{scheme}, {words}",
-                "refused" if must else "at most what was given",
-                partial(_grown, case, u0),
-                0.0,
+                _grown,
+                case,
+                u0,
+                expected="refused" if must else "at most what was given",
                 source="maximum principle",
                 must=must,
             )
@@ -143,39 +142,31 @@ def _scaled_back(u: np.ndarray, size: float) -> np.ndarray:
 def symmetries(beta: float, schemes: list[str]) -> Iterator[Probe]:
     """Sums of data, mirrored data, and on the infinite lattice shifted data: of noise on particles in the middle."""
     rng = np.random.default_rng(5)
+    sum_of_data = Kind("sum of data", "S(3 u - 2 v) = 3 S u - 2 S v", 10.0 * _SAME)
+    mirror = Kind("mirror", "the mirrored solution", 10.0 * _SAME)
+    shift = Kind("shift", "the moved solution")
     for scheme in schemes:
         for exterior in ALL_SCHEMES[scheme].exteriors:
             case = case_of(scheme, beta, exterior=exterior)
             u, v = rng.standard_normal((2, case.particles))
             solve = prepare(case).solve
             scale = float(np.abs(solve(u)).max() + np.abs(solve(v)).max())
-            yield probe(
-                "sum of data",
-                f"{scheme}, {exterior}, noise",
-                "S(3 u - 2 v) = 3 S u - 2 S v",
-                partial(_of_sum, solve, u, v, scale),
-                10.0 * _SAME,
-            )
-            yield probe(
-                "mirror",
-                f"{scheme}, {exterior}, noise",
-                "the mirrored solution",
-                partial(_of_mirror, solve, u, scale),
-                10.0 * _SAME,
-            )
+            yield sum_of_data(f"{scheme}, {exterior}, noise", _of_sum, solve, u, v, scale)
+            yield mirror(f"{scheme}, {exterior}, noise", _of_mirror, solve, u, scale)
         if scheme == "DPSE":  # whose truncated potential reaches everywhere
             continue
         wide = case_of(scheme, beta, half_width=400.0)
         solve = prepare(wide).solve
         u = np.where(np.abs(wide.x) <= 2.0, rng.standard_normal(wide.particles), 0.0)
         middle = np.abs(wide.x) <= 20.0
-        yield probe(
-            "shift",
+        # What comes back from an end at 400 after T = 1/2: twice T 400^-(1+alpha), and the ends move by 37 h.
+        yield shift(
             f"{scheme}, noise on |x| <= 2, moved by 37 h, |x| <= 20 of 400",
-            "the moved solution",
-            partial(_of_shift, solve, u, middle),
-            # What comes back from an end at 400 after T = 1/2: twice T 400^-(1+alpha), and the ends move by 37 h.
-            2.0 * 0.5 * 390.0 ** -(2.0 + beta) * 17.0,
+            _of_shift,
+            solve,
+            u,
+            middle,
+            bound=2.0 * 0.5 * 390.0 ** -(2.0 + beta) * 17.0,
         )
 
 
@@ -201,6 +192,7 @@ def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
 
     h = D / n and the time of the run are rounded anew: some ulp of each, of which T |lambda| are seen.
     """
+    row = Kind("units", "the same in other units")
     for scheme in schemes:
         for dim in [d for d in dims if d in ALL_SCHEMES[scheme].dims]:
             plain: dict[str, Any] = {"half_width": 8.0, "spacing": 0.5} if dim > 1 else {}
@@ -220,15 +212,17 @@ def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
                     "dim": dim,
                 }
                 fields |= {"half_width": c * usual.reach, "spacing": c * usual.spacing}
-                yield probe(
-                    "units",
+                # whose sums are exact to 1e-11 of the peak, a step
+                yield row(
                     f"{scheme}, n = {dim}, lengths times {c:g}, D = {diffusivity:g}",
-                    "the same in other units",
-                    partial(_in_other_units, scheme, beta, usual, c, fields),
-                    1e-10
-                    if not ALL_SCHEMES[scheme].moving
-                    else 1e-6,  # whose sums are exact to 1e-11 of the peak, a step
-                    must=Verdict.HELD if not ALL_SCHEMES[scheme].moving else None,
+                    _in_other_units,
+                    scheme,
+                    beta,
+                    usual,
+                    c,
+                    fields,
+                    bound=1e-10 if not ALL_SCHEMES[scheme].moving else 1e-6,
+                    must=HELD if not ALL_SCHEMES[scheme].moving else None,
                 )
 
 

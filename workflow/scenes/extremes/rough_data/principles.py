@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from fracparticles.run.reliability import LIMITS
 from fracparticles.schemes import ALL_SCHEMES, SCHEMES
 from fracparticles.special.stable import green
 from fracparticles.time.whole_space import evolve
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import WARNED, Kind, Probe
 from scenes.extremes.rough_data.cases import case_of, matrix_of, point, run
 
 __all__ = ["bounds", "functions", "point_masses", "signs"]
@@ -36,6 +35,7 @@ def signs(beta: float) -> Iterator[Probe]:
     K of order II is positive, that of order IV for beta = 0.9 not; G and the flux are not. A scheme with negative
     weights makes negative strengths: that is not an error of the code, and u says so.
     """
+    sign = Kind("sign", source="weights of the matrix")
     for scheme, order, alpha_less_one in _KERNELS:
         # GPSE takes no short steps: they are its smoothing length.
         short = {} if scheme == "GPSE" else {"t_final": 1e-5}
@@ -43,13 +43,12 @@ def signs(beta: float) -> Iterator[Probe]:
         a = matrix_of(case)
         least = float((a - np.diag(np.diag(a)) + np.diag(np.full(len(a), np.inf))).min())
         positive = least >= 0.0
-        yield probe(
-            "sign",
+        yield sign(
             f"{scheme}, order {order}, beta = {alpha_less_one:g}, one particle",
-            "stays positive" if positive else "turns negative",
-            partial(_sign, case, positive),
-            0.0,
-            source="weights of the matrix",
+            _sign,
+            case,
+            positive,
+            expected="stays positive" if positive else "turns negative",
         )
 
 
@@ -66,6 +65,8 @@ def bounds(beta: float, dims: list[int]) -> Iterator[Probe]:
     KPSE and GPSE, order II: A has no negative weight off the diagonal and A 1 = 0, so that exp(A T) is a mean.
     """
     rng = np.random.default_rng(11)
+    row = Kind("bounds", "within the bounds of the data", _ROUNDED, "maximum principle")
+    total = Kind("total", "the total of the data", _ROUNDED, "closed form")
     for scheme in ("KPSE", "GPSE"):
         for dim in dims:
             plain = {} if dim == 1 else {"half_width": 4.0, "spacing": 0.5}
@@ -76,22 +77,8 @@ def bounds(beta: float, dims: list[int]) -> Iterator[Probe]:
                 "one point": point(case),
                 "one point at a corner": point(case, 0),
             }.items():
-                yield probe(
-                    "bounds",
-                    f"{scheme}, n = {dim}, {words}",
-                    "within the bounds of the data",
-                    partial(_beyond, case, u0),
-                    _ROUNDED,
-                    source="maximum principle",
-                )
-                yield probe(
-                    "total",
-                    f"{scheme}, n = {dim}, {words}",
-                    "the total of the data",
-                    partial(_of_total, case, u0),
-                    _ROUNDED,
-                    source="closed form",
-                )
+                yield row(f"{scheme}, n = {dim}, {words}", _beyond, case, u0)
+                yield total(f"{scheme}, n = {dim}, {words}", _of_total, case, u0)
 
 
 def _of_total(case: Case, u0: np.ndarray) -> float:
@@ -109,30 +96,32 @@ def point_masses(beta: float, half_width: float) -> Iterator[Probe]:
     The transforms of G, F and eta1 are almost zero at theta = k h = pi: DD and FPSE hardly damp that wave. From rough
     data it is the strengths, not the scheme's smooth part, that stay wrong, and the library must say that.
     """
+    wave_of_two = Kind("wave of two", bound=0.02, source="Fourier symbol", must=WARNED)
     for scheme in ("DD", "FPSE", "KPSE"):
         case = case_of(scheme, beta, half_width=half_width, spacing=0.05)
         setting = case.setting
         symbol = float(SCHEMES[scheme].symbol(np.array([np.pi]), setting)[0])
         predicted = float(np.exp(symbol * setting.rate * case.span))
-        yield probe(
-            "wave of two",
+        # of the wave: the ends of the lattice reflect some of it
+        yield wave_of_two(
             f"{scheme}, one particle, T = 0.5, h = 0.05",
-            f"keeps {predicted:.2f} of its amplitude",
-            partial(_wave, case, predicted),
-            0.02,  # of the wave: the ends of the lattice reflect some of it
-            source="Fourier symbol",
-            must=Verdict.WARNED,
+            _wave,
+            case,
+            predicted,
+            expected=f"keeps {predicted:.2f} of its amplitude",
         )
+    point_mass = Kind("point mass", bound=1e-6, source="closed form")
     for scheme in ("KPSE", "GPSE"):
         given = {"exterior": "open", "half_width": half_width, "t_final": 1.0}
         cases = [case_of(scheme, beta, spacing=h, **given) for h in (0.1, 0.05)]
-        yield probe(
-            "point mass",
+        yield point_mass(
             f"{scheme}, h = 0.1 and 0.05, open",
-            "the fundamental solution" + (", error falls 4 times" if scheme == "KPSE" else ""),
-            partial(_converges, cases, scheme),
-            1.0,
-            source="closed form",
+            _converges,
+            cases,
+            scheme,
+            expected="the fundamental solution"
+            + (", error falls 4 times" if scheme == "KPSE" else ""),
+            bound=1.0,
         )
     for n in (2, 3):
         case = case_of(
@@ -144,15 +133,10 @@ def point_masses(beta: float, half_width: float) -> Iterator[Probe]:
             exterior="open",
             t_final=1.0,
         )
-        yield probe(
-            "point mass",
-            f"GPSE, n = {n}, one step, open",
-            "the fundamental solution",
-            partial(_error, case),
-            # The open exterior continues the data by nothing; what is left is the particle's own share,
-            # 1 - sum_j V E_j for V E_0, the error of the quadrature: exp(-(2 pi / h)^alpha T).
-            1e-6,
-            source="closed form",
+        # The open exterior continues the data by nothing; what is left is the particle's own share,
+        # 1 - sum_j V E_j for V E_0, the error of the quadrature: exp(-(2 pi / h)^alpha T).
+        yield point_mass(
+            f"GPSE, n = {n}, one step, open", _error, case, expected="the fundamental solution"
         )
 
 
@@ -165,17 +149,13 @@ def functions(beta: float, schemes: list[str]) -> Iterator[Probe]:
     allowed = 2.0 * sum(
         LIMITS[name] for name in ("wave_error", "outside_share", "between_particles")
     )
+    function = Kind("function", "the solution on a fine lattice", source="evolve")
     for scheme in schemes:
         for exterior in ALL_SCHEMES[scheme].exteriors:
             case = case_of(scheme, beta, half_width=20.0, exterior=exterior)
             for words, u in _ROUGH.items():
-                yield probe(
-                    "function",
-                    f"{scheme}, {exterior}, {words}, h = 0.25",
-                    "the solution on a fine lattice",
-                    partial(_of_function, case, u),
-                    allowed,
-                    source="evolve",
+                yield function(
+                    f"{scheme}, {exterior}, {words}, h = 0.25", _of_function, case, u, bound=allowed
                 )
 
 

@@ -7,14 +7,13 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 
 __all__ = ["CASES", "digests", "probes"]
 
@@ -81,13 +80,10 @@ def probes(threads: list[int], workflow: bool) -> Iterator[Probe]:
         f"{n} thread{'s' if n > 1 else ''}, another process": _elsewhere(n, seed)
         for seed, n in enumerate(threads)
     }
+    bits = Kind("bits", "the same bits", must=HELD)
     for what, found in others.items():
         for name, digest in first.items():
-            yield probe(
-                "bits", f"{name}, {what}", "the same bits",
-                partial(_compared, digest, found[name]),
-                0.0, must=Verdict.HELD,
-            )  # fmt: skip
+            yield bits(f"{name}, {what}", _compared, digest, found[name])
     if workflow:
         yield from _workflows()
 
@@ -100,10 +96,13 @@ def _workflows() -> Iterator[Probe]:
     """Two runs and their table, by one job after the other and by two at once."""
     from scenes.extremes.faults.workflows import Project
 
+    bits = Kind("bits", "the same bytes", must=HELD)
     with TemporaryDirectory() as name:
         files = [Project(Path(name) / f"j{jobs}", Path.cwd()).end(jobs) for jobs in (1, 2)]
         for path in files[0]:
-            yield probe(
-                "bits", f"{Path(path).parts[0]}: {Path(path).name}, -j1 and -j2", "the same bytes",
-                partial(_compared, files[0][path], files[1].get(path)), 0.0, must=Verdict.HELD,
-            )  # fmt: skip
+            yield bits(
+                f"{Path(path).parts[0]}: {Path(path).name}, -j1 and -j2",
+                _compared,
+                files[0][path],
+                files[1].get(path),
+            )

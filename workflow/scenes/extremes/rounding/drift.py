@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from math import fsum, sqrt
 from typing import Any
 
@@ -15,11 +14,10 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS, step
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, Kind, Probe
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _SINGLE = float(np.finfo(np.float32).eps)
 _FIELDS = {"scheme": "KPSE", "beta": 0.5, "half_width": 5.0, "spacing": 0.5}
 _SHARE = 0.5  # of the stability limit
@@ -46,7 +44,7 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
     mass, terms = fsum(u0), operator.size
 
     def drift(u: np.ndarray) -> float:
-        return max(abs(fsum(map(float, u)) / mass - 1.0), 0.5 * _EPS)
+        return max(abs(fsum(map(float, u)) / mass - 1.0), 0.5 * EPS)
 
     u, done = u0, 0
     stepped = []
@@ -65,29 +63,36 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
     ):
         points.add("drift", name, counts, values)
     walk, worst = [sqrt(n) for n in counts], [float(n * terms) for n in counts]
-    points.add("drift", "eps sqrt(n)", counts, [_EPS * one for one in walk])
-    points.add("drift", "eps n N", counts, [_EPS * one for one in worst])
+    points.add("drift", "eps sqrt(n)", counts, [EPS * one for one in walk])
+    points.add("drift", "eps n N", counts, [EPS * one for one in worst])
 
+    row = Kind("mass", "kept; drift below n N eps", must=HELD)
     for name, values, eps in (
-        ("step by step", stepped, _EPS),
-        ("one series", series, _EPS),
+        ("step by step", stepped, EPS),
+        ("one series", series, EPS),
         ("float32, for comparison", single, _SINGLE),
-        ("compensated, for comparison", compensated, _EPS),
+        ("compensated, for comparison", compensated, EPS),
     ):
         for n, value in zip(
             counts[1::2] if len(counts) > 3 else counts,
             values[1::2] if len(counts) > 3 else values,
             strict=True,
         ):
-            yield probe(
-                "mass", f"KPSE, {n:.0e} steps of Euler, {name}", "kept; drift below n N eps",
-                partial(float, value), n * terms * eps, source="math.fsum", must=Verdict.HELD,
-            )  # fmt: skip
+            yield row(
+                f"KPSE, {n:.0e} steps of Euler, {name}",
+                float,
+                value,
+                bound=n * terms * eps,
+                source="math.fsum",
+            )
     both = float(np.abs(prepare(_case(most)).solve(u0) / u - 1.0).max())
-    yield probe(
-        "mass", f"KPSE, {most:.0e} steps, step by step and one series", "the same, below n N eps",
-        partial(float, both), most * terms * _EPS, must=Verdict.HELD,
-    )  # fmt: skip
+    yield row(
+        f"KPSE, {most:.0e} steps, step by step and one series",
+        float,
+        both,
+        expected="the same, below n N eps",
+        bound=most * terms * EPS,
+    )
 
 
 def _by_matrix(matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type) -> list[float]:
@@ -99,7 +104,7 @@ def _by_matrix(matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type
         for _ in range(n - done):
             u = a @ u
         done = n
-        found.append(max(abs(fsum(map(float, u)) / start - 1.0), 0.5 * _EPS))
+        found.append(max(abs(fsum(map(float, u)) / start - 1.0), 0.5 * EPS))
     return found
 
 
@@ -115,5 +120,5 @@ def _compensated(matrix: np.ndarray, u0: np.ndarray, counts: list[int], mass: fl
             lost = added - (total - u)
             u = total
         done = n
-        found.append(max(abs(fsum([*u, *lost]) / mass - 1.0), 0.5 * _EPS))
+        found.append(max(abs(fsum([*u, *lost]) / mass - 1.0), 0.5 * EPS))
     return found

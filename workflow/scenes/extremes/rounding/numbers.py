@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
 from math import fsum, log2
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,18 +19,17 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES
 from fracstudy.inputs import write_table
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _FIELDS: dict[str, Any] = {
     "beta": 0.5,
     "half_width": 5.0,
     "integrator": "exponential",
     "t_initial": 0.5,
 }
-HELD, REFUSED = Verdict.HELD, Verdict.REFUSED
+HELD, REFUSED = HELD, REFUSED
 
 
 def probes(particles: int) -> Iterator[Probe]:
@@ -51,6 +49,7 @@ def _kinds() -> Iterator[Probe]:
     spaced = np.repeat(u0, 3)[::3]
     written = u0.copy()
     written.flags.writeable = False
+    rows_type = Kind("type", must=HELD)
     for name, given in {
         "float32": u0.astype(np.float32),
         "float16": u0.astype(np.float16),
@@ -62,13 +61,8 @@ def _kinds() -> Iterator[Probe]:
         "a negative stride": u0[::-1].copy()[::-1],
         "read-only": written,
     }.items():
-        yield probe(
-            "type",
-            f"strengths of {name}",
-            "the bits of float64",
-            partial(_other_bits, case, given),
-            0.0,
-            must=HELD,
+        yield rows_type(
+            f"strengths of {name}", _other_bits, case, given, expected="the bits of float64"
         )
     bad = {
         "complex": np.ones(case.shape, complex),
@@ -78,14 +72,7 @@ def _kinds() -> Iterator[Probe]:
         "a longdouble beyond float64": u0.astype(np.longdouble) * np.longdouble("1e4000"),
     }
     for name, given in bad.items():
-        yield probe(
-            "type",
-            f"strengths of {name}",
-            "refused",
-            partial(_solved, case, given),
-            0.0,
-            must=REFUSED,
-        )
+        yield rows_type(f"strengths of {name}", _solved, case, given, must=REFUSED)
 
 
 def _solved(case: Case, given: np.ndarray) -> float:
@@ -116,15 +103,21 @@ def _functions() -> Iterator[Probe]:
         "evolve": lambda x, t, a: fp.evolve(np.exp(-(x.astype(float) ** 2)), 0.2, a, t),
     }
     narrow, wide = (x, time, alpha), (x.astype(float), float(time), float(alpha))
+    rows_type = Kind("type", "11184811 / 2^25", must=HELD)
     for name, function in functions.items():
-        run = partial(_unlike, function, narrow, wide)
-        yield probe("type", f"{name} of float32", "the bits of float64", run, 0.0, must=HELD)
+        yield rows_type(
+            f"{name} of float32", _unlike, function, narrow, wide, expected="the bits of float64"
+        )
     third = np.array([1.0 / 3.0], dtype=np.float32)
     for kept in (real_array("x", third), operand("x", third, (1,))):
         # The number in single precision next to a third is 11184811 / 2^25.
-        run = partial(_apart, kept, np.array([11184811.0 / 2.0**25]), np.ones(1))
-        yield probe(
-            "type", "a third as float32", "11184811 / 2^25", run, 0.0, source="IEEE 754", must=HELD
+        yield rows_type(
+            "a third as float32",
+            _apart,
+            kept,
+            np.array([11184811.0 / 2.0**25]),
+            np.ones(1),
+            source="IEEE 754",
         )
 
 
@@ -149,6 +142,7 @@ def _sums(particles: int) -> Iterator[Probe]:
         * (1.0 + 1e-12 * np.arange(particles)),
     }
     rows = rng.choice(particles, 5, replace=False)
+    rows_sum = Kind("sum", "mpmath.fdot, in units of its bound", source="math.fsum", must=HELD)
     for scheme in ("DD", "KPSE"):
         case = Case(scheme=scheme, spacing=h, **_FIELDS)
         sums = {
@@ -166,35 +160,33 @@ def _sums(particles: int) -> Iterator[Probe]:
             largest = np.linalg.norm(weights, axis=1) * np.linalg.norm(u)
             for name, operator in sums.items():
                 scale = largest * 8.0 * log2(particles) if name == "fft" else size * particles
-                case_in_words = f"{scheme}, {case.particles} particles, {what}, {name}"
-                run = partial(_apart, operator.apply(u)[rows], exact, _EPS * scale)
-                yield probe(
-                    "sum",
-                    case_in_words,
-                    "mpmath.fdot, in units of its bound",
-                    run,
-                    1.0,
+                yield rows_sum(
+                    f"{scheme}, {case.particles} particles, {what}, {name}",
+                    _apart,
+                    operator.apply(u)[rows],
+                    exact,
+                    EPS * scale,
+                    bound=1.0,
                     source="mpmath",
-                    must=HELD,
                 )
     for what, u in data.items():
         case = Case(scheme="KPSE", spacing=h, **_FIELDS)
-        bound = _EPS * (16.0 + log2(particles)) * float(np.abs(u).sum()) * case.particle_spacing
+        bound = EPS * (16.0 + log2(particles)) * float(np.abs(u).sum()) * case.particle_spacing
         whole = case.particle_spacing * fsum(u)
-        run = partial(_apart, case.integral(u), whole, 1.0)
-        yield probe(
-            "sum",
+        yield rows_sum(
             f"mass of {particles} particles, {what}",
-            "math.fsum, pairwise",
-            run,
-            bound,
-            source="math.fsum",
-            must=HELD,
+            _apart,
+            case.integral(u),
+            whole,
+            1.0,
+            expected="math.fsum, pairwise",
+            bound=bound,
         )
 
 
 def _series() -> Iterator[Probe]:
     """exp(A T) u0 of 17 particles against 50 digits: round-off T |A| eps times the condition of the modes of A."""
+    series = Kind("series", "exp(A T) u0, in units of (10 + T |A|) eps", 1.0, "mpmath", HELD)
     for scheme in ("DD", "FPSE", "KPSE"):
         for span in (1.0, 1e3, 1e6):
             case = Case(
@@ -221,25 +213,18 @@ def _series() -> Iterator[Probe]:
                 return float(
                     np.abs(ready.solve(u0) - exact).max()
                     / np.abs(u0).max()
-                    / (_EPS * (10.0 + stiffness))
+                    / (EPS * (10.0 + stiffness))
                 )
 
-            yield probe(
-                "series",
-                f"{scheme}, 17 particles, T = {span:.0e}",
-                "exp(A T) u0, in units of (10 + T |A|) eps",
-                run,
-                1.0,
-                source="mpmath",
-                must=HELD,
-            )
+            yield series(f"{scheme}, 17 particles, T = {span:.0e}", run)
 
 
 def _kept() -> Iterator[Probe]:
     """Numbers at the ends of the range, written and read: the same bits."""
     numbers = np.array(
-        [0.1, -0.0, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 1.0 + _EPS, np.pi]
+        [0.1, -0.0, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 1.0 + EPS, np.pi]
     )
+    rows_kept = Kind("kept", "the same bits", must=HELD)
     with TemporaryDirectory() as name:
         folder = Path(name)
         case = Case(
@@ -263,15 +248,12 @@ def _kept() -> Iterator[Probe]:
             return float(read.tobytes() != numbers.tobytes())
 
         ends = "5e-324 to 1.8e308, -0"
-        yield probe("kept", f"a NetCDF file, {ends}", "the same bits", file, 0.0, must=HELD)
-        yield probe("kept", f"a table, {ends}", "the same bits", table, 0.0, must=HELD)
-        yield probe(
-            "kept",
+        yield rows_kept(f"a NetCDF file, {ends}", file)
+        yield rows_kept(f"a table, {ends}", table)
+        yield rows_kept(
             "a case as JSON",
-            "the same case",
             lambda: float(Case.from_json(case.to_json()) != case),
-            0.0,
-            must=HELD,
+            expected="the same case",
         )
 
 
@@ -279,23 +261,18 @@ def _arithmetic() -> Iterator[Probe]:
     """What a library that is loaded may switch off for all: numbers below the normal ones, and rounding to nearest."""
     compute(Case(scheme="DVM", beta=0.5, half_width=5.0, spacing=0.5, dt=0.05, t_final=0.6))
     least = np.float64(2.2250738585072014e-308)
-    yield probe(
-        "arithmetic",
+    arithmetic = Kind("arithmetic", source="IEEE 754", must=HELD)
+    yield arithmetic(
         "half of the least normal number",
-        "not flushed to zero",
-        lambda: float(least / 2.0 * 2.0 != least),
-        0.0,
-        source="IEEE 754",
-        must=HELD,
+        float,
+        least / 2.0 * 2.0 != least,
+        expected="not flushed to zero",
     )
-    yield probe(
-        "arithmetic",
+    yield arithmetic(
         "1 + eps / 2 and 1 + 3 eps / 2",
-        "rounded to even",
-        lambda: float((1.0 + _EPS / 2.0 != 1.0) or (1.0 + 1.5 * _EPS != 1.0 + 2.0 * _EPS)),
-        0.0,
-        source="IEEE 754",
-        must=HELD,
+        float,
+        (1.0 + EPS / 2.0 != 1.0) or (1.0 + 1.5 * EPS != 1.0 + 2.0 * EPS),
+        expected="rounded to even",
     )
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.full(case.shape, 3e-310)
@@ -303,12 +280,10 @@ def _arithmetic() -> Iterator[Probe]:
     assert operator is not None
     matrix = np.array([operator.apply(unit) for unit in np.eye(u0.size)]).T
     exact = expm(matrix * case.span) @ np.full(u0.size, 3.0)
-    yield probe(
-        "arithmetic",
+    yield arithmetic(
         "strengths of 3e-310",
-        "to the 5e-324 that they have",
         lambda: float(np.abs(compute(case, u0).u * 1e300 * 1e10 - exact).max()),
-        5e-324 * 1e300 * 1e10 + 1e-12,
+        expected="to the 5e-324 that they have",
+        bound=5e-324 * 1e300 * 1e10 + 1e-12,
         source="scipy",
-        must=HELD,
     )

@@ -12,7 +12,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.time import STEP_POLYNOMIALS, step
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 
 __all__ = ["measured", "probes"]
 
@@ -87,15 +87,12 @@ def _radius(integrator: str, z: np.ndarray) -> float:
 
 def probes(measured: pd.DataFrame) -> Iterator[Probe]:
     """One probe a setting and step: |v| / |u| over fifty steps, v = p(A dt)^50 u, is the radius to the power of 50."""
+    growth_per_step = Kind("growth per step", bound=_BOUND, source="dense matrix", must=HELD)
     for row in measured.itertuples():
-        yield probe(
-            "growth per step",
+        yield growth_per_step(
             f"{_named(row.scheme, row.setting)}, {row.integrator}, dt = {row.factor:g} a",
-            f"{row.predicted:.2f}",
             lambda row=row: (abs(row.measured - row.predicted), f"{row.measured:.2f}"),
-            _BOUND,
-            source="dense matrix",
-            must=Verdict.HELD,
+            expected=f"{row.predicted:.2f}",
         )
 
 

@@ -15,15 +15,14 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import initial_strengths, prepare
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, WARNED, Kind, Probe
 
 __all__ = ["hidden", "overflow", "words"]
-
-_EPS = np.finfo(float).eps
 
 
 def words(half: int, factors: list[float]) -> Iterator[Probe]:
     """A hundred steps at factors of the limit: above it a warning, below it none, and the power of the dense matrix."""
+    a_word = Kind("a word", bound=1e-8, source="dense matrix")
     for scheme in ("DD", "FPSE", "KPSE"):
         for integrator in ("euler", "rk2", "rk4"):
             fields = _line(scheme, half, integrator=integrator)
@@ -32,16 +31,15 @@ def words(half: int, factors: list[float]) -> Iterator[Probe]:
                 dt = factor * limit
                 for evaluation in ("stepping", "series"):
                     case = Case(**fields, dt=dt, t_final=100.0 * dt, evaluation=evaluation)
-                    yield probe(
-                        "a word",
+                    # The round-off of 100 steps, on what is amplified by cond(modes), some 1e3, at most; a series
+                    # keeps 1e-10 of its sum.
+                    yield a_word(
                         f"{scheme}, {integrator}, {evaluation}, dt = {factor:g} a",
-                        "p(A dt)^100 u, " + ("a warning" if factor > 1.0 else "no word"),
-                        lambda case=case, above=factor > 1.0: _against_powers(case, above),
-                        # The round-off of 100 steps, on what is amplified by cond(modes), some 1e3, at most; a series
-                        # keeps 1e-10 of its sum.
-                        1e-8,
-                        source="dense matrix",
-                        must=Verdict.WARNED if factor > 1.0 else Verdict.HELD,
+                        _against_powers,
+                        case,
+                        factor > 1.0,
+                        expected="p(A dt)^100 u, " + ("a warning" if factor > 1.0 else "no word"),
+                        must=WARNED if factor > 1.0 else HELD,
                     )
 
 
@@ -56,6 +54,9 @@ def hidden(half: int) -> Iterator[Probe]:
     wide = {**few, "half_width": 2.5 * half}
     steep = Case(scheme="KPSE", order=12, beta=0.98, overlap=8.0, dt=1.0, **wide)
     a = steep.largest_stable_step
+    hidden_growth = Kind(
+        "hidden growth", "the function of the dense matrix, a warning", 1e-6, "dense matrix", WARNED
+    )
     for name, case in {
         "FPSE, order 10, s = 3, the ends": Case(
             scheme="FPSE", order=10, beta=0.98, overlap=3.0, t_final=3e5, **few, **exact
@@ -71,15 +72,8 @@ def hidden(half: int) -> Iterator[Probe]:
             scheme="KPSE", order=12, beta=0.999, overlap=1.0, t_final=3.0, **few, **exact
         ),
     }.items():
-        yield probe(
-            "hidden growth",
-            name,
-            "the function of the dense matrix, a warning",
-            lambda case=case: _against_the_matrix(case),
-            1e-6,  # T |lambda| eps is below 1e-9, times the condition of the modes of FPSE, some hundred
-            source="dense matrix",
-            must=Verdict.WARNED,
-        )
+        # T |lambda| eps is below 1e-9, times the condition of the modes of FPSE, some hundred
+        yield hidden_growth(name, _against_the_matrix, case)
 
 
 def overflow() -> Iterator[Probe]:
@@ -88,19 +82,20 @@ def overflow() -> Iterator[Probe]:
     Stepping looks at the strengths every 16 steps; the series knows the growth of the shortest wave, not how much of it
     there is, so that it names an earlier step, never a later one.
     """
+    row = Kind("overflow", bound=0.08, source="dense matrix")
     for scheme in ("DD", "FPSE", "KPSE"):
         fields = {"scheme": scheme, "beta": 0.5, "half_width": 5.0, "spacing": 0.2}
         dt = 1.2 * Case(**fields, dt=1e-6).largest_stable_step
         for evaluation in ("stepping", "series"):
             case = Case(**fields, dt=dt, t_final=0.5 + 4000.0 * dt, evaluation=evaluation)
             expected = _step_of_overflow(case)
-            yield probe(
-                "overflow",
+            # the 16 steps between two looks, of some 500
+            yield row(
                 f"{scheme}, rk2, {evaluation}, dt = 1.2 a",
-                f"an error at step {expected:.1g}",
-                lambda case=case, expected=expected: _overflow(case, expected),
-                0.08,  # the 16 steps between two looks, of some 500
-                source="dense matrix",
+                _overflow,
+                case,
+                expected,
+                expected=f"an error at step {expected:.1g}",
             )
 
 
@@ -149,7 +144,7 @@ def _step_of_overflow(case: Case) -> float:
     values, modes = np.linalg.eig(dense_matrix(SCHEMES[case.scheme].operator(case.setting)))
     z = values * case.time_step
     coefficients = np.linalg.solve(modes, initial_strengths(case)[0])
-    amplitude = np.maximum(np.abs(coefficients) * np.abs(modes).max(axis=0), _EPS * 1e-3)
+    amplitude = np.maximum(np.abs(coefficients) * np.abs(modes).max(axis=0), EPS * 1e-3)
     factor = np.log(np.abs(1.0 + z + 0.5 * z * z))
     growing = factor > 1e-6
     return float(

@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.stability import stability_limit
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.stability_limit.independent import symbol
 
 __all__ = ["against_an_independent_symbol", "in_boxes", "refused"]
@@ -21,46 +21,45 @@ _POINTS = 4001
 
 def against_an_independent_symbol(orders: list[int], overlaps: list[float]) -> Iterator[Probe]:
     """a = 2 / -min A(theta), and zero where A(theta) > 0 somewhere; by scipy's minimiser on scipy's functions."""
+    limit_a = Kind("limit a")
     for scheme, order, s in product(("DD", "FPSE", "KPSE"), orders, overlaps):
         for beta in (0.1, 0.9):
             expected = _limit(scheme, beta, order, s)
-            yield probe(
-                "limit a",
+            # The minimiser: the root of eps in theta, whose square counts; at a small overlap the digits that an
+            # exchange loses to K^(0), s^-alpha over the range.
+            yield limit_a(
                 f"{scheme}, order {order}, beta = {beta:g}, s = {s:g}",
-                f"{expected:.3g}" if expected else "zero: the symbol is positive",
                 lambda e=expected, a=(scheme, beta, order, s): _deviation(stability_limit(*a), e),
-                # The minimiser: the root of eps in theta, whose square counts; at a small overlap the digits that an
-                # exchange loses to K^(0), s^-alpha over the range.
-                1e-9,
+                expected=f"{expected:.3g}" if expected else "zero: the symbol is positive",
+                bound=1e-9,
                 source="scipy",
-                must=Verdict.HELD,
+                must=HELD,
             )
     for scheme, beta in product(("DD", "FPSE", "KPSE"), (1e-6, 0.5, 1.0 - 1e-6)):
         expected = SCHEMES[scheme].closed_form_limit(beta, 1000.0)
-        yield probe(
-            "limit a",
+        # the aliases that the closed form leaves out are zero here
+        yield limit_a(
             f"{scheme}, order 2, beta = {beta:g}, s = 1000",
-            f"{expected:.3g}",
             lambda e=expected, a=(scheme, beta, 2, 1000.0): _deviation(stability_limit(*a), e),
-            1e-9,  # the aliases that the closed form leaves out are zero here
+            expected=f"{expected:.3g}",
+            bound=1e-9,
             source="closed form",
-            must=Verdict.HELD,
+            must=HELD,
         )
     for order, s in product((2, 4), (0.6, 1.25, 2.0)):
-        yield probe(
-            "limit a",
+        yield limit_a(
             f"DPSE, order {order}, beta = 0.1, s = {s:g}",
-            "positive: no wave grows",
             lambda a=("DPSE", 0.1, order, s): (
                 float(stability_limit(*a) <= 0.0),
                 f"{stability_limit(*a):.2g}",
             ),
-            0.0,
+            expected="positive: no wave grows",
         )
 
 
 def in_boxes(overlaps: list[float]) -> Iterator[Probe]:
     """The same in the plane and in space, on grids of wave vectors: the limit is no higher there, nor much lower."""
+    limit_a = Kind("limit a", "that of scipy's symbol", source="scipy", must=HELD)
     for (scheme, order), dim, s in product((("DD", 2), ("DD", 12), ("KPSE", 4)), (2, 3), overlaps):
         if s < {2: 0.75, 3: 1.5}[dim]:
             continue  # so many aliases take scipy too long
@@ -70,17 +69,13 @@ def in_boxes(overlaps: list[float]) -> Iterator[Probe]:
         theta = np.stack(np.meshgrid(*[np.union1d(axis, near)] * dim, indexing="ij"), axis=-1)
         theta = theta.reshape(-1, dim)
         theta = theta[(np.diff(theta, axis=1) >= 0.0).all(axis=1)]
-        yield probe(
-            "limit a",
+        # The points are 0.05 (0.2) apart or closer: a quadratic minimum is missed by the square of it.
+        yield limit_a(
             f"{scheme}, order {order}, beta = 0.5, s = {s:g}, n = {dim}",
-            "that of scipy's symbol",
             lambda t=theta, a=(scheme, 0.5, order, s, dim): _below(
                 stability_limit(*a), symbol(a[0], t, 1.5, a[2], a[3])
             ),
-            # The points are 0.05 (0.2) apart or closer: a quadratic minimum is missed by the square of it.
-            {2: 0.01, 3: 0.05}[dim],
-            source="scipy",
-            must=Verdict.HELD,
+            bound={2: 0.01, 3: 0.05}[dim],
         )
 
 
@@ -98,15 +93,9 @@ def refused() -> Iterator[Probe]:
         "FD in the plane": ("FD", 0.5, 2, 2.0, 2),
         "no scheme": ("XPSE", 0.5),
     }
+    row = Kind("refused", "an error of ours", must=REFUSED)
     for name, arguments in cases.items():
-        yield probe(
-            "refused",
-            name,
-            "an error of ours",
-            lambda a=arguments: stability_limit(*a),
-            0.0,
-            must=Verdict.REFUSED,
-        )
+        yield row(name, lambda a=arguments: stability_limit(*a))
 
 
 def _limit(scheme: str, beta: float, order: int, s: float) -> float:

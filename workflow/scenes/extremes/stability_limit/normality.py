@@ -11,7 +11,7 @@ from scipy.linalg import eigh, expm
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, eigenvalue_bounds
 from fracparticles.schemes.stability import stability_limit
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 
 __all__ = ["eigenvalues", "transient_growth"]
 
@@ -25,6 +25,7 @@ def eigenvalues(half: int, orders: list[int], overlaps: list[float]) -> Iterator
     A defective eigenvalue of A is split by the root of the round-off: that much is allowed.
     """
     bound = 10.0 * float(np.sqrt(np.finfo(float).eps))
+    row = Kind("eigenvalues", "within the bounds", source="dense matrix", must=HELD)
     for scheme, exterior, order in product(("DD", "FPSE", "KPSE"), ("truncated", "open"), orders):
         for s, table in [*((s, None) for s in overlaps), (3.3, 0.3)]:
             setting = Setting(
@@ -34,14 +35,12 @@ def eigenvalues(half: int, orders: list[int], overlaps: list[float]) -> Iterator
             if open_too_narrow:
                 continue
             words = "" if table is None else ", table"
-            yield probe(
-                "eigenvalues",
+            yield row(
                 f"{scheme}, order {order}, s = {s:g}, {exterior}{words}",
-                "within the bounds",
-                lambda scheme=scheme, setting=setting: _beyond(scheme, setting),
-                bound,
-                source="dense matrix",
-                must=Verdict.HELD,
+                _beyond,
+                scheme,
+                setting,
+                bound=bound,
             )
 
 
@@ -50,6 +49,8 @@ def transient_growth(half: int) -> Iterator[Probe]:
 
     The numerical range reaches to the greatest eigenvalue w of (A + A^T) / 2: for short times |exp(A t)| ~ exp(w t).
     """
+    row = Kind("transient growth", bound=1e-8, source="dense matrix", must=HELD)
+    numerical_range = Kind("numerical range", bound=1e-3, source="scipy", must=HELD)
     for scheme, exterior, order in product(("DD", "FPSE", "KPSE"), ("truncated", "open"), (2, 4)):
         setting = Setting(alpha=1.5, n=half, order=order, exterior=exterior)
         name = f"{scheme}, order {order}, {exterior}"
@@ -58,39 +59,31 @@ def transient_growth(half: int) -> Iterator[Probe]:
         normal = exterior == "truncated" and scheme != "FPSE"
         condition = 1.0 if normal else float(np.linalg.cond(np.linalg.eig(matrix)[1]))
         shown = "at most 1" if normal else "at most the condition of the modes"
-        yield probe(
-            "transient growth",
+        # Of the zero eigenvalue round-off makes eps |A|, over t up to 1e6.
+        yield row(
             f"{name}, exp(A t)",
-            shown,
             lambda m=matrix, c=condition, w=reach: _worst([expm(t * m) for t in _TIMES], c, w),
-            # Of the zero eigenvalue round-off makes eps |A|, over t up to 1e6.
-            1e-8,
+            expected=shown,
             source="scipy",
-            must=Verdict.HELD,
         )
         dt = 0.99 * stability_limit(scheme, 0.5, order)
         one = np.eye(len(matrix)) + dt * matrix @ (np.eye(len(matrix)) + 0.5 * dt * matrix)
-        yield probe(
-            "transient growth",
+        yield row(
             f"{name}, p(A dt)^n, rk2, dt = 0.99 a",
-            shown,
             lambda p=one, c=condition, w=reach: _worst(
                 [np.linalg.matrix_power(p, int(n)) for n in _STEPS], c, w
             ),
-            1e-8,
-            source="dense matrix",
-            must=Verdict.HELD,
+            expected=shown,
         )
         short = 1e-3 / np.abs(matrix).sum(axis=1).max()
-        yield probe(
-            "numerical range",
+        # The next term of the exponential, t |A|^2 / 2, against |A|.
+        yield numerical_range(
             f"{name}, t -> 0",
-            f"log |exp(A t)| / t = {reach:.0e}",
-            lambda m=matrix, w=reach, t=short: _rate(m, w, t),
-            # The next term of the exponential, t |A|^2 / 2, against |A|.
-            1e-3,
-            source="scipy",
-            must=Verdict.HELD,
+            _rate,
+            matrix,
+            reach,
+            short,
+            expected=f"log |exp(A t)| / t = {reach:.0e}",
         )
 
 

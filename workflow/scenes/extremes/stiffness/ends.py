@@ -12,7 +12,7 @@ from fracparticles.errors import NonFiniteSolution
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 from fracparticles.time.rkc import ChebyshevStep, stages_for
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe
 from scenes.extremes.stiffness.ways import exact_modes, stiff
 
 __all__ = ["at_the_limit", "conservation", "decay", "refused", "spoken_of"]
@@ -20,32 +20,26 @@ __all__ = ["at_the_limit", "conservation", "decay", "refused", "spoken_of"]
 
 def conservation(half: int, stiffness: list[float], most: float) -> Iterator[Probe]:
     """The mass of the exchange schemes, and of KPSE, whose matrix is symmetric, the end: the mean everywhere."""
+    mass = Kind("mass", "that of the data", source="closed form", must=HELD)
+    the_end = Kind("the end", "the mean of the data everywhere", source="closed form", must=HELD)
     for scheme in ("KPSE", "FPSE", "DPSE"):
         one = stiff(scheme, half)
         for value in stiffness:
             if scheme != "KPSE" and value > 1e7:
                 continue
             case = one.case(integrator="exponential", t_final=value / -one.lowest)
-            yield probe(
-                "mass",
+            yield mass(
                 f"{scheme}, exponential, T |lambda| = {value:.0e}",
-                "that of the data",
                 lambda case=case, u0=one.u0: abs(prepare(case).solve(u0).sum() / u0.sum() - 1.0),
-                one.bound(value),
-                source="closed form",
-                must=Verdict.HELD,
+                bound=one.bound(value),
             )
             if scheme == "KPSE" and value >= 1e6:
-                yield probe(
-                    "the end",
+                yield the_end(
                     f"KPSE, exponential, T |lambda| = {value:.0e}",
-                    "the mean of the data everywhere",
                     lambda case=case, u0=one.u0: np.abs(
                         prepare(case).solve(u0) / u0.mean() - 1.0
                     ).max(),
-                    one.bound(value),
-                    source="closed form",
-                    must=Verdict.HELD,
+                    bound=one.bound(value),
                 )
 
 
@@ -54,6 +48,7 @@ def decay(schemes: list[str], half: int, stiffness: list[float]) -> Iterator[Pro
 
     Data of 1e-290 decay as those of one do, with the same digits, down to the smallest number.
     """
+    row = Kind("decay", "that of its modes, or zero", source="mpmath", must=HELD)
     for scheme in (name for name in ("DD", "FD") if name in schemes):
         one = stiff(scheme, half)
         of = exact_modes(one)
@@ -63,16 +58,13 @@ def decay(schemes: list[str], half: int, stiffness: list[float]) -> Iterator[Pro
             time = value / -one.lowest
             for size in (1.0, 1e-250, 1e250):
                 case = one.case(integrator="exponential", t_final=time)
-                yield probe(
-                    "decay",
+                # so many pieces, each to 1e-10
+                yield row(
                     f"{scheme}, u of {size:.0e}, T |lambda| = {value:.0e}",
-                    "that of its modes, or zero",
                     lambda case=case, s=size, t=time, one=one, of=of: _decayed(
                         prepare(case).solve(s * one.u0), s, of(lambda z: mp.exp(z * t))
                     ),
-                    one.bound(value) + 1e-9,  # so many pieces, each to 1e-10
-                    source="mpmath",
-                    must=Verdict.HELD,
+                    bound=one.bound(value) + 1e-9,
                 )
 
 
@@ -84,6 +76,7 @@ def at_the_limit(half: int, stiffness: list[float]) -> Iterator[Probe]:
     stages = {"euler": 1, "rk2": 2, "rk4": 4}
     one = stiff("KPSE", half)
     of = exact_modes(one)
+    many_steps = Kind("many steps", source="mpmath", must=HELD)
     for integrator, count in stages.items():
         limit = one.case(integrator=integrator, dt=1.0).largest_stable_step
         for share in (1e-6, 1.0 - 1e-8):  # n steps may come out as n (1 - 1e-9)
@@ -97,35 +90,29 @@ def at_the_limit(half: int, stiffness: list[float]) -> Iterator[Probe]:
                     z = z * mp.mpf(case.time_step)
                     return sum(z**k / mp.factorial(k) for k in range(count + 1)) ** case.steps
 
-                yield probe(
-                    "many steps",
+                # of rk4 the polynomial is steeper at the limit than the exponential anywhere
+                yield many_steps(
                     f"KPSE, {integrator}, dt = {share:g} a, T |lambda| = {value:.0e}",
-                    f"p(A dt)^n, n = {case.steps:.0e}",
                     lambda case=case, power=power: _relative(
                         prepare(case).solve(one.u0), of(power)
                     ),
-                    10.0
-                    * one.bound(
-                        value
-                    ),  # of rk4 the polynomial is steeper at the limit than the exponential anywhere
-                    source="mpmath",
-                    must=Verdict.HELD,
+                    expected=f"p(A dt)^n, n = {case.steps:.0e}",
+                    bound=10.0 * one.bound(value),
                 )
 
 
 def spoken_of(half: int, stiffness: list[float]) -> Iterator[Probe]:
     """T |lambda| so large that round-off matters: a warning, and the error within what it says, 64 T |lambda| eps."""
     one = stiff("KPSE", half)
+    a_word = Kind(
+        "a word", "the mean, and a warning of the round-off", source="closed form", must=WARNED
+    )
     for value in sorted({1e8, max(1e8, *stiffness)}):
         case = one.case(integrator="exponential", t_final=value / -one.lowest)
-        yield probe(
-            "a word",
+        yield a_word(
             f"KPSE, exponential, T |lambda| = {value:.0e}",
-            "the mean, and a warning of the round-off",
             lambda case=case, u0=one.u0: np.abs(compute(case, u0).u / u0.mean() - 1.0).max(),
-            one.bound(value),
-            source="closed form",
-            must=Verdict.WARNED,
+            bound=one.bound(value),
         )
 
 
@@ -148,21 +135,11 @@ def refused(half: int) -> Iterator[Probe]:
             lambda y: -y, np.array([1.0, np.nan]), dt=1.0, steps=1
         ),
     }
+    row = Kind("refused", "an error of ours", must=REFUSED)
     for name, run in tries.items():
-        yield probe(
-            "refused",
-            name,
-            "an error of ours",
-            lambda run=run: float(run() is not None),
-            0.0,
-            must=Verdict.REFUSED,
-        )
-    yield probe(
-        "overflow",
-        "5 stages, z = -1e10",
-        "an error, no warning of numpy's",
-        lambda: _overflows(one),
-        0.0,
+        yield row(name, lambda run=run: float(run() is not None))
+    yield Kind("overflow", "an error, no warning of numpy's")(
+        "5 stages, z = -1e10", _overflows, one
     )
 
 

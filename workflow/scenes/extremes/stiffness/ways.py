@@ -19,11 +19,10 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, Kind, Probe
 
-__all__ = ["EPS", "Stiff", "exact_modes", "probes", "stiff"]
+__all__ = ["Stiff", "exact_modes", "probes", "stiff"]
 
-EPS = float(np.finfo(float).eps)
 # Measured, of a Chebyshev series: an application of A is exact to some ulps of |lambda|, and the recurrence adds to it.
 _ULPS = 64.0
 # FPSE and DPSE are similar to operators with orthogonal modes by a matrix of so large a condition, which magnifies.
@@ -110,14 +109,11 @@ def probes(
                 error: list[float] = []
                 if not counted:
                     made.append(
-                        probe(
-                            way,
+                        Kind(
+                            way, "f(A) u in forty digits", one.bound(value) + extra, "mpmath", HELD
+                        )(
                             f"{scheme}, T |lambda| = {value:.0e}",
-                            "f(A) u in forty digits",
                             lambda run=run, f=f, of=of, log=error: _deviation(run(), of(f), log),
-                            one.bound(value) + extra,
-                            source="mpmath",
-                            must=Verdict.HELD,
                         )
                     )
                 if scheme == "KPSE":
