@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cache
-from typing import Any
+from itertools import product
 
 import mpmath as mp
 import numpy as np
@@ -93,41 +93,23 @@ def probes(betas: list[float], orders: list[int], dims: list[int]) -> Iterator[P
     the second derivative.
     """
     forms = forms_of(orders)
-    row = Kind("kernel", "its 1F1, r up to 100", 1e-12, "mpmath 1F1", HELD)
+    right = Kind("kernel", "its 1F1, r up to 100", 1e-12, "mpmath 1F1", HELD)
     table = Kind("table", "the kernel within step^2 max|K''| / 8", 1.0 + 1e-6, "mpmath 1F1", HELD)
     transform = Kind("transform", "a power of k times eta^", 1e-12, "mpmath", HELD)
-    for beta in betas:
-        for name in NAMES:
-            for n in dims:
-                yield row(
-                    f"{name}, n = {n}, order {orders[0]} to {orders[-1]}, {written(beta)}",
-                    _greatest,
-                    worst,
-                    forms,
-                    name,
-                    beta,
-                    n,
-                )
-            yield table(
-                f"{name}, step {STEP:g}, {written(beta)}",
-                _greatest,
-                _table_error,
-                forms,
-                name,
-                beta,
+    for beta, name in product(betas, NAMES):
+        every = f"order {orders[0]} to {orders[-1]}, {written(beta)}"
+        for n in dims:
+            yield right(
+                f"{name}, n = {n}, {every}",
+                lambda: max(worst(name, beta, n, form) for form in forms),
             )
-            yield transform(
-                f"{name}, order {orders[0]} to {orders[-1]}, {written(beta)}",
-                _greatest,
-                _transform_error,
-                forms,
-                name,
-                beta,
-            )
-
-
-def _greatest(error: Callable[..., float], forms: list[tuple[int, str]], *case: Any) -> float:
-    return max(error(*case, form) for form in forms)
+        yield table(
+            f"{name}, step {STEP:g}, {written(beta)}",
+            lambda: max(_table_error(name, beta, form) for form in forms),
+        )
+        yield transform(
+            f"{name}, {every}", lambda: max(_transform_error(name, beta, form) for form in forms)
+        )
 
 
 def _table_error(name: str, beta: float, form: tuple[int, str]) -> float:
