@@ -198,9 +198,11 @@ def quiet(kind: type[Warning] = Warning) -> Iterator[None]:
 def overheard() -> Iterator[list[str]]:
     """Listen to our warnings in a block, which go on to whoever else listens: they are in the list afterwards."""
     words: list[str] = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        yield words
-    for one in caught:
-        warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
-    words += [str(one.message) for one in caught if issubclass(one.category, FracparticlesWarning)]
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            yield words
+    finally:
+        for one in caught:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+        words += [str(w.message) for w in caught if issubclass(w.category, FracparticlesWarning)]

@@ -55,9 +55,9 @@ def _sums(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
         "α = 1 + 1e-12": (x, q, _EPSILON, 1.0 + 1e-12),
         "α = 2 - 1e-12": (x, q, _EPSILON, 2.0 - 1e-12),
     }
-    row = Kind("sums", "the sum over pairs", 1.0, "all pairs")
+    right = Kind("sums", "the sum over pairs", 1.0, "all pairs")
     for case, how in cases.items():
-        yield row(case, _off, *how)
+        yield right(case, _off, *how)
 
 
 def _off(x: np.ndarray, q: np.ndarray, epsilon: float, alpha: float = 1.5) -> float:
@@ -72,14 +72,10 @@ def _off(x: np.ndarray, q: np.ndarray, epsilon: float, alpha: float = 1.5) -> fl
 
 def _far_tails() -> Iterator[Probe]:
     """Neighbours where the sum is tiny: relative to its own terms, exp(-d^2), but for those beyond 6.5 epsilon."""
-    row = Kind("sums", "the sum of the terms", source="mpmath")
     for distance in (1.0, 3.0, 5.0):
-        yield row(
-            f"{distance:g} ε beyond the particles",
-            _far_tail,
-            distance,
-            bound=64.0 * EPS + 21 * math.exp(distance**2 - _REACH**2),
-        )
+        bound = 64.0 * EPS + 21 * math.exp(distance**2 - _REACH**2)
+        right = Kind("sums", "the sum of the terms", bound, "mpmath")
+        yield right(f"{distance:g} ε beyond the particles", _far_tail, distance)
 
 
 def _far_tail(z: float) -> float:
@@ -98,47 +94,23 @@ def _refused_sums(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
         "one particle at nan": (np.append(x, np.nan), np.append(q, 1.0)),
         "a strength too many": (x, np.append(q, 1.0)),
     }
-    row = Kind("sums", must=REFUSED)
     for case, arrays in cases.items():
-        yield row(case, _greatest, sums, *arrays)
-
-
-def _greatest(function: Any, *arguments: Any) -> float:
-    return float(np.abs(function(*arguments)).max())
+        yield Kind("sums", must=REFUSED)(case, sums, *arrays)
 
 
 def _remeshing(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
     """Moments of the strengths are kept to the ulps of the positions; a lattice stays as it is."""
-    remeshing = Kind("remeshing")
-    for name in _MOMENTS:
+    refused = Kind("remeshing", must=REFUSED)
+    for name, count in _MOMENTS.items():
         for offset in (0.0, 1e6, 1e8):
             # A position is rounded to an ulp of it, some 50 spacings from where moments are taken.
-            yield remeshing(
-                f"{name}, particles at {offset:g}",
-                _moments_lost,
-                x,
-                q,
-                name,
-                offset,
-                expected=f"{_MOMENTS[name]} moments kept",
-                bound=16.0 * EPS * (1.0 + (offset + _WIDTH) / _H),
-                source="exact sums",
-            )
-        yield remeshing(
-            f"{name}, {_REMESHED} times", _moved, x, q, name, expected="no bit changes", must=HELD
-        )
-        yield remeshing(
-            f"{name}, a particle at 1e12",
-            _remeshed,
-            np.append(x, 1e12),
-            np.append(q, 1.0),
-            name,
-            must=REFUSED,
-        )
-
-
-def _remeshed(x: np.ndarray, q: np.ndarray, name: str) -> float:
-    return float(remesh(x, q, _H, name)[0].size)
+            bound = 16.0 * EPS * (1.0 + (offset + _WIDTH) / _H)
+            kept = Kind("remeshing", f"{count} moments kept", bound, "exact sums")
+            yield kept(f"{name}, particles at {offset:g}", _moments_lost, x, q, name, offset)
+        still = Kind("remeshing", "no bit changes", must=HELD)
+        yield still(f"{name}, {_REMESHED} times", _moved, x, q, name)
+        far = np.append(x, 1e12), np.append(q, 1.0), _H, name
+        yield refused(f"{name}, a particle at 1e12", remesh, *far)
 
 
 def _moments_lost(x: np.ndarray, q: np.ndarray, name: str, offset: float) -> float:
@@ -165,25 +137,17 @@ def _strong(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _elimination(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
     """What is kept and what is left out make the whole, whatever the threshold."""
-    row = Kind("threshold")
+    found = Kind("threshold", "every strength is found", EPS * float(np.abs(q).sum()), "exact sums")
     for threshold in (0.0, 1e-300, 0.5, float(np.nextafter(1.0, 0.0))):
-        yield row(
-            f"threshold {threshold:.3g}",
-            _unaccounted,
-            x,
-            q,
-            threshold,
-            expected="every strength is found",
-            bound=EPS * float(np.abs(q).sum()),
-            source="exact sums",
-        )
-    cases = {
-        "threshold 1": (q, 1.0),
-        "strengths of zero": (0.0 * q, 0.0),
-        "a total beyond 1e308": (np.append(1.7e308, np.full(q.size - 1, 1e308)), 0.6),
-    }
-    for case, how in cases.items():
-        yield row(case, _unaccounted, x, *how, must=REFUSED)
+        yield found(f"threshold {threshold:.3g}", _unaccounted, x, q, threshold)
+    huge = np.append(1.7e308, np.full(q.size - 1, 1e308))
+    yield from Kind("threshold", must=REFUSED).of(
+        {
+            "threshold 1": lambda: eliminate(x, q, 1.0),
+            "strengths of zero": lambda: eliminate(x, 0.0 * q, 0.0),
+            "a total beyond 1e308": lambda: eliminate(x, huge, 0.6),
+        }
+    )
 
 
 def _unaccounted(x: np.ndarray, q: np.ndarray, threshold: float) -> float:

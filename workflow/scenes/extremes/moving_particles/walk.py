@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
-from itertools import pairwise
+from itertools import pairwise, product
 
 import mpmath
 import numpy as np
@@ -24,9 +23,8 @@ from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 
 __all__ = ["probes"]
 
-_SURE = (
-    2.3  # sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov)
-)
+# sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov).
+_SURE = 2.3
 _SEED = 7
 Law = Callable[[np.ndarray], np.ndarray]
 
@@ -41,23 +39,12 @@ def probes(walkers: int) -> Iterator[Probe]:
 
 def _laws(walkers: int) -> Iterator[Probe]:
     """Increments next to alpha = 1 and 2: Cauchy's law and the normal one of variance 2; in many steps as in one."""
-    row = Kind("walk", bound=_SURE, source="closed form", must=HELD)
-    for alpha, law in (
-        (float(np.nextafter(1.0, 2.0)), _cauchy),
-        (1.0 + 1e-6, _cauchy),
-        (2.0 - 1e-6, _normal),
-        (float(np.nextafter(2.0, 1.0)), _normal),
-    ):
-        for steps in (1, 10):
-            yield row(
-                f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}",
-                _distance,
-                alpha,
-                law,
-                walkers,
-                steps,
-                expected=f"the law of α = {round(alpha)}",
-            )
+    next_to = float(np.nextafter(1.0, 2.0)), float(np.nextafter(2.0, 1.0))
+    for alpha, steps in product((next_to[0], 1.0 + 1e-6, 2.0 - 1e-6, next_to[1]), (1, 10)):
+        right = Kind("walk", f"the law of α = {round(alpha)}", _SURE, "closed form", HELD)
+        law = _cauchy if alpha < 1.5 else _normal
+        name = f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}"
+        yield right(name, _distance, alpha, law, walkers, steps)
 
 
 def _near(alpha: float) -> str:
@@ -81,19 +68,13 @@ def _distance(alpha: float, law: Law, walkers: int, steps: int) -> float:
 
 def _units() -> Iterator[Probe]:
     """The same numbers in other units, to the end of what is a length; beyond, the walk says so."""
-    row = Kind("walk")
+    same = Kind("walk", "the same walk", 64.0 * EPS, "scaling")
     for alpha, unit in ((1.5, 1e-60), (1.5, 1e60), (1.001, 1e95)):
-        yield row(
-            f"α = {alpha:g}, lengths times {unit:g}",
-            _other_units,
-            alpha,
-            unit,
-            expected="the same walk",
-            bound=64.0 * EPS,
-            source="scaling",
-        )
+        yield same(f"α = {alpha:g}, lengths times {unit:g}", _other_units, alpha, unit)
+    refused = Kind("walk", must=REFUSED)
     for case, time in (("(D dt)^(1/α) = 1e-120", 1e-100), ("(D dt)^(1/α) = 1e120", 1e100)):
-        yield row(case, _walked, time, must=REFUSED)
+        dice = np.random.default_rng(_SEED)
+        yield refused(case, lambda: walk([0.0], 1.2, time, dice, diffusivity=time**0.44))
 
 
 def _other_units(alpha: float, unit: float) -> float:
@@ -105,37 +86,22 @@ def _other_units(alpha: float, unit: float) -> float:
     return float(np.abs(other / unit / plain - 1.0).max()) / math.log(max(unit, 1.0 / unit))
 
 
-def _walked(time: float) -> float:
-    return float(walk([0.0], 1.2, time, np.random.default_rng(_SEED), diffusivity=time**0.44)[0])
-
-
 def _cells() -> Iterator[Probe]:
     """Every walker inside is counted, also next to the end; masses of cells near and far are those of Cauchy's law."""
     ends = np.array([-1.0, np.nextafter(-1.0, -2.0), np.nextafter(1.0, 0.0), 1.0])
-    row = Kind("cells")
+    inside = Kind("cells", "two are inside", must=HELD)
     for cells in (3, 7, 10, 1000):
-        yield row(
-            f"walkers at the ends of {cells} cells",
-            _miscounted,
-            ends,
-            cells,
-            expected="two are inside",
-            must=HELD,
-        )
+        yield inside(f"walkers at the ends of {cells} cells", _miscounted, ends, cells)
     edges = np.array([-np.inf, -1e100, -1e8, -1.0, 0.0, 1e-8, 1.0, 1e8, 1e100, np.inf])
     for k, (low, high) in enumerate(pairwise(edges)):
-        run = partial(_mass_off, edges, k)
-        case = f"cell from {low:g} to {high:g}, α = 1 + 1e-12"
         # Of a tail x^-alpha the small part of alpha is seen as its logarithm.
         nearest = min(max(abs(low), 1.0), max(abs(high), 1.0))
-        yield row(
-            case,
-            run,
-            expected="its mass, relative",
-            bound=2e-12 * (1.0 + math.log(nearest)),
-            source="closed form",
+        right = Kind(
+            "cells", "its mass, relative", 2e-12 * (1.0 + math.log(nearest)), "closed form"
         )
-    yield row("cells that fall", _mass_off, edges[::-1], 4, must=REFUSED)
+        yield right(f"cell from {low:g} to {high:g}, α = 1 + 1e-12", _mass_off, edges, k)
+    refused = Kind("cells", must=REFUSED)
+    yield refused("cells that fall", cell_masses, edges[::-1], 1.0, 1.0 + 1e-12)
 
 
 def _miscounted(ends: np.ndarray, cells: int) -> float:
@@ -152,35 +118,22 @@ def _mass_off(edges: np.ndarray, k: int) -> float:
 
 def _numbers() -> Iterator[Probe]:
     """Deviations of counts and numbers of walkers for masses from 1e-300 to one."""
-    row = Kind("cells")
+    # Logarithms of up to 1000 log 1000 are rounded.
+    mean = Kind("cells", "E |N/n - p|", 1e-11, "scipy")
     for p, n in ((1e-300, 10), (1e-9, 1000), (0.5, 1), (0.3, 1000), (1.0 - 1e-12, 1000)):
-        # Logarithms of up to 1000 log 1000 are rounded.
-        yield row(
-            f"{n} walkers, p = {p:.3g}",
-            _deviation_off,
-            p,
-            n,
-            expected="E |N/n - p|",
-            bound=1e-11,
-            source="scipy",
-        )
+        yield mean(f"{n} walkers, p = {p:.3g}", _deviation_off, p, n)
+    few = Kind("cells", "where few are left", 1e-10, "closed form")
     for count in (1, 10**4, 10**12):
-        yield row(
-            f"{count:.0e} walkers, α = 1 + 1e-12",
-            _few_off,
-            count,
-            expected="where few are left",
-            bound=1e-10,
-            source="closed form",
-        )
-    refused: dict[str, Callable[[], float]] = {
-        "no mass to equal": lambda: walkers_to_equal([0.0, 0.0], 0.1),
-        "masses of 1e-320": lambda: walkers_to_equal([1e-320], 0.1),
-        "10^400 walkers": lambda: few_walkers_beyond(10**400, 1.0, 1.0, 1.5),
-        "2.5 walkers": lambda: float(stable_variates(1.5, 2.5, np.random.default_rng())[0]),  # type: ignore[arg-type]
-    }
-    for case, call in refused.items():
-        yield row(case, call, must=REFUSED)
+        yield few(f"{count:.0e} walkers, α = 1 + 1e-12", _few_off, count)
+    dice = np.random.default_rng()
+    yield from Kind("cells", must=REFUSED).of(
+        {
+            "no mass to equal": lambda: walkers_to_equal([0.0, 0.0], 0.1),
+            "masses of 1e-320": lambda: walkers_to_equal([1e-320], 0.1),
+            "10^400 walkers": lambda: few_walkers_beyond(10**400, 1.0, 1.0, 1.5),
+            "2.5 walkers": lambda: stable_variates(1.5, 2.5, dice),  # type: ignore[arg-type]
+        }
+    )
 
 
 def _deviation_off(p: float, n: int) -> float:
