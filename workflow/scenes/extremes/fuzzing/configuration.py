@@ -17,10 +17,12 @@ from hypothesis import strategies as st
 from fracparticles.run.case import Case
 from fracstudy.config import StudyConfig, batches, jobs, read_config, targets
 from fracstudy.scene import Scene, merged, resolved
-from scenes.extremes.fuzzing.harness import Property
+from scenes.extremes.fuzzing.harness import Properties
 from scenes.extremes.fuzzing.strategies import chance, fields_of, numbers, texts
 
 __all__ = ["PROPERTIES"]
+
+PROPERTIES = Properties()
 
 Tree = Any  # of mappings, lists and values, as YAML gives it
 _STUDY: Tree = {
@@ -158,6 +160,7 @@ def _bytes(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")
 
 
+@PROPERTIES.add("study.yaml, scene.yaml, runs", "its cases, or a line", _files(), share=8)
 def _read(parts: tuple[Tree, bytes]) -> float:
     """A configuration is refused, or all that is made of it fits together."""
     config, scene = parts
@@ -186,6 +189,9 @@ def _read(parts: tuple[Tree, bytes]) -> float:
         return 2.0 * wrong
 
 
+@PROPERTIES.add(
+    "smoke, variants", "laid over, nothing else", st.tuples(_TREES, _TREES, st.booleans()), share=4
+)
 def _laid(parts: tuple[Tree, Tree, bool]) -> float:
     """To lay a tree over itself, or an empty one over it, changes nothing; what is resolved stays as it is."""
     tree, other, smoke = parts
@@ -196,16 +202,3 @@ def _laid(parts: tuple[Tree, Tree, bool]) -> float:
     wrong |= isinstance(whole, dict) and repr(resolved(whole, smoke)) != repr(whole)
     merged(tree, other)
     return 2.0 * (wrong or repr((tree, other)) != repr(before))
-
-
-PROPERTIES = (
-    Property("study.yaml, scene.yaml, runs", "its cases, or a line", "", _files(), _read, 8),
-    Property(
-        "smoke, variants",
-        "laid over, nothing else",
-        "",
-        st.tuples(_TREES, _TREES, st.booleans()),
-        _laid,
-        4,
-    ),
-)

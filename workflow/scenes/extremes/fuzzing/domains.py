@@ -14,11 +14,13 @@ from fracparticles.adaptive.follow import follow
 from fracparticles.bounded.interval import Interval
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import FORMS, VariableDiffusivity, VariableOrder
-from fracstudy.probe import Verdict
-from scenes.extremes.fuzzing.harness import Property
+from fracstudy.probe import HELD
+from scenes.extremes.fuzzing.harness import Properties
 from scenes.extremes.fuzzing.strategies import between
 
 __all__ = ["PROPERTIES"]
+
+PROPERTIES = Properties()
 
 _ALPHAS = st.one_of(between(1.05, 1.95), st.sampled_from((1.01, 1.99)))
 _SEEDS = st.integers(0, 10**6)
@@ -32,6 +34,19 @@ def _kernel(name: str, z: np.ndarray, s: Setting) -> np.ndarray:
     return np.asarray(fp.kernel(name, z / (s.overlap * s.spacing), s.alpha, 1, s.order))
 
 
+@PROPERTIES.add(
+    "variable diffusivity",
+    "the sums one by one",
+    st.tuples(
+        st.sampled_from(tuple(FORMS)),
+        between(1.05, 1.95),
+        st.integers(4, 20),
+        st.sampled_from((2, 4)),
+        st.sampled_from((1.0, 1e-12, 1e12)),
+    ),
+    "naive sums",
+    2,
+)
 def _diffusivity(drawn: tuple[str, float, int, int, float]) -> float:
     """The sums of the three forms, one by one, on a truncated lattice."""
     form, alpha, n, order, size = drawn
@@ -56,6 +71,13 @@ def _diffusivity(drawn: tuple[str, float, int, int, float]) -> float:
     return float(np.abs(found - exact).max()) / (1e-9 * size * (h**-alpha))
 
 
+@PROPERTIES.add(
+    "variable order",
+    "each row's own sum",
+    st.tuples(between(1.02, 1.5), between(1.5, 1.98), st.integers(4, 12), st.sampled_from((2, 4))),
+    "naive sums",
+    must=HELD,
+)
 def _order(drawn: tuple[float, float, int, int]) -> float:
     """Each row is that of a constant order, by its own sum."""
     low, high, n, order = drawn
@@ -73,6 +95,20 @@ def _order(drawn: tuple[float, float, int, int]) -> float:
 # --- intervals --------------------------------------------------------------------------------------------
 
 
+@PROPERTIES.add(
+    "an interval, stationary",
+    "Jacobi polynomials, to 1e-3",
+    st.tuples(
+        _ALPHAS,
+        st.integers(60, 150),
+        st.sampled_from((0.0, 3.0, -2e3)),
+        st.sampled_from((1.0, 0.25, 2.0**10)),
+        _SEEDS,
+    ),
+    "closed form",
+    2,
+    HELD,
+)
 def _jacobi(drawn: tuple[float, int, float, float, int]) -> float:
     """(1 - x^2)^(alpha/2) P_n, of which the operator makes -Gamma(alpha + n + 1) / n! P_n (Dyda et al. 2017)."""
     alpha, particles, middle, half, seed = drawn
@@ -116,6 +152,17 @@ def _evolved(
     )
 
 
+@PROPERTIES.add(
+    "an interval, its run",
+    "in parts, units and total the same",
+    st.tuples(
+        st.sampled_from(("absorbing", "reflecting", "given")),
+        between(1.05, 1.95),
+        _DEGREES,
+        between(0.05, 2.0),
+        between(0.5, 8.0),
+    ),
+)
 def _interval(drawn: _Evolution) -> float:
     """In two parts, and in other units, it is the same; where nothing crosses the ends the total gains the source."""
     exterior, *_, time, w = drawn
@@ -138,6 +185,13 @@ def _interval(drawn: _Evolution) -> float:
     return off
 
 
+@PROPERTIES.add(
+    "an interval, a constant",
+    "it stays",
+    st.tuples(_ALPHAS, _DEGREES, between(1e-3, 10.0), st.sampled_from((1.0, -3.0, 1e-200, 1e200))),
+    "closed form",
+    must=HELD,
+)
 def _constant(drawn: tuple[float, float, float, float]) -> float:
     """A constant inside and outside stays."""
     alpha, degree, time, value = drawn
@@ -148,6 +202,18 @@ def _constant(drawn: tuple[float, float, float, float]) -> float:
 # --- particles that follow -----------------------------------------------------------------------------------
 
 
+@PROPERTIES.add(
+    "particles that follow",
+    "the sum of two, or a warning",
+    st.tuples(
+        between(1.05, 1.95),
+        st.sampled_from((0.03, 0.3, 2.0)),
+        between(-6.0, 6.0),
+        st.sampled_from((1.0, 0.1, -0.5)),
+        st.sampled_from((1e-3, 0.1, 3.0)),
+    ),
+    "closed form",
+)
 def _followed(drawn: tuple[float, float, float, float, float]) -> float:
     """Two fundamental solutions of other widths: to a thousandth of int |u|, or a warning."""
     alpha, narrow, place, share, time = drawn
@@ -164,85 +230,3 @@ def _followed(drawn: tuple[float, float, float, float, float]) -> float:
 
 
 # --- all ------------------------------------------------------------------------------------------------------
-
-PROPERTIES = (
-    Property(
-        "variable diffusivity",
-        "the sums one by one",
-        "naive sums",
-        st.tuples(
-            st.sampled_from(tuple(FORMS)),
-            between(1.05, 1.95),
-            st.integers(4, 20),
-            st.sampled_from((2, 4)),
-            st.sampled_from((1.0, 1e-12, 1e12)),
-        ),
-        _diffusivity,
-        2,
-    ),
-    Property(
-        "variable order",
-        "each row's own sum",
-        "naive sums",
-        st.tuples(
-            between(1.02, 1.5), between(1.5, 1.98), st.integers(4, 12), st.sampled_from((2, 4))
-        ),
-        _order,
-        1,
-        Verdict.HELD,
-    ),
-    Property(
-        "an interval, stationary",
-        "Jacobi polynomials, to 1e-3",
-        "closed form",
-        st.tuples(
-            _ALPHAS,
-            st.integers(60, 150),
-            st.sampled_from((0.0, 3.0, -2e3)),
-            st.sampled_from((1.0, 0.25, 2.0**10)),
-            _SEEDS,
-        ),
-        _jacobi,
-        2,
-        Verdict.HELD,
-    ),
-    Property(
-        "an interval, its run",
-        "in parts, units and total the same",
-        "",
-        st.tuples(
-            st.sampled_from(("absorbing", "reflecting", "given")),
-            between(1.05, 1.95),
-            _DEGREES,
-            between(0.05, 2.0),
-            between(0.5, 8.0),
-        ),
-        _interval,
-        1,
-    ),
-    Property(
-        "an interval, a constant",
-        "it stays",
-        "closed form",
-        st.tuples(
-            _ALPHAS, _DEGREES, between(1e-3, 10.0), st.sampled_from((1.0, -3.0, 1e-200, 1e200))
-        ),
-        _constant,
-        1,
-        Verdict.HELD,
-    ),
-    Property(
-        "particles that follow",
-        "the sum of two, or a warning",
-        "closed form",
-        st.tuples(
-            between(1.05, 1.95),
-            st.sampled_from((0.03, 0.3, 2.0)),
-            between(-6.0, 6.0),
-            st.sampled_from((1.0, 0.1, -0.5)),
-            st.sampled_from((1e-3, 0.1, 3.0)),
-        ),
-        _followed,
-        1,
-    ),
-)

@@ -19,12 +19,14 @@ import fracparticles as fp
 from fracparticles.graded.particles import FORMS
 from fracparticles.kernels.families import FAMILIES, KERNELS
 from fracparticles.schemes import ALL_SCHEMES
-from fracstudy.probe import EPS, Verdict
+from fracstudy.probe import EPS, HELD
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
-from scenes.extremes.fuzzing.harness import NotRun, Property
+from scenes.extremes.fuzzing.harness import NotRun, Properties
 from scenes.extremes.fuzzing.strategies import anything, between, chance, numbers, texts
 
 __all__ = ["PROPERTIES"]
+
+PROPERTIES = Properties()
 
 _ALPHAS = st.one_of(
     between(1.02, 1.98),
@@ -88,6 +90,7 @@ def _calls(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     return name, given
 
 
+@PROPERTIES.add("arguments of every name", "a result, or a line", _calls(), share=25)
 def _called(call: tuple[str, dict[str, Any]]) -> float:
     """A call returns, or is refused; what it was given is as it was, and there is no file but a whole one."""
     name, given = call
@@ -126,6 +129,15 @@ def _inside(folder: str, path: Any) -> Any:
     return Path(folder) / "run.nc" if path is None or isinstance(path, Path) else path
 
 
+@PROPERTIES.add(
+    "errors",
+    "one line, the same when unpickled",
+    st.tuples(
+        texts(), anything(), texts().map(lambda t: " ".join(t.split())), st.just("Mend it.")
+    ).map(lambda drawn: (" ".join(drawn[0].split()), *drawn[1:])),
+    "pickle",
+    5,
+)
 def _error(parts: tuple[Any, Any, str, str]) -> float:
     """An error of ours is one line, whatever it is of, and goes from process to process."""
     field, value, allowed, _ = parts
@@ -166,6 +178,11 @@ def _density(x: float, alpha: float, dim: int) -> float:
     return integral(lambda k: k, weight="sin", wvar=x) / (2.0 * math.pi**2 * x)
 
 
+_XS = st.one_of(st.just(0.0), between(0.0, 3.0), between(0.0, 30.0))
+_POINTS = st.tuples(_XS, numbers(1e-3, 1e3), _ALPHAS, st.integers(1, 3))
+
+
+@PROPERTIES.add("green", "the Fourier integral", _POINTS, "scipy, quadrature", 5, HELD)
 def _green(parts: tuple[float, float, float, int]) -> float:
     """G by quadrature of its Fourier integral, to 1e-10 of its maximum."""
     r, t, alpha, dim = parts
@@ -177,6 +194,7 @@ def _green(parts: tuple[float, float, float, int]) -> float:
     return float(np.abs(found - expected).max()) / (1e-10 * most)
 
 
+@PROPERTIES.add("green_rate, _slope, _flux", "differences of G", _POINTS, share=5, must=HELD)
 def _rates(parts: tuple[float, float, float, int]) -> float:
     """The rate is dG/dt, the slope dG/dr, and the flux r G / (alpha t): by differences of G, to 1e-6."""
     r, t, alpha, dim = parts
@@ -199,12 +217,22 @@ def _rates(parts: tuple[float, float, float, int]) -> float:
     return max(map(abs, found)) / 1e-6
 
 
+@PROPERTIES.add("mean_radius", "(2 / pi) Gamma(1 - 1 / alpha)", _ALPHAS, "closed form", 3, HELD)
 def _radius(alpha: float) -> float:
     return abs(fp.mean_radius(alpha) * math.pi / (2.0 * gamma(1.0 - 1.0 / alpha)) - 1.0) / (
         16.0 * EPS / (alpha - 1.0)
     )
 
 
+@PROPERTIES.add(
+    "evolve, fundamental",
+    "the fundamental solution, or a warning",
+    st.tuples(
+        _ALPHAS, st.integers(4, 200), between(0.1, 3.0), between(0.01, 5.0), st.integers(1, 6)
+    ),
+    "closed form",
+    3,
+)
 def _evolved(parts: tuple[float, int, float, float, int]) -> float:
     """From the fundamental solution to the fundamental solution, to a thousandth, or a warning."""
     alpha, half, start, span, terms = parts
@@ -215,6 +243,14 @@ def _evolved(parts: tuple[float, int, float, float, int]) -> float:
     return float(np.abs(found - exact).max() / exact.max()) / 2e-2
 
 
+@PROPERTIES.add(
+    "evolve, periodic",
+    "every wave decays",
+    st.tuples(st.integers(8, 60), _ALPHAS, numbers(1e-6, 1e6), st.integers(0, 10**6)),
+    "dense matrix",
+    3,
+    HELD,
+)
 def _periodic(parts: tuple[int, float, float, int]) -> float:
     """Without terms it is a diagonal on the waves of the lattice: the transform as a dense matrix."""
     points, alpha, time, seed = parts
@@ -228,6 +264,16 @@ def _periodic(parts: tuple[int, float, float, int]) -> float:
     )
 
 
+@PROPERTIES.add(
+    "graded_particles, green_step",
+    "the sums one by one",
+    st.tuples(
+        st.integers(1, 8), between(0.5, 50.0), _ALPHAS, numbers(1e-2, 1e2), st.sampled_from(FORMS)
+    ),
+    "naive sums",
+    2,
+    HELD,
+)
 def _graded(parts: tuple[int, float, float, float, str]) -> float:
     """The step against the sums one by one; the interpolated one mirrors and does not grow."""
     half, reach, alpha, time, form = parts
@@ -247,6 +293,20 @@ def _graded(parts: tuple[int, float, float, float, str]) -> float:
     return max(float(np.abs(matrix - naive).max()) / size, float(mirrored)) / (64.0 * EPS * count)
 
 
+@PROPERTIES.add(
+    "kernel",
+    "the integral of its transform",
+    st.tuples(
+        st.sampled_from(tuple(KERNELS)),
+        between(0.05, 8.0),
+        _ALPHAS,
+        st.just(1),
+        st.sampled_from((2, 4, 8)),
+    ),
+    "scipy, quadrature",
+    3,
+    HELD,
+)
 def _kernel(parts: tuple[str, float, float, int, int]) -> float:
     """A kernel by quadrature of its transform, to 1e-8."""
     name, r, alpha, dim, order = parts
@@ -265,6 +325,15 @@ def _kernel(parts: tuple[str, float, float, int, int]) -> float:
     return abs(found - (-value if odd else value)) / 1e-8
 
 
+@PROPERTIES.add(
+    "stability_limit",
+    "the spectral radius",
+    st.tuples(
+        st.sampled_from(("DD", "KPSE", "FPSE", "FD")), between(0.05, 0.95), between(0.8, 3.0)
+    ),
+    "dense matrix",
+    must=HELD,
+)
 def _limit(parts: tuple[str, float, float]) -> float:
     """2 / a is the spectral radius of the matrix of many particles, from below."""
     from fracparticles.schemes import SCHEMES
@@ -278,94 +347,3 @@ def _limit(parts: tuple[str, float, float]) -> float:
     a = fp.stability_limit(name, beta, overlap=overlap)
     low = 2.0 / a if a > 0.0 else math.inf
     return 0.0 if 0.8 * low <= radius <= 1.02 * low or not a else 2.0
-
-
-_XS = st.one_of(st.just(0.0), between(0.0, 3.0), between(0.0, 30.0))
-_POINTS = st.tuples(_XS, numbers(1e-3, 1e3), _ALPHAS, st.integers(1, 3))
-
-PROPERTIES = (
-    Property("arguments of every name", "a result, or a line", "", _calls(), _called, 25),
-    Property(
-        "errors",
-        "one line, the same when unpickled",
-        "pickle",
-        st.tuples(
-            texts(), anything(), texts().map(lambda t: " ".join(t.split())), st.just("Mend it.")
-        ).map(lambda drawn: (" ".join(drawn[0].split()), *drawn[1:])),
-        _error,
-        5,
-    ),
-    Property(
-        "green", "the Fourier integral", "scipy, quadrature", _POINTS, _green, 5, Verdict.HELD
-    ),
-    Property("green_rate, _slope, _flux", "differences of G", "", _POINTS, _rates, 5, Verdict.HELD),
-    Property(
-        "mean_radius",
-        "(2 / pi) Gamma(1 - 1 / alpha)",
-        "closed form",
-        _ALPHAS,
-        _radius,
-        3,
-        Verdict.HELD,
-    ),
-    Property(
-        "evolve, fundamental",
-        "the fundamental solution, or a warning",
-        "closed form",
-        st.tuples(
-            _ALPHAS, st.integers(4, 200), between(0.1, 3.0), between(0.01, 5.0), st.integers(1, 6)
-        ),
-        _evolved,
-        3,
-    ),
-    Property(
-        "evolve, periodic",
-        "every wave decays",
-        "dense matrix",
-        st.tuples(st.integers(8, 60), _ALPHAS, numbers(1e-6, 1e6), st.integers(0, 10**6)),
-        _periodic,
-        3,
-        Verdict.HELD,
-    ),
-    Property(
-        "graded_particles, green_step",
-        "the sums one by one",
-        "naive sums",
-        st.tuples(
-            st.integers(1, 8),
-            between(0.5, 50.0),
-            _ALPHAS,
-            numbers(1e-2, 1e2),
-            st.sampled_from(FORMS),
-        ),
-        _graded,
-        2,
-        Verdict.HELD,
-    ),
-    Property(
-        "kernel",
-        "the integral of its transform",
-        "scipy, quadrature",
-        st.tuples(
-            st.sampled_from(tuple(KERNELS)),
-            between(0.05, 8.0),
-            _ALPHAS,
-            st.just(1),
-            st.sampled_from((2, 4, 8)),
-        ),
-        _kernel,
-        3,
-        Verdict.HELD,
-    ),
-    Property(
-        "stability_limit",
-        "the spectral radius",
-        "dense matrix",
-        st.tuples(
-            st.sampled_from(("DD", "KPSE", "FPSE", "FD")), between(0.05, 0.95), between(0.8, 3.0)
-        ),
-        _limit,
-        1,
-        Verdict.HELD,
-    ),
-)

@@ -19,11 +19,14 @@ from hypothesis.strategies import SearchStrategy
 
 from fracstudy.probe import BAD, Kind, Probe, Verdict
 
-__all__ = ["NotRun", "Outcome", "Property", "draw", "judged", "outcome", "row"]
+__all__ = ["NotRun", "Outcome", "Properties", "Property", "draw", "judged", "outcome", "row"]
 
 _BYTES = 8192  # more than any case takes
 _TRIES = 100  # a strategy may refuse what it has drawn
 _LONGEST = 60.0  # seconds: a case takes some milliseconds
+
+
+_Holds = Callable[[Any], float]
 
 
 class NotRun(BaseException):
@@ -40,8 +43,7 @@ class Property:
 
     Attributes
     ----------
-    name : str
-    expected, source : str
+    name, expected, source : str
         See `Probe`.
     cases : SearchStrategy
         What draws a case.
@@ -57,9 +59,30 @@ class Property:
     expected: str
     source: str
     cases: SearchStrategy[Any]
-    holds: Callable[[Any], float]
+    holds: _Holds
     share: int = 1
     must: Verdict | None = None
+
+
+class Properties(list[Property]):
+    """Those of a file, each said above the function that holds."""
+
+    def add(
+        self,
+        name: str,
+        expected: str,
+        cases: SearchStrategy[Any],
+        source: str = "",
+        share: int = 1,
+        must: Verdict | None = None,
+    ) -> Callable[[_Holds], _Holds]:
+        """Return what makes a property of a function, see `Property`."""
+
+        def added(holds: _Holds) -> _Holds:
+            self.append(Property(name, expected, source, cases, holds, share, must))
+            return holds
+
+        return added
 
 
 @dataclass(frozen=True)
@@ -79,7 +102,7 @@ def judged(one: Property, case: Callable[[], Any]) -> Outcome:
             return one.holds(case())
 
     try:
-        found = Kind(one.name)("", one.expected, run, 1.0)
+        found = Kind(one.name, one.expected, 1.0)("", run)
     except NotRun as why:
         return Outcome(0, None, str(why))
     except Hang:

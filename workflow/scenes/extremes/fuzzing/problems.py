@@ -17,10 +17,12 @@ from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates
 from fracparticles.problems.solve import solve_problem
 from fracparticles.variable import FORMS
-from scenes.extremes.fuzzing.harness import Property
+from scenes.extremes.fuzzing.harness import Properties
 from scenes.extremes.fuzzing.strategies import anything, between, given_fields, texts
 
 __all__ = ["PROPERTIES"]
+
+PROPERTIES = Properties()
 
 _TOLERANCE = 1e-6  # rtol of the problems
 _ALLOWED = 100.0 * _TOLERANCE  # of the greatest |u| of a run: errors of the steps add up
@@ -81,6 +83,39 @@ def _apart(u: np.ndarray, v: np.ndarray, *of: np.ndarray) -> float:
 Drawn = tuple[Problem, int]
 
 
+_SEEDS = st.integers(0, 10**6)
+_JSON = st.one_of(
+    anything(),
+    given_fields(Problem),
+    given_fields(Problem).map(lambda given: json.dumps(given, default=str)),
+    st.tuples(_problems(), st.integers(0, 300), texts()).map(
+        lambda parts: parts[0].to_json()[: parts[1]] + parts[2] + parts[0].to_json()[parts[1] :]
+    ),
+    _problems().map(lambda problem: problem.to_json()),
+)
+_STEADY = _problems(steady=True)
+_CONSERVING = st.one_of(
+    *(_problems(form=form, exterior="truncated") for form in ("FPSE", "exchange"))
+)
+
+
+@PROPERTIES.add("text of a problem", "a whole problem, or a line", _JSON, share=8)
+def _text(given: Any) -> float:
+    """A problem of any text or fields is refused, or is one that its own text gives again."""
+    problem = Problem(**given) if isinstance(given, dict) else Problem.from_json(given)
+    if not problem.reproducible:
+        return 0.0
+    again = Problem.from_json(problem.to_json())
+    return 2.0 * (again.to_json() != problem.to_json() or again.case != problem.case)
+
+
+@PROPERTIES.add(
+    "a problem, matrix",
+    "exp(A T) u, to 100 rtol, or a warning",
+    st.tuples(_STEADY, _SEEDS),
+    "scipy, dense matrix",
+    2,
+)
 def _matrix(drawn: Drawn) -> float:
     """R(u) = A u + b by unit vectors, and its exponential; a mode that grows makes errors grow."""
     problem, u0 = drawn[0], _data(*drawn)
@@ -96,6 +131,47 @@ def _matrix(drawn: Drawn) -> float:
     return _apart(_solved(problem, u0), seen[-1], u0, *seen) / growth
 
 
+@PROPERTIES.add(
+    "a problem, closed form",
+    f"Ornstein and Uhlenbeck, to {_NEAR:g}, or a warning",
+    st.tuples(
+        between(1.1, 1.95),
+        st.sampled_from(tuple(FORMS)),
+        between(0.05, 2.0),
+        between(-3.0, 3.0),
+        st.sampled_from((0.1, 1.0, 3.0)),
+        st.integers(3, 6),
+    ),
+    "closed form",
+)
+def _known(drawn: tuple[float, str, float, float, float, int]) -> float:
+    """a = v - c x and constant D, from the fundamental solution: one about v (1 - e) / c, e = exp(-c t), of the width
+
+    l^alpha = e^alpha + D (1 - e^alpha) / (alpha c).
+    """
+    alpha, form, c, v, d, across = drawn
+    e = math.exp(-c)
+    end = e**alpha + d * (1.0 - e**alpha) / (alpha * c)
+    width = min(1.0, end ** (1.0 / alpha))
+    half_width = 10.0 * (1.0 + end ** (1.0 / alpha)) + abs(v) / min(c, 1.0)
+    problem = Problem(
+        alpha=alpha, form=form, diffusivity=d, velocity=f"{v!r} - {c!r}*x", half_width=half_width,
+        spacing=width / across, t_final=1.0,
+    )  # fmt: skip
+    x = problem.case.x
+    found = _solved(problem, np.asarray(fp.green(x, 1.0, alpha)))
+    exact = np.asarray(fp.green(x - v * (1.0 - e) / c, end, alpha))
+    return float(np.abs(found - exact).sum() / exact.sum()) / _NEAR
+
+
+# --- all ------------------------------------------------------------------------------------------------------
+
+
+@PROPERTIES.add(
+    "a problem, other units",
+    "the same, or a warning",
+    st.tuples(_problems(), _SEEDS, st.sampled_from(_UNITS), st.sampled_from(_UNITS)),
+)
 def _scaled(drawn: tuple[Problem, int, float, float]) -> float:
     """The same in other units of length and of time."""
     problem, seed, length, time = drawn
@@ -121,6 +197,9 @@ def _scaled(drawn: tuple[Problem, int, float, float]) -> float:
     return _apart(_solved(problem.model_copy(update=fields), u0), _solved(problem, u0), u0)
 
 
+@PROPERTIES.add(
+    "a problem, in two parts", "the problem at once, or a warning", st.tuples(_problems(), _SEEDS)
+)
 def _halves(drawn: Drawn) -> float:
     """To the middle, and from there to the end."""
     problem, u0 = drawn[0], _data(*drawn)
@@ -130,6 +209,12 @@ def _halves(drawn: Drawn) -> float:
     return _apart(last, _solved(problem, u0), u0, half)
 
 
+@PROPERTIES.add(
+    "a problem, its total",
+    "what the source gives, or a warning",
+    st.tuples(_CONSERVING, _SEEDS),
+    "scipy, quadrature",
+)
 def _mass(drawn: Drawn) -> float:
     """The total gains what the source gives, by quadrature in time; nothing leaves a truncated lattice."""
     problem, u0 = drawn[0], _data(*drawn)
@@ -146,101 +231,3 @@ def _mass(drawn: Drawn) -> float:
     found = _solved(problem, u0)
     size = float(np.abs(u0).sum() + np.abs(found).sum())
     return abs(float(found.sum() - u0.sum() - given)) / (_ALLOWED * size) if h > 0.0 else 2.0
-
-
-def _text(given: Any) -> float:
-    """A problem of any text or fields is refused, or is one that its own text gives again."""
-    problem = Problem(**given) if isinstance(given, dict) else Problem.from_json(given)
-    if not problem.reproducible:
-        return 0.0
-    again = Problem.from_json(problem.to_json())
-    return 2.0 * (again.to_json() != problem.to_json() or again.case != problem.case)
-
-
-def _known(drawn: tuple[float, str, float, float, float, int]) -> float:
-    """a = v - c x and constant D, from the fundamental solution: one about v (1 - e) / c, e = exp(-c t), of the width
-
-    l^alpha = e^alpha + D (1 - e^alpha) / (alpha c).
-    """
-    alpha, form, c, v, d, across = drawn
-    e = math.exp(-c)
-    end = e**alpha + d * (1.0 - e**alpha) / (alpha * c)
-    width = min(1.0, end ** (1.0 / alpha))
-    half_width = 10.0 * (1.0 + end ** (1.0 / alpha)) + abs(v) / min(c, 1.0)
-    problem = Problem(
-        alpha=alpha, form=form, diffusivity=d, velocity=f"{v!r} - {c!r}*x", half_width=half_width,
-        spacing=width / across, t_final=1.0,
-    )  # fmt: skip
-    x = problem.case.x
-    found = _solved(problem, np.asarray(fp.green(x, 1.0, alpha)))
-    exact = np.asarray(fp.green(x - v * (1.0 - e) / c, end, alpha))
-    return float(np.abs(found - exact).sum() / exact.sum()) / _NEAR
-
-
-# --- all ------------------------------------------------------------------------------------------------------
-
-_SEEDS = st.integers(0, 10**6)
-_JSON = st.one_of(
-    anything(),
-    given_fields(Problem),
-    given_fields(Problem).map(lambda given: json.dumps(given, default=str)),
-    st.tuples(_problems(), st.integers(0, 300), texts()).map(
-        lambda parts: parts[0].to_json()[: parts[1]] + parts[2] + parts[0].to_json()[parts[1] :]
-    ),
-    _problems().map(lambda problem: problem.to_json()),
-)
-_STEADY = _problems(steady=True)
-_CONSERVING = st.one_of(
-    *(_problems(form=form, exterior="truncated") for form in ("FPSE", "exchange"))
-)
-
-PROPERTIES = (
-    Property("text of a problem", "a whole problem, or a line", "", _JSON, _text, 8),
-    Property(
-        "a problem, matrix",
-        "exp(A T) u, to 100 rtol, or a warning",
-        "scipy, dense matrix",
-        st.tuples(_STEADY, _SEEDS),
-        _matrix,
-        2,
-    ),
-    Property(
-        "a problem, closed form",
-        f"Ornstein and Uhlenbeck, to {_NEAR:g}, or a warning",
-        "closed form",
-        st.tuples(
-            between(1.1, 1.95),
-            st.sampled_from(tuple(FORMS)),
-            between(0.05, 2.0),
-            between(-3.0, 3.0),
-            st.sampled_from((0.1, 1.0, 3.0)),
-            st.integers(3, 6),
-        ),
-        _known,
-        1,
-    ),
-    Property(
-        "a problem, other units",
-        "the same, or a warning",
-        "",
-        st.tuples(_problems(), _SEEDS, st.sampled_from(_UNITS), st.sampled_from(_UNITS)),
-        _scaled,
-        1,
-    ),
-    Property(
-        "a problem, in two parts",
-        "the problem at once, or a warning",
-        "",
-        st.tuples(_problems(), _SEEDS),
-        _halves,
-        1,
-    ),
-    Property(
-        "a problem, its total",
-        "what the source gives, or a warning",
-        "scipy, quadrature",
-        st.tuples(_CONSERVING, _SEEDS),
-        _mass,
-        1,
-    ),
-)

@@ -21,11 +21,13 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.dpse import laplacian_weights, potential_weights
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS
-from fracstudy.probe import EPS, Verdict
+from fracstudy.probe import EPS, HELD
 from scenes.extremes.fuzzing.cases import cases, changed, refuse_dear, runs
-from scenes.extremes.fuzzing.harness import NotRun, Property
+from scenes.extremes.fuzzing.harness import NotRun, Properties
 
 __all__ = ["PROPERTIES"]
+
+PROPERTIES = Properties()
 
 _LENGTHS = ("half_width", "spacing", "graded_scale")
 _TIMES = ("t_initial", "t_final", "times", "dt")
@@ -84,12 +86,22 @@ def _final(case: Case, u0: np.ndarray | None = None) -> np.ndarray:
 # --- right against something independent ----------------------------------------------------------------
 
 
+@PROPERTIES.add(
+    "a run, fundamental",
+    f"a relative error of {_NEAR:g} at most, or a warning",
+    cases(),
+    "closed form",
+    4,
+)
 def _exact(case: Case) -> float:
     """From the fundamental solution to the fundamental solution."""
     refuse_dear(case)
     return relative_l1_error(case, _final(case)) / _NEAR
 
 
+@PROPERTIES.add(
+    "a run, rough data", "exp(A T) u, or p(A dt)^n u", runs(), "scipy, dense matrix", 2, HELD
+)
 def _matrix(run: Run) -> float:
     """exp(A T) by scipy, or the n-th power of the step's polynomial, A from naive sums over unit vectors."""
     case, u0 = run
@@ -113,6 +125,7 @@ def _matrix(run: Run) -> float:
     return _apart(case, u, expected, u0)
 
 
+@PROPERTIES.add("a run, naive sums", "that by transforms", runs(), "naive sums", must=HELD)
 def _naive(run: Run) -> float:
     """The sums by transforms against those one by one."""
     case, u0 = run
@@ -123,6 +136,7 @@ def _naive(run: Run) -> float:
 # --- right against itself ---------------------------------------------------------------------------------
 
 
+@PROPERTIES.add("a run, mirrored", "the mirrored run", runs(), share=2, must=HELD)
 def _mirrored(run: Run) -> float:
     """The mirrored data give the mirrored solution."""
     case, u0 = run
@@ -130,6 +144,7 @@ def _mirrored(run: Run) -> float:
     return _apart(case, np.flip(_final(case, np.flip(u0, axes)), axes), _final(case, u0), u0)
 
 
+@PROPERTIES.add("a run, linear", "the sum of two runs", runs(), share=2, must=HELD)
 def _linear(run: Run) -> float:
     """A sum of data gives the sum of solutions, each times its factor."""
     case, u0 = run
@@ -140,6 +155,7 @@ def _linear(run: Run) -> float:
     return _apart(case, _final(case, 0.25 * u0 - 0.5 * v0), 0.25 * u - 0.5 * v, u0, v0, u, v)
 
 
+@PROPERTIES.add("a run, other units", "the same run", runs(), share=2, must=HELD)
 def _scaled(run: Run) -> float:
     """Lengths times c, times times c^alpha / d and D times d leave the strengths as they are."""
     case, u0 = run
@@ -157,6 +173,7 @@ def _scaled(run: Run) -> float:
     return _apart(case, _final(other, u0), _final(case, u0), u0)
 
 
+@PROPERTIES.add("a run, in two parts", "the run at once", runs(), share=2, must=HELD)
 def _in_two_parts(run: Run) -> float:
     """To the middle, and from there to the end."""
     case, u0 = run
@@ -174,6 +191,7 @@ def _in_two_parts(run: Run) -> float:
 # --- right in whatever form ---------------------------------------------------------------------------------
 
 
+@PROPERTIES.add("a run, prepared", "the same bits", runs(), must=HELD)
 def _prepared(run: Run) -> float:
     """`prepare` and `solve` on bare arrays give the bits that `compute` gives, twice.
 
@@ -188,6 +206,7 @@ def _prepared(run: Run) -> float:
     return 2.0 * (wrong or not np.array_equal(u, v))
 
 
+@PROPERTIES.add("a run, in a file", "the same run, no other file", runs(), must=HELD)
 def _in_a_file(run: Run) -> float:
     """A run that is written is read as it was, alone in its folder, and goes on from its file."""
     case, u0 = run
@@ -224,6 +243,7 @@ def _with_labels(case: Case, u: np.ndarray) -> Any:
     return xr.DataArray(u, {axis: case.x for axis in axes}, axes)
 
 
+@PROPERTIES.add("a run, data in disguise", "the same bits", runs(), must=HELD)
 def _disguised(run: Run) -> float:
     """The data in other clothes give the same bits."""
     case, u0 = run
@@ -234,36 +254,3 @@ def _disguised(run: Run) -> float:
         if not np.array_equal(_final(case, wear(case, u0)), u)
     ]
     return 2.0 * bool(wrong or not np.array_equal(u0, before))
-
-
-PROPERTIES = (
-    Property(
-        "a run, fundamental",
-        f"a relative error of {_NEAR:g} at most, or a warning",
-        "closed form",
-        cases(),
-        _exact,
-        4,
-    ),
-    Property(
-        "a run, rough data",
-        "exp(A T) u, or p(A dt)^n u",
-        "scipy, dense matrix",
-        runs(),
-        _matrix,
-        2,
-        Verdict.HELD,
-    ),
-    Property(
-        "a run, naive sums", "that by transforms", "naive sums", runs(), _naive, 1, Verdict.HELD
-    ),
-    Property("a run, mirrored", "the mirrored run", "", runs(), _mirrored, 2, Verdict.HELD),
-    Property("a run, linear", "the sum of two runs", "", runs(), _linear, 2, Verdict.HELD),
-    Property("a run, other units", "the same run", "", runs(), _scaled, 2, Verdict.HELD),
-    Property("a run, in two parts", "the run at once", "", runs(), _in_two_parts, 2, Verdict.HELD),
-    Property("a run, prepared", "the same bits", "", runs(), _prepared, 1, Verdict.HELD),
-    Property(
-        "a run, in a file", "the same run, no other file", "", runs(), _in_a_file, 1, Verdict.HELD
-    ),
-    Property("a run, data in disguise", "the same bits", "", runs(), _disguised, 1, Verdict.HELD),
-)
