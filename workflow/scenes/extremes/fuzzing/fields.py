@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from scenes.extremes.fuzzing.cases import cases, changed
-from scenes.extremes.fuzzing.harness import Properties
+from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import anything, fields_of, given_fields, texts
 
 __all__ = ["PROPERTIES"]
@@ -49,12 +49,8 @@ _TEXTS = st.one_of(
 )
 
 
-@PROPERTIES.add(
-    "fields of a case",
-    "a whole case, or a line",
-    st.one_of(given_fields(Case), _nearly()),
-    share=20,
-)
+@PROPERTIES.add("fields of a case", "a whole case, or a line", share=20)
+@drawn(st.one_of(given_fields(Case), _nearly()))
 def _whole(given: dict[str, Any]) -> float:
     """A case of any fields is refused, or is a case."""
     return 2.0 * _wrong(Case(**given))
@@ -79,15 +75,10 @@ def _wrong(case: Case) -> bool:
     )
 
 
-@PROPERTIES.add(
-    "another field",
-    "another case, another path",
-    st.tuples(cases(), st.fixed_dictionaries({}, optional=fields_of(Case))),
-    share=5,
-)
-def _another(parts: tuple[Case, dict[str, Any]]) -> float:
+@PROPERTIES.add("another field", "another case, another path", share=5)
+@drawn(cases(), st.fixed_dictionaries({}, optional=fields_of(Case)))
+def _another(case: Case, other: dict[str, Any]) -> float:
     """A case with another value of a field is another case, with another path; one that is given again the same."""
-    case, other = parts
     wrong = _wrong(case)
     for name, value in other.items():
         try:
@@ -101,7 +92,8 @@ def _another(parts: tuple[Case, dict[str, Any]]) -> float:
     return 2.0 * wrong
 
 
-@PROPERTIES.add("text of a case", "a whole case, or a line", _TEXTS, share=10)
+@PROPERTIES.add("text of a case", "a whole case, or a line", share=10)
+@drawn(_TEXTS)
 def _read(text: str) -> float:
     """Any text is a case or refused."""
     return 2.0 * _wrong(Case.from_json(text))

@@ -18,7 +18,7 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
-from scenes.extremes.fuzzing.harness import Properties
+from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import chance, fields_of, texts
 
 __all__ = ["PROPERTIES"]
@@ -81,21 +81,16 @@ _LIMITS = st.fixed_dictionaries(
 ).map(lambda given: ["limit", *_flags(given)])
 
 
-@PROPERTIES.add(
-    "the command line",
-    "done, or a line",
-    st.one_of(_solving(), _LIMITS, st.lists(_WORDS, max_size=6)),
-    share=8,
-)
+@PROPERTIES.add("the command line", "done, or a line", share=8)
+@drawn(st.one_of(_solving(), _LIMITS, st.lists(_WORDS, max_size=6)))
 def _spoken(words: list[str]) -> float:
     """Any words end with a status, and with lines that say what they are."""
     _refuse_dear_words(words)
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         status, out, err = _run(words)
         files = [file for file in Path(folder).rglob("*") if not file.is_dir()]
-        wrong = status not in _STATUSES or any(
-            not line.startswith(_SPEAKS) for line in err.splitlines()
-        )
+        wrong = status not in _STATUSES
+        wrong |= not all(line.startswith(_SPEAKS) for line in err.splitlines())
         wrong |= (status != 0) != ("error: " in err)
         wrong |= status != 0 and (out != "" or files != [])
         if status == 0 and files:
@@ -103,7 +98,8 @@ def _spoken(words: list[str]) -> float:
         return 2.0 * wrong
 
 
-@PROPERTIES.add("flags of a case", "the bits of Python", cases())
+@PROPERTIES.add("flags of a case", "the bits of Python")
+@drawn(cases())
 def _same(case: fp.Case) -> float:
     """The flags of a case write the bits that Python writes, or refuse what it refuses."""
     refuse_dear(case)
@@ -114,9 +110,8 @@ def _same(case: fp.Case) -> float:
         try:
             fp.write(fp.solve(case), "other.nc")
         except (InvalidInput, fp.NonFiniteSolution) as error:
-            return 2.0 * (
-                status != (2 if isinstance(error, InvalidInput) else 3) or str(error) not in err
-            )
+            expected = 2 if isinstance(error, InvalidInput) else 3
+            return 2.0 * (status != expected or str(error) not in err)
         return 2.0 * (status != 0 or Path("run.nc").read_bytes() != Path("other.nc").read_bytes())
 
 
@@ -139,7 +134,8 @@ def _spoilt_files(draw: st.DrawFn) -> bytes:
     return bytes(content)
 
 
-@PROPERTIES.add("show, a spoilt file", "shown, or a line", _spoilt_files(), share=3)
+@PROPERTIES.add("show, a spoilt file", "shown, or a line", share=3)
+@drawn(_spoilt_files())
 def _shown(content: bytes) -> float:
     """What is in a file is shown, or refused in a line."""
     with tempfile.TemporaryDirectory() as folder, chdir(folder):

@@ -15,18 +15,28 @@ from random import Random
 from typing import Any
 
 from hypothesis import given, settings
-from hypothesis.strategies import SearchStrategy
+from hypothesis.strategies import SearchStrategy, tuples
 
 from fracstudy.probe import BAD, Kind, Probe, Verdict
 
-__all__ = ["NotRun", "Outcome", "Properties", "Property", "draw", "judged", "outcome", "row"]
+__all__ = [
+    "NotRun",
+    "Outcome",
+    "Properties",
+    "Property",
+    "draw",
+    "drawn",
+    "judged",
+    "outcome",
+    "row",
+]
 
 _BYTES = 8192  # more than any case takes
 _TRIES = 100  # a strategy may refuse what it has drawn
 _LONGEST = 60.0  # seconds: a case takes some milliseconds
 
 
-_Holds = Callable[[Any], float]
+_Drawn = tuple[SearchStrategy[Any], Callable[..., float]]
 
 
 class NotRun(BaseException):
@@ -59,7 +69,7 @@ class Property:
     expected: str
     source: str
     cases: SearchStrategy[Any]
-    holds: _Holds
+    holds: Callable[[Any], float]
     share: int = 1
     must: Verdict | None = None
 
@@ -71,18 +81,24 @@ class Properties(list[Property]):
         self,
         name: str,
         expected: str,
-        cases: SearchStrategy[Any],
         source: str = "",
         share: int = 1,
         must: Verdict | None = None,
-    ) -> Callable[[_Holds], _Holds]:
-        """Return what makes a property of a function, see `Property`."""
+    ) -> Callable[[_Drawn], Callable[..., float]]:
+        """Return what makes a property of a function that is `drawn`; see `Property`."""
 
-        def added(holds: _Holds) -> _Holds:
-            self.append(Property(name, expected, source, cases, holds, share, must))
+        def added(of: _Drawn) -> Callable[..., float]:
+            cases, holds = of
+            whole = Property(name, expected, source, cases, lambda case: holds(*case), share, must)
+            self.append(whole)
             return holds
 
         return added
+
+
+def drawn(*arguments: SearchStrategy[Any]) -> Callable[[Callable[..., float]], _Drawn]:
+    """Say what the arguments of a property are drawn from."""
+    return lambda holds: (tuples(*arguments), holds)
 
 
 @dataclass(frozen=True)

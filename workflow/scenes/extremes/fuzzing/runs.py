@@ -23,7 +23,7 @@ from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.probe import EPS, HELD
 from scenes.extremes.fuzzing.cases import cases, changed, refuse_dear, runs
-from scenes.extremes.fuzzing.harness import NotRun, Properties
+from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
 
 __all__ = ["PROPERTIES"]
 
@@ -87,21 +87,17 @@ def _final(case: Case, u0: np.ndarray | None = None) -> np.ndarray:
 
 
 @PROPERTIES.add(
-    "a run, fundamental",
-    f"a relative error of {_NEAR:g} at most, or a warning",
-    cases(),
-    "closed form",
-    4,
+    "a run, fundamental", f"a relative error of {_NEAR:g} at most, or a warning", "closed form", 4
 )
+@drawn(cases())
 def _exact(case: Case) -> float:
     """From the fundamental solution to the fundamental solution."""
     refuse_dear(case)
     return relative_l1_error(case, _final(case)) / _NEAR
 
 
-@PROPERTIES.add(
-    "a run, rough data", "exp(A T) u, or p(A dt)^n u", runs(), "scipy, dense matrix", 2, HELD
-)
+@PROPERTIES.add("a run, rough data", "exp(A T) u, or p(A dt)^n u", "scipy, dense matrix", 2, HELD)
+@drawn(runs())
 def _matrix(run: Run) -> float:
     """exp(A T) by scipy, or the n-th power of the step's polynomial, A from naive sums over unit vectors."""
     case, u0 = run
@@ -116,7 +112,7 @@ def _matrix(run: Run) -> float:
         whole = expm(a * case.span)
     else:
         z, step, term = a * case.time_step, unit, unit
-        for k in range({"euler": 1, "rk2": 2, "rk4": 4}[case.resolved_integrator]):
+        for k in range(STEP_POLYNOMIALS[case.resolved_integrator].stages):
             term = term @ z / (k + 1)
             step = step + term
         whole = np.linalg.matrix_power(step, case.steps)
@@ -125,7 +121,8 @@ def _matrix(run: Run) -> float:
     return _apart(case, u, expected, u0)
 
 
-@PROPERTIES.add("a run, naive sums", "that by transforms", runs(), "naive sums", must=HELD)
+@PROPERTIES.add("a run, naive sums", "that by transforms", "naive sums", must=HELD)
+@drawn(runs())
 def _naive(run: Run) -> float:
     """The sums by transforms against those one by one."""
     case, u0 = run
@@ -136,7 +133,8 @@ def _naive(run: Run) -> float:
 # --- right against itself ---------------------------------------------------------------------------------
 
 
-@PROPERTIES.add("a run, mirrored", "the mirrored run", runs(), share=2, must=HELD)
+@PROPERTIES.add("a run, mirrored", "the mirrored run", share=2, must=HELD)
+@drawn(runs())
 def _mirrored(run: Run) -> float:
     """The mirrored data give the mirrored solution."""
     case, u0 = run
@@ -144,7 +142,8 @@ def _mirrored(run: Run) -> float:
     return _apart(case, np.flip(_final(case, np.flip(u0, axes)), axes), _final(case, u0), u0)
 
 
-@PROPERTIES.add("a run, linear", "the sum of two runs", runs(), share=2, must=HELD)
+@PROPERTIES.add("a run, linear", "the sum of two runs", share=2, must=HELD)
+@drawn(runs())
 def _linear(run: Run) -> float:
     """A sum of data gives the sum of solutions, each times its factor."""
     case, u0 = run
@@ -155,7 +154,8 @@ def _linear(run: Run) -> float:
     return _apart(case, _final(case, 0.25 * u0 - 0.5 * v0), 0.25 * u - 0.5 * v, u0, v0, u, v)
 
 
-@PROPERTIES.add("a run, other units", "the same run", runs(), share=2, must=HELD)
+@PROPERTIES.add("a run, other units", "the same run", share=2, must=HELD)
+@drawn(runs())
 def _scaled(run: Run) -> float:
     """Lengths times c, times times c^alpha / d and D times d leave the strengths as they are."""
     case, u0 = run
@@ -173,7 +173,8 @@ def _scaled(run: Run) -> float:
     return _apart(case, _final(other, u0), _final(case, u0), u0)
 
 
-@PROPERTIES.add("a run, in two parts", "the run at once", runs(), share=2, must=HELD)
+@PROPERTIES.add("a run, in two parts", "the run at once", share=2, must=HELD)
+@drawn(runs())
 def _in_two_parts(run: Run) -> float:
     """To the middle, and from there to the end."""
     case, u0 = run
@@ -191,7 +192,8 @@ def _in_two_parts(run: Run) -> float:
 # --- right in whatever form ---------------------------------------------------------------------------------
 
 
-@PROPERTIES.add("a run, prepared", "the same bits", runs(), must=HELD)
+@PROPERTIES.add("a run, prepared", "the same bits", must=HELD)
+@drawn(runs())
 def _prepared(run: Run) -> float:
     """`prepare` and `solve` on bare arrays give the bits that `compute` gives, twice.
 
@@ -206,7 +208,8 @@ def _prepared(run: Run) -> float:
     return 2.0 * (wrong or not np.array_equal(u, v))
 
 
-@PROPERTIES.add("a run, in a file", "the same run, no other file", runs(), must=HELD)
+@PROPERTIES.add("a run, in a file", "the same run, no other file", must=HELD)
+@drawn(runs())
 def _in_a_file(run: Run) -> float:
     """A run that is written is read as it was, alone in its folder, and goes on from its file."""
     case, u0 = run
@@ -221,6 +224,7 @@ def _in_a_file(run: Run) -> float:
     return 2.0 * wrong
 
 
+_BACKWARDS = slice(None, None, -1)
 _DISGUISES: dict[str, Callable[[Case, np.ndarray], Any]] = {
     "nested lists": lambda case, u: u.tolist(),
     "in Fortran's order": lambda case, u: np.asfortranarray(u),
@@ -229,9 +233,7 @@ _DISGUISES: dict[str, Callable[[Case, np.ndarray], Any]] = {
     "big-endian": lambda case, u: u.astype(">f8"),
     "a function": lambda case, u: lambda *_: u,
     "masked without a mask": lambda case, u: np.ma.masked_array(u, False),
-    "with labels, reversed": lambda case, u: _with_labels(case, u)[
-        (slice(None, None, -1),) * u.ndim
-    ],
+    "with labels, reversed": lambda case, u: _with_labels(case, u)[(_BACKWARDS,) * u.ndim],
     "with labels, transposed": lambda case, u: _with_labels(case, u).T,
 }
 
@@ -243,14 +245,11 @@ def _with_labels(case: Case, u: np.ndarray) -> Any:
     return xr.DataArray(u, {axis: case.x for axis in axes}, axes)
 
 
-@PROPERTIES.add("a run, data in disguise", "the same bits", runs(), must=HELD)
+@PROPERTIES.add("a run, data in disguise", "the same bits", must=HELD)
+@drawn(runs())
 def _disguised(run: Run) -> float:
     """The data in other clothes give the same bits."""
     case, u0 = run
     u, before = _final(case, u0), u0.copy()
-    wrong = [
-        name
-        for name, wear in _DISGUISES.items()
-        if not np.array_equal(_final(case, wear(case, u0)), u)
-    ]
-    return 2.0 * bool(wrong or not np.array_equal(u0, before))
+    same = [np.array_equal(_final(case, wear(case, u0)), u) for wear in _DISGUISES.values()]
+    return 2.0 * (not all(same) or not np.array_equal(u0, before))

@@ -22,6 +22,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 __all__ = [
+    "among",
     "anything",
     "between",
     "chance",
@@ -46,6 +47,11 @@ _WORDS = ("", " ", "fundamental", "none", "nan", "1e-3", "1_0", "\0", "\n", "é\
 def chance(percent: int) -> st.SearchStrategy[bool]:
     """Draw whether something happens that happens so often."""
     return st.integers(0, 99).map(lambda number: number < percent)
+
+
+def among(*values: Any) -> Strategy:
+    """Draw one of these."""
+    return st.sampled_from(values)
 
 
 @cache
