@@ -40,12 +40,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     note(ax, "wrong without a warning: empty", (0.02, 0.98), (0, 0), **place)
     entries = [entry(_NAMES[said], color=colour, linewidth=2.0) for said, colour in _SAID.items()]
     shown = [kind for kind in _KINDS if kind in set(series["panel"])]
-    grey: dict[str, Any] = {
-        "color": "0.3",
-        "linestyle": "none",
-        "markerfacecolor": "none",
-        "markersize": 4.5,
-    }
-    entries += [entry(kind, marker=_KINDS[kind], **grey) for kind in shown]
+    grey: dict[str, Any] = {"color": "0.3", "linestyle": "none", "markerfacecolor": "none"}
+    entries += [entry(kind, marker=_KINDS[kind], markersize=4.5, **grey) for kind in shown]
     legend_below(drawn, entries, 4)
     return drawn
