@@ -17,6 +17,9 @@ LOCKED    := $(VENV)/.locked
 INSTALLED := $(VENV)/.installed
 PIP       := $(BIN)/python -m pip --disable-pip-version-check
 
+# The workflow starts Python some hundred times, the tests as often: what is not kept is compiled each time.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Shell commands of the workflow find the environment's programs first.
 SNAKEMAKE = PATH="$(abspath $(BIN)):$$PATH" $(BIN)/snakemake -j$(JOBS)
 # One thread each: the tests already run in $(JOBS) processes, each module of tests in one of them.

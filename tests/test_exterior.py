@@ -126,8 +126,8 @@ def test_a_field_that_is_the_expansion_is_continued_exactly(alpha, terms, parity
     y = np.zeros(2 * n + 1)
     far.add(u, y)
     j = np.arange(LONG, n, -1.0)
-    right = np.array([(expansion(j, alpha, terms) * weight(i - j)).sum() for i in points])
-    left = np.array([(expansion(j, alpha, terms) * weight(i + j)).sum() for i in points])
+    beyond = expansion(j, alpha, terms)
+    right, left = (np.array([(beyond * weight(i - s * j)).sum() for i in points]) for s in (1, -1))
     # As above: what the long sum lacks, and what Euler-Maclaurin leaves of sums whose powers are higher by 2 alpha.
     cut = 2.0 * float(LONG) ** (-alpha - decay)
     relative = 7.0 / 5760.0 * ((6.0 + (terms - 1) * alpha) / (3.0 * n)) ** 3

@@ -39,6 +39,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
 
 from fracstudy.criteria import CONVENTIONS, Condition, Convention, LedgerError
+from fracstudy.read_yaml import read_yaml
 
 __all__ = [
     "PRINTED_NUMBER",
@@ -260,7 +261,7 @@ def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
     quotes: dict[str, str] = {}
     for path in _files(paths):
         try:
-            tree = yaml.safe_load(path.read_text("utf-8"))
+            tree = read_yaml(path)
             trees = TypeAdapter(list[dict]).validate_python(tree)
             records = [record for tree in trees for record in _records(tree)]
         except (yaml.YAMLError, ValueError, KeyError) as error:  # no YAML, or no such record
@@ -303,7 +304,7 @@ def read_conventions(path: str | os.PathLike[str] = CONVENTIONS) -> dict[str, Co
         If the file is not a mapping of words to valid conventions.
     """
     try:
-        tree = yaml.safe_load(Path(path).read_text("utf-8"))
+        tree = read_yaml(Path(path))
         return TypeAdapter(dict[str, Convention]).validate_python(tree)
     except (yaml.YAMLError, ValidationError) as error:
         raise LedgerError(f"{path}: {error}") from error

@@ -11,11 +11,11 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
+from fracstudy.read_yaml import read_yaml
 from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
 
 __all__ = [
@@ -120,7 +120,7 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
     # A smoke run says of what it cannot judge that its grids are too coarse.
     grids = {}
     if study.grids is not None and not study.smoke:
-        grids = yaml.safe_load(Path(study.grids).read_text("utf-8"))
+        grids = read_yaml(Path(study.grids))
     for scene in scenes.values():
         for key, names in (("tables", scenes), ("benchmarks", timed)):
             for other in getattr(scene, key):
@@ -136,7 +136,7 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
 
 def read_project(project: Path) -> tuple[StudyConfig, dict[str, Scene]]:
     """Return what `read_config` does of the project in a folder, from wherever it is called."""
-    config = yaml.safe_load((project / CONFIG).read_text("utf-8"))
+    config = read_yaml(project / CONFIG)
     folder = config.get("scenes_dir", StudyConfig.model_fields["scenes_dir"].default)
     return read_config({**config, "scenes_dir": str(project / folder)})
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import FracparticlesWarning
 
 __all__ = ["off", "power_of_ten", "quiet", "three_digits"]
 
@@ -33,7 +33,7 @@ def power_of_ten(error: float, least: float = 2.0**-53) -> float:
 
 
 @contextmanager
-def quiet(kind: type[Warning] = AccuracyWarning) -> Iterator[None]:
+def quiet(kind: type[Warning] = FracparticlesWarning) -> Iterator[None]:
     """Say nothing of what a block warns of: it is asked for something else."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", kind)

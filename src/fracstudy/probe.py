@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
 
 from fracparticles.errors import FracparticlesError, FracparticlesWarning, reason_of
+from fracstudy.errors import off, quiet
 
 __all__ = [
     "BAD",
@@ -178,20 +178,6 @@ def _stray(category: type[Warning]) -> bool:
 def frame(probes: Iterable[Probe]) -> pd.DataFrame:
     """Return the table of probes, one row each."""
     return pd.DataFrame([asdict(one) for one in probes])
-
-
-def off(found: ArrayLike, exact: ArrayLike, size: float | None = None) -> float:
-    """Return max |found - exact| over a size, that of the greatest |exact| if none is given."""
-    exact = np.asarray(exact)
-    return float(np.abs(found - exact).max() / (np.abs(exact).max() if size is None else size))
-
-
-@contextmanager
-def quiet(kind: type[Warning] = Warning) -> Iterator[None]:
-    """Say nothing of what a block warns of: it is asked for something else."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", kind)
-        yield
 
 
 @contextmanager

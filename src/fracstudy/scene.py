@@ -29,6 +29,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import closest, takes_lists
+from fracstudy.read_yaml import read_yaml
 
 __all__ = [
     "RunBlock",
@@ -242,7 +243,7 @@ def _natural(name: str) -> list[tuple[bool, int, str]]:
 
 def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
     try:
-        tree = yaml.safe_load(file.read_text("utf-8"))
+        tree = read_yaml(file)
     # Also what is not UTF-8, no such date, or too deep.
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         problem = " ".join(str(error).split())

@@ -11,7 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import _lru_cache_wrapper
+from functools import _lru_cache_wrapper, lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,18 +26,22 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
+    "LONG",
     "Timing",
     "conditions",
     "forget_tables",
     "in_fresh_process",
     "machine",
     "measure",
+    "measure_warm",
     "one_core",
     "other_load",
     "peak_so_far",
     "timings_dataset",
 ]
 
+LONG = 0.25
+"""Seconds; what takes longer is timed once."""
 _SHORT = 0.1  # seconds of clock, of which nothing is said
 _TICKS = os.sysconf("SC_CLK_TCK")  # a second, of /proc/stat
 _LIBRARIES = ("mkl_fft", "numba", "numpy", "pyfftw", "scipy")
@@ -87,6 +91,17 @@ def measure(
     return Timing(tuple(times)), result
 
 
+def measure_warm(
+    action: Callable[[], Any], repeats: int = 1, seconds: float = float("inf")
+) -> tuple[Timing, Any]:
+    """Time an action after a first time, which warms up what is short; of what takes longer than that the first counts.
+
+    What is compiled at a first call, or kept on disk, must be there already.
+    """
+    first, result = measure(action)
+    return (first, result) if first.minimum > LONG else measure(action, repeats, seconds)
+
+
 # Seconds that the clock ran since `one_core`, and what all other processes took meanwhile, in seconds of a core.
 _WATCHED = {"clock": 0.0, "others": 0.0}
 
@@ -117,12 +132,21 @@ def forget_tables() -> None:
     A set-up is then measured as the first one of a process.
     """
     pyfftw.forget_wisdom()
-    for name, module in list(sys.modules.items()):
-        if name.startswith("fracparticles."):
-            for kept in vars(module).values():
-                # What has no largest size is no table: the list of schemes.
-                if isinstance(kept, _lru_cache_wrapper) and kept.cache_parameters()["maxsize"]:
-                    kept.cache_clear()
+    for table in _tables(len(sys.modules)):
+        table.cache_clear()
+
+
+@lru_cache(maxsize=1)
+def _tables(modules: int) -> list[_lru_cache_wrapper[Any]]:
+    """The tables of the modules that are loaded, looked for again when there are more of these."""
+    return [
+        kept
+        for name, module in list(sys.modules.items())
+        if name.startswith("fracparticles.")
+        for kept in vars(module).values()
+        # What has no largest size is no table: the list of schemes.
+        if isinstance(kept, _lru_cache_wrapper) and kept.cache_parameters()["maxsize"]
+    ]
 
 
 def one_core() -> None:

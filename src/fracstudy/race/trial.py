@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import tracemalloc
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
+from itertools import compress, islice
 from typing import Any
 
 import numpy as np
 
 from fracparticles.errors import FracparticlesError, FracparticlesWarning
-from fracstudy.race.clock import Timing, forget_tables, measure
+from fracstudy.race.clock import LONG, Timing, forget_tables, measure, measure_warm
 from fracstudy.race.contender import Contender, Ready
 from fracstudy.race.problem import Problem
 
@@ -25,7 +25,7 @@ _NOT_YET = Timing(())
 _SLACK = (
     1.5  # a trial is timed again if no other one of its contender is so much faster and as good
 )
-_LONG = 0.25  # seconds; what takes longer is timed once
+_FAR = 10.0  # nor if one of anybody is so much faster and as good: noise cannot put it ahead
 _MATRIX = 600  # points up to which the whole run may be one matrix
 _MOST = 2**19  # numbers in a block
 
@@ -91,8 +91,9 @@ def run_trials(
 ) -> list[dict[str, Any]]:
     """Run every trial once, then time those that matter in `rounds` rounds, each with its set-up; one row a trial.
 
-    A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, and does
-    not take a quarter of a second. The rounds go through all of them, so that each is measured at several moments.
+    A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, within a
+    factor of 10 of the front of all, and does not take a quarter of a second. The rounds go through all of them, so
+    that each is measured at several moments. The memory is that of the trials on the front of all.
 
     Parameters
     ----------
@@ -111,16 +112,19 @@ def run_trials(
         for given in trials[:1]:  # each does once what a process does once
             _first(problem, contender, given)
         records += [_first(problem, contender, given) for given in trials]
-    worth = [record for record in _near_front(records) if record.times[1] < _LONG]
+    judged = [record for record in records if np.isfinite(record.row.get("error", np.nan))]
+    worth = [record for record in _near_own(judged, _SLACK) if record.times[1] < LONG]
+    again = list(compress(worth, _near(worth, judged, 1, _FAR)))
     for _ in range(rounds):
-        for record in worth:
+        for record in again:
             forget_tables()
             setup, ready = measure(partial(record.contender.prepare, problem, **record.given))
             solve, _ = measure(partial(ready.solve, record.u0), repeats, seconds)
             record.setups += setup
             record.solves += solve
-    for record in _near_front(worth, slack=1.0):
+    for record in _near_own(worth, slack=1.0):
         record.row["block_time"] = _block_time(record)
+    for record in compress(again, _near(again, judged, 1, slack=1.0)):
         record.row["peak_memory"] = _peak_memory(problem, record)
     return [record.finished() for record in records]
 
@@ -144,9 +148,7 @@ def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Re
             forget_tables()
             setup, ready = measure(partial(contender.prepare, problem, **given))
             u0 = problem.initial(ready.x)
-            solve, u = measure(partial(ready.solve, u0))
-            if solve.minimum < _LONG:  # the first was the warm-up
-                solve, u = measure(partial(ready.solve, u0))
+            solve, u = measure_warm(partial(ready.solve, u0))
             u = u if ready.result is None else ready.result(u0)
     except FracparticlesError as failure:
         row["failure"] = str(failure).splitlines()[0]
@@ -172,7 +174,7 @@ def _block_time(record: _Record) -> float:
     block = np.broadcast_to(u0, (count, *u0.shape)).copy()
     times = []
     if ready.batched:
-        times.append(measure(partial(ready.solve, block), 2, _LONG)[0].minimum)
+        times.append(measure(partial(ready.solve, block), 2, LONG)[0].minimum)
     if ready.points <= _MATRIX:
         matrix = np.zeros((ready.points, ready.points))
         times.append(measure(partial(np.dot, block.reshape(count, -1), matrix), 3)[0].minimum)
@@ -190,23 +192,24 @@ def _peak_memory(problem: Problem, record: _Record) -> float:
         tracemalloc.stop()
 
 
-def _near_front(records: Iterable[_Record], slack: float = _SLACK) -> list[_Record]:
-    """Those that no other one of their contender beats by more than `slack` in both times, with an error as small."""
+def _near_own(records: Iterable[_Record], slack: float) -> list[_Record]:
+    """Those near the front of their contender, in the time of a solve or in that of set-up and solve."""
     by_contender: dict[str, list[_Record]] = {}
     for record in records:
-        if np.isfinite(record.row.get("error", np.nan)):
-            by_contender.setdefault(record.contender.name, []).append(record)
+        by_contender.setdefault(record.contender.name, []).append(record)
     return [
         record
         for own in by_contender.values()
-        for record in own
-        if not all(_beaten(record, own, which, slack) for which in (0, 1))
+        for record in compress(own, _near(own, own, 0, slack) | _near(own, own, 1, slack))
     ]
 
 
-def _beaten(record: _Record, others: Iterable[_Record], which: int, slack: float) -> bool:
-    return any(
-        other.row["error"] <= record.row["error"]
-        and slack * other.times[which] < record.times[which]
-        for other in others
-    )
+def _near(
+    records: Sequence[_Record], others: Sequence[_Record], which: int, slack: float
+) -> np.ndarray:
+    """Which records none of the others, among which they are, beats by more than `slack`, with an error as small."""
+    errors = np.array([other.row["error"] for other in others])
+    order = np.argsort(errors)
+    least = np.minimum.accumulate(np.array([other.times[which] for other in others])[order])
+    as_good = np.searchsorted(errors[order], [record.row["error"] for record in records], "right")
+    return np.array([record.times[which] for record in records]) <= slack * least[as_good - 1]

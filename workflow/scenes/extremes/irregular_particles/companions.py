@@ -70,7 +70,7 @@ def _exchange() -> Iterator[Probe]:
 def _total_lost(dim: int, order: int) -> float:
     dice = np.random.default_rng(dim)
     x, v = dice.uniform(0.0, 3.0, (60, dim)), dice.exponential(0.1, 60) + 1e-3
-    with quiet():  # of growth and gaps
+    with quiet(Warning):  # of growth and gaps
         exchange = StrengthExchange(x, v, 0.6, construct_laplacian(order, dim))
     return _lost(exchange, dice.normal(size=60))
 
@@ -78,7 +78,7 @@ def _total_lost(dim: int, order: int) -> float:
 def _uneven_lost(ratio: float) -> float:
     x, _ = _scattered(0.5)
     v = np.where(np.arange(_N) % 2, 1.0, ratio)
-    with quiet():
+    with quiet(Warning):
         return _lost(StrengthExchange(x, v, 0.2, GAUSSIAN_20), v * np.cos(x))
 
 
@@ -101,7 +101,7 @@ def _growth() -> Iterator[Probe]:
     grows = replace(stays, expected="growth, at the rate said", must=WARNED)
     for order, overlap, jitter in product((4, 6, 8), (1.0, 2.0, 4.0), (0.2, 0.5, 2.0)):
         makes = partial(StrengthExchange, *_scattered(jitter), overlap * _H, construct(2, order))
-        with quiet():
+        with quiet(Warning):
             exchange = makes()
         greatest = float(np.linalg.eigvals(exchange.matrix.toarray()).real.max())
         greatest = greatest if greatest > 1e-5 * exchange.rate else 0.0
@@ -131,7 +131,7 @@ def _steps() -> Iterator[Probe]:
         makes = partial(green_step, x, v, 1.5, (overlap * _H) ** 1.5)
         name = f"GPSE step, {kind}, {volumes(right)}, ε = {overlap:g} h"
         yield kept(name, _columns_off, v, makes)
-        with quiet():
+        with quiet(Warning):
             greatest = float(np.abs(np.linalg.eigvals(makes())).max())
         yield (grows if greatest > 1.0 + 1e-6 else stays)(name, _factor_missed, makes, greatest)
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fracparticles.errors import AccuracyWarning
-from fracstudy.race.clock import measure, one_core, timings_dataset
+from fracstudy.race.clock import measure_warm, one_core, timings_dataset
 from scenes.run_times.problem_times.contest import Contest
 from scenes.run_times.problem_times.interval import eigenvalue, leaving
 from scenes.run_times.problem_times.line import drawn_back, variable_diffusivity
@@ -41,7 +41,7 @@ def benchmark(
     seconds: float,
     most: int | None = None,
 ) -> xr.Dataset:
-    """Measure every trial, set-up and solve together, after one that warms up.
+    """Measure every trial, set-up and solve together, after one that warms up what is short.
 
     Parameters
     ----------
@@ -61,26 +61,20 @@ def benchmark(
     """
     one_core()
     rows = []
-    for name, entries in contests.items():
-        contest = CONTESTS[name](alpha)
-        for who, grids in entries.items():
-            group, solve = contest.contenders[who]
-            for grid in grids[:most]:
-                found = _trial(contest, partial(solve, *grid), repeats, seconds)
-                rows.append({"problem": name, "contender": who, "group": group, **found})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # coarse trials are to be seen
+        for name, entries in contests.items():
+            contest = CONTESTS[name](alpha)
+            for who, grids in entries.items():
+                group, solve = contest.contenders[who]
+                solve(*grids[0])  # compiles
+                for grid in grids[:most]:
+                    time, (size, answer) = measure_warm(partial(solve, *grid), repeats, seconds)
+                    found = {"size": size, "error": contest.error(answer), "time": time.minimum}
+                    rows.append({"problem": name, "contender": who, "group": group, **found})
     title = "Error against run time for problems beyond one Fourier transform"
     facts = {"repeats": repeats, "alpha": alpha}
     return timings_dataset("trial", rows, _LABELS, _VARIABLES, title, facts)
-
-
-def _trial(
-    contest: Contest, solve: Callable[[], tuple[int, Any]], repeats: int, seconds: float
-) -> dict[str, float]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)  # coarse trials are to be seen
-        size, answer = solve()
-        time, _ = measure(solve, repeats, seconds)
-    return {"size": size, "error": contest.error(answer), "time": time.minimum}
 
 
 _LABELS = {"problem": "problem", "contender": "method", "group": "ours or a peer"}
