@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from fracstudy.panels import Panels, pick
-from fracstudy.style import axes_row
+from fracstudy.style import axes_row, curves, log_log, plain_times, small_legend
 
 
 def test_points_are_kept_in_order_with_what_else_is_said_of_them():
@@ -44,3 +44,31 @@ def test_panels_may_stand_in_rows_of_one_size():
     figure, axes = axes_row(4, height=2.0, width=3.0, rows=2)
     assert tuple(figure.get_size_inches()) == (6.0, 4.0)
     assert [ax.get_subplotspec().rowspan.start for ax in axes] == [0, 0, 1, 1]
+
+
+def test_each_series_has_a_curve_with_a_look_and_a_name_of_its_own():
+    panels = Panels()
+    for name in ("late", "early"):
+        panels.add("a", name, [1.0, 10.0], [2.0, 3.0])
+    _, (ax,) = axes_row()
+    curves(ax, panels.frame, name="{} one", linestyle="--")
+    curves(ax, panels.frame, name=None, marker=".")
+    assert [line.get_label() for line in ax.lines[:2]] == ["late one", "early one"]
+    first, second, unnamed, _ = ax.lines
+    assert first.get_linestyle() == second.get_linestyle() == "--"
+    assert first.get_color() != second.get_color()
+    assert first.get_marker() != second.get_marker()
+    assert unnamed.get_color() == first.get_color()
+    assert unnamed.get_label().startswith("_")  # not in a legend
+    small_legend(ax, "upper left", ncols=2)
+    assert [text.get_fontsize() for text in ax.get_legend().get_texts()] == [7.0, 7.0]
+
+
+def test_times_are_plain_numbers():
+    figure, (ax,) = axes_row()
+    ax.plot([0.03, 300.0], [1.0, 1.0])
+    log_log(ax)
+    plain_times(ax)
+    figure.canvas.draw()
+    labels = [label.get_text() for label in ax.get_xticklabels()]
+    assert [label for label in labels if 0.03 <= float(label) <= 300.0] == ["0.1", "1", "10", "100"]

@@ -10,7 +10,7 @@ from fracparticles.errors import FracparticlesError
 from fracstudy.inputs import Inputs
 from fracstudy.style import save
 from scene_functions import figure, measured, study
-from scenes.run_times.contests import best, duration, front, trials_of
+from scenes.run_times.contests import best, columns, duration, front, trials_of
 from scenes.run_times.first_call import benchmark as programs
 from scenes.run_times.run_time_goals.study import behind
 from scenes.run_times.step_times.benchmark import benchmark as step_times
@@ -39,6 +39,25 @@ def frame(problem: str = "mixture", beta: float = 0.5) -> pd.DataFrame:
 
 def inputs(**benchmarks) -> Inputs:
     return Inputs(scene="s", benchmarks=benchmarks)
+
+
+def test_a_heading_says_its_unit():
+    data = pd.DataFrame({"t": [2e-3], "m": [3e6], "who": ["a"]})
+    names = {
+        "who": "who",
+        "set-up / ms": "t",
+        "set-up / s": "t",
+        "memory / MB": "m",
+        "a / its own": "m",
+    }
+    (row,) = columns(data, names).to_dict("records")
+    assert row == {
+        "who": "a",
+        "set-up / ms": 2.0,
+        "set-up / s": 2e-3,
+        "memory / MB": 3.0,
+        "a / its own": 3e6,
+    }
 
 
 def test_the_best_is_the_fastest_that_is_good_enough():
