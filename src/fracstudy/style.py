@@ -33,6 +33,9 @@ __all__ = [
     "RED",
     "SKY",
     "UNDERLAID",
+    "Axes",
+    "Figure",
+    "Look",
     "axes_row",
     "curves",
     "draw",
@@ -57,13 +60,16 @@ __all__ = [
 mpl.use("Agg")
 mpl.style.use(Path(__file__).with_name("fracstudy.mplstyle"))
 
+Look = dict[str, Any]
+"""What a line, a point or a text is drawn with: keywords of matplotlib."""
+
 # Okabe & Ito (2008); one colour and one marker for each scheme, everywhere.
 BLUE, RED, GREEN = "#0072B2", "#D55E00", "#009E73"
 PINK, SKY, ORANGE = "#CC79A7", "#56B4E9", "#E69F00"
 COLOURS = {name: scheme.colour for name, scheme in ALL_SCHEMES.items()} | {"exact": "#000000"}
 MARKERS = {name: scheme.marker for name, scheme in ALL_SCHEMES.items()} | {"exact": ""}
 
-UNDERLAID: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
+UNDERLAID: Look = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 """The exact solution, below what is computed."""
 ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 

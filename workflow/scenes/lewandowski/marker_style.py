@@ -1,13 +1,9 @@
 """How the figures of the marker method look."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import BLUE, COLOURS, GREEN, ORANGE, PINK, RED, SKY
+from fracstudy.style import BLUE, COLOURS, GREEN, ORANGE, PINK, RED, SKY, Axes, Figure, Look
 
 # One colour for each shape function in all figures of the marker method.
 SHAPE_COLOURS = {
@@ -26,8 +22,8 @@ LOADING_LOOKS = {
     "random": ("random in [−1, 1]", RED, "s"),
     "wide": ("uniform in [−L, L]", ORANGE, "^"),
 }
-EXACT: dict[str, Any] = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
-HOLLOW: dict[str, Any] = {"marker": "o", "linestyle": "", "markerfacecolor": "white"}
+EXACT: Look = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
+HOLLOW: Look = {"marker": "o", "linestyle": "", "markerfacecolor": "white"}
 HOLLOW["markersize"] = 3.5
 
 

@@ -3,11 +3,9 @@
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import ERROR, axes_row, log_log, scheme_lines
+from fracstudy.style import ERROR, Axes, Figure, Look, axes_row, log_log, scheme_lines
 
 _TITLES = {"truncated": "truncated (the paper's)", "open": "open exterior (ours)"}
 
@@ -19,7 +17,7 @@ def exterior_panels(series: pd.DataFrame, **options: Any) -> tuple[Figure, list[
         here = pick(series, exterior=exterior)
         scheme_lines(ax, here[here["scheme"] != "GPSE"])
         # On a truncated lattice it lies on KPSE of order IV.
-        large: dict[str, Any] = {"markersize": 8.0, "markerfacecolor": "none", "zorder": 3}
+        large: Look = {"markersize": 8.0, "markerfacecolor": "none", "zorder": 3}
         scheme_lines(ax, pick(here, scheme="GPSE"), **large)
         log_log(ax)
     axes[0].set_ylabel(ERROR)

@@ -5,18 +5,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib import colormaps
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, RED, axes_row, draw, entry, note
+from fracstudy.style import COLOURS, RED, Axes, Figure, Look, axes_row, draw, entry, note
 
 _ABOVE = 1.5  # the spacing that calls for remeshing, in units of h
-_DASHES: dict[str, Any] = {"linewidth": 0.7, "linestyle": (0, (4, 3))}
+_DASHES: Look = {"linewidth": 0.7, "linestyle": (0, (4, 3))}
 _EXACT = {"color": "0.15", **_DASHES}
-_DOTS: dict[str, Any] = {"color": RED, "marker": "o", "markersize": 2.5, "linestyle": ""}
+_DOTS: Look = {"color": RED, "marker": "o", "markersize": 2.5, "linestyle": ""}
 _DOTS |= {"alpha": 0.5, "markeredgewidth": 0.0}
-_NOTE: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "color": "0.35"}
+_NOTE: Look = {"xycoords": ("axes fraction", "data"), "color": "0.35"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -35,8 +33,8 @@ def _legend(ax: Axes, columns: int = 2, **options: Any) -> None:
 
 def _paths(ax: Axes, series: pd.DataFrame) -> None:
     last = series["label"].max()
-    bulk: dict[str, Any] = {"color": COLOURS["DVM"], "alpha": 0.55, "linewidth": 1.0}
-    end: dict[str, Any] = {"color": RED, "linewidth": 1.4}
+    bulk: Look = {"color": COLOURS["DVM"], "alpha": 0.55, "linewidth": 1.0}
+    end: Look = {"color": RED, "linewidth": 1.4}
     for (name, particle), path in series.groupby(["series", "label"]):
         look = end if particle in (0, last) else bulk
         draw(ax, path, **(_EXACT if name == "exact" else look))
@@ -69,8 +67,8 @@ def _spacings(ax: Axes, series: pd.DataFrame) -> None:
 
 def _overlaps(ax: Axes, series: pd.DataFrame) -> None:
     of_exact = r"exact, $2\,(t_0/t)^{1/\alpha}$"
-    dvm: dict[str, Any] = {"color": COLOURS["DVM"]}
-    looks: dict[str, dict[str, Any]] = {
+    dvm: Look = {"color": COLOURS["DVM"]}
+    looks: dict[str, Look] = {
         "exact": {**_EXACT, "linewidth": 0.8, "zorder": 3, "label": of_exact},
         "none, bulk": {**dvm, "linewidth": 2.2, "alpha": 0.6, "label": "not remeshed, bulk"},
         "none, ends": {**dvm, "linewidth": 1.0, "label": "not remeshed, ends"},

@@ -1,14 +1,10 @@
 """What remeshing does to the error of DVM."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, entry, log_log, name_ticks, note, slope_triangle
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, entry, log_log, name_ticks, note
 
 _REMESHINGS = {  # colour, marker, label
     "M4'": (style.BLUE, "o", "$M_4'$"),
@@ -16,7 +12,7 @@ _REMESHINGS = {  # colour, marker, label
     "none": (style.GREEN, "^", "none"),
 }
 _KINDS = {"II, field (7)": "-", "II, strengths": ":", "IV, field (7)": "--"}
-_BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 2}
+_BELOW: Look = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 2}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: float) -> Figure:
@@ -30,7 +26,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: float) -> Figure
     return drawn
 
 
-def _look(remeshing: str, kind: str = "field", order: int = 2) -> dict[str, Any]:
+def _look(remeshing: str, kind: str = "field", order: int = 2) -> Look:
     colour, marker, _ = _REMESHINGS[remeshing]
     line = ":" if kind == "strengths" else "--" if order == 4 else "-"
     face = colour if kind == "field" and order == 2 else "none"
@@ -50,14 +46,14 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
     spacings = sorted(series["x"].unique())
     if len(spacings) > 1:
         x = spacings[-2]
-        slope_triangle(ax, x, 0.2 * series.loc[series["x"] == x, "y"].min(), 2.0)
+        style.slope_triangle(ax, x, 0.2 * series.loc[series["x"] == x, "y"].min(), 2.0)
     _plain_ticks(ax, [0.01, 0.02, 0.05, 0.1, 0.2, 0.5])
     ax.legend(handles=names + lines, **_BELOW)
 
 
 def _deviations(ax: Axes, series: pd.DataFrame) -> None:
     here = series[(series["order"] == 2) & (series["remeshing"] != "none")]
-    looks: dict[str, dict[str, Any]] = {
+    looks: dict[str, Look] = {
         "field": {"linestyle": "-", "marker": ""},
         "strengths": {"linestyle": ":", "marker": ".", "markersize": 3.5, "linewidth": 0.8},
     }

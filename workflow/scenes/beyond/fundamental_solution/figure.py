@@ -1,20 +1,17 @@
 """The relative error of two evaluations of the fundamental solution."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, RED, axes_row, entry, legend_below, log_log
+from fracstudy.style import BLUE, RED, Figure, Look, axes_row, entry, legend_below, log_log
 
 _FLOOR = 2.0**-54  # where errors of zero are drawn
-_CURVES: dict[str, dict[str, Any]] = {
+_CURVES: dict[str, Look] = {
     "scipy": {"color": RED, "marker": "s", "label": "scipy.stats.levy_stable"},
     "ours": {"color": BLUE, "marker": "o", "label": "ours"},
 }
-_ROUND_OFF: dict[str, Any] = {"color": "0.5", "linestyle": ":", "label": "round-off, $2^{-53}$"}
+_ROUND_OFF: Look = {"color": "0.5", "linestyle": ":", "label": "round-off, $2^{-53}$"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[float]) -> Figure:

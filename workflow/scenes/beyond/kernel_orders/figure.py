@@ -1,15 +1,11 @@
 """Error (48) against h for kernels of order 2 to 12, down to the floor."""
 
-from typing import Any
-
 import matplotlib as mpl
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below, log_log, name_ticks, scheme_style
+from fracstudy.style import Axes, Figure, Look, axes_row, legend_below, log_log, scheme_style
 
 _SHADES = mpl.colormaps["viridis_r"]
 _STYLES = ("-", "--", ":")
@@ -26,7 +22,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         _panel(ax, part, scheme, orders)
         ax.plot(floor["h"], floor["error"], label="GPSE, one step", **_FLOOR)
         log_log(ax, xlabel="particle spacing $h$")
-        name_ticks(ax, sorted(part["h"].unique()), form=".2g")
+        style.name_ticks(ax, sorted(part["h"].unique()), form=".2g")
         ax.set_title(scheme, loc="right", color=scheme_style(scheme)["color"])
     axes[0].set_ylabel(style.ERROR)
     legend_below(drawn, axes[0], columns=5)
@@ -36,7 +32,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 def _panel(ax: Axes, part: pd.DataFrame, scheme: str, orders: list[int]) -> None:
     overlaps = sorted(part["overlap"].unique())
     marker = scheme_style(scheme)["marker"]
-    look: dict[str, Any] = {"marker": marker, "markersize": 3.0, "linewidth": 1.2}
+    look: Look = {"marker": marker, "markersize": 3.0, "linewidth": 1.2}
     for (order, overlap), points in part.groupby(["order", "overlap"]):
         colour = _SHADES(0.08 + 0.9 * orders.index(order) / max(len(orders) - 1, 1))
         line = _STYLES[overlaps.index(overlap) % len(_STYLES)]

@@ -4,14 +4,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
-from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from fracstudy.inputs import ORDERS
 from fracstudy.panels import pick
+from fracstudy.style import Axes, Figure, Look
 from scenes.plane import DISK
 
 _EXTERIORS = {"truncated": "truncated", "open": "open exterior"}
@@ -20,7 +19,7 @@ _COLOURS: dict[str, dict[str, str]] = {  # of the maps, and of the disk of (59)
     "u": {"cmap": "viridis", "disk": "white"},
     "error": {"cmap": "magma", "disk": "0.9"},
 }
-_BARS: dict[str, dict[str, Any]] = {
+_BARS: dict[str, Look] = {
     "u": {"label": r"strength $u(\mathbf{x}, t_f)$", "shrink": 0.9, "aspect": 18, "extend": "min"},
     "error": {"label": r"relative error $|u\,/\,G - 1|$", "shrink": 0.6, "aspect": 36},
 }
@@ -58,7 +57,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, maps: list[list[Any]]) 
 def _map(ax: Axes, part: pd.DataFrame, norm: Normalize, what: str) -> None:
     colours, ticks = _COLOURS[what], [-DISK, 0.0, DISK]
     x, field = _whole(part)
-    look: dict[str, Any] = {"norm": norm, "cmap": colours["cmap"], "shading": "nearest"}
+    look: Look = {"norm": norm, "cmap": colours["cmap"], "shading": "nearest"}
     ax.pcolormesh(x, x, field.T, rasterized=True, **look)
     # What is not positive has no place on a logarithmic scale.
     ax.set_facecolor("#D55E00")

@@ -1,22 +1,18 @@
 """Errors on a cube, against h and against the work."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fracstudy import style
 from fracstudy.inputs import NUMERALS
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, axes_row, entry, legend_below, log_log, scheme_style
+from fracstudy.style import COLOURS, Axes, Figure, Look, axes_row, entry, legend_below, log_log
 
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
 _SIZES = {"truncated": 7.0, "open": 3.6}
 _NAMES = {"truncated": "truncated", "open": "open exterior"}
 _TRIANGLES = (("FPSE", 2, "truncated", 1.9), ("KPSE", 4, "open", 0.45))
-_SMALL: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "center", "fontsize": 7.5}
+_SMALL: Look = {"xycoords": ("data", "axes fraction"), "ha": "center", "fontsize": 7.5}
 _SMALL["color"] = COLOURS["GPSE"]
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["GPSE"], "shrinkB": 0.0}
 
@@ -46,9 +42,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _look(scheme: str, order: int, exterior: str) -> dict[str, Any]:
+def _look(scheme: str, order: int, exterior: str) -> Look:
     face = "none" if exterior == "truncated" else COLOURS[scheme]
-    return scheme_style(scheme, order, markersize=_SIZES[exterior], markerfacecolor=face)
+    return style.scheme_style(scheme, order, markersize=_SIZES[exterior], markerfacecolor=face)
 
 
 def _name_below(ax: Axes, points: pd.DataFrame, x: str) -> None:

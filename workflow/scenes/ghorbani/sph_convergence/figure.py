@@ -1,17 +1,15 @@
 """The convergence of the SPH operators."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, entry, legend_below, log_log, slope_triangle
+from fracstudy.style import Figure, Look, axes_row, draw, entry, legend_below, log_log
 from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
 
 _PANELS = (("rl_integral", "sin"), ("caputo", "cos"), ("rl_derivative", "sin"))
-_FAINT: dict[str, Any] = {"color": SUMS["modified"][1], "alpha": 0.35}
+_FAINT: Look = {"color": SUMS["modified"][1], "alpha": 0.35}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -33,7 +31,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         ax.minorticks_off()
         top = pick(shown, method="standard", order="constant")
         y = float(np.interp(ticks[1], top["x"][::-1], top["y"][::-1]))
-        slope_triangle(ax, ticks[1], 0.45 * y, 1.0)
+        style.slope_triangle(ax, ticks[1], 0.45 * y, 1.0)
     axes[0].set_ylabel("relative error $L_2$ (39)")
     entries = [entry(label, color=colour, marker=marker) for label, colour, marker in SUMS.values()]
     entries.append(entry(r"variable $\alpha(x)$", color="0.3", linestyle="--"))

@@ -1,18 +1,14 @@
 """An SPH operator on the four functions: Figs. 3 to 9."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import entry, legend_below
+from fracstudy.style import Axes, Figure, Look, entry, legend_below
 from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
 
 _LEAST = 1e-9  # a smaller error, where a curve happens to cross zero, is not drawn
-_HOLLOW: dict[str, Any] = {"marker": "o", "linestyle": "", "markerfacecolor": "none"}
+_HOLLOW: Look = {"marker": "o", "linestyle": "", "markerfacecolor": "none"}
 _HOLLOW["color"] = SUMS["standard"][1]
 
 

@@ -1,9 +1,8 @@
 """The cubic spline of Fig. 2, and its sums over the particles."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import BLUE, GREEN, RED, axes_row, draw, note
+from fracstudy.style import BLUE, GREEN, RED, Figure, axes_row, draw, note
 
 # Label, colour and, in the first panel, place of the label.
 _KERNEL = {

@@ -1,11 +1,9 @@
 """Markers per eps, the best eps, the parts of the error, and a field that turns negative."""
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import RED, axes_row, draw, log_log, name_ticks, note
+from fracstudy.style import RED, Axes, Figure, axes_row, draw, log_log, name_ticks, note
 from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 from scenes.lewandowski.square_profile import LOADINGS, SquareRuns
 

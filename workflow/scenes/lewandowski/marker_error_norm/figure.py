@@ -2,11 +2,9 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, entry, legend_below, name_ticks, note
+from fracstudy.style import Axes, Figure, axes_row, draw, entry, legend_below, name_ticks, note
 from scenes.lewandowski.marker_style import LOADING_LOOKS, symbol
 
 

@@ -1,10 +1,9 @@
 """Figs. 8-10: F on the fixed grid."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import draw, entry, legend_below
+from fracstudy.style import Figure, draw, entry, legend_below
 from scenes.lewandowski import marker_style as look
 
 

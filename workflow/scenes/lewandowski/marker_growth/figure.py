@@ -3,11 +3,9 @@
 from itertools import cycle
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import RED, axes_row, draw, entry, legend_below, name_ticks, note
+from fracstudy.style import RED, Axes, Figure, axes_row, draw, entry, legend_below, name_ticks, note
 from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 
 _HOLLOW = {"marker": "o", "markerfacecolor": "white", "linestyle": ""}

@@ -3,11 +3,9 @@
 from itertools import chain
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, RED, draw, legend_below
+from fracstudy.style import BLUE, RED, Axes, Figure, draw, legend_below
 from scenes.lewandowski.marker_style import EXACT, SHAPE_COLOURS
 
 _LOADINGS = {"uniform": ("uniform", BLUE, ":"), "equal": ("equal weight", RED, "--")}

@@ -1,14 +1,10 @@
 """Figs. 11-13: F on the moving grid of the markers, and their spectrum."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import draw, entry, legend_below, note
+from fracstudy.style import Axes, Figure, Look, draw, entry, legend_below, note
 from scenes.lewandowski import marker_style as look
 
 _REPRESENTED = {"color": "0.55", "linewidth": 0.9}
@@ -56,7 +52,7 @@ def _spectrum(ax: Axes, series: pd.DataFrame, colour: str) -> None:
     draw(ax, pick(series, panel="spectrum"), color=colour)
     ax.axhline(1.0, color="0.3", linewidth=0.8)
     fastest = float(pick(series, panel="fastest")["x"].iloc[0])
-    small: dict[str, Any] = {"va": "top", "fontsize": 7.5, "color": "0.3"}
+    small: Look = {"va": "top", "fontsize": 7.5, "color": "0.3"}
     if fastest > 0.0:
         ax.axvline(fastest, color="0.3", linewidth=0.9, linestyle="--")
         ax.text(fastest + 0.12, 220.0, "fastest growth", **small)

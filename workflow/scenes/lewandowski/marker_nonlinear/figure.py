@@ -1,18 +1,14 @@
 """Nonlinear diffusion by markers, Figs. 17 and 18, with the limit of the step and the equation's own solution."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, axes_row, draw, log_log, note
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, Axes, Figure, Look, draw, log_log, note
 from scenes.lewandowski.marker_style import HOLLOW
 
-_SMALL: dict[str, Any] = {"fontsize": 7.5}
+_SMALL: Look = {"fontsize": 7.5}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, dt: float, scan_until: float) -> Figure:
@@ -23,7 +19,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, dt: float, scan_until: 
         "the flank: the equation loses $f > 0$",
         "a power of $t$",
     ]
-    figure, axes = axes_row(titles, width=4.3, height=3.3, rows=2)
+    figure, axes = style.axes_row(titles, width=4.3, height=3.3, rows=2)
     _profiles(axes[0], pick(series, panel="profile"))
     _steps(axes[1], pick(series, panel="step"), dt)
     _lost(axes[2], pick(series, panel="lost"))

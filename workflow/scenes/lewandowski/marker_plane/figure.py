@@ -3,10 +3,9 @@
 from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, ORANGE, RED, axes_row, draw
+from fracstudy.style import BLUE, ORANGE, RED, Figure, Look, axes_row, draw
 from scenes.lewandowski.marker_style import EXACT
 
 _LOOKS = {
@@ -14,7 +13,7 @@ _LOOKS = {
     "decoupled, weighted": (ORANGE, "s"),
     "x first, then y": (BLUE, "^"),
 }
-_GREYS: dict[str, Any] = {
+_GREYS: Look = {
     "levels": [0.02, 0.1, 0.3, 0.6, 0.9, 1.2],
     "colors": ["0.95", "0.88", "0.8", "0.72", "0.64"],
 }

@@ -1,12 +1,9 @@
 """The shape functions and their Fourier transforms."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import RED, axes_row, draw, legend_below, note
+from fracstudy.style import RED, Figure, Look, axes_row, draw, legend_below, note
 from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 from scenes.lewandowski.square_profile import SHAPES
 
@@ -24,7 +21,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, wavenumbers: float) -> 
     transforms.set(xlim=(0.0, wavenumbers), ylim=(-0.25, 0.4))
     transforms.set_xlabel(r"wavenumber $k = \varepsilon q$")
     transforms.set_ylabel(r"Fourier transform $\widehat{S}(k)$")
-    place: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
+    place: Look = {"xycoords": "axes fraction", "ha": "right"}
     note(transforms, "negative: perturbations grow", (0.98, 0.03), (0, 0), color="#A04000", **place)
     legend_below(figure, shapes, columns=8)
     return figure

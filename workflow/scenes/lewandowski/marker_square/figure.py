@@ -2,11 +2,9 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import draw, entry, legend_below, name_ticks
+from fracstudy.style import Axes, Figure, draw, entry, legend_below, name_ticks
 from scenes.lewandowski.marker_style import EXACT, LOADING_LOOKS
 from scenes.lewandowski.square_profile import SquareRuns
 

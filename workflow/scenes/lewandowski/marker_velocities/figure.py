@@ -3,12 +3,10 @@
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, legend_below, log_log, name_ticks, note, slope_triangle
+from fracstudy.style import Axes, Figure, axes_row, draw, legend_below, log_log, name_ticks, note
 from scenes.lewandowski.marker_style import HOLLOW
 
 _PROFILES: dict[str, tuple[str, dict[str, Any]]] = {
@@ -88,4 +86,4 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
         draw(ax, part, color=colour, marker=marker, linestyle=line, label=label)
     log_log(ax, xlabel="number of markers $N$", ylabel="relative $L^1$ error")
     name_ticks(ax, sorted(series.loc[~series["series"].str.startswith("KdV"), "x"].unique()))
-    slope_triangle(ax, 140.0, 0.75 * series["y"].min(), -1.0)
+    style.slope_triangle(ax, 140.0, 0.75 * series["y"].min(), -1.0)

@@ -1,18 +1,15 @@
 """The change of the total strength over time."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, draw, log_log, name_ticks, note, scheme_style
+from fracstudy.style import Figure, Look, axes_row, draw, log_log, name_ticks, note, scheme_style
 
 _FLOOR = float(np.finfo(float).eps) / 2.0  # a change of zero is drawn here
-_OUTFLOW: dict[str, Any] = {"color": "black", "linewidth": 4.0, "alpha": 0.25}
-_RINGS: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "none"}
+_OUTFLOW: Look = {"color": "black", "linewidth": 4.0, "alpha": 0.25}
+_RINGS: Look = {"markerfacecolor": "none", "linestyle": "none"}
 _SIZES = {"DD": 9.0, "FPSE": 7.0, "KPSE": 5.0}  # of the rings
-_FREE: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "--"}  # not remeshed
+_FREE: Look = {"markerfacecolor": "none", "linestyle": "--"}  # not remeshed
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

@@ -1,22 +1,19 @@
 """The stability of DVM and GPSE against the limit of DD."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, ERROR, axes_row, log_log, name_ticks, scheme_style
+from fracstudy.style import COLOURS, ERROR, Axes, Figure, Look, axes_row, log_log, scheme_style
 
 _STOPPED = 3.0  # where the marks of runs that stop are drawn
-_LOOKS: dict[str, dict[str, Any]] = {
+_LOOKS: dict[str, Look] = {
     "DVM, no remeshing": scheme_style("DVM", markerfacecolor="none", linestyle="--"),
     "DVM, M4'": scheme_style("DVM"),
     "GPSE, open exterior": scheme_style("GPSE"),
 }
-_CROSS: dict[str, Any] = {"marker": "x", "linestyle": "", "markersize": 6, "markeredgewidth": 1.5}
+_CROSS: Look = {"marker": "x", "linestyle": "", "markersize": 6, "markeredgewidth": 1.5}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -38,7 +35,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 def _factors(ax: Axes, series: pd.DataFrame) -> None:
     waves = pick(series, run="DVM").sort_values("factor")
     largest = waves["factor"].max()
-    hollow: dict[str, Any] = {"color": COLOURS["DVM"], "linestyle": "", "markerfacecolor": "none"}
+    hollow: Look = {"color": COLOURS["DVM"], "linestyle": "", "markerfacecolor": "none"}
     fine = np.linspace(0.0, largest, 200)
     z = -2.0 * fine
     predicted = r"$1 + z + z^2/2$, $z = \Delta t\,A_\mathrm{DD}$"
@@ -65,5 +62,5 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
             ax.plot(stopped, marks, color=_LOOKS[name]["color"], label=label, **_CROSS)
     log_log(ax)
     low, high = ax.get_xlim()
-    name_ticks(ax, [tick for tick in (0.25, 0.5, 1.0, 2.0, 4.0) if low <= tick <= high])
+    style.name_ticks(ax, [tick for tick in (0.25, 0.5, 1.0, 2.0, 4.0) if low <= tick <= high])
     ax.set_ylabel(ERROR)

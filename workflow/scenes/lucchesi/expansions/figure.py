@@ -1,20 +1,17 @@
 """Figs A.10-A.12: the reduced Green's function and its two representations."""
 
-from typing import Any
-
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, axes_row, entry, legend_below, log_log
+from fracstudy.style import COLOURS, Figure, Look, axes_row, entry, legend_below, log_log
 
 _FLOOR = 2.0**-54  # where errors of zero are drawn
 _CEILING = 1e6  # above both panels, below where the axes would overflow
 _SUMS = {"series": ("Blues", "(A.1), K"), "asymptotic": ("Oranges", "(A.2), A")}
-_EXACT: dict[str, Any] = {"color": COLOURS["exact"], "linewidth": 3.0, "alpha": 0.25}
-_SYMBOLS: dict[str, Any] = {"linestyle": "", "markersize": 4, "markerfacecolor": "white"}
+_EXACT: Look = {"color": COLOURS["exact"], "linewidth": 3.0, "alpha": 0.25}
+_SYMBOLS: Look = {"linestyle": "", "markersize": 4, "markerfacecolor": "white"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, alpha: float) -> Figure:
@@ -30,8 +27,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, alpha: float) -> Figure
             y = curve["y"].to_numpy()
             error = np.abs(y / exact.to_numpy() - 1.0)
             symbols = {} if name == "series" else {**_SYMBOLS, "marker": marker}
-            style: dict[str, Any] = {"color": colour, **symbols}
-            every: dict[str, Any] = {"markevery": 7} if symbols else {}
+            style: Look = {"color": colour, **symbols}
+            every: Look = {"markevery": 7} if symbols else {}
             inside = np.where((y > 0.0) & (y < _CEILING), y, np.nan)
             left.plot(curve["x"], inside, **style, **every)
             right.plot(curve["x"], np.clip(error, _FLOOR, _CEILING), **style, **every)

@@ -5,11 +5,10 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, entry, legend_below, log_log, name_ticks, note
+from fracstudy.style import Figure, axes_row, draw, entry, legend_below, log_log, name_ticks, note
 
 _LINES = {2: ("-", "order II"), 4: ("--", "order IV")}
 

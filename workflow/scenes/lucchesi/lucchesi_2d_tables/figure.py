@@ -1,10 +1,9 @@
 """The errors of DD and FPSE with exact kernels and with kernels from tables."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, axes_row, scheme_style, slope_triangle
+from fracstudy.style import COLOURS, Figure, axes_row, scheme_style, slope_triangle
 from scenes.plane import spacing_axes
 
 _LEGENDS = {"DD": "lower right", "FPSE": "upper left"}

@@ -1,13 +1,9 @@
 """The kernels of Fig. 1."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
-from fracstudy.style import axes_row, draw, entry, legend_below, log_log, note
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, entry, legend_below, log_log, note
 
 # One colour a beta; no schemes are drawn here.
 _COLOURS = (style.BLUE, style.RED, style.GREEN, style.PINK, style.ORANGE, style.SKY)
@@ -17,7 +13,7 @@ _NAMES = {
     "--": "$K$, order II",
     ":": "$K$, order IV",
 }
-_ARROW: dict[str, Any] = {"arrowstyle": "-", "color": "0.5", "linewidth": 0.8}
+_ARROW: Look = {"arrowstyle": "-", "color": "0.5", "linewidth": 0.8}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -51,7 +47,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     lowest = curves.loc["near", "K", 4].sort_values("y").iloc[0]
     if lowest["y"] < 0.0:
         text, at = "order IV is\nnegative here", (lowest["x"], lowest["y"])
-        look: dict[str, Any] = {"va": "bottom", "color": colours[lowest["beta"]]}
+        look: Look = {"va": "bottom", "color": colours[lowest["beta"]]}
         near.annotate(text, at, xytext=(3.5, -0.036), arrowprops=_ARROW, **look)
 
     entries = [entry(rf"$\beta = {b:g}$", color=c) for b, c in colours.items()]

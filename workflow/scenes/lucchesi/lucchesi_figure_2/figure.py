@@ -1,10 +1,9 @@
 """Fig. 2: exact and computed solutions of the reference case, at the peak and at the boundary."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import UNDERLAID, axes_row, draw, legend_below, scheme_style
+from fracstudy.style import UNDERLAID, Figure, axes_row, draw, legend_below, scheme_style
 
 _SCHEMES = {
     "DD": "DD",

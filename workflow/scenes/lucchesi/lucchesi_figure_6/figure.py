@@ -2,9 +2,8 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, axes_row, log_log, note
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, Figure, axes_row, log_log, note
 
 _FLOOR = 2.0**-53  # where smaller deviations are drawn
 # By dimension: colour, name, and the power of the tail, with the side of the curve that it is named on.

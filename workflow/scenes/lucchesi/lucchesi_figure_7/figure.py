@@ -5,11 +5,9 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, scheme_style, slope_triangle
+from fracstudy.style import Axes, Figure, axes_row, scheme_style, slope_triangle
 from scenes.plane import spacing_axes
 
 _RATE = r"$\Delta^\alpha u(r, t = {time:g})$"

@@ -1,16 +1,13 @@
 """The solution along two lines, and its error, truncated and open."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import UNDERLAID, entry, legend_below, note, panel_title, scheme_style
+from fracstudy.style import UNDERLAID, Axes, Figure, Look, entry, legend_below, note, scheme_style
 from scenes.plane import DISK
 
-_NOTE: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
+_NOTE: Look = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
 _OPEN = {"linestyle": "--", "marker": ""}
 
 
@@ -24,7 +21,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         edge = here["r"].max()
         _profiles(column[0], pick(here, exterior="truncated"), lowest)
         _errors(column[1], here)
-        panel_title(column[0], letter, f"along ${line}$")
+        style.panel_title(column[0], letter, f"along ${line}$")
         for ax in column:
             ax.axvline(edge, color="0.6", linewidth=0.8)
             ax.axvline(DISK, color="0.6", linewidth=0.8, linestyle=":")
@@ -49,13 +46,13 @@ def _profiles(ax: Axes, here: pd.DataFrame, lowest: float) -> None:
     ax.plot(exact["r"], exact["exact"], **UNDERLAID)
     for k, (scheme, part) in enumerate(here.groupby("scheme", sort=False)):
         every = max(1, len(part) // 12)
-        style = scheme_style(scheme, markevery=(k * every // 3, every), linewidth=0.9)
-        ax.plot(part["r"], part["u"].where(part["u"] > lowest), **style)
+        look = scheme_style(scheme, markevery=(k * every // 3, every), linewidth=0.9)
+        ax.plot(part["r"], part["u"].where(part["u"] > lowest), **look)
 
 
 def _errors(ax: Axes, here: pd.DataFrame) -> None:
     for (scheme, exterior), part in here.groupby(["scheme", "exterior"], sort=False):
-        more: dict[str, Any] = {"linewidth": 1.2, "markevery": max(1, len(part) // 9)}
+        more: Look = {"linewidth": 1.2, "markevery": max(1, len(part) // 9)}
         if exterior == "open":
             more = {**_OPEN, "linewidth": 0.9}
         ax.plot(part["r"], part["error"].abs(), **scheme_style(scheme, **more))

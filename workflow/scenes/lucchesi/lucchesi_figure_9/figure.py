@@ -1,22 +1,20 @@
 """Error (59) against the particle spacing: the paper's runs, and all schemes."""
 
 from itertools import product
-from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, axes_row, entry, note, scheme_style, slope_triangle
+from fracstudy.style import COLOURS, Figure, Look, entry, note, scheme_style, slope_triangle
 from scenes.plane import spacing_axes
 
 _PAPER = ("DD", "FPSE")
 _SCHEMES = ("DD", "FPSE", "KPSE", "GPSE")
-_HOLLOW: dict[str, Any] = {"markerfacecolor": "white"}
-_LEGEND: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (-0.08, -0.17)}
-_POINT: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": ""}
-_FINER: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
+_HOLLOW: Look = {"markerfacecolor": "white"}
+_LEGEND: Look = {"loc": "upper left", "bbox_to_anchor": (-0.08, -0.17)}
+_POINT: Look = {"color": "0.3", "marker": "o", "linestyle": ""}
+_FINER: Look = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
 _FINER |= {"color": "0.4", "fontsize": 7.5}
 _KEY = [
     *style.legend_entries((name, None) for name in _SCHEMES),
@@ -32,7 +30,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -
     series = pick(series, C=series["C"].min()).sort_values("h")
     groups = dict(iter(series.groupby(["scheme", "order", "exterior"])))
     titles = ("DD and FPSE, truncated", "all schemes")
-    figure, (paper, ours) = axes_row(titles, width=4.3, height=4.3)
+    figure, (paper, ours) = style.axes_row(titles, width=4.3, height=4.3)
     for scheme in _PAPER:
         part = groups[scheme, "II", "truncated"]
         look = scheme_style(scheme)

@@ -125,7 +125,10 @@ def study(inputs: Inputs, *, beta: list[float], particles: int, spacing: float) 
         measured("L-T1.DVM", difference=worst["DVM"], order=velocity),
         measured("L-T1.FD", order=consistency, difference=worst["FD"]),
         *(
-            measured(f"L-COST.{s}", defect=each(lambda b, s=s: _defect(s, setting(b)), beta=beta))
+            measured(
+                f"L-COST.{s}",
+                defect=each(lambda b, s=s: _toeplitz_defect(s, setting(b)), beta=beta),
+            )
             for s in ("KPSE", "DPSE", "FPSE")
         ),
         measured("L-COST.cheaper", others=all_pairs, ratio=_pairs_ratio()),
@@ -183,7 +186,7 @@ def consistency_order(alpha: float) -> float:
     return float(observed_order(_WAVES, defect).min())
 
 
-def _defect(name: str, s: Setting) -> float:
+def _toeplitz_defect(name: str, s: Setting) -> float:
     """The largest change of the matrix along its diagonals, but for the main one, over its largest entry there.
 
     It is zero exactly if the rate of change is one convolution sum and a multiple of u_i.

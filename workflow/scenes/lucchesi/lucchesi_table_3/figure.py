@@ -1,18 +1,15 @@
 """The stability limit against beta and the symbols behind it (Table 3)."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, MARKERS, axes_row, draw, entry, legend_below, note
+from fracstudy.style import COLOURS, MARKERS, Figure, Look, axes_row, draw, entry, legend_below
 
-_LINES: dict[str, Any] = {"II": "-", "IV": "--"}
+_LINES: Look = {"II": "-", "IV": "--"}
 _ABOVE = {"FPSE": 0.45, "DD": 0.2, "KPSE": 0.2}  # where the name of a scheme stands over its curve
-_PRINTED: dict[str, Any] = {"linestyle": "", "markerfacecolor": "white"}
+_PRINTED: Look = {"linestyle": "", "markerfacecolor": "white"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> Figure:
@@ -42,7 +39,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> F
         right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, color=colour)
     edge = exact[exact["y"] <= top].iloc[-1]
     place = (edge["x"], edge["y"])
-    note(right, r"exact, $\theta^\alpha$", place, (5, -4), va="top", color=None, fontsize=None)
+    style.note(
+        right, r"exact, $\theta^\alpha$", place, (5, -4), va="top", color=None, fontsize=None
+    )
     right.set(xlim=(0.0, np.pi), ylim=(0.0, top), xlabel=r"wavenumber $\theta = k h$")
     right.set_ylabel(r"symbol $-A(\theta)\, h^\alpha / \mathcal{D}$")
     right.set_xticks(np.pi * np.linspace(0.0, 1.0, 5), ["0", "π/4", "π/2", "3π/4", "π"])

@@ -1,15 +1,12 @@
 """Error (48) against the overlap epsilon / h."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import name_ticks, note, scheme_legend, slope_triangle
+from fracstudy.style import Figure, Look, name_ticks, note, scheme_legend, slope_triangle
 from scenes.lucchesi.exteriors import exterior_panels
 
-_INSIDE: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "bottom"}
+_INSIDE: Look = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "bottom"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown_beta: float) -> Figure:

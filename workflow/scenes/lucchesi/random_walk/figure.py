@@ -1,30 +1,26 @@
 """The random walk beside the particle schemes."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, COLOURS, ERROR, ORANGE, PINK, SKY, axes_row, draw, log_log, note
+from fracstudy.style import BLUE, COLOURS, ERROR, ORANGE, Axes, Figure, Look, draw, log_log, note
 
 _GREEN = COLOURS["KPSE"]
 _WALKERS = ((ORANGE, 3.0, -2), (BLUE, 2.0, -26))  # colour, size of a dot, drop of the note
 # From the longest dt on.
-_STEPS: tuple[dict[str, Any], ...] = (
+_STEPS: tuple[Look, ...] = (
     {"color": BLUE, "marker": "o", "markersize": 4.0, "markerfacecolor": BLUE},
-    {"color": SKY, "marker": "s", "markersize": 6.5, "markerfacecolor": "none"},
-    {"color": PINK, "marker": "D", "markersize": 6.5, "markerfacecolor": "none"},
+    {"color": style.SKY, "marker": "s", "markersize": 6.5, "markerfacecolor": "none"},
+    {"color": style.PINK, "marker": "D", "markersize": 6.5, "markerfacecolor": "none"},
 )
-_SOLUTION: dict[str, Any] = {"color": _GREEN, "linestyle": "", "markerfacecolor": "white"}
+_SOLUTION: Look = {"color": _GREEN, "linestyle": "", "markerfacecolor": "white"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[int]) -> Figure:
     """Draw (a) the density of walkers and the exact one, (b) the error against the number of walkers."""
-    drawn, (density, error) = axes_row(2, height=4.0, width=4.4)
+    drawn, (density, error) = style.axes_row(2, height=4.0, width=4.4)
     _density(density, pick(series, panel="density"), sorted(shown))
     density.set_ylabel(rf"density $u(x, t = {table['t'].max():g})$")
     _error(error, pick(series, panel="error"))
@@ -36,7 +32,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[int]) -> Fi
 def _density(ax: Axes, series: pd.DataFrame, shown: list[int]) -> None:
     walks, exact, scheme = (pick(series, series=name) for name in ("walk", "exact", "KPSE"))
     least = 0.3 * walks.loc[walks["y"] > 0.0, "y"].min()
-    dots: dict[str, Any] = {"marker": "o", "markeredgewidth": 0.0, "linestyle": ""}
+    dots: Look = {"marker": "o", "markeredgewidth": 0.0, "linestyle": ""}
     for n, (colour, size, drop) in zip(shown, _WALKERS, strict=True):
         part = pick(walks, walkers=n)
         label, y = f"{_scientific(n)} walkers", part["y"].where(part["y"] > 0.0)
@@ -57,7 +53,7 @@ def _error(ax: Axes, series: pd.DataFrame) -> None:
     first, last = law.iloc[0], law.iloc[-1]
     end = 200.0 * meet["x"]
     x, y = [first["x"], end], [first["y"], last["y"] * np.sqrt(last["x"] / end)]
-    dashed: dict[str, Any] = {"color": "0.5", "linewidth": 0.9, "linestyle": "--"}
+    dashed: Look = {"color": "0.5", "linewidth": 0.9, "linestyle": "--"}
     ax.plot(x, y, label=r"statistical, $\propto n^{-1/2}$", **dashed)
     for (dt, part), look in zip(sorted(walks.groupby("dt"), reverse=True), _STEPS, strict=False):
         label = rf"walk, $\Delta t = {dt:g}$"

@@ -1,17 +1,14 @@
 """Why the scheme (29) is unstable."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import RED, axes_row, draw, entry, log_log, note, scheme_style
+from fracstudy.style import RED, Axes, Figure, Look, axes_row, draw, entry, log_log, scheme_style
 
 _SHADES = ("#F0A868", "#E58338", "#C65A11", "#8A3A05")  # one hue, light to dark
-_PREDICTED: dict[str, Any] = {"color": "0.3", "linewidth": 0.8, "linestyle": ":"}
-_POINTS: dict[str, Any] = {"markersize": 3.0, "linestyle": "none"}
+_PREDICTED: Look = {"color": "0.3", "linewidth": 0.8, "linestyle": ":"}
+_POINTS: Look = {"markersize": 3.0, "linestyle": "none"}
 _EIGENVALUES = {
     "DD": scheme_style("DD", label="DD", **_POINTS),
     "PSE29": scheme_style("PSE29", label="(29)", color=RED, markerfacecolor=RED, **_POINTS),
@@ -30,16 +27,16 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown_beta: float) -> F
 
 def _kernels(ax: Axes, kernels: pd.DataFrame) -> None:
     groups = kernels.groupby("series", sort=False)
-    for (beta, points), style in zip(groups, ("-", "--", ":"), strict=False):
-        draw(ax, points, style, color="black", label=rf"$\beta = {float(beta):g}$")
+    for (beta, points), look in zip(groups, ("-", "--", ":"), strict=False):
+        draw(ax, points, look, color="black", label=rf"$\beta = {float(beta):g}$")
     ax.axhline(0.0, color="0.5", linewidth=0.8)
     ax.set(xlabel=r"$r = |x| / \epsilon$", ylabel="kernel $G(r)$, Eq. (11)")
     ax.legend(loc="lower right")
 
 
 def _spectrum(ax: Axes, spectrum: pd.DataFrame) -> None:
-    for name, style in _EIGENVALUES.items():
-        draw(ax, pick(spectrum, series=name).sort_values("x"), **style)
+    for name, look in _EIGENVALUES.items():
+        draw(ax, pick(spectrum, series=name).sort_values("x"), **look)
     low, high = spectrum["y"].min(), spectrum["y"].max()
     ax.axhline(0.0, color="0.5", linewidth=0.8)
     ax.axhspan(0.0, 1.15 * high, color=RED, alpha=0.12, linewidth=0)
@@ -57,7 +54,7 @@ def _histories(ax: Axes, history: pd.DataFrame) -> None:
         ax.plot(elapsed, points["y"], color=colour)
         ax.plot(elapsed, points["predicted"], **_PREDICTED)
         end = (elapsed.iloc[-1], points["y"].iloc[-1])
-        note(ax, f"{float(spacing):.3g}", end, (0, 3), ha="center", va="bottom", color=colour)
+        style.note(ax, f"{float(spacing):.3g}", end, (0, 3), ha="center", va="bottom", color=colour)
     highest = history["y"].max()
     log_log(ax, xlabel=r"time $t - t_0$", ylabel="$|u|$ at the end of the lattice")
     ax.set_xlim(left=3e-3 * history["x"].max())

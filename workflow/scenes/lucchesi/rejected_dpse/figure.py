@@ -1,19 +1,15 @@
 """What the end of the lattice does to DPSE, and to the others."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, legend_below, log_log, scheme_style
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, legend_below, log_log, scheme_style
 
 _SCALE = 1e4
 _DISTANCE = r"distance from the end, $(D - x) / \epsilon$"
 # FPSE lies on DPSE.
-_OWN: dict[str, dict[str, Any]] = {"DPSE": {"linewidth": 4.0, "markersize": 8.0}}
+_OWN: dict[str, Look] = {"DPSE": {"linewidth": 4.0, "markersize": 8.0}}
 _OWN["DD"] = {"linestyle": "--"}
 
 

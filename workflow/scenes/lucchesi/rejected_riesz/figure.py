@@ -1,15 +1,12 @@
 """How badly the cut-off potential approximates flux and solution."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import UNDERLAID, axes_row, draw, entry, legend_below, log_log, scheme_style
+from fracstudy.style import UNDERLAID, Figure, Look, axes_row, draw, entry, scheme_style
 
-_PROFILE: dict[str, dict[str, Any]] = {
+_PROFILE: dict[str, Look] = {
     "exact": UNDERLAID,
     "KPSE": scheme_style("KPSE", linestyle="--", marker=""),
     "RIESZ": scheme_style("RIESZ", marker=""),
@@ -40,8 +37,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
                 style.note(
                     ax, f"{alpha:g}", at, (-5, 0), ha="right", va="center", color=look["color"]
                 )
-        log_log(ax, xlabel=r"particle spacing $h = \epsilon / 2$")
+        style.log_log(ax, xlabel=r"particle spacing $h = \epsilon / 2$")
         ax.set_xlim(left=here["x"].min() / 1.8)
     axes[1].set_ylabel(r"relative $L_1$ error, $|x| \leq 5 R_\alpha$")
-    legend_below(figure, _LEGEND)
+    style.legend_below(figure, _LEGEND)
     return figure

@@ -1,15 +1,12 @@
 """Figs. 3b, 4b, 5b: error (48) against the particle spacing h."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, draw, entry, scheme_legend, slope_triangle
+from fracstudy.style import COLOURS, Figure, Look, draw, entry, scheme_legend, slope_triangle
 from scenes.lucchesi.exteriors import exterior_panels
 
-_RING: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 9}
+_RING: Look = {"linestyle": "none", "marker": "o", "markersize": 9}
 _RING |= {"markerfacecolor": "none", "alpha": 0.6, "color": COLOURS["KPSE"]}
 
 

@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, entry, legend_below, log_log, scheme_style
+from fracstudy.style import Figure, Look, axes_row, draw, entry, legend_below, log_log, scheme_style
 
 _SIZES = (8.0, 5.5, 3.5)
 _INTEGRATORS: dict[str, tuple[str, Any, int]] = {
@@ -21,7 +20,7 @@ _INTEGRATORS: dict[str, tuple[str, Any, int]] = {
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """One panel a beta. The schemes lie on each other: hollow markers of three sizes."""
     betas, schemes = sorted(series["beta"].unique()), sorted(series["scheme"].unique())
-    looks: dict[str, dict[str, Any]] = {
+    looks: dict[str, Look] = {
         scheme: scheme_style(scheme, markersize=size, markerfacecolor="none")
         for scheme, size in zip(schemes, _SIZES, strict=False)
     }

@@ -1,16 +1,13 @@
 """Sec. 4.2: the truncation errors of KPSE and GPSE on the closed form."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy import style
-from fracstudy.style import COLOURS, ERROR, axes_row, entry, legend_below, log_log, scheme_style
+from fracstudy.style import COLOURS, ERROR, Figure, Look, axes_row, entry, scheme_style
 
 _SHOWN = {"KPSE II": ("KPSE", "II"), "KPSE IV": ("KPSE", "IV"), "GPSE": ("GPSE", "II")}
-_PREDICTED: dict[str, Any] = {"color": "0.6", "linewidth": 4}
-_EITHER: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": "none"}
+_PREDICTED: Look = {"color": "0.6", "linewidth": 4}
+_EITHER: Look = {"color": "0.3", "marker": "o", "linestyle": "none"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -27,7 +24,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             for variable, face in (("truncated", COLOURS[scheme]), ("open", "none")):
                 points = here.loc[variable, scheme, order].T.to_numpy()
                 ax.plot(*points, **scheme_style(scheme, order, markerfacecolor=face))
-        log_log(ax, xlabel="truncation factor $C$")
+        style.log_log(ax, xlabel="truncation factor $C$")
         style.name_ticks(ax, sorted(here["C"].unique())[::2])
     axes[0].set_ylabel(ERROR)
     filled = {name: {"markerfacecolor": COLOURS[scheme]} for name, (scheme, _) in _SHOWN.items()}
@@ -37,5 +34,5 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         entry("open exterior", markerfacecolor="none", **_EITHER),
         entry(r"predicted, $\propto C^{-\alpha}$", **_PREDICTED),
     ]
-    legend_below(figure, handles)
+    style.legend_below(figure, handles)
     return figure

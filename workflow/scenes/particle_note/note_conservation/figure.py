@@ -1,16 +1,12 @@
 """Particle strength exchange on particles anywhere."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
-from fracstudy.style import axes_row, draw, entry, legend_below, log_log, name_ticks, note
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, entry, legend_below, log_log, note
 
-_LOOKS: dict[str, dict[str, Any]] = {
+_LOOKS: dict[str, Look] = {
     "lattice": {"color": style.GREEN, "marker": "s"},
     "mapped": {"color": style.PINK, "marker": "D"},
     "jittered": {"color": style.RED, "marker": "^"},
@@ -38,7 +34,7 @@ def figure(
 def _solution(ax: Axes, part: pd.DataFrame, exact: pd.DataFrame, width: float) -> None:
     part = part[part["x"].abs() < 5.0]
     draw(ax, exact, color="black", linewidth=1.0, label="exact")
-    areas: dict[str, Any] = {"s": 9.0 * part["volume"] / width, "linewidth": 0}
+    areas: Look = {"s": 9.0 * part["volume"] / width, "linewidth": 0}
     areas["label"] = "random particles"
     ax.scatter(part["x"], part["y"], color=style.BLUE, alpha=0.7, **areas)
     ax.plot(part["x"], np.full(len(part), -0.012), "|", color=style.BLUE, markersize=5)
@@ -66,7 +62,7 @@ def _accuracy(ax: Axes, part: pd.DataFrame) -> None:
         draw(ax, curve.sort_values("x"), label=label, **look | large.get(kind, {}))
     log_log(ax, xlabel="particle spacing $h$")
     ax.set_ylabel("relative error of $f''$ by (26)")
-    name_ticks(ax, sorted(part["x"].unique()))
+    style.name_ticks(ax, sorted(part["x"].unique()))
     ax.minorticks_off()
     finest = part.loc[part.loc[part["kind"] == "lattice", "x"].idxmin()]
     style.slope_triangle(ax, 1.3 * finest["x"], 0.6 * finest["y"], 2.0)

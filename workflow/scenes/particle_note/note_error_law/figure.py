@@ -1,15 +1,11 @@
 """The error law of the note, its two terms apart and together."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, GREEN, ORANGE, RED, axes_row, draw, entry, log_log, note
+from fracstudy.style import BLUE, GREEN, ORANGE, RED, Axes, Figure, Look, draw, log_log, note
 from scenes.particle_note.waves import LINES
 
 _DERIVATIVES = {0: "*", 1: "s", 2: "o", 3: "^", 4: "D"}
@@ -19,7 +15,7 @@ _TICKS = {0.125: "1/8", 0.25: "1/4", 0.5: "1/2", 1.0: "1"}
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """(a) regularisation over its constant, (b) quadrature with its bound, (c) both against the radius."""
-    drawn, axes = axes_row(3, height=3.7, width=3.2)
+    drawn, axes = style.axes_row(3, height=3.7, width=3.2)
     _regularisation(axes[0], pick(series, panel="regularisation"))
     _quadrature(axes[1], pick(series, panel="quadrature"), pick(series, panel="bound"))
     _total(axes[2], pick(series, panel="total"))
@@ -27,7 +23,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 
 
 def _regularisation(ax: Axes, part: pd.DataFrame) -> None:
-    hollow: dict[str, Any] = {"markerfacecolor": "none", "linestyle": ""}
+    hollow: Look = {"markerfacecolor": "none", "linestyle": ""}
     for (r, beta), curve in part.sort_values("x").groupby(["r", "beta"]):
         look = {**hollow, "color": LINES[r]["color"], "marker": _DERIVATIVES[beta]}
         aside = 1.06 ** (beta - 2)  # they would lie on one another
@@ -43,7 +39,7 @@ def _regularisation(ax: Axes, part: pd.DataFrame) -> None:
     ax.minorticks_off()
     ax.set_ylabel(r"regularisation error $/\ (C_1\, \|f^{(\beta+r)}\|)$")
     marks = [
-        entry(rf"$\beta$ = {int(b)}", color="0.3", marker=_DERIVATIVES[b], **hollow)
+        style.entry(rf"$\beta$ = {int(b)}", color="0.3", marker=_DERIVATIVES[b], **hollow)
         for b in sorted(part["beta"].unique())
     ]
     ax.legend(handles=marks, loc="lower right", fontsize=7)

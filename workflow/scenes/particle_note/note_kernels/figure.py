@@ -1,10 +1,9 @@
 """Kernels from moment conditions."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below
+from fracstudy.style import Figure, axes_row, legend_below
 from scenes.particle_note.waves import LINES
 
 

@@ -1,17 +1,14 @@
 """Fig. 2 of the note: the kernel (27) for a lattice, and other stencils."""
 
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, draw, log_log, name_ticks, note, slope_triangle
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, log_log, name_ticks, note
 from scenes.particle_note.waves import LINES
 
 _BLUE, _RED = LINES[2]["color"], LINES[4]["color"]
-_LOOKS: dict[str, dict[str, Any]] = {
+_LOOKS: dict[str, Look] = {
     "(27)": {"label": "(27)", **LINES[2]},
     "Gaussian (20)": {"label": "Gaussian (20)", **LINES[4]},
     "tent, M₂ = 2": {"label": "tent with $M_2$ = 2", "color": "0.55", "linestyle": ":"},
@@ -58,7 +55,7 @@ def _stencils(ax: Axes, errors: pd.DataFrame) -> None:
         colour = LINES[r]["color"]
         note(ax, f"$r$ = {r}", (x[-1], y[-1]), (5, 0), va="center", color=colour)
         if r in (2, 8):  # between the lines there is no room
-            slope_triangle(ax, x[0] * 1.2, 0.3 * y[0] * 1.2**r, float(r))
+            style.slope_triangle(ax, x[0] * 1.2, 0.3 * y[0] * 1.2**r, float(r))
     spacing = sorted(errors["x"].unique())
     log_log(ax, xlim=(0.85 * spacing[0], 1.6 * spacing[-1]))
     name_ticks(ax, spacing)

@@ -1,15 +1,12 @@
 """Fig. 1 of the note: a function by point particles and by smooth ones."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, SKY, axes_row, draw
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, SKY, Figure, Look, axes_row, draw
 
-_ONE: dict[str, Any] = {"color": SKY, "linewidth": 0.8}
+_ONE: Look = {"color": SKY, "linewidth": 0.8}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, spacing: float, shown: float) -> Figure:
