@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -22,9 +24,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, betas: list[float]) -> 
     profiles = pick(seen, panel="profile").groupby("series")
     for (ratio, points), (colour, marker) in zip(profiles, _LOOKS, strict=False):
         profile.plot(points["x"], points["exact"], color="#000000", linewidth=0.8)
-        look = {"color": colour, "marker": marker, "markersize": 3.5, "linestyle": "none"}
+        look: dict[str, Any] = {"color": colour, "marker": marker, "linestyle": "none"}
         label = rf"$t_f / t_0 = 10^{{{np.log10(ratio):.0f}}}$"
-        profile.plot(points["x"], points["y"], label=label, markevery=4, **look)
+        profile.plot(points["x"], points["y"], label=label, markevery=4, markersize=3.5, **look)
         misses = pick(seen, panel="error", series=ratio)
         error.plot(misses["x"], misses["y"], color=colour, linewidth=0.9)
     strength = r"scaled strength $t^{1/\alpha} u$"

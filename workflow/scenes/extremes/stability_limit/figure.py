@@ -67,7 +67,7 @@ def _growth(ax: Axes, points: pd.DataFrame) -> None:
     ax.plot(ends, ends, color="0.5", linewidth=0.9)
     ax.axvline(1.0, color="0.6", linewidth=0.8, linestyle=":")
     for integrator, part in points.groupby("series"):
-        look = {"linestyle": "none", "markerfacecolor": "none", "markersize": 5.0}
+        look: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "none", "markersize": 5.0}
         marker = _INTEGRATORS[integrator]
         ax.plot(part["x"], part["y"], label=integrator, marker=marker, **look)
     ax.set(xlabel=r"spectral radius of $p(A \Delta t)$", ylabel="measured growth per step")
