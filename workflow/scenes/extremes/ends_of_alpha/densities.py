@@ -8,16 +8,7 @@ from typing import Any
 
 import mpmath as mp
 
-from fracparticles.special import (
-    central_mass,
-    green,
-    green_flux,
-    green_rate,
-    green_slope,
-    mean_radius,
-    tail_constant,
-    tail_mass,
-)
+from fracparticles import special
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha import references
 from scenes.extremes.ends_of_alpha.names import distance, relative, written
@@ -46,12 +37,12 @@ def _exact(name: str, n: int, alpha: float, r: float) -> tuple[mp.mpf, mp.mpf]:
 
 
 FUNCTIONS = {
-    "density": green,
-    "slope": green_slope,
-    "flux": green_flux,
-    "rate": green_rate,
-    "central mass": central_mass,
-    "tail mass": tail_mass,
+    "density": special.green,
+    "slope": special.green_slope,
+    "flux": special.green_flux,
+    "rate": special.green_rate,
+    "central mass": special.central_mass,
+    "tail mass": special.tail_mass,
 }
 
 
@@ -87,8 +78,8 @@ def _far(beta: float, dims: list[int]) -> Iterator[Probe]:
     alpha = 1.0 + beta
     right = Kind("far tail", "three terms of the far series", 1e-13, "series, mpmath", HELD)
     functions = {
-        "density": (green, references.tail_density),
-        "tail mass": (tail_mass, references.tail_mass),
+        "density": (special.green, references.tail_density),
+        "tail mass": (special.tail_mass, references.tail_mass),
     }
     for n, (name, (function, series)) in product(dims, functions.items()):
         yield right(
@@ -103,9 +94,12 @@ def _numbers(beta: float) -> Iterator[Probe]:
     with mp.workdps(40):
         a = mp.mpf(alpha)
         cases: dict[str, Any] = {
-            "mean radius": (mean_radius, 2 / mp.pi * mp.gamma(1 - 1 / a)),
-            "tail constant": (tail_constant, mp.gamma(1 + a) * mp.sin(mp.pi * a / 2) / mp.pi),
-            "peak": (lambda alpha: green(0.0, 1.0, alpha), mp.gamma(1 + 1 / a) / mp.pi),
+            "mean radius": (special.mean_radius, 2 / mp.pi * mp.gamma(1 - 1 / a)),
+            "tail constant": (
+                special.tail_constant,
+                mp.gamma(1 + a) * mp.sin(mp.pi * a / 2) / mp.pi,
+            ),
+            "peak": (lambda alpha: special.green(0.0, 1.0, alpha), mp.gamma(1 + 1 / a) / mp.pi),
         }
     right = Kind("number", "its closed form", 1e-14, "closed form, mpmath", HELD)
     for name, (function, exact) in cases.items():

@@ -14,7 +14,7 @@ from fracparticles.kernels.tabulated import tabulated
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha.names import written
 
-__all__ = ["exact", "exact_transform", "forms_of", "probes", "worst"]
+__all__ = ["NAMES", "exact", "exact_transform", "forms_of", "probes", "worst"]
 
 RADII = (0.0, 0.3, 1.7, 7.0, 100.0)
 WAVES = (0.01, 0.7, 3.0)

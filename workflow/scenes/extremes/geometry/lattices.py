@@ -17,18 +17,18 @@ from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off, overheard
 
-__all__ = ["Errors", "counts", "evolved", "graded", "lattices"]
+__all__ = ["OF_A_FUNCTION", "Errors", "counts", "evolved", "graded", "lattices"]
 
 _START, _SPAN = 0.5, 1.0
 # A share d of the strength that is where it must not be is missed elsewhere: 2 d in the 1-norm. Nothing is said of
 # waves wrong by 0.05, of 0.05 beyond the lattice, nor, of data that are a function, of 0.05 between the particles.
 _ALLOWED = 2.0 * (LIMITS["wave_error"] + LIMITS["outside_share"])
-_OF_A_FUNCTION = _ALLOWED + 2.0 * LIMITS["between_particles"]
+OF_A_FUNCTION = _ALLOWED + 2.0 * LIMITS["between_particles"]
 _TAIL = 1e-3  # of the maximum: what `evolve` does not speak of
 
 
 def _allowed(centre: float | None) -> float:
-    return _ALLOWED if centre is None else _OF_A_FUNCTION
+    return _ALLOWED if centre is None else OF_A_FUNCTION
 
 
 @dataclass

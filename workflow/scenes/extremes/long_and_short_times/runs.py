@@ -151,16 +151,15 @@ def _on_graded(beta: float, ratio: float) -> Iterator[Probe]:
     for form, bound in (("interpolated", 1e-6 + rounded), ("exchange", 0.05)):
         name = f"GPSE, graded, {form}, {where}"
         yield right(name, _graded_error, beta, ratio, form, bound=bound)
-    wanted = {
-        "tail exponent, 30 to 1000 widths": (_graded_tail, "-1 - alpha", 0.02, "series"),
-        "mass": (_graded_mass, "1 less the tail beyond", 0.5 * beyond + rounded, "series"),
-        "positivity": (_graded_least, "no strength below round-off", rounded),
-    }
     # At 1000 widths u is 10^-3 (2 + beta) of the peak: the line is straight where round-off is far below.
-    if rounded >= 1e-2 * 1e3 ** -(2.0 + beta):
-        del wanted["tail exponent, 30 to 1000 widths"]
-    for name, (function, *known) in wanted.items():
-        yield Kind("long time", *known)(f"GPSE, graded, {name}, {where}", function, beta, ratio)
+    if rounded < 1e-2 * 1e3 ** -(2.0 + beta):
+        tail = Kind("long time", "-1 - alpha", 0.02, "series")
+        name = f"GPSE, graded, tail exponent, 30 to 1000 widths, {where}"
+        yield tail(name, _graded_tail, beta, ratio)
+    mass = Kind("long time", "1 less the tail beyond", 0.5 * beyond + rounded, "series")
+    yield mass(f"GPSE, graded, mass, {where}", _graded_mass, beta, ratio)
+    positive = Kind("long time", "no strength below round-off", rounded)
+    yield positive(f"GPSE, graded, positivity, {where}", _graded_least, beta, ratio)
 
 
 # --- short times ------------------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fracstudy.panels import Panels
-from fracstudy.probe import overheard
+from fracstudy.probe import overheard, quiet
 
 __all__ = ["add_error", "missed"]
 
@@ -22,7 +22,7 @@ def missed(growth: Callable[..., tuple[float, float]], *arguments: Any) -> tuple
 def add_error(panels: Panels, series: str, x: float, run: Callable[[], float]) -> None:
     """Add the error of a run, not a number where it is refused, and whether it spoke."""
     try:
-        with overheard() as words:
+        with quiet(), overheard() as words:
             error = run()
     except ArithmeticError:
         error = np.nan

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from fracparticles.run.case import Case
-from fracparticles.run.reliability import LIMITS
 from fracparticles.schemes import SCHEMES
 from fracparticles.special.stable import green
 from fracparticles.time.whole_space import evolve
 from fracstudy.probe import WARNED, Kind, Probe
+from scenes.extremes.geometry.lattices import OF_A_FUNCTION
 from scenes.extremes.rough_data.cases import case_of, cases_of, matrix_of, point, run
 
 __all__ = ["bounds", "functions", "point_masses", "signs"]
@@ -119,8 +119,7 @@ def functions(beta: float, schemes: list[str]) -> Iterator[Probe]:
     What the estimates let pass: 0.05 of a wave, 0.05 beyond the lattice and 0.05 between the particles, each of them
     missing in one place and found in another.
     """
-    limits = (LIMITS[name] for name in ("wave_error", "outside_share", "between_particles"))
-    right = Kind("function", "the solution on a fine lattice", 2.0 * sum(limits), "evolve")
+    right = Kind("function", "the solution on a fine lattice", OF_A_FUNCTION, "evolve")
     for case in cases_of(beta, schemes, half_width=20.0):
         for words, u in _ROUGH.items():
             yield right(f"{case.scheme}, {case.exterior}, {words}, h = 0.25", _of_function, case, u)

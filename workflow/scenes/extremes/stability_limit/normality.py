@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
 import numpy as np
 from scipy.linalg import eigh, expm
@@ -31,7 +32,7 @@ def eigenvalues(half: int, orders: list[int], overlaps: list[float]) -> Iterator
     for scheme, exterior, order, (s, table) in every:
         if exterior == "open" and half < 4.0 * s:  # too narrow
             continue
-        fields = {"overlap": s, "exterior": exterior, "kernel_table": table}
+        fields: dict[str, Any] = {"overlap": s, "exterior": exterior, "kernel_table": table}
         setting = Setting(alpha=1.98, n=half, order=order, **fields)
         name = f"{scheme}, order {order}, s = {s:g}, {exterior}{', table' if table else ''}"
         yield right(name, _beyond, scheme, setting)
