@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import yaml
 
 from fracstudy.inputs import Result
@@ -19,6 +20,13 @@ ROOT = Path(__file__).resolve().parents[1]
 def scenes() -> dict[str, Scene]:
     documents = yaml.safe_load((ROOT / "config/study.yaml").read_text())["documents"]
     return read_scenes(ROOT / "workflow/scenes", list(documents), smoke=True)
+
+
+def measured(benchmark: Any) -> pd.DataFrame:
+    """What a study gets of the data set of a benchmark."""
+    frame = benchmark.to_dataframe().reset_index()
+    frame.attrs = dict(benchmark.attrs)
+    return frame
 
 
 def study(name: str) -> Callable[..., Result]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from string import Formatter
 
@@ -36,16 +35,11 @@ def test_every_printed_claim_has_its_row(ledger):
 def test_the_rows_quote_what_is_printed_and_name_what_made_the_numbers(ledger):
     columns = ["sentence", "printed", "where", "what", "made_by"]
     rows = list(ledger[columns].itertuples(index=False, name=None))
-    expected = []
-    for record in read_printed(*PRINTED):
-        if isinstance(record, Value):
-            head = ("", record.printed, record.where)
-            claims: Sequence[Value | Statement] = [record]
-        else:
-            head = (record.sentence, record.words, record.where)
-            claims = record.statements
-        expected += [(*head, claim.what, "; ".join(claim.by or record.by)) for claim in claims]
-    assert rows == expected
+    assert rows == [
+        (record.name, record.words, record.where, claim.what, "; ".join(claim.by or record.by))
+        for record in read_printed(*PRINTED)
+        for claim in record.claims
+    ]
 
 
 def test_every_number_of_ours_says_what_made_it(ledger):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from fracstudy.orders import orders_by
+from fracstudy.orders import orders_by, orders_of
 
 
 def test_orders_are_those_within_each_group():
@@ -17,3 +17,8 @@ def test_orders_are_those_within_each_group():
     orders = orders_by(pd.DataFrame(rows, index=[3, 1, 2, 0]), "scheme", "error")
     assert orders[[3, 1]].isna().all()
     assert orders[[2, 0]].to_numpy() == pytest.approx([2.0, 3.0])
+
+
+def test_orders_of_an_index_are_those_that_the_paper_writes():
+    index = pd.MultiIndex.from_product([["KPSE"], ["II", "IV"]], names=["scheme", "order"])
+    assert list(orders_of(index)) == [2, 4]

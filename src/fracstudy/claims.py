@@ -15,6 +15,15 @@ it makes, each with the criterion by which it is judged:
           what: FPSE's stability limit is several times that of DD and of KPSE.
           holds: [{of: ratio, means: FPSE's limit over that of the other scheme, word: several}]
 
+A table of numbers stands as it is printed, rows by columns, with an id and a sentence that hold for all of them:
+
+    - table: L-T3.{scheme}.beta{beta}
+      where: Table 3
+      what: Stability limit a (55) of {scheme} at beta = {beta}.
+      rows: [scheme]
+      columns: {beta: ["0.1", "0.5"]}
+      printed: {DD: ["4.81", "5.25"], FPSE: ["7.05", "8.83"]}
+
 The part of an id before the first dot is the item, a figure, table or statement of the inventory.
 """
 
@@ -22,9 +31,9 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError, model_validator
@@ -38,6 +47,7 @@ __all__ = [
     "LedgerError",
     "Sentence",
     "Statement",
+    "Table",
     "Value",
     "read_claims",
     "read_conventions",
@@ -96,6 +106,65 @@ class Value(_Claim):
 
     where: str = Field(pattern=_TEXT)
     printed: str = Field(pattern=PRINTED_NUMBER)
+    name: ClassVar[str] = ""
+    """It stands in no sentence."""
+
+    @property
+    def words(self) -> str:
+        """What is printed."""
+        return self.printed
+
+    @property
+    def claims(self) -> Sequence[Self]:
+        """It claims itself."""
+        return [self]
+
+
+class Table(_Record):
+    """Printed numbers in rows and columns, each a `Value`.
+
+    Attributes
+    ----------
+    table, where, what : str
+        The id, the place and the sentence of each, in which `{name}` stands for what names its row or its column.
+    rows : list of str
+        The names of what a row is named by, in the order in which it is; none for a table of one row.
+    columns : dict
+        What names each column, by name.
+    printed : dict or list
+        By row, "DD" or "DD, II", the numbers of its columns; of one row without a name their list.
+    reason, note, by
+        Of each, as for one.
+    """
+
+    table: str = Field(min_length=1)
+    where: str
+    what: str
+    rows: list[str] = []
+    columns: dict[str, list[str]] = Field(min_length=1)
+    printed: dict[str, list[str]] | list[str]
+    reason: str = ""
+    note: str = ""
+    by: list[str] = []
+
+    def values(self) -> list[Value]:
+        """Return the numbers, row by row.
+
+        Raises
+        ------
+        ValueError
+            If a row has not a number for each column, or not a name for each of `rows`.
+        """
+        lines = self.printed if isinstance(self.printed, dict) else {"": self.printed}
+        found = []
+        for row, numbers in lines.items():
+            names = dict(zip(self.rows, row.split(", ") if self.rows else [], strict=True))
+            for printed, *column in zip(numbers, *self.columns.values(), strict=True):
+                of = {**names, **dict(zip(self.columns, column, strict=True))}
+                text = {key: getattr(self, key).format(**of) for key in ("where", "what")}
+                more = {key: getattr(self, key) for key in ("reason", "note", "by")}
+                found.append(Value(id=self.table.format(**of), printed=printed, **text, **more))
+        return found
 
 
 class Intended(_Record):
@@ -162,9 +231,19 @@ class Sentence(_Record):
     by: list[str] = []
 
     @property
+    def name(self) -> str:
+        """Its name."""
+        return self.sentence
+
+    @property
     def words(self) -> str:
         """The quote on one line."""
         return " ".join(self.quote.split())
+
+    @property
+    def claims(self) -> Sequence[Statement]:
+        """What it says."""
+        return self.statements
 
 
 def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
@@ -183,16 +262,18 @@ def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
     for path in _files(paths):
         try:
             tree = read_yaml(path)
-            records = [_record(record) for record in TypeAdapter(list[dict]).validate_python(tree)]
-        except (yaml.YAMLError, ValidationError) as error:
+            trees = TypeAdapter(list[dict]).validate_python(tree)
+            records = [record for tree in trees for record in _records(tree)]
+        except (yaml.YAMLError, ValueError, KeyError) as error:  # no YAML, or no such record
             raise LedgerError(f"{path}: {error}") from error
         found += records
-        refuse_repeats([claim.id for _, claim in _pairs(found)], f"{path}: claimed twice")
-        sentences = [record for record in records if isinstance(record, Sentence)]
-        refuse_repeats([sentence.sentence for sentence in sentences], f"{path}: named twice")
-        for sentence in sentences:
-            if quotes.setdefault(sentence.sentence, sentence.words) != sentence.words:
-                raise LedgerError(f"{path}: {sentence.sentence} is quoted in other words elsewhere")
+        ids = [claim.id for record in found for claim in record.claims]
+        refuse_repeats(ids, f"{path}: claimed twice")
+        sentences = {record.name: record.words for record in records if record.name}
+        refuse_repeats([r.name for r in records if r.name], f"{path}: named twice")
+        for name, words in sentences.items():
+            if quotes.setdefault(name, words) != words:
+                raise LedgerError(f"{path}: {name} is quoted in other words elsewhere")
     return found
 
 
@@ -201,23 +282,17 @@ def _files(paths: Iterable[str | os.PathLike[str]]) -> Iterator[Path]:
         yield from sorted(path.glob("*.yaml")) if path.is_dir() else [path]
 
 
-def _record(record: dict[str, Any]) -> Value | Sentence:
-    return (Sentence if "sentence" in record else Value).model_validate(record)
-
-
-def _pairs(
-    records: Iterable[Value | Sentence],
-) -> Iterator[tuple[Value | Sentence, Value | Statement]]:
-    for record in records:
-        if isinstance(record, Value):
-            yield record, record
-        else:
-            yield from ((record, statement) for statement in record.statements)
+def _records(record: dict[str, Any]) -> list[Value] | list[Sentence]:
+    if "table" in record:
+        return Table.model_validate(record).values()
+    if "sentence" in record:
+        return [Sentence.model_validate(record)]
+    return [Value.model_validate(record)]
 
 
 def read_claims(*paths: str | os.PathLike[str]) -> list[Value | Statement]:
     """Read the values and statements of documents, without the sentences that hold them."""
-    return [claim for _, claim in _pairs(read_printed(*paths))]
+    return [claim for record in read_printed(*paths) for claim in record.claims]
 
 
 def read_conventions(path: str | os.PathLike[str] = CONVENTIONS) -> dict[str, Convention]:

@@ -18,8 +18,19 @@ from fracparticles.run.case import Case
 from fracstudy.read_yaml import read_yaml
 from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
 
-__all__ = ["Document", "StudyConfig", "batches", "jobs", "read_config", "targets"]
+__all__ = [
+    "CONFIG",
+    "Document",
+    "StudyConfig",
+    "batches",
+    "jobs",
+    "read_config",
+    "read_project",
+    "targets",
+]
 
+CONFIG = Path("config/study.yaml")
+"""The configuration, below the folder of the project."""
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 # Runs of a job by dimension: its start takes as long as a few of them. Those of particles that move take a hundred
 # times as long.
@@ -114,13 +125,20 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
         for key, names in (("tables", scenes), ("benchmarks", timed)):
             for other in getattr(scene, key):
                 if other not in names:
-                    where = f"{scene.folder / 'scene.yaml'}: {key}"
-                    raise InvalidInput(where, other, f"of {', '.join(names)}", "Choose of these.")
+                    allowed = f"of {', '.join(names)}"
+                    raise InvalidInput(scene.where(key), other, allowed, "Choose of these.")
         check_parameters(scene)
         _check_runs(scene)
         _check_grid(scene, grids)
     _check_order(scenes)
     return study, scenes
+
+
+def read_project(project: Path) -> tuple[StudyConfig, dict[str, Scene]]:
+    """Return what `read_config` does of the project in a folder, from wherever it is called."""
+    config = read_yaml(project / CONFIG)
+    folder = config.get("scenes_dir", StudyConfig.model_fields["scenes_dir"].default)
+    return read_config({**config, "scenes_dir": str(project / folder)})
 
 
 def _check_order(scenes: Mapping[str, Scene]) -> None:
@@ -130,7 +148,7 @@ def _check_order(scenes: Mapping[str, Scene]) -> None:
     except CycleError as error:
         circle = error.args[1]
         raise InvalidInput(
-            f"{scenes[circle[0]].folder / 'scene.yaml'}: tables",
+            scenes[circle[0]].where("tables"),
             " of ".join(reversed(circle)),
             "tables of scenes that can be made before this one",
             "Take what they share into a scene of its own.",
@@ -139,13 +157,12 @@ def _check_order(scenes: Mapping[str, Scene]) -> None:
 
 def _check_runs(scene: Scene) -> None:
     """Refuse parameters that say what the runs say, and runs that lack what the study compares."""
-    where = f"{scene.folder / 'scene.yaml'}"
     cases, _ = scene.cases, scene.heading
     for name in Case.model_fields.keys() & scene.parameters.keys():
         if all(getattr(case, name) is None for case in cases):
             continue
         raise InvalidInput(
-            f"{where}: parameters.{name}",
+            scene.where(f"parameters.{name}"),
             scene.parameters[name],
             "nothing that the runs say themselves",
             "Leave it out, or give it a name of its own.",
@@ -154,7 +171,7 @@ def _check_runs(scene: Scene) -> None:
         found = {getattr(case, name) for case in cases}
         if missing := [value for value in needed if value not in found]:
             raise InvalidInput(
-                f"{where}: runs: {name}",
+                scene.where(f"runs: {name}"),
                 " and ".join(map(str, found)) or None,
                 f"{' and '.join(map(str, needed))}, all of which the study compares",
                 f"Add runs with {name}: {missing[0]}.",
@@ -168,7 +185,7 @@ def _check_grid(scene: Scene, grids: Mapping[str, Mapping[str, list[Any]]]) -> N
             found = dict.fromkeys(getattr(case, name) for case in scene.cases)
             if any(value not in found for value in values):
                 raise InvalidInput(
-                    f"{scene.folder / 'scene.yaml'}: items",
+                    scene.where("items"),
                     item,
                     f"an item whose claims speak of the runs; it speaks of {name} = "
                     f"{', '.join(map(str, values))}, and the runs have {', '.join(map(str, found))}",

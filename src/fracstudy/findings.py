@@ -10,7 +10,8 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from fracparticles.files import write_text
 from fracstudy.claims import LedgerError, refuse_repeats
 
-__all__ = ["Finding", "filled", "measured", "read_findings", "write_findings"]
+__all__ = ["Finding", "each", "filled", "measured", "read_findings", "write_findings"]
 
 
 class Finding(BaseModel):
@@ -88,6 +89,18 @@ def measured(
         },
         runs=list(runs),
     )
+
+
+def each(quantity: Callable[..., Any], **cases: Iterable[Any]) -> pd.Series:
+    """Return a quantity of each case, or of each combination of them: `each(f, n=(1, 2), beta=betas)` of f(n, beta).
+
+    The index of the Series has the names of the arguments, as `measured` takes it.
+    """
+    choices = [list(values) for values in cases.values()]
+    values = [quantity(*case) for case in product(*choices)]
+    if len(choices) == 1:
+        return pd.Series(values, pd.Index(choices[0], name=next(iter(cases))))
+    return pd.Series(values, pd.MultiIndex.from_product(choices, names=list(cases)))
 
 
 def _plain(claim: str, name: str, number: Any) -> Any:

@@ -13,9 +13,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from fracstudy.claims import Value, read_printed
-from fracstudy.config import read_config
-from fracstudy.read_yaml import read_yaml
+from fracstudy.claims import read_printed
+from fracstudy.config import read_project
 from fracstudy.scene import Scene
 
 __all__ = ["index"]
@@ -29,9 +28,7 @@ _SPAN = re.compile(rf"({_NUMBER})(?:\s*(-|to)\s*({_NUMBER}))?")
 
 def index(project: Path) -> str:
     """Return the text of INDEX.md for the project in that folder."""
-    config = read_yaml(project / "config/study.yaml")
-    config["scenes_dir"] = str(project / config.get("scenes_dir", "workflow/scenes"))
-    study, scenes = read_config(config)
+    study, scenes = read_project(project)
     lines = [
         "# Index",
         "",
@@ -62,7 +59,7 @@ def index(project: Path) -> str:
 def _items(printed: list[Path], scenes: dict[str, Scene], project: Path) -> Iterator[str]:
     by_item = defaultdict(list)
     for record in read_printed(*printed):
-        for claim in [record] if isinstance(record, Value) else record.statements:
+        for claim in record.claims:
             by_item[claim.item].append((record.where, claim.id))
     home = {item: scene for scene in scenes.values() for item in scene.items}
     for item, claims in by_item.items():

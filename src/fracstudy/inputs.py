@@ -144,5 +144,4 @@ def _shown(cell: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    value = value.item() if hasattr(value, "item") else value
-    return value
+    return value.item() if hasattr(value, "item") else value

@@ -86,7 +86,7 @@ def ledger(
     import pandas as pd
 
     conventions = read_conventions() if conventions is None else conventions
-    claims = [claim for record in printed for claim in _claims(record)]
+    claims = [claim for record in printed for claim in record.claims]
     refuse_repeats([claim.id for claim in claims], "claimed twice")
     refuse_repeats([finding.claim for finding in findings], "found twice")
     found = {finding.claim: finding for finding in findings}
@@ -98,14 +98,10 @@ def ledger(
     rows = [
         _row(record, claim, found.get(claim.id, Finding(claim=claim.id)), conventions, smoke)
         for record in printed
-        for claim in _claims(record)
+        for claim in record.claims
     ]
     numbers = {"ours": object, "margin": float, "relative_deviation": float}
     return pd.DataFrame(rows, columns=list(COLUMNS)).astype(numbers)
-
-
-def _claims(record: Value | Sentence) -> Sequence[Value | Statement]:
-    return [record] if isinstance(record, Value) else record.statements
 
 
 def _row(
@@ -137,11 +133,11 @@ def _row(
         reason = _TOO_COARSE
     return {
         **dict.fromkeys(COLUMNS, ""),
-        "sentence": "" if isinstance(record, Value) else record.sentence,
+        "sentence": record.name,
         "id": claim.id,
         "item": claim.item,
         "where": record.where,
-        "printed": record.printed if isinstance(record, Value) else record.words,
+        "printed": record.words,
         "what": claim.what,
         "margin": math.nan,
         "relative_deviation": math.nan,

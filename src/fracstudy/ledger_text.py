@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fracparticles.files import write_text
@@ -56,30 +56,28 @@ def summary_line(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
         reproduced, 20 true in part, 12 refuted, 7 misprints, 1 not testable".
     """
     values, sentences = _split(df, shown)
-    counts = (
-        ("printed number", Counter(Status(row["status"]) for row in values)),
-        ("sentence", Counter(whole for whole, _ in sentences)),
-    )
-    words = {
-        Status.REPRODUCED: ("reproduced", "reproduced"),
-        Status.WITHIN_ROUNDING: ("within the print's rounding",) * 2,
-        Status.PART: ("true in part", "true in part"),
-        Status.DEVIATES: ("deviates", "deviate"),
-        Status.REFUTED: ("refuted", "refuted"),
-        Status.MISPRINT: ("misprint", "misprints"),
-        Status.NOT_TESTABLE: ("not testable", "not testable"),
+    counts = {
+        "printed number": Counter(Status(row["status"]) for row in values),
+        "sentence": Counter(whole for whole, _ in sentences),
     }
     parts = []
-    for noun, count in counts:
+    for noun, count in counts.items():
         if total := count.total():
-            each = ", ".join(
-                f"{count[s]} {word[count[s] > 1]}" for s, word in words.items() if count[s]
-            )
+            each = ", ".join(f"{count[s]} {_counted(s, count[s])}" for s in Status if count[s])
             parts.append(f"{total} {noun}{'s' if total > 1 else ''}: {each}")
     return "; ".join(parts) or "no claims"
 
 
+def _counted(status: Status, count: int) -> str:
+    """The verdict as a word after a number."""
+    if status is Status.DEVIATES:
+        return "deviates" if count == 1 else "deviate"
+    plural = "s" if status is Status.MISPRINT and count > 1 else ""
+    return str(status).removeprefix("reproduced ") + plural
+
+
 _Row = dict[str, Any]
+_Columns = Mapping[str, Callable[[_Row], str]]  # by heading, what a cell shows of a row
 
 
 def _split(
@@ -109,37 +107,20 @@ def ledger_markdown(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
     shown : Series of bool, optional
         The rows to show; a sentence keeps the verdict on the whole of it.
     """
-    values, sentences = _split(df, shown)
-    of_values = [
-        (
-            _named(row),
-            row["printed"],
-            ours_text(row["printed"], row["ours"]),
-            _percent(row["relative_deviation"]),
-            _status(row["status"]),
-            _joined(row["reason"], row["note"]),
-        )
-        for row in values
-    ]
-    of_sentences = [
-        (
-            _quoted(row, whole) if row is rows[0] else "″",
-            _named(row),
-            _cell(row["ours"]),
-            _joined(row["criterion"], _margin(row["margin"])),
-            _status(row["status"]),
-            _joined(*_remarks(row)),
-        )
-        for whole, rows in sentences
-        for row in rows
-    ]
-    tables = (
-        _table(("claim", "printed", "ours", "deviation", "verdict", "remarks"), of_values),
-        _table(
-            ("as printed", "statement", "ours", "criterion", "verdict", "remarks"), of_sentences
-        ),
-    )
-    return "\n".join(table for table in tables if table)
+    of_values = {
+        "claim": _named,
+        **_NUMBERS,
+        "verdict": _verdict,
+        "remarks": lambda row: _joined(row["reason"], row["note"]),
+    }
+    of_statements = {
+        "statement": _named,
+        "ours": lambda row: _cell(row["ours"]),
+        "criterion": lambda row: _joined(row["criterion"], _margin(row["margin"])),
+        "verdict": _verdict,
+        "remarks": lambda row: _joined(*_remarks(row)),
+    }
+    return _tables(df, shown, of_values, of_statements)
 
 
 def short_markdown(df: pd.DataFrame, shown: pd.Series, ledger: str) -> str:
@@ -154,35 +135,37 @@ def short_markdown(df: pd.DataFrame, shown: pd.Series, ledger: str) -> str:
     ledger : str
         Where the whole ledger is, relative to the page.
     """
-    values, sentences = _split(df, shown)
 
     def verdict(row: _Row) -> str:
-        return f"[{_status(row['status'])}]({ledger}#{row['id']})"
+        return f"[{_verdict(row)}]({ledger}#{row['id']})"
 
-    of_values = [
-        (
-            _cell(row["what"]),
-            row["printed"],
-            ours_text(row["printed"], row["ours"]),
-            _percent(row["relative_deviation"]),
-            verdict(row),
-        )
-        for row in values
-    ]
-    of_sentences = [
-        (
-            _quoted(row, whole) if row is rows[0] else "″",
-            _joined(*dict.fromkeys((row["what"], row["ours"]))),
-            verdict(row),
-        )
+    def measured(row: _Row) -> str:
+        return _joined(*dict.fromkeys((row["what"], row["ours"])))
+
+    of_values = {"claim": lambda row: _cell(row["what"]), **_NUMBERS, "verdict": verdict}
+    return _tables(df, shown, of_values, {"measured": measured, "verdict": verdict})
+
+
+def _tables(
+    df: pd.DataFrame, shown: pd.Series | None, of_values: _Columns, of_statements: _Columns
+) -> str:
+    values, sentences = _split(df, shown)
+    statements = [
+        {**row, "quoted": _quoted(row, whole) if row is rows[0] else "″"}
         for whole, rows in sentences
         for row in rows
     ]
-    tables = (
-        _table(("claim", "printed", "ours", "deviation", "verdict"), of_values),
-        _table(("as printed", "measured", "verdict"), of_sentences),
-    )
-    return "\n".join(table for table in tables if table)
+    quoted: _Columns = {"as printed": lambda row: row["quoted"], **of_statements}
+    return "\n".join(filter(None, (_table(of_values, values), _table(quoted, statements))))
+
+
+def _table(columns: _Columns, rows: Sequence[_Row]) -> str:
+    if not rows:
+        return ""
+    numbers = _NUMBERS if "deviation" in columns else ()
+    rule = ("--:" if name in numbers else ":--" for name in columns)
+    lines = (columns, rule, *([cell(row) for cell in columns.values()] for row in rows))
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
 
 
 def _named(row: _Row) -> str:
@@ -205,13 +188,8 @@ def _remarks(row: _Row) -> Iterator[str]:
     yield row["note"]
 
 
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    if not rows:
-        return ""
-    numbers = ("printed", "ours", "deviation") if "deviation" in head else ()
-    rule = tuple("--:" if name in numbers else ":--" for name in head)
-    lines = (head, rule, *rows)
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+def _verdict(row: _Row) -> str:
+    return _status(row["status"])
 
 
 def _status(word: str) -> str:
@@ -247,6 +225,13 @@ def _cell(text: str) -> str:
     for mark in "\\|*_`[":
         text = text.replace(mark, f"\\{mark}")
     return " ".join(text.replace("&", "&amp;").replace("<", "&lt;").split())
+
+
+_NUMBERS: _Columns = {
+    "printed": lambda row: row["printed"],
+    "ours": lambda row: ours_text(row["printed"], row["ours"]),
+    "deviation": lambda row: _percent(row["relative_deviation"]),
+}
 
 
 def write_ledger(

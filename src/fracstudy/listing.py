@@ -5,12 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from fracparticles.errors import InvalidInput, one_of
-from fracstudy.config import read_config
-from fracstudy.read_yaml import read_yaml
+from fracstudy.config import CONFIG, read_project
 
 __all__ = ["listed", "scenes"]
-
-_CONFIG = Path("config/study.yaml")
 
 
 def scenes(document: str | None = None) -> None:
@@ -26,13 +23,10 @@ def scenes(document: str | None = None) -> None:
 
 def listed(project: Path, document: str | None = None) -> list[str]:
     """Return the lines of the list for the project in that folder; raises `InvalidInput` if there is none."""
-    config = project / _CONFIG
-    if not config.is_file():
-        found = f"a folder that holds {_CONFIG}"
+    if not (project / CONFIG).is_file():
+        found = f"a folder that holds {CONFIG}"
         raise InvalidInput("folder", str(project), found, "Change to the folder of the study.")
-    settings = read_yaml(config)
-    settings["scenes_dir"] = str(project / settings.get("scenes_dir", "workflow/scenes"))
-    study, every = read_config(settings)
+    study, every = read_project(project)
     if document is not None and document not in study.documents:
         remedy = "Choose one of these, or leave it out."
         raise one_of("document", document, list(study.documents), remedy=remedy)

@@ -17,7 +17,7 @@ A caption or a page is a Jinja template. It may ask for
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,12 +64,8 @@ class LookUps:
             "printed": lambda claim: self._claim(claim)["printed"],
             "ours": lambda claim: ours_text(*self._claim(claim)[["printed", "ours"]]),
             "cell": self._cell,
-            "least": lambda scene, column, form="", **where: self._end(
-                min, scene, column, form, where
-            ),
-            "greatest": lambda scene, column, form="", **where: self._end(
-                max, scene, column, form, where
-            ),
+            "least": partial(self._end, min),
+            "greatest": partial(self._end, max),
             "count": lambda scene, **where: len(self._rows(scene, where)),
             "summary": summary_line(self.ledger),
             **more,
@@ -97,8 +93,8 @@ class LookUps:
         end: Callable[[pd.Series], float],
         scene: str,
         column: str,
-        form: str,
-        where: dict[str, Any],
+        form: str = "",
+        **where: Any,
     ) -> str:
         found = self._column(scene, column, where).dropna()
         if found.empty:

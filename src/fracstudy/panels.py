@@ -9,17 +9,19 @@ import pandas as pd
 
 __all__ = ["Panels", "pick"]
 
+_COLUMNS = ("panel", "series", "x", "y")
+
 
 class Panels:
-    """Collects the points of a figure: columns panel, series, x, y, and what else is given."""
+    """Collects the points of a figure: columns panel, series, x, y, and what else is given, or those named alone."""
 
     def __init__(self) -> None:
         self._parts: list[pd.DataFrame] = []
 
-    def add(self, panel: str, series: Any, x: Any, y: Any, **more: Any) -> None:
-        """Add points: all but `x` is one value, or one for each of them."""
-        columns = {"panel": panel, "series": series, "x": np.atleast_1d(x), "y": y, **more}
-        self._parts.append(pd.DataFrame(columns))
+    def add(self, *columns: Any, **more: Any) -> None:
+        """Add points by panel, series, x and y, or by name: all but `x` is one value, or one for each of them."""
+        points = dict(zip(_COLUMNS, columns, strict=False)) | more
+        self._parts.append(pd.DataFrame(points | {"x": np.atleast_1d(points["x"])}))
 
     @property
     def frame(self) -> pd.DataFrame:

@@ -6,16 +6,36 @@ A result is right if it is within a bound of a value known from elsewhere. If it
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from fracparticles.errors import FracparticlesError, FracparticlesWarning, reason_of
+from fracstudy.errors import off, quiet
 
-__all__ = ["BAD", "Probe", "Verdict", "frame", "probe"]
+__all__ = [
+    "BAD",
+    "EPS",
+    "HELD",
+    "REFUSED",
+    "WARNED",
+    "Kind",
+    "Probe",
+    "Verdict",
+    "frame",
+    "off",
+    "overheard",
+    "quiet",
+]
+
+EPS = float(np.finfo(float).eps)
+"""The distance from one to the next number, by which round-off is measured."""
 
 
 class Verdict(StrEnum):
@@ -34,6 +54,7 @@ class Verdict(StrEnum):
 
 
 BAD = (Verdict.SILENT, Verdict.FAILED)
+HELD, WARNED, REFUSED = Verdict.HELD, Verdict.WARNED, Verdict.REFUSED
 
 
 @dataclass(frozen=True)
@@ -68,64 +89,85 @@ class Probe:
     verdict: Verdict
 
 
-def probe(
-    kind: str,
-    case: str,
-    expected: str,
-    run: Callable[[], float | tuple[float, str]],
-    bound: float,
-    *,
-    source: str = "",
-    must: Verdict | None = None,
-) -> Probe:
-    """Do something that may go wrong, and judge it.
+@dataclass(frozen=True)
+class Kind:
+    """What probes have in common, said once; called, it makes one of them.
 
-    Parameters
+    Attributes
     ----------
-    kind, case, expected, source : str
+    kind, expected, source : str
         See `Probe`.
-    run : callable
-        Does it, and returns the deviation from what must come out, a number of at least zero; with it, if a number
-        says too little, what came out in words.
     bound : float
         The greatest deviation that is right.
     must : Verdict, optional
         The only verdict that will do: `HELD` where nothing excuses a wrong number, `WARNED` where growth is expected,
         found and must be spoken of, `REFUSED` for input that means nothing. With `WARNED` the deviation is that from
         the predicted growth, and has to be within the bound.
-
-    Returns
-    -------
-    Probe
     """
-    deviation, words = np.nan, ""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            result = run()
-        except FracparticlesError as error:
-            verdict = Verdict.REFUSED if "\n" not in str(error) else Verdict.FAILED
-            words = str(error)
-        except Exception as error:
-            verdict, words = Verdict.FAILED, f"{type(error).__name__}: {reason_of(error)}"
-        else:
-            deviation, words = result if isinstance(result, tuple) else (result, "")
-            verdict = Verdict.HELD if deviation <= bound else Verdict.SILENT  # nan is not right
-    spoken = [str(w.message) for w in caught if issubclass(w.category, FracparticlesWarning)]
-    stray = [f"{w.category.__name__}: {w.message}" for w in caught if _stray(w.category)]
-    if verdict is Verdict.SILENT and spoken:
-        verdict, words = Verdict.WARNED, words or spoken[0]
-    if must is Verdict.WARNED and verdict is Verdict.HELD and spoken:
-        verdict = Verdict.WARNED
-    elif must is Verdict.WARNED and verdict is Verdict.WARNED:
-        verdict = Verdict.FAILED  # the growth is not the predicted one
-    if must is not None and verdict is not must and verdict is not Verdict.SILENT:
-        verdict = Verdict.FAILED
-    if stray and verdict is not Verdict.FAILED:
-        verdict, words = Verdict.FAILED, stray[0]
-    return Probe(
-        kind, case, expected, source, words or f"{deviation:.1e}", deviation, bound, verdict
-    )
+
+    kind: str
+    expected: str = "refused"
+    bound: float = 0.0
+    source: str = ""
+    must: Verdict | None = None
+
+    def __call__(self, case: str, run: Callable[..., Any], *arguments: Any, **other: Any) -> Probe:
+        """Do something that may go wrong, and judge it.
+
+        Parameters
+        ----------
+        case : str
+            What is done, in words.
+        run : callable
+            Does it, with the arguments, and returns the deviation from what must come out, a number of at least zero;
+            with it, if a number says too little, what came out in words. What must be refused may return anything.
+        **other
+            Attributes of this kind that are other for this probe.
+
+        Returns
+        -------
+        Probe
+        """
+        return replace(self, **other)._judged(case, partial(run, *arguments))
+
+    def _judged(self, case: str, run: Callable[[], Any]) -> Probe:
+        bound, must = self.bound, self.must
+        deviation, words = np.nan, ""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                result = run()
+            except FracparticlesError as error:
+                verdict = Verdict.REFUSED if "\n" not in str(error) else Verdict.FAILED
+                words = str(error)
+            except Exception as error:
+                verdict, words = Verdict.FAILED, f"{type(error).__name__}: {reason_of(error)}"
+            else:
+                if must is Verdict.REFUSED:
+                    verdict, words = Verdict.FAILED, "accepted"
+                else:
+                    deviation, words = result if isinstance(result, tuple) else (result, "")
+                    # nan is not right
+                    verdict = Verdict.HELD if deviation <= bound else Verdict.SILENT
+        spoken = [str(w.message) for w in caught if issubclass(w.category, FracparticlesWarning)]
+        stray = [f"{w.category.__name__}: {w.message}" for w in caught if _stray(w.category)]
+        if verdict is Verdict.SILENT and spoken:
+            verdict, words = Verdict.WARNED, words or spoken[0]
+        if must is Verdict.WARNED and verdict is Verdict.HELD and spoken:
+            verdict = Verdict.WARNED
+        elif must is Verdict.WARNED and verdict is Verdict.WARNED:
+            verdict = Verdict.FAILED  # the growth is not the predicted one
+        if must is not None and verdict is not must and verdict is not Verdict.SILENT:
+            verdict = Verdict.FAILED
+        if stray and verdict is not Verdict.FAILED:
+            verdict, words = Verdict.FAILED, stray[0]
+        found = words or f"{deviation:.1e}"
+        return Probe(self.kind, case, self.expected, self.source, found, deviation, bound, verdict)
+
+    def of(self, cases: Mapping[str, Callable[[], Any]]) -> Iterator[Probe]:
+        """Make one probe of each, by its name."""
+        for case, run in cases.items():
+            yield self(case, run)
 
 
 def _stray(category: type[Warning]) -> bool:
@@ -136,3 +178,17 @@ def _stray(category: type[Warning]) -> bool:
 def frame(probes: Iterable[Probe]) -> pd.DataFrame:
     """Return the table of probes, one row each."""
     return pd.DataFrame([asdict(one) for one in probes])
+
+
+@contextmanager
+def overheard() -> Iterator[list[str]]:
+    """Listen to our warnings in a block, which go on to whoever else listens: they are in the list afterwards."""
+    words: list[str] = []
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            yield words
+    finally:
+        for one in caught:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+        words += [str(w.message) for w in caught if issubclass(w.category, FracparticlesWarning)]

@@ -118,6 +118,10 @@ class Scene(BaseModel):
         fields = self.model_dump(exclude=None if runs else {"runs"}, exclude_none=True)
         return {**fields, "folder": str(self.folder)}
 
+    def where(self, key: str) -> str:
+        """Return the place of a key, for complaints: its file, and the key."""
+        return f"{self.folder / 'scene.yaml'}: {key}"
+
     @property
     def document(self) -> str:
         """The name of the document's folder."""
@@ -141,7 +145,7 @@ class Scene(BaseModel):
         try:
             return expand(self.runs)
         except InvalidInput as error:
-            where = f"{self.folder / 'scene.yaml'}: runs: {error.field}"
+            where = self.where(f"runs: {error.field}")
             raise InvalidInput(where, error.value, error.allowed, error.remedy) from None
 
     @property
@@ -161,10 +165,8 @@ class Scene(BaseModel):
         try:
             return self.title.format(**known)
         except (KeyError, IndexError, ValueError) as error:
-            where, allowed = f"{self.folder / 'scene.yaml'}: title", ", ".join(sorted(known))
-            raise InvalidInput(
-                where, self.title, f"text with {{}} around {allowed}", str(error)
-            ) from None
+            allowed = f"text with {{}} around {', '.join(sorted(known))}"
+            raise InvalidInput(self.where("title"), self.title, allowed, str(error)) from None
 
     @property
     def needs(self) -> dict[str, list[Any]]:
@@ -227,9 +229,8 @@ def read_scenes(root: Path, documents: list[str], smoke: bool) -> dict[str, Scen
         ]
         for scene in sorted(scenes, key=lambda scene: (scene.place, _natural(scene.name))):
             if scene.name in found:
-                raise InvalidInput(
-                    "scene", scene.name, "a name that no other scene has", "Rename one."
-                )
+                unique = "a name that no other scene has"
+                raise InvalidInput("scene", scene.name, unique, "Rename one.")
             found[scene.name] = scene
     return found
 
@@ -243,11 +244,8 @@ def _natural(name: str) -> list[tuple[bool, int, str]]:
 def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
     try:
         tree = read_yaml(file)
-    except (
-        yaml.YAMLError,
-        ValueError,
-        RecursionError,
-    ) as error:  # not UTF-8, no such date, too deep
+    # Also what is not UTF-8, no such date, or too deep.
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         problem = " ".join(str(error).split())
         raise InvalidInput(str(file), problem, "YAML", "Mend the file.") from None
     if not isinstance(tree, dict):
@@ -258,9 +256,8 @@ def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
     for name, own in variants.items():
         fields = resolved(merged(tree, own), smoke)
         for key in {"name", "folder"} & fields.keys():
-            raise InvalidInput(
-                f"{file}: {key}", fields[key], "left out: paths say it", "Remove it."
-            )
+            said = "left out: paths say it"
+            raise InvalidInput(f"{file}: {key}", fields[key], said, "Remove it.")
         try:
             yield Scene.model_validate({**fields, "name": name, "folder": file.parent})
         except ValidationError as error:
@@ -349,7 +346,7 @@ def check_parameters(scene: Scene) -> None:
 def _check_keywords(
     scene: Scene, key: str, given: Mapping[str, Any], functions: list[Callable[..., Any]]
 ) -> None:
-    where = f"{scene.folder / 'scene.yaml'}: {key}"
+    where = scene.where(key)
     keywords = {
         name: (parameter, function.__globals__)
         for function in functions
@@ -372,6 +369,5 @@ def _check_keywords(
                 TypeAdapter(kind).validate_python(given[name], strict=True)
             except ValidationError as error:
                 allowed = error.errors()[0]["msg"].removeprefix("Input should be ")
-                raise InvalidInput(
-                    f"{where}.{name}", given[name], allowed, "Mend the value."
-                ) from None
+                place = f"{where}.{name}"
+                raise InvalidInput(place, given[name], allowed, "Mend the value.") from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any
 
 import matplotlib as mpl
@@ -15,16 +16,29 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, LogLocator, NullFormatter
 
 from fracparticles.files import replacing
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.inputs import NUMERALS
 
 __all__ = [
+    "BLUE",
     "COLOURS",
+    "ERROR",
+    "GREEN",
     "MARKERS",
+    "ORANGE",
+    "PINK",
+    "RED",
+    "SKY",
+    "UNDERLAID",
+    "Axes",
+    "Figure",
+    "Look",
     "axes_row",
+    "curves",
+    "draw",
     "entry",
     "guide",
     "legend_below",
@@ -34,33 +48,68 @@ __all__ = [
     "note",
     "note_below",
     "panel_title",
+    "plain_times",
     "save",
     "scheme_legend",
     "scheme_lines",
     "scheme_style",
     "slope_triangle",
+    "small_legend",
 ]
 
 mpl.use("Agg")
 mpl.style.use(Path(__file__).with_name("fracstudy.mplstyle"))
 
-# Okabe & Ito (2008), one colour and one marker for each scheme, everywhere.
+Look = dict[str, Any]
+"""What a line, a point or a text is drawn with: keywords of matplotlib."""
+
+# Okabe & Ito (2008); one colour and one marker for each scheme, everywhere.
+BLUE, RED, GREEN = "#0072B2", "#D55E00", "#009E73"
+PINK, SKY, ORANGE = "#CC79A7", "#56B4E9", "#E69F00"
 COLOURS = {name: scheme.colour for name, scheme in ALL_SCHEMES.items()} | {"exact": "#000000"}
 MARKERS = {name: scheme.marker for name, scheme in ALL_SCHEMES.items()} | {"exact": ""}
 
+UNDERLAID: Look = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
+"""The exact solution, below what is computed."""
+ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
+
+_CURVES = "osD^vPX"
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def axes_row(
-    panels: int = 1, height: float = 3.4, width: float = 4.2, **options: Any
+    panels: int | Sequence[str] = 1,
+    height: float = 3.4,
+    width: float = 4.2,
+    rows: int = 1,
+    **options: Any,
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure with a row of panels, lettered (a), (b), ... if there is more than one."""
-    figure = Figure(figsize=(width * panels, height), layout="constrained")
-    axes = list(np.atleast_1d(figure.subplots(1, panels, **options)))
-    if panels > 1:
-        for letter, ax in zip("abcdefgh", axes, strict=False):
-            ax.set_title(f"({letter})", loc="left")
+    """Return a figure with a row of panels, or more, and the panels, lettered (a), (b), ... if there are several.
+
+    `panels` is how many there are, or the title of each.
+    """
+    titles = [""] * panels if isinstance(panels, int) else panels
+    columns = len(titles) // rows
+    figure = Figure(figsize=(width * columns, height * rows), layout="constrained")
+    axes = list(np.ravel(figure.subplots(rows, columns, **options)))
+    for letter, ax, title in zip(ascii_lowercase, axes, titles, strict=False):
+        if len(axes) > 1 or title:
+            ax.set_title(f"({letter}) {title}".strip(), loc="left")
     return figure, axes
+
+
+def draw(ax: Axes, points: pd.DataFrame, *line: str, **style: Any) -> None:
+    """Draw y against x."""
+    ax.plot(points["x"], points["y"], *line, **style)
+
+
+def curves(
+    ax: Axes, points: pd.DataFrame, *line: str, name: str | None = "{}", **style: Any
+) -> None:
+    """Draw a curve for each series, in their order, with a colour and a marker of its own; `name` makes its label."""
+    for k, (series, own) in enumerate(points.groupby("series", sort=False)):
+        label = name and name.format(series)
+        draw(ax, own, *line, **{"color": f"C{k}", "marker": _CURVES[k], "label": label, **style})
 
 
 def panel_title(ax: Axes, letter: str, text: str) -> None:
@@ -78,6 +127,13 @@ def name_ticks(ax: Axes, values: Iterable[float], axis: str = "x", form: str = "
     named = {value: f"{value:{form}}" for value in values}
     ax.set(**{f"{axis}ticks": list(named), f"{axis}ticklabels": list(named.values())})
     getattr(ax, f"{axis}axis").minorticks_off()
+
+
+def plain_times(ax: Axes) -> None:
+    """Label the powers of ten along a logarithmic axis of times as plain numbers, 0.1, 1, 10, and nothing between."""
+    ax.xaxis.set_major_locator(LogLocator(numticks=8))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def note(ax: Axes, text: str, at: tuple[Any, Any], shift: tuple[float, float], **more: Any) -> None:
@@ -147,6 +203,11 @@ def scheme_legend(
 ) -> None:
     """Name schemes and orders, see `legend_entries`, and what else is given below the panels."""
     legend_below(figure, [*legend_entries(pairs), *extra], columns)
+
+
+def small_legend(ax: Axes, place: Any, **more: Any) -> None:
+    """Name what has a label in small print, at a place within the panel."""
+    ax.legend(loc=place, **{"fontsize": 7, **more})
 
 
 def legend_below(

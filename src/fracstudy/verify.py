@@ -21,8 +21,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from fracstudy.config import read_config
-from fracstudy.read_yaml import read_yaml
+from fracstudy.config import read_project
 from fracstudy.scene import Scene
 
 __all__ = ["agreement", "compare", "main", "sample"]
@@ -75,26 +74,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the sample")
     parser.add_argument("--scenes", type=int, default=10, help="how many")
     given = parser.parse_args(arguments)
-    study, scenes = read_config(read_yaml(Path("config/study.yaml")))
+    study, scenes = read_project(Path())
     names = sample(scenes, given.scenes, given.seed)
     print(f"seed {given.seed}: {', '.join(names)}")
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / "results"
         places = [f"results_dir={made}", f"report_dir={folder}/report", f"site_dir={folder}/site"]
-        done = subprocess.run(
-            [
-                sys.executable,
-                "-m",
-                "snakemake",
-                "-j2",
-                *names,  # before the options that take several values
-                "--quiet",
-                "all",
-                "--config",
-                *places,
-            ],
-            check=False,
-        )
+        call = [sys.executable, "-m", "snakemake", "-j2"]
+        # The names before the options that take several values.
+        done = subprocess.run([*call, *names, "--quiet", "all", "--config", *places], check=False)
         if done.returncode:
             return done.returncode
         table = compare(names, Path(study.results_dir), made)

@@ -63,6 +63,45 @@ def test_a_value_that_no_reader_could_use_is_refused(change):
         Value(**(VALUE | change))
 
 
+TABLE = {
+    "table": "L-T3.{scheme}.beta{beta}",
+    "where": "Table {n}",
+    "what": "{scheme} at {beta}.",
+    "rows": ["scheme", "n"],
+    "columns": {"beta": ["0.1", "0.5"]},
+    "printed": {"DD, 3": ["4.81", "5.25"], "KPSE, 4": ["2.25", "2.17"]},
+    "reason": "It is {ours:.2f}.",
+}
+
+
+def test_a_table_is_its_numbers_row_by_row(tmp_path):
+    of_one_row = {**TABLE, "table": "L-T4.beta{beta}", "where": "Table 4", "what": "At {beta}."}
+    of_one_row |= {"rows": [], "printed": ["1", "2"]}
+    found = read_printed(write(tmp_path / "a.yaml", TABLE, of_one_row))
+    ids = ["L-T3.DD.beta0.1", "L-T3.DD.beta0.5", "L-T3.KPSE.beta0.1", "L-T3.KPSE.beta0.5"]
+    assert [value.id for value in found] == [*ids, "L-T4.beta0.1", "L-T4.beta0.5"]
+    assert [value.printed for value in found] == ["4.81", "5.25", "2.25", "2.17", "1", "2"]
+    assert (found[3].where, found[3].what) == ("Table 4", "KPSE at 0.5.")
+    assert {value.reason for value in found} == {"It is {ours:.2f}."}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"printed": {"DD, 3": ["4.81"]}},
+        {"printed": {"DD": ["4.81", "5.25"]}},
+        {"printed": ["4.81", "5.25"]},
+        {"printed": {"DD, 3": ["4.81", "about 5"]}},
+        {"what": "{order} at {beta}."},
+        {"columns": {}},
+        {"table": "{beta}"},
+    ],
+)
+def test_a_table_that_does_not_fit_is_named(tmp_path, change):
+    with pytest.raises(LedgerError, match=r"a\.yaml"):
+        read_printed(write(tmp_path / "a.yaml", {**TABLE, **change}))
+
+
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fracstudy.claims import LedgerError
-from fracstudy.findings import Finding, filled, measured, read_findings, write_findings
+from fracstudy.findings import Finding, each, filled, measured, read_findings, write_findings
 
 ID = "L-T3.ordering"
 
@@ -72,6 +72,14 @@ def test_what_is_no_finite_number_is_refused_with_the_claim(number, complaint):
         measured(ID, ratio=number)
     with pytest.raises(LedgerError, match=f"L-T3.ordering: ({complaint})"):
         measured(ID, ratio=1.0, others={"another seed": {"ratio": number}})
+
+
+def test_a_quantity_of_each_case_is_named_by_the_case():
+    products = each(lambda n, beta: n * beta, n=(1, 2), beta=[0.5])
+    named = {"n = 1, beta = 0.5": 0.5, "n = 2, beta = 0.5": 1.0}
+    assert measured(ID, ratio=products).numbers["ratio"] == named
+    one = each(len, scheme=("DD", "KPSE"))
+    assert measured(ID, ratio=one).numbers["ratio"] == {"DD": 2, "KPSE": 4}
 
 
 def test_another_reading_is_one_of_the_same_numbers():

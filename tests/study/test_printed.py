@@ -34,11 +34,7 @@ def records(path: Path) -> list[Value | Sentence]:
 
 
 def claims(path: Path) -> list[Value | Statement]:
-    return [
-        claim
-        for record in records(path)
-        for claim in ([record] if isinstance(record, Value) else record.statements)
-    ]
+    return [claim for record in records(path) for claim in record.claims]
 
 
 def statements(path: Path) -> list[Statement]:

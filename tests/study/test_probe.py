@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fracparticles.errors import AccuracyWarning, FracparticlesError, InvalidInput
-from fracstudy.probe import Verdict, frame, probe
+from fracstudy.probe import Kind, Verdict, frame
 
 
 def refuses():
@@ -59,17 +59,18 @@ def overflows():
     ],
 )
 def test_a_probe_is_judged(run, must, verdict):
-    assert probe("kind", "case", "zero", run, 1.0, must=must).verdict == verdict
+    assert Kind("kind", "zero", 1.0, must=must)("case", run).verdict == verdict
 
 
 def test_a_probe_says_what_was_found():
-    assert probe("k", "c", "e", lambda: 0.25, 1.0).found == "2.5e-01"
-    assert probe("k", "c", "e", lambda: (0.25, "a quarter"), 1.0).found == "a quarter"
-    assert probe("k", "c", "e", refuses, 1.0).found.startswith("x = -1 is not allowed")
-    assert probe("k", "c", "e", grows(2.0), 1.0).found == "it grows"
-    assert probe("k", "c", "e", divides, 1.0).found.startswith("ZeroDivisionError")
+    kind = Kind("k", "e", 1.0)
+    assert kind("c", lambda: 0.25).found == "2.5e-01"
+    assert kind("c", lambda: (0.25, "a quarter")).found == "a quarter"
+    assert kind("c", refuses).found.startswith("x = -1 is not allowed")
+    assert kind("c", grows(2.0)).found == "it grows"
+    assert kind("c", divides).found.startswith("ZeroDivisionError")
 
 
 def test_probes_make_a_table():
-    table = frame([probe("k", "c", "e", lambda: 0.25, 1.0, source="closed form")])
+    table = frame([Kind("k", "e", 1.0)("c", float, 0.25, source="closed form")])
     assert list(table.iloc[0]) == ["k", "c", "e", "closed form", "2.5e-01", 0.25, 1.0, "held"]

@@ -5,9 +5,8 @@ from __future__ import annotations
 import netCDF4
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 
-from fracstudy.style import log_log, name_ticks
+from fracstudy.style import Axes, log_log, name_ticks
 
 __all__ = ["DISK", "particles_per_side", "spacing_axes", "stored_field"]
 

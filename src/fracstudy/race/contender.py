@@ -12,7 +12,7 @@ from scipy.fft import next_fast_len
 
 from fracstudy.race.problem import Points, Problem
 
-__all__ = ["Contender", "Ready", "lattices", "maps"]
+__all__ = ["Contender", "Mapped", "Ready", "lattices"]
 
 SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
 TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)
@@ -79,6 +79,18 @@ class Contender:
         raise NotImplementedError
 
 
+class Mapped(Contender):
+    """A method on a map of the line, which has a `scale`."""
+
+    counts: tuple[int, ...]
+    scales: tuple[float, ...]  # in units of R_alpha t_f^(1/alpha)
+
+    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
+        """Return numbers of points, each with every scale."""
+        for points, scale in product(self.counts, self.scales):
+            yield {"variant": "", "points": points, "scale": scale * problem.width}
+
+
 def lattices(
     problem: Problem,
     spacings: Iterable[float] | None = None,
@@ -97,11 +109,3 @@ def lattices(
         if points**problem.dim <= _MOST[problem.dim] and (points, half_width) not in seen:
             seen.add((points, half_width))
             yield {"points": points, "half_width": half_width}
-
-
-def maps(
-    problem: Problem, counts: Iterable[int], scales: Iterable[float]
-) -> Iterator[dict[str, Any]]:
-    """Yield `points` and `scale` of a map of the line, the scale in units of R_alpha t_f^(1/alpha)."""
-    for points, scale in product(counts, scales):
-        yield {"variant": "", "points": points, "scale": scale * problem.width}

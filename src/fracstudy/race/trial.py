@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tracemalloc
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -12,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import FracparticlesError, FracparticlesWarning
+from fracparticles.errors import FracparticlesError
+from fracstudy.errors import quiet
 from fracstudy.race.clock import LONG, Timing, forget_tables, measure, measure_warm
 from fracstudy.race.contender import Contender, Ready
 from fracstudy.race.problem import Problem
@@ -143,8 +143,7 @@ def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Re
     }  # fmt: skip
     record = _Record(contender, given, row)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FracparticlesWarning)
+        with quiet():
             forget_tables()
             setup, ready = measure(partial(contender.prepare, problem, **given))
             u0 = problem.initial(ready.x)

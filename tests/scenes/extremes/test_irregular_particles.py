@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
-from fracstudy.inputs import Inputs
-from fracstudy.probe import BAD, Verdict
-from scene_functions import figure, study
+from fracstudy.probe import Verdict
 
 PARAMETERS = {
     "particles": 101,
@@ -19,31 +16,25 @@ PARAMETERS = {
 }
 
 
-@pytest.fixture(scope="module")
-def result():
-    return study("irregular_particles")(Inputs("irregular_particles"), **PARAMETERS)
+def test_nothing_is_wrong_without_a_word(bad):
+    assert bad == ""
 
 
-def test_nothing_is_wrong_without_a_word(result):
-    bad = result.table[result.table["verdict"].isin(BAD)]
-    assert bad.empty, bad[["kind", "case", "found", "deviation", "bound"]].to_markdown(index=False)
-
-
-def test_conservation_is_exact(result):
-    kept = result.table[result.table["kind"] == "conservation"]
+def test_conservation_is_exact(table):
+    kept = table[table["kind"] == "conservation"]
     assert len(kept) > 40
     assert set(kept["verdict"]) == {Verdict.HELD}
 
 
-def test_growth_is_warned_of(result):
-    grows = result.table[result.table["expected"].str.startswith(("growth", "amplifies"))]
+def test_growth_is_warned_of(table):
+    grows = table[table["expected"].str.startswith(("growth", "amplifies"))]
     assert len(grows) > 10
     assert set(grows["verdict"]) == {Verdict.WARNED}
 
 
-def test_the_volumes_tell(result):
+def test_the_volumes_tell(result, drawn):
     jitter = result.series[(result.series["panel"] == "jitter") & (result.series["x"] == 0.5)]
     errors = jitter.pivot_table(index="series", columns="right", values="y")
     assert (errors[False] > 2.0 * errors[True])[["KPSE", "GPSE"]].all()
     assert np.isfinite(result.series["y"]).all()
-    assert len(figure("irregular_particles")(result.series, result.table, PARAMETERS).axes) == 2
+    assert len(drawn.axes) == 2

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from fracstudy.inputs import Inputs
-from fracstudy.probe import BAD, frame, probe
+from fracstudy.probe import BAD, Kind, frame
 from scene_functions import scenes, study
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -22,10 +22,8 @@ def test_every_family_is_counted():
 
 
 def test_the_counts_are_those_of_the_tables():
-    probes = [
-        probe("k", "c", "e", lambda: 0.5, 1.0, source="closed form"),
-        probe("k", "c", "e", lambda: 1.5, 1.0),
-    ]
+    kind = Kind("k", "e", 1.0)
+    probes = [kind("c", float, 0.5, source="closed form"), kind("c", float, 1.5)]
     words = {"what may go wrong": "a", "what tells you": "b"}
     result = study("what_can_go_wrong")(
         Inputs("x", tables={"one": frame(probes)}), families={"one": words}

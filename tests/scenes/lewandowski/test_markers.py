@@ -16,7 +16,7 @@ from fracstudy.criteria import Status
 from fracstudy.inputs import Inputs
 from fracstudy.ledger import judge
 from scene_functions import figure, scenes, study
-from scenes.lewandowski.marker_nonlinear.study import Evolution, Markers
+from scenes.lewandowski.marker_nonlinear.evolution import Evolution, Markers
 from scenes.lewandowski.square_profile import INFINITE, SquareRuns, Starts
 
 CLAIMS = {

@@ -9,8 +9,8 @@ from scipy.integrate import quad
 from fracparticles.kernels.families import kernel
 from fracstudy.inputs import Inputs
 from scenes.lucchesi.lucchesi_figure_1.figure import figure
-from scenes.lucchesi.lucchesi_figure_1.formulas import (
-    formulas,
+from scenes.lucchesi.lucchesi_figure_1.formulas import formulas
+from scenes.lucchesi.lucchesi_figure_1.integrals import (
     from_transform,
     gaussian_integral,
     printed_kernel,

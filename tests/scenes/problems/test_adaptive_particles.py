@@ -2,25 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import pytest
-
-from fracstudy.inputs import Inputs
 from fracstudy.panels import pick
-from fracstudy.scene import call, read_scenes
-
-ROOT = Path(__file__).resolve().parents[3]
-
-
-@pytest.fixture(scope="module")
-def scene():
-    return read_scenes(ROOT / "workflow/scenes", ["problems"], smoke=True)["adaptive_particles"]
-
-
-@pytest.fixture(scope="module")
-def result(scene):
-    return call(scene.function("study"), Inputs("adaptive_particles"), **scene.parameters)
 
 
 def test_a_lattice_takes_fifty_times_the_particles_for_the_same_error(result):
@@ -51,6 +33,5 @@ def test_volumes_are_smallest_where_the_narrow_blob_is(result):
     assert first["y"].max() / first["y"].min() > 500.0
 
 
-def test_the_figure_can_be_drawn(scene, result):
-    drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
-    assert len(drawn.axes) == 3
+def test_the_figure_has_its_panels(panels):
+    assert len(panels) == 3

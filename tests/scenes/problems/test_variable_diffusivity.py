@@ -2,28 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from fracstudy.inputs import Inputs
 from fracstudy.panels import pick
-from fracstudy.scene import call, read_scenes
 
-ROOT = Path(__file__).resolve().parents[3]
 FLUX, MEAN = "div(D grad^beta u)", "(D L u + L(D u) - u L D) / 2"
-
-
-@pytest.fixture(scope="module")
-def scene():
-    scenes = read_scenes(ROOT / "workflow/scenes", ["problems"], smoke=True)
-    return scenes["variable_diffusivity"]
-
-
-@pytest.fixture(scope="module")
-def result(scene):
-    return call(scene.function("study"), Inputs("variable_diffusivity"), **scene.parameters)
 
 
 def errors(result, **values):
@@ -63,6 +47,5 @@ def test_a_run_with_a_diffusivity_of_place_and_time_is_exact_to_a_millionth(resu
     assert (runs["error"] < 1e-6).all()
 
 
-def test_the_figure_can_be_drawn(scene, result):
-    drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
-    assert len(drawn.axes) == 4
+def test_the_figure_has_its_panels(panels):
+    assert len(panels) == 4

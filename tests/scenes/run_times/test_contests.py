@@ -9,19 +9,11 @@ import pytest
 from fracparticles.errors import FracparticlesError
 from fracstudy.inputs import Inputs
 from fracstudy.style import save
-from scenes.run_times.contests import best, duration, front, trials_of
+from scene_functions import figure, measured, study
+from scenes.run_times.contests import best, columns, duration, front, trials_of
 from scenes.run_times.first_call import benchmark as programs
-from scenes.run_times.first_call.study import study as first_calls
-from scenes.run_times.reference_times.study import study as reference_times
 from scenes.run_times.run_time_goals.study import behind
-from scenes.run_times.run_time_goals.study import study as run_time_goals
-from scenes.run_times.scattered_sums.study import study as scattered_sums
 from scenes.run_times.step_times.benchmark import benchmark as step_times
-from scenes.run_times.step_times.study import study as steps
-from scenes.run_times.time_to_accuracy.study import study as time_to_accuracy
-from scenes.run_times.which_method.study import study as which_method
-from scenes.run_times.work_precision.figure import figure as draw_fronts
-from scenes.run_times.work_precision.study import study as work_precision
 
 NAN = float("nan")
 # contender, variant, group, error, set-up, solve, block
@@ -47,6 +39,25 @@ def frame(problem: str = "mixture", beta: float = 0.5) -> pd.DataFrame:
 
 def inputs(**benchmarks) -> Inputs:
     return Inputs(scene="s", benchmarks=benchmarks)
+
+
+def test_a_heading_says_its_unit():
+    data = pd.DataFrame({"t": [2e-3], "m": [3e6], "who": ["a"]})
+    names = {
+        "who": "who",
+        "set-up / ms": "t",
+        "set-up / s": "t",
+        "memory / MB": "m",
+        "a / its own": "m",
+    }
+    (row,) = columns(data, names).to_dict("records")
+    assert row == {
+        "who": "a",
+        "set-up / ms": 2.0,
+        "set-up / s": 2e-3,
+        "memory / MB": 3.0,
+        "a / its own": 3e6,
+    }
 
 
 def test_the_best_is_the_fastest_that_is_good_enough():
@@ -82,7 +93,7 @@ def test_a_row_for_each_problem_beta_and_error(tmp_path, betas):
         [frame(name, b) for name in ("mixture", "compact") for b in betas], ignore_index=True
     )
     both.attrs = frame().attrs
-    result = work_precision(inputs(b=both), errors=[1e-4, 1e-9], time="total_time")
+    result = study("work_precision")(inputs(b=both), errors=[1e-4, 1e-9], time="total_time")
     assert len(result.table) == 4 * len(betas)
     first, second = result.table.iloc[0], result.table.iloc[1]
     assert first["ours"] == "evolve, 2 terms"
@@ -90,16 +101,17 @@ def test_a_row_for_each_problem_beta_and_error(tmp_path, betas):
     assert first["ours / peer"] == pytest.approx(2.0)
     assert second["scheme of the papers"] == "KPSE, order 12, series"
     assert second["ours / peer"] == pytest.approx(0.21 / 0.33)
-    blocks = work_precision(inputs(b=both), errors=[1e-9], time="block_time").table
+    blocks = study("work_precision")(inputs(b=both), errors=[1e-9], time="block_time").table
     assert blocks["ours / peer"][0] == pytest.approx(4.0)
     assert blocks["scheme of the papers"][0] == "none"
-    drawn = draw_fronts(result.series, result.table, time="total_time", ylabel="error")
+    parameters = {"time": "total_time", "ylabel": "error"}
+    drawn = figure("work_precision")(result.series, result.table, parameters)
     save(drawn, tmp_path / "fronts")
     assert (tmp_path / "fronts.svg").stat().st_size > 0
 
 
 def test_the_first_three():
-    table = time_to_accuracy(inputs(b=frame()), errors=[1e-3, 1e-9]).table
+    table = study("time_to_accuracy")(inputs(b=frame()), errors=[1e-3, 1e-9]).table
     assert table["first"].tolist() == ["rational functions", "evolve, 4 terms"]
     assert table["second"].tolist() == ["evolve, 2 terms", "rational functions"]
     assert table["third"].tolist() == ["KPSE, order 12, series"] * 2
@@ -120,14 +132,18 @@ def situation(**changes):
     ({"error": 1e-9, "time": "block_time"}, "rational functions (4 times)"),
 ])  # fmt: skip
 def test_who_is_faster_follows_from_the_times(changes, faster):
-    table = which_method(inputs(work_precision=frame()), situations=[situation(**changes)]).table
+    table = study("which_method")(
+        inputs(work_precision=frame()), situations=[situation(**changes)]
+    ).table
     assert table["faster"][0] == faster
 
 
 def test_two_times_within_a_fifth_are_a_tie():
     data = frame()
     data.loc[data["contender"] == "rational functions", "setup_time"] = 1e-4
-    table = which_method(inputs(work_precision=data), situations=[situation(error=1e-4)]).table
+    table = study("which_method")(
+        inputs(work_precision=data), situations=[situation(error=1e-4)]
+    ).table
     assert table["faster"][0] == "nobody (rational functions: a tie)"
 
 
@@ -136,17 +152,12 @@ def test_a_situation_may_be_timed_by_a_table():
     table = pd.DataFrame(rows, columns=["contender", "group", "to 1e-06 / ms"]).assign(problem="p")
     given = Inputs(scene="s", tables={"least": table})
     where = {"measured": "least", "problem": "p"}
-    (row,) = which_method(given, situations=[situation(contender="a", **where)]).table.to_dict(
-        "records"
-    )
-    assert row["cost"] == "3.0 ms to 1e-06"
-    assert row["faster"] == "c (1.5 times)"
-    (slow,) = which_method(given, situations=[situation(contender="b", **where)]).table.to_dict(
-        "records"
-    )
-    assert slow["cost"] == "4.0 s to 1e-06"
+    both = [situation(contender=name, **where) for name in "ab"]
+    found = study("which_method")(given, situations=both).table
+    assert found["cost"].tolist() == ["3.0 ms to 1e-06", "4.0 s to 1e-06"]
+    assert found["faster"][0] == "c (1.5 times)"
     with pytest.raises(FracparticlesError, match="no trial of e in least"):
-        which_method(given, situations=[situation(contender="e", **where)])
+        study("which_method")(given, situations=[situation(contender="e", **where)])
 
 
 @pytest.mark.parametrize(("seconds", "text"), [
@@ -158,7 +169,9 @@ def test_a_time_has_two_digits_and_a_unit(seconds, text):
 
 def test_a_contender_that_was_not_measured_is_named():
     with pytest.raises(FracparticlesError, match="GPSS"):
-        which_method(inputs(work_precision=frame()), situations=[situation(contender="GPSS")])
+        study("which_method")(
+            inputs(work_precision=frame()), situations=[situation(contender="GPSS")]
+        )
 
 
 def reference() -> pd.DataFrame:
@@ -183,12 +196,10 @@ def test_goals_are_met_or_not():
         "naive": 1e4,
         "first call": 0.7,
     }
-    races = {
-        name: frame() for name in ("work_precision", "work_precision_plane", "work_precision_space")
-    }
+    races = {f"work_precision{where}": frame() for where in ("", "_plane", "_space")}
     calls = pd.DataFrame({"call": ["an empty program", "fp.evolve"], "process_time": [0.01, 0.8]})
     given = inputs(**races, reference_times=reference(), first_call=calls)
-    table = run_time_goals(given, goals=goals, errors=[1e-4, 1e-9]).table
+    table = study("run_time_goals")(given, goals=goals, errors=[1e-4, 1e-9]).table
     assert list(table["measured"]) == pytest.approx([2.0, 2.0, 2.0, 1.0, 0.1, 2e4, 0.8])
     assert list(table["met"]) == ["no", "no", "no", "yes", "yes", "yes", "no"]
 
@@ -201,13 +212,13 @@ def test_who_does_not_get_there_is_infinitely_behind():
 
 
 def test_tables_of_the_reference_problem_and_of_scattered_sums():
-    table = reference_times(inputs(reference_times=reference())).table
+    table = study("reference_times")(inputs(reference_times=reference())).table
     assert list(table["order"]) == ["IV", "II"]
     assert list(table["series, min / ms"]) == [100.0, 500.0]
     sums = pd.DataFrame(
         {"particles": [100, 200], "transform_time": [1e-3, 2e-3], "naive_time": [2e-3, NAN], "deviation": [1e-12, NAN]}
     )  # fmt: skip
-    table = scattered_sums(inputs(scattered_sums=sums)).table
+    table = study("scattered_sums")(inputs(scattered_sums=sums)).table
     assert table["naive / FFT"][0] == pytest.approx(2.0)
     assert table["ns a particle"][1] == pytest.approx(1e4)
 
@@ -216,14 +227,12 @@ def test_a_first_call_and_a_step_are_timed(monkeypatch):
     """The benchmarks themselves, as small as they can be; every program of the first is in each smoke run."""
     few = dict(list(programs._CALLS.items())[:3])
     monkeypatch.setattr(programs, "_CALLS", few)
-    calls = programs.benchmark(repeats=1).to_dataframe().reset_index()
-    table = first_calls(inputs(first_call=calls)).table
+    calls = measured(programs.benchmark(repeats=1))
+    table = study("first_call")(inputs(first_call=calls)).table
     assert (table["process, min / s"] > 0.0).all()
     assert table["beyond an empty program / s"].iloc[0] == 0.0
-    data = step_times(line=201, plane=21, repeats=1).to_dataframe().reset_index()
-    found = steps(inputs(step_times=data)).table
+    data = measured(step_times(line=201, plane=21, repeats=1))
+    found = study("step_times")(inputs(step_times=data)).table
     assert set(found["dim"]) == {1, 2}
-    assert found[found["method"].str.startswith("exact")]["time / exact symbol"].tolist() == [
-        1.0,
-        1.0,
-    ]
+    exact = found[found["method"].str.startswith("exact")]
+    assert exact["time / exact symbol"].tolist() == [1.0, 1.0]

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
-import numba as nb
 import numpy as np
 import pandas as pd
 import pytest
 
 from fracparticles.moving.scattered import NonuniformFourierSum
 from fracparticles.run.dataset import read_benchmark, write
+from fracstudy.inputs import Inputs
 from fracstudy.style import save
+from scene_functions import measured
 from scenes.run_times.cost_growth.benchmark import benchmark as measure_growth
 from scenes.run_times.cost_growth.figure import figure as draw
 from scenes.run_times.cost_growth.study import exponent, extrapolate
@@ -26,14 +25,6 @@ KINDS = {
 LIMITS = {"naive_particles": 500, "most_solved": 4000, "repeats": 2, "seconds": 0.1}
 TARGET = 1e9
 YEAR = 365.25 * 86400.0
-
-
-@pytest.fixture(scope="module", autouse=True)
-def threads():
-    """The benchmarks keep their process to one thread; the other tests of this one need not."""
-    before = nb.get_num_threads()
-    yield
-    nb.set_num_threads(before)
 
 
 @pytest.fixture(scope="module")
@@ -83,9 +74,8 @@ def test_a_data_set_of_growth_is_netcdf_and_says_what_it_was_measured_on(growth,
 
 
 def test_study_and_figure_take_what_was_measured_without_memory(growth, tmp_path):
-    frame = growth.to_dataframe().reset_index()
-    frame.attrs = dict(growth.attrs)
-    given = SimpleNamespace(benchmarks={"cost_growth": frame})
+    frame = measured(growth)
+    given = Inputs("cost_growth", benchmarks={"cost_growth": frame})
     result = cost_growth(given, extrapolate_to=TARGET)
     assert len(result.table) == len(frame) + 2 * 4
     assert result.table["peak memory / GB"].isna().all()
@@ -155,7 +145,7 @@ def synthetic() -> pd.DataFrame:
 
 @pytest.fixture(scope="module")
 def result():
-    given = SimpleNamespace(benchmarks={"cost_growth": synthetic()})
+    given = Inputs("cost_growth", benchmarks={"cost_growth": synthetic()})
     return cost_growth(given, extrapolate_to=TARGET)
 
 

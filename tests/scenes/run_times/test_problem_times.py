@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 
-import numba as nb
 import numpy as np
 import pandas as pd
 import pytest
@@ -20,7 +18,8 @@ from fracparticles.variable.closed_forms import Cauchy, Gaussian
 from fracstudy.inputs import Inputs
 from fracstudy.ledger_text import COLUMNS
 from fracstudy.lookup import LookUps
-from fracstudy.scene import call, read_scenes
+from fracstudy.scene import call
+from scene_functions import measured, scenes
 from scenes.run_times.problem_times.benchmark import CONTESTS
 from scenes.run_times.problem_times.blob_peers import Circle, on_circle, on_elements
 from scenes.run_times.problem_times.contest import OURS
@@ -43,28 +42,12 @@ from scenes.run_times.problem_times.line_peers import (
 from scenes.run_times.problem_times.study import FIRST, study
 
 ALPHA = 1.5
-ROOT = Path(__file__).resolve().parents[3]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def threads():
-    """The benchmark keeps its process to one thread; the other tests of this one need not."""
-    before = nb.get_num_threads()
-    yield
-    nb.set_num_threads(before)
+SCENE = scenes()["problem_times"]
 
 
 @pytest.fixture(scope="module")
-def scene():
-    return read_scenes(ROOT / "workflow/scenes", ["run_times"], smoke=True)["problem_times"]
-
-
-@pytest.fixture(scope="module")
-def frame(scene):
-    data = call(scene.function("benchmark"), **scene.benchmark)
-    frame = data.to_dataframe().reset_index()
-    frame.attrs = dict(data.attrs)
-    return frame
+def frame():
+    return measured(call(SCENE.function("benchmark"), **SCENE.benchmark))
 
 
 # --- peers on the line ----------------------------------------------------------------------------
@@ -359,14 +342,14 @@ def test_the_table_says_who_is_first_to_what():
     assert list(result.series["front"]) == [True, True, False, True]
 
 
-def test_figure_and_caption_can_be_made_from_the_smoke_grid(scene, frame, tmp_path):
+def test_figure_and_caption_can_be_made_from_the_smoke_grid(frame, tmp_path):
     inputs = Inputs("problem_times", benchmarks={"problem_times": frame})
-    result = call(scene.function("study"), inputs, **scene.parameters)
-    drawn = call(scene.function("figure"), result.series, result.table, **scene.parameters)
+    result = call(SCENE.function("study"), inputs, **SCENE.parameters)
+    drawn = call(SCENE.function("figure"), result.series, result.table, **SCENE.parameters)
     assert sum(ax.get_visible() for ax in drawn.axes) == len(CONTESTS)
     (tmp_path / "tables").mkdir()
     result.table.to_csv(tmp_path / "tables/problem_times.csv", index=False)
     pd.DataFrame(columns=list(COLUMNS)).to_csv(tmp_path / "claims.csv", index=False)
     texts = LookUps(tmp_path)
-    filled = partial(texts.filled, scene=scene)
-    assert "{{" not in filled(scene.file("caption.md"))
+    filled = partial(texts.filled, scene=SCENE)
+    assert "{{" not in filled(SCENE.file("caption.md"))

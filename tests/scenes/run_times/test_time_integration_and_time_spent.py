@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -12,7 +10,9 @@ from fracparticles.lattice.fourier import FourierConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.time import STEP_POLYNOMIALS
 from fracparticles.time.rkc import stages_for
+from fracstudy.inputs import Inputs
 from fracstudy.style import save
+from scene_functions import measured
 from scenes.run_times.time_integration import benchmark as integration_benchmark
 from scenes.run_times.time_integration.figure import figure as draw_integrations
 from scenes.run_times.time_integration.study import study as time_integration
@@ -42,13 +42,7 @@ CASES = {
 
 
 def inputs(name, frame):
-    return SimpleNamespace(benchmarks={name: frame})
-
-
-def frame_of(data):
-    frame = data.to_dataframe().reset_index()
-    frame.attrs = dict(data.attrs)
-    return frame
+    return Inputs(name, benchmarks={name: frame})
 
 
 @pytest.fixture(scope="module")
@@ -57,12 +51,12 @@ def integrations():
         beta=0.5, truncation=5.0, spacing=0.2, schemes={"KPSE": 4, "FPSE": 4}, factors=[1, 2, 4, 8],
         repeats=2, seconds=0.1,
     )  # fmt: skip
-    return frame_of(data)
+    return measured(data)
 
 
 @pytest.fixture(scope="module")
 def parts():
-    return frame_of(take_apart(CASES, repeats=2))
+    return measured(take_apart(CASES, repeats=2))
 
 
 # --- synthetic ------------------------------------------------------------------------------------

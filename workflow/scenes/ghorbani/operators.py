@@ -1,7 +1,5 @@
 """What the SPH scenes share: the operators, the order alpha(x), and how functions and sums are named and drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
@@ -9,20 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.sph import caputo_derivative, rl_derivative, rl_integral
-from fracparticles.sph.closed_forms import Function
-
-__all__ = [
-    "CURVATURES",
-    "LABELS",
-    "OPERATORS",
-    "SLOPES",
-    "SUMS",
-    "TITLES",
-    "Operator",
-    "Order",
-    "order_at",
-]
+from fracparticles.sph import ParticleLine, caputo_derivative, rl_derivative, rl_integral
+from fracparticles.sph.closed_forms import FUNCTIONS, Function
 
 _STEP = 1e-4  # of differences: they keep some eight digits
 
@@ -58,6 +44,29 @@ class Operator:
     approximate: Callable[..., np.ndarray]
     exact: Callable[[Function, np.ndarray, Any], np.ndarray]
     first: int = 0
+
+    def compared(
+        self,
+        line: ParticleLine,
+        name: str,
+        order: Order,
+        method: str = "standard",
+        side: str = "left",
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the particles that are judged, the closed form there, and the approximation.
+
+        That on [x, b] is of the mirror image of f about the middle, a sum of functions with closed forms.
+        """
+        function, alpha = FUNCTIONS[name], order_at(order, line.x_all)
+        f, here = function.value(line.x_all), alpha[line.inside]
+        ours = self.approximate(line, f, alpha, side=side, method=method)
+        if side == "left":
+            exact = self.exact(function, line.x, here)
+        else:
+            ours, here = ours[::-1], here[::-1]
+            terms = [c * self.exact(g, line.x, here) for c, g in function.mirrored(line.b)]
+            exact = np.sum(terms, axis=0)
+        return line.x[self.first :], exact[self.first :], ours[self.first :]
 
 
 OPERATORS = {

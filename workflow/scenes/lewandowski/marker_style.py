@@ -1,52 +1,30 @@
 """How the figures of the marker method look."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, panel_title
-
-__all__ = [
-    "EXACT",
-    "HOLLOW",
-    "LOADING_LOOKS",
-    "SHAPE_COLOURS",
-    "draw",
-    "four_panels",
-    "shape_panels",
-    "strokes",
-    "symbol",
-]
+from fracstudy.style import BLUE, COLOURS, GREEN, ORANGE, PINK, RED, SKY, Axes, Figure, Look
 
 # One colour for each shape function in all figures of the marker method.
 SHAPE_COLOURS = {
     "S1": "#999999",
-    "S2": "#E69F00",
-    "S3": "#CC79A7",
-    "S4": "#D55E00",
-    "S5": "#56B4E9",
+    "S2": ORANGE,
+    "S3": PINK,
+    "S4": RED,
+    "S5": SKY,
     "S6": "#8A6D3B",
-    "S7": "#0072B2",
-    "S8": "#009E73",
+    "S7": BLUE,
+    "S8": GREEN,
 }
 # Label, colour and marker of where the markers of the square profile start.
 LOADING_LOOKS = {
-    "midpoints": ("midpoints of [−1, 1]", "#0072B2", "o"),
-    "random": ("random in [−1, 1]", "#D55E00", "s"),
-    "wide": ("uniform in [−L, L]", "#E69F00", "^"),
+    "midpoints": ("midpoints of [−1, 1]", BLUE, "o"),
+    "random": ("random in [−1, 1]", RED, "s"),
+    "wide": ("uniform in [−L, L]", ORANGE, "^"),
 }
-EXACT: dict[str, Any] = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
-HOLLOW: dict[str, Any] = {
-    "marker": "o",
-    "linestyle": "",
-    "markersize": 3.5,
-    "markerfacecolor": "white",
-}
+EXACT: Look = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
+HOLLOW: Look = {"marker": "o", "linestyle": "", "markerfacecolor": "white"}
+HOLLOW["markersize"] = 3.5
 
 
 def symbol(shape: str) -> str:
@@ -54,24 +32,10 @@ def symbol(shape: str) -> str:
     return f"$S_{shape[1]}$"
 
 
-def draw(ax: Axes, frame: pd.DataFrame, *line: str, **style: Any) -> None:
-    """Draw y against x."""
-    ax.plot(frame["x"], frame["y"], *line, **style)
-
-
 def strokes(ax: Axes, x: pd.Series, colour: str) -> None:
     """Draw the markers as strokes below the axis."""
     level = np.full(len(x), -0.025)
     ax.plot(x, level, "|", color=colour, markersize=6, markeredgewidth=0.6, alpha=0.8)
-
-
-def four_panels(width: float, height: float, *titles: str) -> tuple[Figure, list[Axes]]:
-    """Return a figure with two rows of two panels, lettered."""
-    figure = Figure(figsize=(width, height), layout="constrained")
-    axes = list(figure.subplots(2, 2).ravel())
-    for letter, ax, title in zip("abcd", axes, titles, strict=True):
-        panel_title(ax, letter, title)
-    return figure, axes
 
 
 def shape_panels(

@@ -3,13 +3,11 @@
 The text leaves open where the markers start. Each of `LOADINGS` is run, the random one with several seeds.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pandas as pd
@@ -20,8 +18,6 @@ from scipy.optimize import minimize_scalar
 from fracparticles.markers import (
     MarkerRun,
     MarkerVelocity,
-    Shape,
-    Square,
     equal_weight,
     random,
     run,
@@ -29,20 +25,10 @@ from fracparticles.markers import (
     uniform,
 )
 from fracparticles.markers.clusters import emptiness
+from fracparticles.markers.profiles import Square
+from fracparticles.markers.shapes import Shape
 from fracparticles.moving.lagrangian import FieldNotPositive
-
-__all__ = [
-    "INFINITE",
-    "LOADINGS",
-    "SHAPES",
-    "SQUARE",
-    "SquareRuns",
-    "Starts",
-    "Trace",
-    "delay",
-    "load",
-    "shape",
-]
+from fracstudy.findings import Finding, measured
 
 SQUARE = Square()
 LOADINGS = {
@@ -131,9 +117,9 @@ class SquareRuns(BaseModel):
         """Return the exact solution at the end."""
         return SQUARE.value(x, self.t_final)
 
-    def having(self, **changes: Any) -> SquareRuns:
+    def having(self, **changes: Any) -> Self:
         """Return other runs, with some values changed."""
-        return SquareRuns(**{**self.model_dump(), **changes})
+        return type(self)(**{**self.model_dump(), **changes})
 
     def relative_error(self, f: np.ndarray) -> float:
         """Return the distance of f from the exact solution on the fixed grid, as part of its norm."""
@@ -262,3 +248,13 @@ class Starts:
             row |= {column: int(part[column].sum()) for column in counted}
             rows.append(row)
         return pd.DataFrame(rows)
+
+
+def with_other_seeds(
+    ours: Mapping[str, Mapping[str, Any]], others: Mapping[str, Mapping[str, Any]]
+) -> list[Finding]:
+    """Return what was measured for each claim, beside the same numbers of other random starts."""
+    return [
+        measured(claim, others={"other seeds": others[claim]}, **numbers)
+        for claim, numbers in ours.items()
+    ]

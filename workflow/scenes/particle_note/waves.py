@@ -1,25 +1,13 @@
 """What the scenes of the note share: functions and particles that sums are tried on, and how accuracies are drawn."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fracparticles.pse import GAUSSIAN_20, Kernel, cell_volumes, derivative, lattice
-
-__all__ = [
-    "LINES",
-    "SEED",
-    "Skewed",
-    "arranged",
-    "heat",
-    "heat_second",
-    "second_derivative_error",
-    "wave",
-]
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, cell_volumes, derivative
 
 SEED = 20  # of particles at random
 
@@ -42,7 +30,7 @@ def second_derivative_error(kernel: Kernel, h: float, overlap: float) -> float:
     epsilon = overlap * h
     x = h * np.round(np.linspace(0.0, 2.0 * np.pi, 17) / h)
     margin = kernel.reach * epsilon
-    particles = lattice(-margin, 2.0 * np.pi + margin, h)
+    particles = pse.lattice(-margin, 2.0 * np.pi + margin, h)
     found = derivative(x, wave(x), particles, wave(particles), h, epsilon, kernel, 2)
     return float(np.abs(found - wave(x, order=2)).max())
 
@@ -96,3 +84,13 @@ def arranged(
     else:
         x = np.sort(random.uniform(-half_width, half_width, n))
     return x, cell_volumes(x)
+
+
+def rms_error(
+    exchange: StrengthExchange, x: np.ndarray, v: np.ndarray, t: float, within: float
+) -> float:
+    """Return the root mean square error of f'' by (26), for the heat kernel at t, |x| < within, relative."""
+    inside = np.abs(x) < within
+    exact = heat_second(x, t)[inside]
+    off = (exchange.apply(v * heat(x, t)) / v)[inside] - exact
+    return np.sqrt((off**2).mean() / (exact**2).mean())

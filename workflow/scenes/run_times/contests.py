@@ -1,16 +1,25 @@
-"""What the trials of the races say: who is fastest with an error, who is on the front."""
+"""What benchmarks say: columns in units, who is fastest with an error, who is on the front."""
 
-from __future__ import annotations
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
-
-__all__ = ["TIMES", "best", "duration", "front", "trials_of"]
 
 TIMES = {
     "total_time": "time of one solve with set-up / s",
     "block_time": "time per solve, a thousand at once / s",
 }
+
+
+_UNITS = {"ms": 1e3, "ns a particle": 1e9, "ns a point": 1e9, "MB": 1e-6}
+
+
+def columns(data: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
+    """Return columns of a benchmark by their headings, in the unit that a heading ends with: "set-up / ms"."""
+    units = {heading: _UNITS.get(heading.rpartition(" / ")[2]) for heading in names}
+    return pd.DataFrame(
+        {h: data[name] if units[h] is None else units[h] * data[name] for h, name in names.items()}
+    )
 
 
 def trials_of(frame: pd.DataFrame) -> pd.DataFrame:

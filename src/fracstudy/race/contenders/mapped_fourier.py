@@ -7,31 +7,22 @@ With the basis ((x + i L) / (x - i L))^k = e^(2 i k s) and b_k = sqrt(k) a_k, db
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 from scipy.fft import irfft, rfft
 from scipy.linalg import eigh, toeplitz
 from scipy.special import poch
 
-from fracstudy.race.contender import Contender, Ready, maps
+from fracstudy.race.contender import Mapped, Ready
 from fracstudy.race.problem import Problem
 
-_COUNTS = (17, 25, 33, 49, 65, 97, 129, 193)
-_SCALES = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5)
 
-
-class MappedFourier(Contender):
+class MappedFourier(Mapped):
     """A transform, a real matrix, and back."""
 
     name = label = "mapped Fourier"
     reference = "Cayama, Cuesta & de la Hoz (2021), Appl. Math. Comput. 389, 125577"
     place, colour, marker = 4, "#4B5D8C", "D"
-
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return numbers of points and scales."""
-        return maps(problem, _COUNTS, _SCALES)
+    counts, scales = (17, 25, 33, 49, 65, 97, 129, 193), (0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5)
 
     def prepare(self, problem: Problem, variant: str, points: int, scale: float) -> Ready:
         """Return the exponential made ready."""

@@ -11,49 +11,55 @@ u (1 - i x/L) is a Fourier series in theta, whose coefficients are those of phi_
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 from scipy.fft import fft, ifft
 from scipy.special import roots_laguerre
 
-from fracstudy.race.contender import Contender, Ready, maps
+from fracstudy.race.contender import Mapped, Ready
 from fracstudy.race.problem import Problem
 
-_COUNTS = (16, 24, 32, 48, 64, 96, 128, 192)
-_SCALES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0)
+
+class RationalLine:
+    """An even number of points x on the line, and the coefficients of a real u there, those of n >= 0."""
+
+    def __init__(self, points: int, scale: float) -> None:
+        self.count = points // 2
+        theta = (np.arange(points) + 0.5) * (2.0 * np.pi / points) - np.pi
+        self.x = scale * np.tan(0.5 * theta)
+        self._pole = 1.0 - 1j * self.x / scale
+        self._shift = np.exp(-1j * np.arange(self.count) * theta[0])
+
+    def waves(self, u: np.ndarray) -> np.ndarray:
+        """Return the coefficients, along the last axis."""
+        return np.asarray(fft(u * self._pole, norm="forward")[..., : self.count] * self._shift)
+
+    def values(self, c: np.ndarray) -> np.ndarray:
+        """Return u at the points."""
+        full = ifft(c * self._shift.conj(), self.x.size, norm="forward")
+        return np.asarray(2.0 * (full / self._pole).real)
 
 
-class Rational(Contender):
+class Rational(Mapped):
     """One transform, a real matrix, and back."""
 
     name = label = "rational functions"
     reference = "Christov (1982), SIAM J. Appl. Math. 42, 1337; Iserles & Webb (2020), J. Fourier Anal. Appl. 26, 19"
     place, colour, marker = 3, "#2E6E6E", "P"
-
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return numbers of points and scales."""
-        return maps(problem, _COUNTS, _SCALES)
+    counts, scales = (16, 24, 32, 48, 64, 96, 128, 192), (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0)
 
     def prepare(self, problem: Problem, variant: str, points: int, scale: float) -> Ready:
         """Return the matrix of the run made ready."""
-        half = points // 2
-        theta = (np.arange(points) + 0.5) * (2.0 * np.pi / points) - np.pi
-        x = scale * np.tan(0.5 * theta)
-        pole = 1.0 - 1j * x / scale
-        s, functions, weights = _functions(half, 2 * half + 16)
+        line = RationalLine(points, scale)
+        s, functions, weights = _functions(points // 2, 2 * (points // 2) + 16)
         decay = np.exp(-problem.time * (s / (2.0 * scale)) ** problem.alpha) * weights
         matrix = (functions * decay) @ functions.T
-        shift = np.exp(-1j * np.arange(half) * theta[0])
 
         def solve(u0: np.ndarray) -> np.ndarray:
-            c = fft(u0 * pole, norm="forward")[..., :half] * shift
-            c = (c.real @ matrix + 1j * (c.imag @ matrix)) * shift.conj()
-            return 2.0 * (ifft(c, points, norm="forward") / pole).real
+            c = line.waves(u0)
+            return line.values(c.real @ matrix + 1j * (c.imag @ matrix))
 
-        volumes = (scale**2 + x**2) / (2.0 * scale) * (2.0 * np.pi / points)
-        return Ready((x,), volumes, solve, batched=True)
+        volumes = (scale**2 + line.x**2) / (2.0 * scale) * (2.0 * np.pi / points)
+        return Ready((line.x,), volumes, solve, batched=True)
 
 
 def _functions(count: int, nodes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

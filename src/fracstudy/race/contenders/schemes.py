@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,37 +21,10 @@ _MOST = {1: 20000, 2: 60000, 3: 100000}
 _NAIVE_STEPS = 2
 
 
-def _cases(
-    problem: Problem, fields: dict[str, Any], spacings: tuple[float, ...] = _SPACINGS
-) -> Iterator[dict[str, Any]]:
-    for spacing in spacings:
-        for truncation in _TRUNCATIONS[problem.dim]:
-            if (2.0 * truncation * problem.width / spacing) ** problem.dim <= _MOST[problem.dim]:
-                yield {**fields, "spacing": spacing, "truncation": truncation}
-
-
-class _Scheme(Contender):
-    """A scheme, its whole run from the symbol, or by a Chebyshev series of its operator."""
-
-    group = "schemes"
-    dims: tuple[int, ...] = (1, 2)
-    ways: tuple[tuple[str, dict[str, Any]], ...] = ()
-
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return the orders and evaluations on lattices."""
-        far = {"far_terms": 3} if problem.dim == 1 else {}
-        for variant, fields in self.ways:
-            for given in _cases(problem, {"exterior": "open", **far, **fields}):
-                yield {"variant": variant, **given}
-
-    def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
-        """Return the case made ready; its times differ by 1 as those of the problem."""
-        case = Case(scheme=self.name, beta=problem.beta, dim=problem.dim, **fields)
-        return Ready(_points(case), case.volumes, prepare(case).solve)
-
-
-def _points(case: Case) -> tuple[np.ndarray, ...]:
-    return tuple(np.meshgrid(*(case.x,) * case.dim, indexing="ij", sparse=True))
+def _cases(problem: Problem, fields: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    for spacing, truncation in product(_SPACINGS, _TRUNCATIONS[problem.dim]):
+        if (2.0 * truncation * problem.width / spacing) ** problem.dim <= _MOST[problem.dim]:
+            yield {**fields, "spacing": spacing, "truncation": truncation}
 
 
 _WAYS = tuple(
@@ -62,40 +36,50 @@ _WAYS = tuple(
 )
 
 
-class DD(_Scheme):
+class _Scheme(Contender):
+    """A scheme, its whole run from the symbol, or by a Chebyshev series of its operator."""
+
+    group = "schemes"
+    dims: tuple[int, ...] = (1, 2)
+    ways: tuple[tuple[str, dict[str, Any]], ...] = _WAYS
+
+    def __init_subclass__(cls, equation: int, place: int) -> None:
+        """Name it after its class."""
+        cls.name = cls.label = cls.__name__
+        cls.reference, cls.place = f"Lucchesi et al. (2020), Eq. ({equation})", place
+        cls.colour, cls.marker = SCHEMES[cls.name].colour, SCHEMES[cls.name].marker
+
+    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
+        """Return the orders and evaluations on lattices."""
+        far = {"far_terms": 3} if problem.dim == 1 else {}
+        for variant, fields in self.ways:
+            for given in _cases(problem, {"exterior": "open", **far, **fields}):
+                yield {"variant": variant, **given}
+
+    def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
+        """Return the case made ready; its times differ by 1 as those of the problem."""
+        case = Case(scheme=self.name, beta=problem.beta, dim=problem.dim, **fields)
+        points = np.meshgrid(*(case.x,) * case.dim, indexing="ij", sparse=True)
+        return Ready(tuple(points), case.volumes, prepare(case).solve)
+
+
+class DD(_Scheme, equation=10, place=20):
     """DD."""
 
-    name = label = "DD"
-    reference = "Lucchesi et al. (2020), Eq. (10)"
-    place, colour, marker = 20, SCHEMES["DD"].colour, SCHEMES["DD"].marker
-    ways = _WAYS
 
-
-class FPSE(_Scheme):
+class FPSE(_Scheme, equation=25, place=21):
     """FPSE."""
 
-    name = label = "FPSE"
-    reference = "Lucchesi et al. (2020), Eq. (25)"
-    place, colour, marker = 21, SCHEMES["FPSE"].colour, SCHEMES["FPSE"].marker
     dims = (1,)
-    ways = _WAYS
 
 
-class KPSE(_Scheme):
+class KPSE(_Scheme, equation=34, place=22):
     """KPSE."""
 
-    name = label = "KPSE"
-    reference = "Lucchesi et al. (2020), Eq. (34)"
-    place, colour, marker = 22, SCHEMES["KPSE"].colour, SCHEMES["KPSE"].marker
-    ways = _WAYS
 
-
-class GPSE(_Scheme):
+class GPSE(_Scheme, equation=41, place=23):
     """GPSE in one step."""
 
-    name = label = "GPSE"
-    reference = "Lucchesi et al. (2020), Eq. (41)"
-    place, colour, marker = 23, SCHEMES["GPSE"].colour, SCHEMES["GPSE"].marker
     dims = (1, 2, 3)
     ways = (
         ("one step", {"dt": 1.0}),
@@ -144,12 +128,10 @@ class PapersWay(Contender):
 
     def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
         """Return the schemes and orders on truncated lattices."""
-        for scheme in ("DD", "FPSE", "KPSE"):
-            for order in (2, 4):
-                for truncation in (20.0, 160.0):
-                    for spacing in (0.2, 0.1):
-                        fields = {"scheme": scheme, "order": order, "spacing": spacing}
-                        yield {"variant": f"{scheme} {order}", "truncation": truncation, **fields}
+        grids = product(("DD", "FPSE", "KPSE"), (2, 4), (20.0, 160.0), (0.2, 0.1))
+        for scheme, order, truncation, spacing in grids:
+            fields = {"scheme": scheme, "order": order, "spacing": spacing}
+            yield {"variant": f"{scheme} {order}", "truncation": truncation, **fields}
 
     def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
         """Return a few steps made ready, and the whole run by FFT for the error."""

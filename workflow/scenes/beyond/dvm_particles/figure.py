@@ -1,40 +1,29 @@
 """The particles of DVM: paths and lattice."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib import colormaps
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, axes_row, entry, note, panel_title
+from fracstudy.panels import pick
+from fracstudy.style import COLOURS, RED, Axes, Figure, Look, axes_row, draw, entry, note
 
-__all__ = ["figure"]
-
-_REMESHED = "#D55E00"
 _ABOVE = 1.5  # the spacing that calls for remeshing, in units of h
-_DASHES: dict[str, Any] = {"linewidth": 0.7, "linestyle": (0, (4, 3))}
+_DASHES: Look = {"linewidth": 0.7, "linestyle": (0, (4, 3))}
 _EXACT = {"color": "0.15", **_DASHES}
-_DOTS: dict[str, Any] = {
-    "color": _REMESHED,
-    "marker": "o",
-    "markersize": 2.5,
-    "linestyle": "",
-    "alpha": 0.5,
-}
-_DOTS |= {"markeredgewidth": 0.0}
-_NOTE: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "color": "0.35"}
+_DOTS: Look = {"color": RED, "marker": "o", "markersize": 2.5, "linestyle": ""}
+_DOTS |= {"alpha": 0.5, "markeredgewidth": 0.0}
+_NOTE: Look = {"xycoords": ("axes fraction", "data"), "color": "0.35"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the paths of the particles, (b) the spacing against position, (c) the overlap against time."""
-    drawn, axes = axes_row(3, width=3.5, height=3.9)
-    _paths(axes[0], series[series["panel"] == "path"])
-    _spacings(axes[1], series[series["panel"] == "spacing"])
-    _overlaps(axes[2], series[series["panel"] == "overlap"])
+    titles = ("paths, no remeshing", "spacing", "least overlap")
+    drawn, axes = axes_row(titles, width=3.5, height=3.9)
+    _paths(axes[0], pick(series, panel="path"))
+    _spacings(axes[1], pick(series, panel="spacing"))
+    _overlaps(axes[2], pick(series, panel="overlap"))
     return drawn
 
 
@@ -44,55 +33,50 @@ def _legend(ax: Axes, columns: int = 2, **options: Any) -> None:
 
 def _paths(ax: Axes, series: pd.DataFrame) -> None:
     last = series["label"].max()
-    bulk: dict[str, Any] = {"color": COLOURS["DVM"], "alpha": 0.55, "linewidth": 1.0}
-    end: dict[str, Any] = {"color": _REMESHED, "linewidth": 1.4}
+    bulk: Look = {"color": COLOURS["DVM"], "alpha": 0.55, "linewidth": 1.0}
+    end: Look = {"color": RED, "linewidth": 1.4}
     for (name, particle), path in series.groupby(["series", "label"]):
         look = end if particle in (0, last) else bulk
-        ax.plot(path["x"], path["y"], **(_EXACT if name == "exact" else look))
+        draw(ax, path, **(_EXACT if name == "exact" else look))
     ax.set(xlabel="position $x$", ylabel="time $t$")
-    panel_title(ax, "a", "paths, no remeshing")
     ax.margins(y=0.0)
     handles = [
         entry("particles", color=COLOURS["DVM"]),
-        entry("the last ones", color=_REMESHED),
+        entry("the last ones", color=RED),
         entry(r"exact, $x\propto t^{1/\alpha}$", **{**_EXACT, "linestyle": "--"}),
     ]
     _legend(ax, handles=handles)
 
 
 def _spacings(ax: Axes, series: pd.DataFrame) -> None:
-    free = series[series["series"] == "none"]
-    exact = series[series["series"] == "exact"].set_index("label")
+    free, exact = pick(series, series="none"), pick(series, series="exact").set_index("label")
     times = sorted(free["label"].unique())
-    for time, shade in zip(
-        times, colormaps["viridis"](np.linspace(0.0, 0.85, len(times))), strict=True
-    ):
-        line = free[free["label"] == time].sort_values("x")
-        ax.plot(line["x"], line["y"], color=shade, label=f"$t = {time:g}$")
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(times)))
+    for time, shade in zip(times, shades, strict=True):
+        line = pick(free, label=time).sort_values("x")
+        draw(ax, line, color=shade, label=f"$t = {time:g}$")
         stretched = exact.loc[time]
         ax.plot([0.0, stretched["x"]], [stretched["y"]] * 2, color=shade, **_DASHES)
     rest = series[~series["series"].isin(["none", "exact"])]
-    ax.plot(rest["x"], rest["y"], label="remeshed (just before)", **_DOTS)
+    draw(ax, rest, label="remeshed (just before)", **_DOTS)
     ax.axhline(_ABOVE, color="0.5", linewidth=0.8, linestyle=":")
     note(ax, f"remesh above {_ABOVE:g}", (1.0, _ABOVE), (0, -2), ha="right", va="top", **_NOTE)
     ax.set(xlabel="position $x$", ylabel=r"spacing $\Delta x / h$")
-    panel_title(ax, "b", "spacing")
     _legend(ax, 3, columnspacing=1.0)
 
 
 def _overlaps(ax: Axes, series: pd.DataFrame) -> None:
     of_exact = r"exact, $2\,(t_0/t)^{1/\alpha}$"
-    dvm: dict[str, Any] = {"color": COLOURS["DVM"]}
-    looks: dict[str, dict[str, Any]] = {
+    dvm: Look = {"color": COLOURS["DVM"]}
+    looks: dict[str, Look] = {
         "exact": {**_EXACT, "linewidth": 0.8, "zorder": 3, "label": of_exact},
         "none, bulk": {**dvm, "linewidth": 2.2, "alpha": 0.6, "label": "not remeshed, bulk"},
         "none, ends": {**dvm, "linewidth": 1.0, "label": "not remeshed, ends"},
     }
     remeshed = {**_DOTS, "label": "remeshed (just before), ends"}
     for name, part in series.sort_values("x").groupby("series"):
-        ax.plot(part["x"], part["y"], **looks.get(name, remeshed))
+        draw(ax, part, **looks.get(name, remeshed))
     ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle=":")
     note(ax, "no overlap below 1", (0.2, 1.0), (0, 2), va="bottom", **_NOTE)
     ax.set(xlabel="time $t$", ylabel=r"overlap $\epsilon / \Delta x$", ylim=(0.0, 2.1))
-    panel_title(ax, "c", "least overlap")
     _legend(ax, columnspacing=1.0)

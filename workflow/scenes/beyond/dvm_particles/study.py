@@ -4,11 +4,6 @@ For the fundamental solution the velocity (44) is x / (alpha t): the paths are x
 spacings grow in proportion.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
@@ -16,8 +11,7 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import advect, initial_strengths
 from fracparticles.special.stable import mean_radius
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["spread", "study"]
+from fracstudy.panels import Panels
 
 NEEDS = {"scheme": ["DVM"], "remeshing": ["none", "M4'"]}
 
@@ -51,57 +45,49 @@ def study(inputs: Inputs, *, times: list[float], every: int) -> Result:
     when, where = remeshed["remeshing_time"].values, np.abs(remeshed["spacing_where"].values)
     before = remeshed["spacing_before"].values / h
     above = 1.5 if case.remesh_above is None else case.remesh_above
-    rows, series = [], []
+    rows, panels = [], Panels()
     for asked in times:
         k = int(np.argmin(np.abs(time - asked)))
         x, exact, so_far = places[k], float(stretch[k]), when <= time[k] + 0.5 * case.time_step
-        rows.append(
-            {
-                "t": time[k],
-                "exact spacing / h": exact,
-                "bulk spacing / h": bulk[k] / h,
-                "largest spacing / h": widest[k] / h,
-                "overlap in the bulk": overlap / (bulk[k] / h),
-                "last particle": x.max(),
-                "last particle, exact": case.reach * exact,
-                "remeshings the bulk would need": int(np.log(bulk[k] / h) / np.log(above)),
-                f"remeshings, {other}": int(so_far.sum()),
-                "steps": k,
-                "largest spacing before a remeshing / h": before[so_far].max(initial=0.0),
-                "nearest to the centre / D": where[so_far].min(initial=np.inf) / case.reach,
-            }
-        )
+        row = {
+            "t": time[k],
+            "exact spacing / h": exact,
+            "bulk spacing / h": bulk[k] / h,
+            "largest spacing / h": widest[k] / h,
+            "overlap in the bulk": overlap / (bulk[k] / h),
+            "last particle": x.max(),
+            "last particle, exact": case.reach * exact,
+            "remeshings the bulk would need": int(np.log(bulk[k] / h) / np.log(above)),
+            f"remeshings, {other}": int(so_far.sum()),
+            "steps": k,
+            "largest spacing before a remeshing / h": before[so_far].max(initial=0.0),
+            "nearest to the centre / D": where[so_far].min(initial=np.inf) / case.reach,
+        }
+        rows.append(row)
         at = 0.5 * (x[1:] + x[:-1])
         kept = np.flatnonzero(at >= 0.0)
         thinned = kept[:: max(1, kept.size // _MOST_GAPS)]
         kept = np.union1d(thinned, kept[-_LAST_GAPS:])
-        series.append(_long("spacing", "none", at[kept], gaps[k][kept] / h, time[k]))
-        series.append(_long("spacing", "exact", [at.max()], [exact], time[k]))
+        panels.add("spacing", "none", at[kept], gaps[k][kept] / h, label=time[k])
+        panels.add("spacing", "exact", at.max(), exact, label=time[k])
     some = slice(None, None, max(1, when.size // _MOST_GAPS))
-    series.append(_long("spacing", other, where[some], before[some], when[some]))
-    series += _paths(case, time, places, every)
+    panels.add("spacing", other, where[some], before[some], label=when[some])
+    _paths(panels, case, time, places, every)
     thin = slice(None, None, max(1, time.size // _FRAMES))
-    overlaps = {
-        "none, bulk": (time[thin], (overlap * h / bulk)[thin]),
-        "none, ends": (time[thin], (overlap * h / widest)[thin]),
-        f"{other}, ends": (when[some], overlap / before[some]),
-        "exact": (time[thin], overlap / stretch[thin]),
-    }
-    series += [_long("overlap", name, x, y, 0.0) for name, (x, y) in overlaps.items()]
-    return Result(pd.DataFrame(rows), (), pd.concat(series, ignore_index=True))
+    panels.add("overlap", "none, bulk", time[thin], (overlap * h / bulk)[thin], label=0.0)
+    panels.add("overlap", "none, ends", time[thin], (overlap * h / widest)[thin], label=0.0)
+    panels.add("overlap", f"{other}, ends", when[some], overlap / before[some], label=0.0)
+    panels.add("overlap", "exact", time[thin], overlap / stretch[thin], label=0.0)
+    return Result(pd.DataFrame(rows), (), panels.frame)
 
 
 def _paths(
-    case: Case, time: np.ndarray, places: list[np.ndarray], every: int
-) -> Iterator[pd.DataFrame]:
+    panels: Panels, case: Case, time: np.ndarray, places: list[np.ndarray], every: int
+) -> None:
     """The paths of every k-th particle from the centre, of the two last ones, and the exact ones."""
     frames = np.unique(np.linspace(0, time.size - 1, _FRAMES).astype(int))
     x, shown, last = np.array([places[k] for k in frames]), time[frames], 2 * case.n
     stretch = spread(shown, case.t_initial, case.alpha)
     for i in sorted({0, last, *range(case.n % every, last + 1, every)}):
-        yield _long("path", "none", x[:, i], shown, i)
-        yield _long("path", "exact", case.x[i] * stretch, shown, i)
-
-
-def _long(panel: str, series: str, x: Any, y: Any, label: Any) -> pd.DataFrame:
-    return pd.DataFrame({"panel": panel, "series": series, "x": x, "y": y, "label": label})
+        panels.add("path", "none", x[:, i], shown, label=i)
+        panels.add("path", "exact", case.x[i] * stretch, shown, label=i)

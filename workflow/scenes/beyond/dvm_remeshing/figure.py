@@ -1,67 +1,59 @@
 """What remeshing does to the error of DVM."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, entry, log_log, name_ticks, note, panel_title, slope_triangle
-
-__all__ = ["figure"]
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, entry, log_log, name_ticks, note
 
 _REMESHINGS = {  # colour, marker, label
-    "M4'": ("#0072B2", "o", "$M_4'$"),
-    "Lambda3": ("#D55E00", "s", r"$\Lambda_3$"),
-    "none": ("#009E73", "^", "none"),
+    "M4'": (style.BLUE, "o", "$M_4'$"),
+    "Lambda3": (style.RED, "s", r"$\Lambda_3$"),
+    "none": (style.GREEN, "^", "none"),
 }
 _KINDS = {"II, field (7)": "-", "II, strengths": ":", "IV, field (7)": "--"}
-_BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 2}
+_BELOW: Look = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 2}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: float) -> Figure:
     """Draw (a) the error against h, (b) the deviation along x, (c) the error in time against the step."""
-    drawn, axes = axes_row(3, width=3.5, height=3.9)
-    panels = dict(tuple(series.sort_values("x", kind="stable").groupby("panel")))
-    _errors(axes[0], panels["spacing"])
-    _deviations(axes[1], panels["profile"])
-    panel_title(axes[1], "b", rf"near the peak, $h = {shown:.3g}$")
-    _steps(axes[2], panels["time"])
+    titles = ("error", rf"near the peak, $h = {shown:.3g}$", "error in time")
+    drawn, axes = axes_row(titles, width=3.5, height=3.9)
+    series = series.sort_values("x", kind="stable")
+    _errors(axes[0], pick(series, panel="spacing"))
+    _deviations(axes[1], pick(series, panel="profile"))
+    _steps(axes[2], pick(series, panel="time"))
     return drawn
 
 
-def _look(remeshing: str, kind: str = "field", order: int = 2) -> dict[str, Any]:
+def _look(remeshing: str, kind: str = "field", order: int = 2) -> Look:
     colour, marker, _ = _REMESHINGS[remeshing]
-    style = ":" if kind == "strengths" else "--" if order == 4 else "-"
+    line = ":" if kind == "strengths" else "--" if order == 4 else "-"
     face = colour if kind == "field" and order == 2 else "none"
-    return {"color": colour, "marker": marker, "linestyle": style, "markerfacecolor": face}
+    return {"color": colour, "marker": marker, "linestyle": line, "markerfacecolor": face}
 
 
 def _errors(ax: Axes, series: pd.DataFrame) -> None:
     for (kind, order, name), part in series.groupby(["kind", "order", "remeshing"]):
         if (kind, order) != ("strengths", 4):  # those of order II again
-            ax.plot(part["x"], part["y"], **_look(name, kind, order))
-    log_log(ax, xlabel="particle spacing $h$")
-    ax.set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
-    panel_title(ax, "a", "error")
+            draw(ax, part, **_look(name, kind, order))
+    log_log(ax, xlabel="particle spacing $h$", ylabel=style.ERROR)
     names = [
         entry(label, color=colour, marker=marker, linestyle="none")
         for colour, marker, label in _REMESHINGS.values()
     ]
-    lines = [entry(label, color="0.3", linestyle=style) for label, style in _KINDS.items()]
+    lines = [entry(label, color="0.3", linestyle=line) for label, line in _KINDS.items()]
     spacings = sorted(series["x"].unique())
     if len(spacings) > 1:
         x = spacings[-2]
-        slope_triangle(ax, x, 0.2 * series.loc[series["x"] == x, "y"].min(), 2.0)
+        style.slope_triangle(ax, x, 0.2 * series.loc[series["x"] == x, "y"].min(), 2.0)
     _plain_ticks(ax, [0.01, 0.02, 0.05, 0.1, 0.2, 0.5])
     ax.legend(handles=names + lines, **_BELOW)
 
 
 def _deviations(ax: Axes, series: pd.DataFrame) -> None:
     here = series[(series["order"] == 2) & (series["remeshing"] != "none")]
-    looks: dict[str, dict[str, Any]] = {
+    looks: dict[str, Look] = {
         "field": {"linestyle": "-", "marker": ""},
         "strengths": {"linestyle": ":", "marker": ".", "markersize": 3.5, "linewidth": 0.8},
     }
@@ -70,10 +62,8 @@ def _deviations(ax: Axes, series: pd.DataFrame) -> None:
         ax.plot(part["x"], 100.0 * part["y"], label=label, **{**_look(name, kind), **looks[kind]})
     ax.set_yscale("symlog", linthresh=0.1, linscale=0.6)
     name_ticks(ax, (-10.0, -1.0, -0.1, 0.0, 0.1, 1.0, 10.0), "y")
-    ax.set(
-        xlabel="position $x$",
-        ylabel="deviation from the exact solution, %\n(linear between -0.1 and 0.1)",
-    )
+    ax.set_xlabel("position $x$")
+    ax.set_ylabel("deviation from the exact solution, %\n(linear between -0.1 and 0.1)")
     ax.legend(**_BELOW)
 
 
@@ -81,14 +71,13 @@ def _steps(ax: Axes, series: pd.DataFrame) -> None:
     finer = {"linestyle": ":", "markerfacecolor": "none"}
     for (h, name), part in series.groupby(["h", "remeshing"]):
         look = _look(name) if h == series["h"].max() else {**_look(name), **finer}
-        ax.plot(part["x"], part["y"], label=rf"{_REMESHINGS[name][2]}, $h = {h:.3g}$", **look)
+        draw(ax, part, label=rf"{_REMESHINGS[name][2]}, $h = {h:.3g}$", **look)
     ax.axhline(1e-3, color="0.5", linewidth=0.8, linestyle=":")
     place = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "bottom"}
     note(ax, "a thousandth", (1.0, 1e-3), (0, 2), color="0.35", **place)
     log_log(ax, xlabel=r"time step $\Delta t$")
     ax.set_ylabel("change from the smallest step / error (48)")
     _plain_ticks(ax, sorted(series["x"].unique()))
-    panel_title(ax, "c", "error in time")
     ax.legend(**_BELOW)
 
 

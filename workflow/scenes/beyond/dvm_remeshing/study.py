@@ -4,9 +4,6 @@
 three, or as the four-moment Lambda_3: both are run, and none at all.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -18,13 +15,13 @@ from fracparticles.run.orders import observed_order
 from fracparticles.run.strengths import lattice_strengths
 from fracparticles.special.stable import central_mass, green, mean_radius
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import Panels, pick
 
 NEEDS = {"scheme": ["DVM"]}
 
 _NEAR = 1.5  # |x| of the profile that the figure shows
 _SMALL = 1e-3  # of the spatial error: what the error in time may be
+_KINDS = {"field": "u", "strengths": "U"}  # what the errors are of
 _IN_TIME = "in time / error"
 # Column of the table: what it holds of a run.
 _COLUMNS = {
@@ -56,10 +53,10 @@ def study(inputs: Inputs, *, shown: float) -> Result:
     # The step that every spacing was run with.
     step = min(set.intersection(*[set(part["dt"]) for _, part in runs.groupby("h")]))
     runs[_IN_TIME] = np.nan
-    parts: list[pd.DataFrame] = []
-    for (order, name), part in runs.groupby(["order", "remeshing"], sort=True):
-        main = part[part["dt"] == step].sort_values("h", ascending=False)
-        for kind in ("field", "strengths"):
+    panels, key = Panels(), ["order", "remeshing"]
+    for (order, name), part in runs.groupby(key):
+        main = pick(part, dt=step).sort_values("h", ascending=False)
+        for kind in _KINDS:
             orders = observed_order(main["h"], main[kind])
             runs.loc[main.index, f"order, {kind}"] = [np.nan, *orders]
         for _, same in part.groupby("h"):
@@ -68,18 +65,21 @@ def study(inputs: Inputs, *, shown: float) -> Result:
                 apart = np.abs(row["u"] - finest["u"]).sum() * row["h"] / row["mass"]
                 runs.loc[index, _IN_TIME] = apart / finest["field"]
         nearest = main.iloc[np.argmin(np.abs(main["h"] - shown))]
-        parts += _profiles(nearest, {"panel": "profile", "order": order, "remeshing": name})
+        near = np.abs(nearest["x"]) <= _NEAR
+        for kind, u in _KINDS.items():
+            y = (nearest[u] / nearest["exact"] - 1.0)[near]
+            where = {"panel": "profile", "order": order, "remeshing": name, "kind": kind}
+            panels.add(**where, x=nearest["x"][near], y=y)
     runs = runs.sort_values(["order", "remeshing", "h", "dt"], ascending=[True, True, False, False])
     small = np.where(runs[_IN_TIME] < _SMALL, "yes", "no")
     verdicts = runs.assign(small=np.where(runs[_IN_TIME].isna(), "", small))
     table = verdicts.assign(order=runs["order"].map(ORDERS))[list(_COLUMNS.values())]
     table = table.set_axis(list(_COLUMNS), axis=1)
-    main, key = runs[runs["dt"] == step], ["order", "remeshing"]
-    for kind in ("field", "strengths"):
-        parts.append(main[key].assign(panel="spacing", kind=kind, x=main["h"], y=main[kind]))
-    timed = runs[[*key, "h"]].assign(panel="time", kind="field", x=runs["dt"], y=runs[_IN_TIME])
-    series = pd.concat([*parts, timed], ignore_index=True).dropna(subset=["y"])
-    return Result(table, (), series)
+    main = pick(runs, dt=step)
+    for kind in _KINDS:
+        panels.add("spacing", kind=kind, x=main["h"], y=main[kind], **main[key])
+    panels.add("time", kind="field", x=runs["dt"], y=runs[_IN_TIME], **runs[[*key, "h"]])
+    return Result(table, (), panels.frame.dropna(subset=["y"]).reset_index(drop=True))
 
 
 def _measure(run: xr.Dataset) -> dict[str, Any]:
@@ -111,11 +111,3 @@ def _measure(run: xr.Dataset) -> dict[str, Any]:
         "U": strengths,
         "exact": exact,
     }
-
-
-def _profiles(run: pd.Series, key: dict[str, Any]) -> Iterator[pd.DataFrame]:
-    """Relative deviations of the field and of the strengths along x, near the peak."""
-    near = np.abs(run["x"]) <= _NEAR
-    for kind, values in (("field", run["u"]), ("strengths", run["U"])):
-        points = {"x": run["x"][near], "y": (values / run["exact"] - 1.0)[near]}
-        yield pd.DataFrame({**key, "kind": kind, **points})

@@ -1,23 +1,17 @@
 """The relative error of two evaluations of the fundamental solution."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, entry, legend_below, log_log
-
-__all__ = ["figure"]
+from fracstudy.panels import pick
+from fracstudy.style import BLUE, RED, Figure, Look, axes_row, entry, legend_below, log_log
 
 _FLOOR = 2.0**-54  # where errors of zero are drawn
-_CURVES: dict[str, dict[str, Any]] = {
-    "scipy": {"color": "#D55E00", "marker": "s", "label": "scipy.stats.levy_stable"},
-    "ours": {"color": "#0072B2", "marker": "o", "label": "ours"},
+_CURVES: dict[str, Look] = {
+    "scipy": {"color": RED, "marker": "s", "label": "scipy.stats.levy_stable"},
+    "ours": {"color": BLUE, "marker": "o", "label": "ours"},
 }
-_ROUND_OFF: dict[str, Any] = {"color": "0.5", "linestyle": ":", "label": "round-off, $2^{-53}$"}
+_ROUND_OFF: Look = {"color": "0.5", "linestyle": ":", "label": "round-off, $2^{-53}$"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[float]) -> Figure:
@@ -26,7 +20,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[float]) -> 
     for letter, ax, alpha in zip("abcdefgh", axes, shown, strict=False):
         here = series[np.isclose(series["alpha"], alpha) & (series["x"] > 0.0)]
         for name, style in _CURVES.items():
-            curve = here[here["series"] == name]
+            curve = pick(here, series=name)
             error = curve["y"].clip(lower=_FLOOR)
             ax.plot(curve["x"], error, linewidth=0.8, markersize=3.5, **style)
         ax.axhline(2.0**-53, linewidth=0.8, **_ROUND_OFF)
@@ -34,6 +28,5 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[float]) -> 
         ax.set_title(rf"({letter})  $\alpha = {alpha:g}$", loc="left")
     axes[0].set_ylabel(r"relative error of $L_\alpha^0(x)$")
     styles = (_CURVES["ours"], _CURVES["scipy"], _ROUND_OFF)
-    handles = [entry(**style) for style in styles]
-    legend_below(figure, handles)
+    legend_below(figure, [entry(**style) for style in styles])
     return figure

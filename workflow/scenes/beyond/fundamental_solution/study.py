@@ -1,14 +1,11 @@
 """How accurate our evaluation of the fundamental solution is, and scipy's."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
 from fracparticles.special import reduced_green
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import Panels
 
 
 def study(inputs: Inputs, *, reference: str) -> Result:
@@ -19,22 +16,21 @@ def study(inputs: Inputs, *, reference: str) -> Result:
     """
     from scipy.stats import levy_stable
 
-    rows, series = [], []
+    rows, panels = [], Panels()
     for alpha, points in pd.read_csv(reference).groupby("alpha"):
         x, exact = points["x"].to_numpy(), points["density"].to_numpy()
         ours = np.abs(reduced_green(x, alpha) / exact - 1.0)
         theirs = np.abs(levy_stable.pdf(x, alpha, 0.0) / exact - 1.0)
-        rows.append(
-            {
-                "alpha": alpha,
-                "points": x.size,
-                # The next power of ten: of an error at round-off only its size is reproducible.
-                "ours, error below": 10.0 ** np.ceil(np.log10(max(ours.max(), 2.0**-53))),
-                "scipy, largest error": theirs.max(),
-                "scipy's, at x": x[theirs.argmax()],
-                "scipy, median error": np.median(theirs),
-            }
-        )
+        row = {
+            "alpha": alpha,
+            "points": x.size,
+            # The next power of ten: of an error at round-off only its size is reproducible.
+            "ours, error below": 10.0 ** np.ceil(np.log10(max(ours.max(), 2.0**-53))),
+            "scipy, largest error": theirs.max(),
+            "scipy's, at x": x[theirs.argmax()],
+            "scipy, median error": np.median(theirs),
+        }
+        rows.append(row)
         for name, error in (("ours", ours), ("scipy", theirs)):
-            series.append(pd.DataFrame({"alpha": alpha, "series": name, "x": x, "y": error}))
-    return Result(pd.DataFrame(rows), series=pd.concat(series, ignore_index=True))
+            panels.add(alpha=alpha, series=name, x=x, y=error)
+    return Result(pd.DataFrame(rows), series=panels.frame)

@@ -1,29 +1,15 @@
 """Error (48) against h for kernels of order 2 to 12, down to the floor."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import matplotlib as mpl
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import (
-    COLOURS,
-    MARKERS,
-    axes_row,
-    legend_below,
-    log_log,
-    name_ticks,
-    slope_triangle,
-)
-
-__all__ = ["figure"]
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import Axes, Figure, Look, axes_row, legend_below, log_log, scheme_style
 
 _SHADES = mpl.colormaps["viridis_r"]
 _STYLES = ("-", "--", ":")
-_FLOOR: dict[str, Any] = {"color": "0.35", "marker": MARKERS["GPSE"], "markersize": 3.5}
+_FLOOR = scheme_style("GPSE", color="0.35", markersize=3.5, markerfacecolor="0.35")
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -36,21 +22,22 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         _panel(ax, part, scheme, orders)
         ax.plot(floor["h"], floor["error"], label="GPSE, one step", **_FLOOR)
         log_log(ax, xlabel="particle spacing $h$")
-        name_ticks(ax, sorted(part["h"].unique()), form=".2g")
-        ax.set_title(scheme, loc="right", color=COLOURS[scheme])
-    axes[0].set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
+        style.name_ticks(ax, sorted(part["h"].unique()), form=".2g")
+        ax.set_title(scheme, loc="right", color=scheme_style(scheme)["color"])
+    axes[0].set_ylabel(style.ERROR)
     legend_below(drawn, axes[0], columns=5)
     return drawn
 
 
 def _panel(ax: Axes, part: pd.DataFrame, scheme: str, orders: list[int]) -> None:
     overlaps = sorted(part["overlap"].unique())
-    look: dict[str, Any] = {"marker": MARKERS[scheme], "markersize": 3.0, "linewidth": 1.2}
+    marker = scheme_style(scheme)["marker"]
+    look: Look = {"marker": marker, "markersize": 3.0, "linewidth": 1.2}
     for (order, overlap), points in part.groupby(["order", "overlap"]):
         colour = _SHADES(0.08 + 0.9 * orders.index(order) / max(len(orders) - 1, 1))
-        style = _STYLES[overlaps.index(overlap) % len(_STYLES)]
+        line = _STYLES[overlaps.index(overlap) % len(_STYLES)]
         label = rf"order {order}, $\epsilon / h = {overlap:g}$"
-        ax.plot(points["h"], points["error"], style, color=colour, label=label, **look)
-    finest = part[(part["order"] == orders[0]) & (part["overlap"] == overlaps[0])]
+        ax.plot(points["h"], points["error"], line, color=colour, label=label, **look)
+    finest = pick(part, order=orders[0], overlap=overlaps[0])
     h, error = finest.iloc[0][["h", "error"]]
-    slope_triangle(ax, h, 2.5 * error, float(orders[0]), above=True)
+    style.slope_triangle(ax, h, 2.5 * error, float(orders[0]), above=True)

@@ -5,8 +5,6 @@ things ends it: the model of the exterior, the alias of the lattice, or rounding
 error and shows what the first and the last leave.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -14,8 +12,6 @@ import pandas as pd
 
 from fracparticles.run.orders import observed_order
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 _KEY = ["scheme", "overlap", "order"]
 
@@ -32,16 +28,14 @@ def study(inputs: Inputs) -> Result:
     for (scheme, overlap, order), part in runs.groupby(_KEY, dropna=False):
         h, error = part.sort_values("h", ascending=False)[["h", "error"]].to_numpy().T
         between: Any = [] if scheme == "GPSE" else observed_order(h, error)
-        rows.append(
-            {
-                "scheme": scheme,
-                "overlap": overlap,
-                "order": "one step" if scheme == "GPSE" else order,
-                "largest order in h": max(between, default=np.nan),
-                "least error": error.min(),
-                "at h": h[np.argmin(error)],
-                **{f"h = {one:.3g}": e for one, e in zip(h, error, strict=True)},
-            }
-        )
+        row = {
+            "scheme": scheme,
+            "overlap": overlap,
+            "order": "one step" if scheme == "GPSE" else order,
+            "largest order in h": max(between, default=np.nan),
+            "least error": error.min(),
+            "at h": h[np.argmin(error)],
+        }
+        rows.append(row | {f"h = {one:.3g}": e for one, e in zip(h, error, strict=True)})
     series = runs[[*_KEY, "h", "error"]].sort_values([*_KEY, "h"])
     return Result(pd.DataFrame(rows), (), series.reset_index(drop=True))

@@ -1,22 +1,17 @@
 """Maps of the solution and of its relative error in two dimensions."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
-from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from fracstudy.inputs import ORDERS
 from fracstudy.panels import pick
+from fracstudy.style import Axes, Figure, Look
 from scenes.plane import DISK
-
-__all__ = ["figure"]
 
 _EXTERIORS = {"truncated": "truncated", "open": "open exterior"}
 _ERRORS = 10.0 ** np.arange(-4.0, 1.1, 0.5)  # two steps of colour a decade
@@ -24,13 +19,8 @@ _COLOURS: dict[str, dict[str, str]] = {  # of the maps, and of the disk of (59)
     "u": {"cmap": "viridis", "disk": "white"},
     "error": {"cmap": "magma", "disk": "0.9"},
 }
-_BARS: dict[str, dict[str, Any]] = {
-    "u": {
-        "label": r"strength $u(\mathbf{x}, t_f)$",
-        "shrink": 0.9,
-        "aspect": 18,
-        "extend": "min",
-    },
+_BARS: dict[str, Look] = {
+    "u": {"label": r"strength $u(\mathbf{x}, t_f)$", "shrink": 0.9, "aspect": 18, "extend": "min"},
     "error": {"label": r"relative error $|u\,/\,G - 1|$", "shrink": 0.6, "aspect": 36},
 }
 
@@ -67,9 +57,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, maps: list[list[Any]]) 
 def _map(ax: Axes, part: pd.DataFrame, norm: Normalize, what: str) -> None:
     colours, ticks = _COLOURS[what], [-DISK, 0.0, DISK]
     x, field = _whole(part)
-    ax.pcolormesh(
-        x, x, field.T, norm=norm, cmap=colours["cmap"], shading="nearest", rasterized=True
-    )
+    look: Look = {"norm": norm, "cmap": colours["cmap"], "shading": "nearest"}
+    ax.pcolormesh(x, x, field.T, rasterized=True, **look)
     # What is not positive has no place on a logarithmic scale.
     ax.set_facecolor("#D55E00")
     disk = {"fill": False, "color": colours["disk"], "linewidth": 0.9, "linestyle": "--"}

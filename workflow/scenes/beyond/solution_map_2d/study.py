@@ -1,7 +1,5 @@
 """The solution of the two-dimensional problem of Sec. 5 and its errors, over the whole square."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,9 +9,8 @@ from fracparticles.errors import FracparticlesError
 from fracparticles.special.plane import square_exchange_error, square_tail_mass
 from fracparticles.special.stable import green
 from fracstudy.inputs import ORDERS, Inputs, Result
+from fracstudy.panels import Panels
 from scenes.plane import DISK, particles_per_side
-
-__all__ = ["study"]
 
 NEEDS = {"exterior": ["truncated", "open"]}
 
@@ -27,7 +24,7 @@ def study(inputs: Inputs, *, maps: list[list[str | int]]) -> Result:
     the series: the rest is its mirror image.
     """
     runs = inputs.scalars
-    rows, parts = [], []
+    rows, panels = [], Panels()
     for run in runs.assign(N=particles_per_side(runs)).itertuples():
         stored = inputs.open(scheme=run.scheme, order=run.order, exterior=run.exterior)
         if "u" not in stored:
@@ -41,10 +38,10 @@ def study(inputs: Inputs, *, maps: list[list[str | int]]) -> Result:
             if (scheme, order) == (run.scheme, run.order):
                 n = x.size // 2
                 quadrant = (u if what == "u" else error)[n:, n:]
-                labels = {"panel": panel, "exterior": run.exterior, "quantity": what}
                 points = {"x": np.repeat(x[n:], n + 1), "y": np.tile(x[n:], n + 1)}
-                parts.append(pd.DataFrame({**labels, **points, "value": quadrant.reshape(-1)}))
-    return Result(pd.DataFrame(rows), series=pd.concat(parts, ignore_index=True))
+                where = {"exterior": run.exterior, "quantity": what}
+                panels.add(panel, **where, **points, value=quadrant.reshape(-1))
+    return Result(pd.DataFrame(rows), series=panels.frame)
 
 
 def _row(

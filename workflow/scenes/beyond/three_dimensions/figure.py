@@ -1,38 +1,19 @@
 """Errors on a cube, against h and against the work."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from fracstudy import style
 from fracstudy.inputs import NUMERALS
 from fracstudy.panels import pick
-from fracstudy.style import (
-    COLOURS,
-    axes_row,
-    entry,
-    legend_below,
-    log_log,
-    scheme_style,
-    slope_triangle,
-)
-
-__all__ = ["figure"]
+from fracstudy.style import COLOURS, Axes, Figure, Look, axes_row, entry, legend_below, log_log
 
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
 _SIZES = {"truncated": 7.0, "open": 3.6}
 _NAMES = {"truncated": "truncated", "open": "open exterior"}
 _TRIANGLES = (("FPSE", 2, "truncated", 1.9), ("KPSE", 4, "open", 0.45))
-_SMALL: dict[str, Any] = {
-    "xycoords": ("data", "axes fraction"),
-    "ha": "center",
-    "fontsize": 7.5,
-    "color": COLOURS["GPSE"],
-}
+_SMALL: Look = {"xycoords": ("data", "axes fraction"), "ha": "center", "fontsize": 7.5}
+_SMALL["color"] = COLOURS["GPSE"]
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["GPSE"], "shrinkB": 0.0}
 
 
@@ -43,11 +24,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     # GPSE with the open exterior has errors so small that the rest would be crowded: they are named instead.
     small = (series["scheme"] == "GPSE") & (series["exterior"] == "open")
     errors = series.loc[~small, "error"]
+    curves = series[~small].groupby(["scheme", "order", "exterior"])
     for ax, x in zip(axes, ("h", "work"), strict=True):
-        for (scheme, order, exterior), points in series[~small].groupby(
-            ["scheme", "order", "exterior"]
-        ):
-            ax.plot(points[x], points["error"], **_look(scheme, order, exterior))
+        for key, points in curves:
+            ax.plot(points[x], points["error"], **_look(*key))
         log_log(ax, ylim=(0.05 * errors.min(), 2.5 * errors.max()))
         _name_below(ax, series[small], x)
     _sizes(axes[0], series)
@@ -55,16 +35,16 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         points = pick(series, scheme=scheme, order=order, exterior=exterior)
         if len(points) > 1:
             h, error = points.iloc[0][["h", "error"]]
-            slope_triangle(axes[0], h, shift * error, order, above=order == 2)
+            style.slope_triangle(axes[0], h, shift * error, order, above=order == 2)
     axes[0].set_ylabel(r"relative error in the ball $|x| \leq 5$, Eq. (59)")
     axes[1].set_xlabel("floating-point operations of the run")
     legend_below(figure, _entries(series), columns=5)
     return figure
 
 
-def _look(scheme: str, order: int, exterior: str) -> dict[str, Any]:
+def _look(scheme: str, order: int, exterior: str) -> Look:
     face = "none" if exterior == "truncated" else COLOURS[scheme]
-    return scheme_style(scheme, order, markersize=_SIZES[exterior], markerfacecolor=face)
+    return style.scheme_style(scheme, order, markersize=_SIZES[exterior], markerfacecolor=face)
 
 
 def _name_below(ax: Axes, points: pd.DataFrame, x: str) -> None:
@@ -84,7 +64,7 @@ def _sizes(ax: Axes, series: pd.DataFrame) -> None:
     ticks = series.groupby("N")["h"].first()
     ax.set_xticks(ticks, [f"{h:.2g}\n{n}³" for n, h in ticks.items()])
     ax.minorticks_off()
-    ax.set(xlim=(0.8 * ticks.min(), 1.25 * ticks.max()))
+    ax.set_xlim(0.8 * ticks.min(), 1.25 * ticks.max())
     ax.set_xlabel("particle spacing $h$, and number of particles")
 
 

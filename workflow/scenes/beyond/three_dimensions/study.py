@@ -4,8 +4,6 @@ The schemes are those of the paper with the kernels for n = 3; the error is (59)
 counted, not timed, so that the same runs give the same table; for times see the benchmark.
 """
 
-from __future__ import annotations
-
 from math import log2
 from typing import Any
 
@@ -18,8 +16,6 @@ from fracparticles.special import green
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
 from scenes.plane import particles_per_side
-
-__all__ = ["bytes_kept", "operations", "study"]
 
 _KEY = ["scheme", "order", "exterior"]
 _ROWS, _COLUMNS = 16, 8  # lines and wave numbers that the sums transform together
@@ -34,24 +30,22 @@ def study(inputs: Inputs) -> Result:
     counted = [_counted(run) for run in runs.itertuples()]
     applications, memory, exact = (np.array(part) for part in zip(*counted, strict=True))
     runs["work"] = runs["operator_applications"] * applications
-    table = pd.DataFrame(
-        {
-            "scheme": runs["scheme"],
-            "order": runs["order"].map(ORDERS).where(runs["scheme"] != "GPSE", "-"),
-            "exterior": runs["exterior"],
-            "N": runs["N"].astype(str) + "^" + runs["dim"].astype(str),
-            "h": runs["h"],
-            "error (59)": runs["error"],
-            "order from the h above": orders_by(runs, _KEY, "error"),
-            "operator applications": runs["operator_applications"],
-            "work / 10^9 operations": 1e-9 * runs["work"],
-            "kept / bytes a particle": (memory / runs["N"] ** runs["dim"]).round().astype(int),
-            "mass at t0": runs["mass_initial"],
-            "mass at tf": runs["mass_final"],
-            "mass at tf, exact": exact,
-        }
-    )
-    return Result(table, series=runs[[*_KEY, "N", "h", "error", "work"]])
+    columns = {
+        "scheme": runs["scheme"],
+        "order": runs["order"].map(ORDERS).where(runs["scheme"] != "GPSE", "-"),
+        "exterior": runs["exterior"],
+        "N": runs["N"].astype(str) + "^" + runs["dim"].astype(str),
+        "h": runs["h"],
+        "error (59)": runs["error"],
+        "order from the h above": orders_by(runs, _KEY, "error"),
+        "operator applications": runs["operator_applications"],
+        "work / 10^9 operations": 1e-9 * runs["work"],
+        "kept / bytes a particle": (memory / runs["N"] ** runs["dim"]).round().astype(int),
+        "mass at t0": runs["mass_initial"],
+        "mass at tf": runs["mass_final"],
+        "mass at tf, exact": exact,
+    }
+    return Result(pd.DataFrame(columns), series=runs[[*_KEY, "N", "h", "error", "work"]])
 
 
 def _counted(run: Any) -> tuple[float, float, float]:

@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
+from itertools import product
 from typing import Any
 
 import mpmath as mp
 
-from fracparticles.special import (
-    central_mass,
-    green,
-    green_flux,
-    green_rate,
-    green_slope,
-    mean_radius,
-    tail_constant,
-    tail_mass,
-)
-from fracstudy.probe import Probe, Verdict, probe
+from fracparticles import special
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha import references
-from scenes.extremes.ends_of_alpha.names import distance, written
+from scenes.extremes.ends_of_alpha.names import distance, relative, written
 
 __all__ = ["FUNCTIONS", "errors", "probes"]
 
@@ -46,12 +37,12 @@ def _exact(name: str, n: int, alpha: float, r: float) -> tuple[mp.mpf, mp.mpf]:
 
 
 FUNCTIONS = {
-    "density": green,
-    "slope": green_slope,
-    "flux": green_flux,
-    "rate": green_rate,
-    "central mass": central_mass,
-    "tail mass": tail_mass,
+    "density": special.green,
+    "slope": special.green_slope,
+    "flux": special.green_flux,
+    "rate": special.green_rate,
+    "central mass": special.central_mass,
+    "tail mass": special.tail_mass,
 }
 
 
@@ -72,37 +63,29 @@ def probes(betas: list[float], radii: list[float], dims: list[int]) -> Iterator[
     for beta in betas:
         alpha = 1.0 + beta
         exact = distance(beta) > 1e-4  # the quadrature costs a second a value: one radius
-        for name in FUNCTIONS:
-            for n in dims:
-                yield probe(
-                    "density",
-                    f"{name}, n = {n}, {written(beta)}",
-                    "limit and corrections" if not exact else "the Fourier integral",
-                    partial(errors, name, n, alpha, [1.1] if exact else radii),
-                    _BOUNDS.get(name, 1e-13),
-                    source=references.source_of(alpha),
-                    must=Verdict.HELD,
-                )
+        expected = "the Fourier integral" if exact else "limit and corrections"
+        right = Kind("density", expected, source=references.source_of(alpha), must=HELD)
+        at = [1.1] if exact else radii
+        for name, n in product(FUNCTIONS, dims):
+            bound = _BOUNDS.get(name, 1e-13)
+            words = f"{name}, n = {n}, {written(beta)}"
+            yield right(words, errors, name, n, alpha, at, bound=bound)
         yield from _far(beta, dims)
         yield from _numbers(beta)
 
 
 def _far(beta: float, dims: list[int]) -> Iterator[Probe]:
     alpha = 1.0 + beta
-    for n in dims:
-        for name, function, exact in (
-            ("density", green, references.tail_density),
-            ("tail mass", tail_mass, references.tail_mass),
-        ):
-            yield probe(
-                "far tail",
-                f"{name}, n = {n}, r = 1e6, {written(beta)}",
-                "three terms of the far series",
-                partial(_relative, partial(function, _FAR, 1.0, alpha, n), exact(n, alpha, _FAR)),
-                1e-13,
-                source="series, mpmath",
-                must=Verdict.HELD,
-            )
+    right = Kind("far tail", "three terms of the far series", 1e-13, "series, mpmath", HELD)
+    functions = {
+        "density": (special.green, references.tail_density),
+        "tail mass": (special.tail_mass, references.tail_mass),
+    }
+    for n, (name, (function, series)) in product(dims, functions.items()):
+        yield right(
+            f"{name}, n = {n}, r = 1e6, {written(beta)}",
+            lambda: relative(function(_FAR, 1.0, alpha, n), series(n, alpha, _FAR)),
+        )
 
 
 def _numbers(beta: float) -> Iterator[Probe]:
@@ -111,21 +94,13 @@ def _numbers(beta: float) -> Iterator[Probe]:
     with mp.workdps(40):
         a = mp.mpf(alpha)
         cases: dict[str, Any] = {
-            "mean radius": (mean_radius, 2 / mp.pi * mp.gamma(1 - 1 / a)),
-            "tail constant": (tail_constant, mp.gamma(1 + a) * mp.sin(mp.pi * a / 2) / mp.pi),
-            "peak": (lambda alpha: green(0.0, 1.0, alpha), mp.gamma(1 + 1 / a) / mp.pi),
+            "mean radius": (special.mean_radius, 2 / mp.pi * mp.gamma(1 - 1 / a)),
+            "tail constant": (
+                special.tail_constant,
+                mp.gamma(1 + a) * mp.sin(mp.pi * a / 2) / mp.pi,
+            ),
+            "peak": (lambda alpha: special.green(0.0, 1.0, alpha), mp.gamma(1 + 1 / a) / mp.pi),
         }
+    right = Kind("number", "its closed form", 1e-14, "closed form, mpmath", HELD)
     for name, (function, exact) in cases.items():
-        yield probe(
-            "number",
-            f"{name}, {written(beta)}",
-            "its closed form",
-            partial(_relative, partial(function, alpha), exact),
-            1e-14,
-            source="closed form, mpmath",
-            must=Verdict.HELD,
-        )
-
-
-def _relative(function: Callable[[], Any], exact: Any) -> float:
-    return float(abs(mp.mpf(function()) / exact - 1))
+        yield right(f"{name}, {written(beta)}", lambda: relative(function(alpha), exact))

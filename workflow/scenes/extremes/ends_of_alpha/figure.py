@@ -11,14 +11,10 @@ from fracstudy.style import axes_row, guide, legend_below, log_log, panel_title
 
 __all__ = ["figure"]
 
+_EVOLVE = "evolve, against Cauchy or Gauss"
 _LINES: dict[str, dict[str, Any]] = {
     "limit": {"color": "0.45", "linestyle": "--", "label": r"Cauchy or Gauss instead of $\alpha$"},
-    "evolve": {
-        "color": "#D55E00",
-        "marker": "s",
-        "markersize": 4.0,
-        "label": "evolve, against Cauchy or Gauss",
-    },
+    "evolve": {"color": "#D55E00", "marker": "s", "markersize": 4.0, "label": _EVOLVE},
     "density": {"color": "#0072B2", "marker": "o", "markersize": 4.0, "label": "density"},
     "rate": {"color": "#56B4E9", "marker": "v", "markersize": 4.0, "label": "rate of change"},
     "tail mass": {"color": "#009E73", "marker": "^", "markersize": 4.0, "label": "tail mass"},

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import cache, partial
-from typing import Any
+from collections.abc import Iterator
+from functools import cache
+from itertools import product
 
 import mpmath as mp
 import numpy as np
 
 from fracparticles.kernels.families import PAPER_ORDERS, kernel, kernel_transform
 from fracparticles.kernels.tabulated import tabulated
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha.names import written
 
-__all__ = ["exact", "exact_transform", "forms_of", "probes", "worst"]
+__all__ = ["NAMES", "exact", "exact_transform", "forms_of", "probes", "worst"]
 
 RADII = (0.0, 0.3, 1.7, 7.0, 100.0)
 WAVES = (0.01, 0.7, 3.0)
@@ -93,40 +93,23 @@ def probes(betas: list[float], orders: list[int], dims: list[int]) -> Iterator[P
     the second derivative.
     """
     forms = forms_of(orders)
-    for beta in betas:
-        for name in NAMES:
-            for n in dims:
-                yield probe(
-                    "kernel",
-                    f"{name}, n = {n}, order {orders[0]} to {orders[-1]}, {written(beta)}",
-                    "its 1F1, r up to 100",
-                    partial(_greatest, worst, forms, name, beta, n),
-                    1e-12,
-                    source="mpmath 1F1",
-                    must=Verdict.HELD,
-                )
-            yield probe(
-                "table",
-                f"{name}, step {STEP:g}, {written(beta)}",
-                "the kernel within step^2 max|K''| / 8",
-                partial(_greatest, _table_error, forms, name, beta),
-                1.0 + 1e-6,
-                source="mpmath 1F1",
-                must=Verdict.HELD,
+    right = Kind("kernel", "its 1F1, r up to 100", 1e-12, "mpmath 1F1", HELD)
+    table = Kind("table", "the kernel within step^2 max|K''| / 8", 1.0 + 1e-6, "mpmath 1F1", HELD)
+    transform = Kind("transform", "a power of k times eta^", 1e-12, "mpmath", HELD)
+    for beta, name in product(betas, NAMES):
+        every = f"order {orders[0]} to {orders[-1]}, {written(beta)}"
+        for n in dims:
+            yield right(
+                f"{name}, n = {n}, {every}",
+                lambda: max(worst(name, beta, n, form) for form in forms),
             )
-            yield probe(
-                "transform",
-                f"{name}, order {orders[0]} to {orders[-1]}, {written(beta)}",
-                "a power of k times eta^",
-                partial(_greatest, _transform_error, forms, name, beta),
-                1e-12,
-                source="mpmath",
-                must=Verdict.HELD,
-            )
-
-
-def _greatest(error: Callable[..., float], forms: list[tuple[int, str]], *case: Any) -> float:
-    return max(error(*case, form) for form in forms)
+        yield table(
+            f"{name}, step {STEP:g}, {written(beta)}",
+            lambda: max(_table_error(name, beta, form) for form in forms),
+        )
+        yield transform(
+            f"{name}, {every}", lambda: max(_transform_error(name, beta, form) for form in forms)
+        )
 
 
 def _table_error(name: str, beta: float, form: tuple[int, str]) -> float:

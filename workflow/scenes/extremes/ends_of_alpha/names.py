@@ -1,8 +1,12 @@
-"""How a fractional order is written in a table."""
+"""Fractional orders: how far from an end, how they are written in a table; and errors in many digits."""
 
 from __future__ import annotations
 
-__all__ = ["distance", "written"]
+from typing import Any
+
+import mpmath as mp
+
+__all__ = ["distance", "relative", "written"]
 
 
 def distance(beta: float) -> float:
@@ -14,3 +18,8 @@ def distance(beta: float) -> float:
 def written(beta: float) -> str:
     """Return beta, or 1 minus it where it is above a half, with one digit."""
     return f"beta = {beta:.0e}" if beta < 0.5 else f"beta = 1 - {2.0 - (1.0 + beta):.0e}"
+
+
+def relative(found: Any, exact: Any) -> float:
+    """Return |found / exact - 1|."""
+    return float(abs(mp.mpf(found) / exact - 1))

@@ -60,22 +60,8 @@ def _radial(n: int, two_b: int, alpha: float, r: float) -> mp.mpf:
         def integrand(k):
             return k ** (n - 1) * mp.exp(-(k**a)) * mp.hyp0f1(b, -((k * r) ** 2) / 4)
 
-        ends = [
-            0,
-            mp.mpf(1) / 64,
-            mp.mpf(1) / 8,
-            mp.mpf(1) / 2,
-            1,
-            2,
-            3,
-            5,
-            8,
-            12,
-            18,
-            26,
-            40,
-            _LAST,
-        ]
+        near = [0, mp.mpf(1) / 64, mp.mpf(1) / 8, mp.mpf(1) / 2]
+        ends = [*near, 1, 2, 3, 5, 8, 12, 18, 26, 40, _LAST]
         return surface * mp.quad(integrand, ends)
 
 

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 import fracparticles as fp
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe, off
 from scenes.extremes.ends_of_alpha.names import distance, written
 
-__all__ = ["closed", "evolved", "probes"]
+__all__ = ["TIME", "closed", "compute_at", "evolved", "probes"]
 
-_TIME = 0.5
+TIME = 0.5
 
 _LATTICES = {1: (1024, 64.0), 2: (128, 16.0), 3: (48, 8.0)}
 
@@ -42,8 +42,16 @@ def evolved(beta: float, dim: int, terms: int) -> float:
     """Return the error of a run on the whole space from the limit at t = 1, relative to the peak of the limit."""
     r, h = lattice(dim)
     start, end = (closed(r, t, beta, dim) for t in (1.0, 2.0))
-    u = fp.evolve(start, h, 1.0 + beta, 1.0, terms=terms)
-    return float(np.abs(u - end).max() / end.max())
+    return off(fp.evolve(start, h, 1.0 + beta, 1.0, terms=terms), end)
+
+
+def compute_at(beta: float, **fields: Any) -> Any:
+    """Run a case over the time of these probes."""
+    return compute(fp.Case(beta=beta, store="metrics", t_final=0.5 + TIME, **fields))
+
+
+def _limit(beta: float) -> str:
+    return "the solution of Cauchy" if beta < 0.5 else "the Gaussian"
 
 
 def _whole_space(betas: list[float], dims: list[int]) -> Iterator[Probe]:
@@ -52,85 +60,51 @@ def _whole_space(betas: list[float], dims: list[int]) -> Iterator[Probe]:
     Near 1 the terms that are left out fall like (t / D)^(3 + n) on the line, 1e-7 of the peak and less, and the lattice
     does not hold waves of pi / h, exp(-pi / h) each. Near 2 the Gaussian at the ends, exp(-D^2 / 8), is 3e-4 in space.
     """
-    for beta in betas:
-        for dim in dims:
-            points, half_width = _LATTICES[dim]
-            h = 2.0 * half_width / points
-            near = 4.0 * (2.0 / half_width) ** (3.0 + dim) + 40.0 * dim * np.exp(-2.0 * np.pi / h)
-            bound = near if beta < 0.5 else 4.0 * np.exp(-(half_width**2) / 8.0)
-            for terms in (1, 2, 6):
-                yield probe(
-                    "whole space",
-                    f"evolve, n = {dim}, {terms} terms, {written(beta)}",
-                    "the solution of Cauchy" if beta < 0.5 else "the Gaussian",
-                    partial(evolved, beta, dim, terms),
-                    bound + 5.0 * distance(beta) + 1e-13,
-                    source="closed form",
-                    must=Verdict.HELD,
-                )
-
-
-def _one_step(beta: float, dim: int, half_width: float, spacing: float) -> float:
-    run = compute_at(
-        beta,
-        scheme="GPSE",
-        dim=dim,
-        half_width=half_width,
-        spacing=spacing,
-        dt=_TIME,
-        exterior="open",
-    )
-    exact = closed(run.case.radius, 0.5 + _TIME, beta, dim)
-    return float(np.abs(run.u - exact).max() / exact.max())
+    for beta, dim in product(betas, dims):
+        points, half_width = _LATTICES[dim]
+        h = 2.0 * half_width / points
+        near = 4.0 * (2.0 / half_width) ** (3.0 + dim) + 40.0 * dim * np.exp(-2.0 * np.pi / h)
+        bound = near if beta < 0.5 else 4.0 * np.exp(-(half_width**2) / 8.0)
+        bound = bound + 5.0 * distance(beta) + 1e-13
+        right = Kind("whole space", _limit(beta), bound, "closed form", HELD)
+        for terms in (1, 2, 6):
+            name = f"evolve, n = {dim}, {terms} terms, {written(beta)}"
+            yield right(name, evolved, beta, dim, terms)
 
 
 def _open(betas: list[float], dims: list[int]) -> Iterator[Probe]:
     """GPSE in one step, open: exact but for its quadrature, exp(-pi t / h), and the far field, (t / D)^3 of its own."""
-    for beta in betas:
-        for dim, half_width, spacing in ((1, 40.0, 0.1), (2, 12.0, 0.15)):
-            if dim not in dims:
-                continue
-            bound = (
-                5.0 * distance(beta)
-                + 8.0 * half_width**-3.0
-                + 4.0 * dim * np.exp(-0.5 * np.pi / spacing)
-            )
-            yield probe(
-                "open exterior",
-                f"GPSE, one step, n = {dim}, {written(beta)}",
-                "the solution of Cauchy" if beta < 0.5 else "the Gaussian",
-                partial(_one_step, beta, dim, half_width, spacing),
-                bound,
-                source="closed form",
-            )
+    for beta, (dim, half_width, h) in product(betas, ((1, 40.0, 0.1), (2, 12.0, 0.15))):
+        if dim not in dims:
+            continue
+        far, waves = 8.0 * half_width**-3.0, 4.0 * dim * np.exp(-0.5 * np.pi / h)
+        bound = 5.0 * distance(beta) + far + waves
+        right = Kind("open exterior", _limit(beta), bound, "closed form")
+        yield right(
+            f"GPSE, one step, n = {dim}, {written(beta)}", _one_step, beta, dim, half_width, h
+        )
+
+
+def _one_step(beta: float, dim: int, half_width: float, h: float) -> float:
+    lattice = {"dim": dim, "half_width": half_width, "spacing": h, "exterior": "open"}
+    run = compute_at(beta, scheme="GPSE", dt=TIME, **lattice)
+    return off(run.u, closed(run.case.radius, 0.5 + TIME, beta, dim))
 
 
 def _continuous(betas: list[float], dims: list[int]) -> Iterator[Probe]:
     """Nothing happens at the end itself: the run at 10^-4 from it differs by that, times what a run differs by."""
-    for beta in betas:
-        other = 1e-4 if beta < 0.5 else 1.0 - 1e-4
+    for beta, scheme, dim in product(betas, ("DD", "FPSE", "KPSE"), dims):
         if distance(beta) > 1e-14:
             continue
-        for scheme in ("DD", "FPSE", "KPSE"):
-            for dim in dims:
-                yield probe(
-                    "open exterior",
-                    f"{scheme}, order 2, n = {dim}, {written(beta)}",
-                    f"the run at {written(other)}",
-                    partial(_difference, scheme, dim, beta, other),
-                    1e-3,  # d ln u / d alpha is 6 at the peak in space
-                )
-
-
-def _difference(scheme: str, dim: int, beta: float, other: float) -> float:
-    fields = {"scheme": scheme, "dim": dim, "half_width": 4.0, "spacing": 0.5, "exterior": "open"}
-    u, v = (compute_at(b, integrator="exponential", **fields).u for b in (beta, other))
-    return float(np.abs(u - v).max() / np.abs(v).max())
-
-
-def compute_at(beta: float, **fields: Any) -> Any:
-    """Run a case over the time of these probes."""
-    return compute(fp.Case(beta=beta, store="metrics", t_final=0.5 + _TIME, **fields))
+        other = 1e-4 if beta < 0.5 else 1.0 - 1e-4
+        # d ln u / d alpha is 6 at the peak in space
+        near = Kind("open exterior", f"the run at {written(other)}", 1e-3)
+        fields = {"scheme": scheme, "dim": dim, "exterior": "open", "integrator": "exponential"}
+        fields |= {"half_width": 4.0, "spacing": 0.5}
+        yield near(
+            f"{scheme}, order 2, n = {dim}, {written(beta)}",
+            lambda: off(compute_at(beta, **fields).u, compute_at(other, **fields).u),
+        )
 
 
 def probes(betas: list[float], dims: list[int]) -> Iterator[Probe]:

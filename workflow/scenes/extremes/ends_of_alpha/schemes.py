@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
+from itertools import product
 from typing import Any
 
 import mpmath as mp
@@ -11,16 +11,14 @@ import numpy as np
 from scipy.linalg import expm, toeplitz
 
 import fracparticles as fp
-from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.ends_of_alpha import kernels
 from scenes.extremes.ends_of_alpha.names import written
+from scenes.extremes.ends_of_alpha.runs import TIME, compute_at
 
 __all__ = ["probes"]
 
-EPS = float(np.finfo(float).eps)
 _N, _H, _OVERLAP = 20, 0.25, 2.0  # 41 particles
-_TIME = 0.5
 _ROUND_OFF = 64.0 * EPS  # of T |lambda|, measured, see `run.reliability`
 
 
@@ -56,32 +54,22 @@ def _matrix(scheme: str, beta: float, order: int) -> np.ndarray:
     return _exchange(laplacian) @ toeplitz(potential)
 
 
-def _run(beta: float, **fields: Any) -> Any:
-    return compute(fp.Case(beta=beta, store="metrics", t_final=0.5 + _TIME, **fields))
-
-
 def _against_matrix(scheme: str, beta: float, order: int) -> float:
-    run = _run(
-        beta, scheme=scheme, order=order, half_width=_N * _H, spacing=_H, integrator="exponential"
-    )
-    exact = expm(_TIME * _H ** -(1.0 + beta) * _matrix(scheme, beta, order)) @ run.u0
-    return float(np.abs(run.u - exact).max() / np.abs(exact).max())
+    lattice: dict[str, Any] = {"half_width": _N * _H, "spacing": _H}
+    run = compute_at(beta, scheme=scheme, order=order, integrator="exponential", **lattice)
+    exact = expm(TIME * _H ** -(1.0 + beta) * _matrix(scheme, beta, order)) @ run.u0
+    return off(run.u, exact)
 
 
 def _dense(betas: list[float]) -> Iterator[Probe]:
     """exp(A T) u0 with A element by element from mpmath: round-off of T |lambda| = 40, of DPSE over beta."""
-    for beta in betas:
-        for scheme, order in (("DD", 2), ("DD", 12), ("KPSE", 2), ("KPSE", 12), ("DPSE", 2)):
-            kept = 1.0 / beta if scheme == "DPSE" and beta > 5e-3 else 1.0
-            yield probe(
-                "scheme",
-                f"{scheme}, order {order}, 41 particles, {written(beta)}",
-                "exp(A T) of its matrix",
-                partial(_against_matrix, scheme, beta, order),
-                _ROUND_OFF * 40.0 * kept,
-                source="mpmath kernels, scipy expm",
-                must=Verdict.HELD,
-            )
+    right = Kind("scheme", "exp(A T) of its matrix", source="mpmath kernels, scipy expm", must=HELD)
+    schemes = (("DD", 2), ("DD", 12), ("KPSE", 2), ("KPSE", 12), ("DPSE", 2))
+    for beta, (scheme, order) in product(betas, schemes):
+        kept = 1.0 / beta if scheme == "DPSE" and beta > 5e-3 else 1.0
+        name = f"{scheme}, order {order}, 41 particles, {written(beta)}"
+        bound = _ROUND_OFF * 40.0 * kept
+        yield right(name, _against_matrix, scheme, beta, order, bound=bound)
 
 
 def _limits(betas: list[float]) -> Iterator[Probe]:
@@ -90,29 +78,21 @@ def _limits(betas: list[float]) -> Iterator[Probe]:
     The transform is greatest at k^2 = 2 alpha and alpha; the aliases, exp(-(2 pi s - k)^2 / 4), are below 1e-22.
     GPSE: 1 - exp(-k^alpha) and its aliases, at theta = pi.
     """
+    # The extreme is looked for among samples, to 1 / 256 of their distance: the square of it.
+    right = Kind("limit", "a from the transform", 1e-9, "closed form, mpmath", HELD)
     for beta in betas:
-        alpha = mp.mpf(1.0 + beta)
-        s = mp.mpf(_OVERLAP)
+        alpha, s = mp.mpf(1.0 + beta), mp.mpf(_OVERLAP)
         exact = {
             "DD": (2 * alpha) ** (alpha / 2) * mp.exp(-alpha / 2),
             "FPSE": alpha ** (alpha / 2) * mp.exp(-alpha / 2),
             "GPSE": _green_range(alpha, s),
         }
         for scheme, value in exact.items():
-            yield probe(
-                "limit",
+            a = 2 * s**alpha / value
+            yield right(
                 f"{scheme}, order 2, {written(beta)}",
-                "a from the transform",
-                partial(_off_limit, scheme, beta, 2 * s**alpha / value),
-                # The extreme is looked for among samples, to 1 / 256 of their distance: the square of it.
-                1e-9,
-                source="closed form, mpmath",
-                must=Verdict.HELD,
+                lambda: float(abs(fp.stability_limit(scheme, beta) / a - 1)),
             )
-
-
-def _off_limit(scheme: str, beta: float, exact: mp.mpf) -> float:
-    return float(abs(fp.stability_limit(scheme, beta) / exact - 1))
 
 
 def _green_range(alpha: mp.mpf, s: mp.mpf) -> mp.mpf:
@@ -125,31 +105,19 @@ def _green_range(alpha: mp.mpf, s: mp.mpf) -> mp.mpf:
 def _beyond() -> Iterator[Probe]:
     """beta below half an ulp of 1 makes alpha 1, or 2 from the other side: there is no such equation here."""
     x = np.linspace(-4.0, 4.0, 33)
+    refused = Kind("no such alpha", must=REFUSED)
     for beta in (0.0, 5e-324, 1e-17, 1e-16, 1.0 - 1e-16, 1.0, float(np.nextafter(1.0, 0.0))):
         alpha = 1.0 + beta
         case = {"scheme": "KPSE", "beta": beta, "half_width": 4.0, "spacing": 0.25, "dt": 1e-3}
-        calls = {
-            "Case": partial(fp.Case, **case),
-            "green": partial(fp.green, 1.0, 1.0, alpha),
-            "kernel": partial(fp.kernel, "K", 1.0, alpha),
-            "evolve": partial(fp.evolve, np.exp(-x * x), 0.25, alpha, 0.1),
-            "mean_radius": partial(fp.mean_radius, alpha),
-            "stability_limit": partial(fp.stability_limit, "KPSE", beta),
+        calls: dict[str, Callable[[], Any]] = {
+            "Case": lambda: fp.Case(**case),
+            "green": lambda: fp.green(1.0, 1.0, alpha),
+            "kernel": lambda: fp.kernel("K", 1.0, alpha),
+            "evolve": lambda: fp.evolve(np.exp(-x * x), 0.25, alpha, 0.1),
+            "mean_radius": lambda: fp.mean_radius(alpha),
+            "stability_limit": lambda: fp.stability_limit("KPSE", beta),
         }
-        for name, call in calls.items():
-            yield probe(
-                "no such alpha",
-                f"{name}, beta = {beta!r}",
-                "refused",
-                partial(_accepted, call),
-                0.0,
-                must=Verdict.REFUSED,
-            )
-
-
-def _accepted(call: Callable[[], Any]) -> float:
-    call()
-    return np.inf
+        yield from refused.of({f"{name}, beta = {beta!r}": call for name, call in calls.items()})
 
 
 def probes(betas: list[float]) -> Iterator[Probe]:

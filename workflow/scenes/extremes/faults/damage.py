@@ -6,7 +6,6 @@ import importlib.util
 import os
 import sys
 from collections.abc import Callable, Iterator
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,7 @@ from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
 from fracparticles.run.dataset import read_run
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.faults.processes import counted, forked
 from scenes.extremes.faults.writing import Setup, one_line
 
@@ -49,48 +48,37 @@ def of_the_run(setup: Setup, flips: int, parts: int, seed: int) -> Iterator[Prob
         except InvalidInput as error:
             return "\n" not in str(error)
 
-    def many(case: str, expected: str, of: list[bytes], look: Callable[[bytes], bool]) -> Probe:
-        return probe(
-            "damaged run", case, expected, lambda: counted(map(look, of)), 0.0, must=Verdict.HELD
-        )
-
-    cut = [right[: len(right) * part // parts] for part in range(parts)]
-    lost = [data + right[len(data) + 1 :] for data in cut]
-    changed = [_changed(right, *place) for place in _places(len(right), flips, seed)]
-    expected = "refused in a line, or the same numbers"
-    yield many(f"cut at 0, 1, .. of {parts} parts", expected, cut, judged)
-    yield many(f"a bit changed, {flips} times", expected, changed, judged)
-    yield many("a byte lost at the same places", expected, lost, judged)
-
     def shown(data: bytes) -> bool:
         copy.write_bytes(data)
         status, text = forked(lambda: main(["show", str(copy)]))
         return status == 2 and one_line(text)
 
-    yield many("shown, command line", "status 2 and a line", [*cut[::4], *changed[:2]], shown)
-    for case, data in (
-        ("empty", b""),
-        ("text", b"not a run\n"),
-        ("zeros", bytes(len(right))),
-        ("half of it zero", right[: len(right) // 2] + bytes(len(right) - len(right) // 2)),
-    ):
-        for use, look in (
-            ("read", read_run),
-            ("as initial data", lambda path: compute(setup.case, path)),
-        ):
-            run = partial(_used, look, copy, data)
-            yield probe("damaged run", f"{case}, {use}", "refused", run, 0.0, must=Verdict.REFUSED)
+    cut = [right[: len(right) * part // parts] for part in range(parts)]
+    lost = [data + right[len(data) + 1 :] for data in cut]
+    changed = [_changed(right, *place) for place in _places(len(right), flips, seed)]
+    same = Kind("damaged run", "refused in a line, or the same numbers", must=HELD)
+    for case, damaged in {
+        f"cut at 0, 1, .. of {parts} parts": cut,
+        f"a bit changed, {flips} times": changed,
+        "a byte lost at the same places": lost,
+    }.items():
+        yield same(case, lambda: counted(map(judged, damaged)))
+    line = Kind("damaged run", "status 2 and a line", must=HELD)
+    few = [*cut[::4], *changed[:2]]
+    yield line("shown, command line", lambda: counted(map(shown, few)))
+    refused, half = Kind("damaged run", must=REFUSED), len(right) // 2
+    for case, data in {
+        "empty": b"",
+        "text": b"not a run\n",
+        "zeros": bytes(len(right)),
+        "half of it zero": right[:half] + bytes(len(right) - half),
+    }.items():
+        copy.write_bytes(data)
+        yield refused(f"{case}, read", read_run, copy)
+        yield refused(f"{case}, as initial data", compute, setup.case, copy)
     copy.unlink(missing_ok=True)
     for case, path in (("none", copy), ("a directory", setup.folder)):
-        run = partial(_used, read_run, path)
-        yield probe("damaged run", case, "refused", run, 0.0, must=Verdict.REFUSED)
-
-
-def _used(look: Callable[[Path], object], path: Path, data: bytes | None = None) -> float:
-    if data is not None:
-        path.write_bytes(data)
-    look(path)
-    return np.nan
+        yield refused(case, read_run, path)
 
 
 def _places(size: int, count: int, seed: int) -> list[tuple[int, int]]:
@@ -118,34 +106,30 @@ def of_the_cache(folder: Path, flips: int, parts: int, seed: int) -> Iterator[Pr
 
     old, new = compiled(1.0), compiled(3.0)
 
-    def right(damaged: dict[str, bytes], factor: float = 3.0) -> bool:
+    def right(damaged: dict[str, bytes]) -> bool:
         for path in folder.rglob("*.nb[ic]"):
             path.unlink()
         for name, data in {**new, **damaged}.items():
             (folder / "__pycache__" / name).write_bytes(data)
         # twice: the second time with what the first one kept
-        return all(forked(_sum(source, 10.0 * factor)) == (0, "") for _ in range(2))
-
-    def row(case: str, damages: list[dict[str, bytes]]) -> Probe:
-        return probe(
-            "damaged cache", case, "3 (0 + 1 + 2 + 3 + 4) = 30", lambda: counted(map(right, damages)), 0.0,
-            source="closed form", must=Verdict.HELD,
-        )  # fmt: skip
+        return all(forked(_sum(source, 30.0)) == (0, "") for _ in range(2))
 
     cut = [
         {name: data[: len(data) * k // parts]} for name, data in new.items() for k in range(parts)
     ]
-    yield row(f"index and code cut at 0, 1, .. of {parts} parts", cut)
     changed = [
         {name: _changed(data, *place)}
         for name, data in new.items()
         for place in _places(len(data), flips // 2, seed)
     ]
-    yield row(f"a bit changed, {len(changed)} times", changed)
-    code = [name for name in new if name.endswith(".nbc")]
-    yield row(
-        "the index is new, the code is old", [{name: old[name] for name in code if name in old}]
-    )
+    code = {name: data for name, data in old.items() if name in new and name.endswith(".nbc")}
+    same = Kind("damaged cache", "3 (0 + 1 + 2 + 3 + 4) = 30", 0.0, "closed form", HELD)
+    for case, damages in {
+        f"index and code cut at 0, 1, .. of {parts} parts": cut,
+        f"a bit changed, {len(changed)} times": changed,
+        "the index is new, the code is old": [code],
+    }.items():
+        yield same(case, lambda: counted(map(right, damages)))
 
 
 def _sum(source: Path, expected: float) -> Callable[[], int]:

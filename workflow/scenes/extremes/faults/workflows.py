@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.faults.processes import counted
 
 __all__ = ["Project", "probes"]
@@ -102,36 +102,31 @@ class Project:
 
 def probes(folder: Path, root: Path) -> Iterator[Probe]:
     """Each fault once, on a workflow of two runs; then the next call."""
-    project = Project(folder, root)
+    project, table = Project(folder, root), "tables/two.csv"
     right = project.end()
-
-    def row(case: str, expected: str, good: bool) -> Probe:
-        return probe("workflow", case, expected, lambda: counted([good]), 0.0, must=Verdict.HELD)
-
-    same = "then the files of an undisturbed run"
+    same = Kind("workflow", "then the files of an undisturbed run", must=HELD)
     for name, by in (("SIGKILL", signal.SIGKILL), ("SIGINT", signal.SIGINT)):
         project.disturbed(by)
-        yield row(f"{name} while a job solves", same, project.end() == right)
+        again = project.end() == right
+        yield same(f"{name} while a job solves", counted, [again])
     project.configure(0.25)
     other = project.end()
     project.configure(0.5)
     back = project.end()
-    table = "tables/two.csv"
     changed = other[table] != right[table] and all(back[name] == right[name] for name in right)
-    yield row("another beta, and back", f"another table, {same}", changed)
+    expected = f"another table, {same.expected}"
+    yield same("another beta, and back", counted, [changed], expected=expected)
     project.clear()
     for path in project.folder.glob("results/runs/scheme*"):
         shutil.rmtree(path)
-    first, second = project.begin(), project.begin()
-    texts = [process.communicate(timeout=_LONGEST)[0] for process in (first, second)]
-    refused = [process.returncode != 0 for process in (first, second)]
+    both = project.begin(), project.begin()
+    texts = [process.communicate(timeout=_LONGEST)[0] for process in both]
+    refused = [process.returncode != 0 for process in both]
+    # One is refused; or none, one after the other, where the machine is slow.
     told = [
-        refusal and "runs in this folder already" in text
-        for refusal, text in zip(refused, texts, strict=True)
+        no and "runs in this folder already" in text
+        for no, text in zip(refused, texts, strict=True)
     ]
-    # Or one after the other, where the machine is slow.
-    yield row(
-        "two in one folder",
-        f"one is refused in a line; {same}",
-        told == refused and not all(refused) and project.end() == right,
-    )
+    good = told == refused and not all(refused) and project.end() == right
+    expected = f"one is refused in a line; {same.expected}"
+    yield same("two in one folder", counted, [good], expected=expected)

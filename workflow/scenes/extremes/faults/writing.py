@@ -12,6 +12,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from fracparticles.files import replacing
 from fracparticles.run.case import Case
@@ -19,7 +20,7 @@ from fracparticles.run.cli import main
 from fracparticles.run.dataset import to_dataset, write
 from fracparticles.run.program import app
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.faults.processes import begun, counted, ended, forked, moments
 
 __all__ = ["FLAGS", "Setup", "probes"]
@@ -62,10 +63,8 @@ class Setup:
     @property
     def mended(self) -> bool:
         """Whether the next call gives the file of an undisturbed run, and nothing else."""
-        done = forked(self.run) == (0, "")
-        return (
-            done and self.path.read_bytes() == self.right and os.listdir(self.folder) == ["run.nc"]
-        )
+        done = forked(self.run) == (0, "") and os.listdir(self.folder) == ["run.nc"]
+        return done and self.path.read_bytes() == self.right
 
 
 def one_line(text: str) -> bool:
@@ -75,59 +74,41 @@ def one_line(text: str) -> bool:
 
 def probes(setup: Setup, kills: int, interrupts: int, parts: int, seed: int) -> Iterator[Probe]:
     """Each fault some times; afterwards the next call, in the same folder."""
-    again = "the old file or the new one; then as undisturbed"
-
-    def many(
-        kind: str, case: str, fault: Callable[..., bool], over: list, expected: str = again
-    ) -> Probe:
-        def run() -> tuple[float, str]:
-            return counted(fault(setup, one) for one in over)
-
-        return probe(kind, case, expected, run, 0.0, must=Verdict.HELD)
-
     killed, stopped = list(moments(kills, seed)), list(moments(interrupts, seed + 1))
-    yield many("killed", f"SIGKILL at {kills} moments of a run", _killed, killed)
-    yield many("killed", "SIGTERM at as many as interrupts", _terminated, stopped)
-    line = "status 130 and a line, or done; then as undisturbed"
-    yield many(
-        "interrupted", f"SIGINT at {interrupts} moments, command line", _interrupted, stopped, line
-    )
-    refused = "a line, the old file kept; then as undisturbed"
     sizes = [round(len(setup.right) * share / parts) for share in range(parts)]
-    yield many(
-        "no room",
-        f"a disk full after 0, 1, .. of {parts} parts of the file",
-        _no_room,
-        sizes,
-        refused,
+    moment, disk = f"at {interrupts} moments, command line", "a disk full after 0, 1, .. of"
+    again = "the old file or the new one; then as undisturbed"
+    line = "status 130 and a line, or done; then as undisturbed"
+    refused = "a line, the old file kept; then as undisturbed"
+    a_line, anew = "a line; then as undisturbed", "made again; as undisturbed"
+    once = [None]
+    faults: tuple[tuple[str, str, str, Callable[..., bool], list[Any]], ...] = (
+        ("killed", again, f"SIGKILL at {kills} moments of a run", _killed, killed),
+        ("killed", again, "SIGTERM at as many as interrupts", _terminated, stopped),
+        ("interrupted", line, f"SIGINT {moment}", _interrupted, stopped),
+        ("no room", refused, f"{disk} {parts} parts of the file", _no_room, sizes),
+        ("no room", refused, "the same, command line", _no_room_for_the_command, sizes[::4]),
+        ("no room", refused, "standard output on a full disk", _full_output, once),
+        ("folder", refused, "read-only", _read_only, once),
+        ("folder", anew, "gone while the case is solved", _folder_gone, once),
+        ("folder", a_line, "gone while the file is written", _gone_meanwhile, once),
+        ("folder", a_line, "the working directory is gone", _nowhere, once),
+        ("two at once", again, f"the same file, {parts} times", _two_at_once, once * parts),
     )
-    yield many("no room", "the same, command line", _no_room_for_the_command, sizes[::4], refused)
-    yield many("no room", "standard output on a full disk", _full_output, [None], refused)
-    yield many("folder", "read-only", _read_only, [None], refused)
-    yield many(
-        "folder",
-        "gone while the case is solved",
-        _folder_gone,
-        [None],
-        "made again; as undisturbed",
-    )
-    yield many(
-        "folder",
-        "gone while the file is written",
-        _gone_meanwhile,
-        [None],
-        "a line; then as undisturbed",
-    )
-    yield many(
-        "folder", "the working directory is gone", _nowhere, [None], "a line; then as undisturbed"
-    )
-    yield many("two at once", f"the same file, {parts} times", _two_at_once, [None] * parts)
+    for kind, expected, case, fault, over in faults:
+        mended = Kind(kind, expected, must=HELD)
+        yield mended(case, lambda: counted(_mended_after(setup, fault, one) for one in over))
+
+
+def _mended_after(setup: Setup, fault: Callable[..., bool], one: Any) -> bool:
+    """Whether a fault does what it may in a fresh folder, and the next call ends as if it had not been."""
+    setup.afresh()
+    return fault(setup, one) and setup.mended
 
 
 def _killed(setup: Setup, moment: float, by: int = signal.SIGKILL) -> bool:
-    setup.afresh()
     ended(begun(setup.run), moment * setup.took, by)
-    return setup.whole and setup.mended
+    return setup.whole
 
 
 def _terminated(setup: Setup, moment: float) -> bool:
@@ -135,11 +116,10 @@ def _terminated(setup: Setup, moment: float) -> bool:
 
 
 def _interrupted(setup: Setup, moment: float) -> bool:
-    setup.afresh()
     status, text = ended(begun(lambda: _command(setup)), moment * setup.took, signal.SIGINT)
     said = (status, text) in [(0, f"{setup.path}\n"), (130, "error: interrupted\n")]
     late = status == 130 and text == f"{setup.path}\nerror: interrupted\n"
-    return (said or late) and setup.whole and setup.mended
+    return (said or late) and setup.whole
 
 
 def _command(setup: Setup) -> int:
@@ -155,8 +135,9 @@ def _command(setup: Setup) -> int:
     return status
 
 
-def _limited(size: int) -> None:
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+def _limited(size: int | None) -> None:
+    most = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most if size is None else size, most))
 
 
 def _no_room(setup: Setup, size: int) -> bool:
@@ -167,16 +148,13 @@ def _no_room(setup: Setup, size: int) -> bool:
             return 1
         if os.listdir(setup.folder) != ["run.nc"] or setup.path.read_bytes() != _OLD:
             return 2
-        resource.setrlimit(
-            resource.RLIMIT_FSIZE, (resource.getrlimit(resource.RLIMIT_FSIZE)[1],) * 2
-        )
+        _limited(None)
         return setup.run()  # in the same process
 
-    setup.afresh()
-    return forked(work)[0] == 0 and setup.mended
+    return forked(work)[0] == 0
 
 
-def _refused(setup: Setup, prepare: Callable[[], object], status: int | None = None) -> bool:
+def _refused(setup: Setup, prepare: Callable[[], object], *status: int) -> bool:
     """Whether the command line ends with an error in one line, and the old file is as it was."""
 
     def work() -> int:
@@ -185,19 +163,15 @@ def _refused(setup: Setup, prepare: Callable[[], object], status: int | None = N
 
     found, text = forked(work)
     kept = not setup.path.exists() or setup.path.read_bytes() in (_OLD, setup.right)
-    return found in ((1, 2) if status is None else (status,)) and one_line(text) and kept
+    return found in status and one_line(text) and kept
 
 
 def _no_room_for_the_command(setup: Setup, size: int) -> bool:
-    setup.afresh()
-    return _refused(setup, lambda: _limited(size), 1) and setup.mended
+    return _refused(setup, lambda: _limited(size), 1)
 
 
 def _full_output(setup: Setup, _: None) -> bool:
-    setup.afresh()
-    return (
-        _refused(setup, lambda: os.dup2(os.open("/dev/full", os.O_WRONLY), 1), 1) and setup.mended
-    )
+    return _refused(setup, lambda: os.dup2(os.open("/dev/full", os.O_WRONLY), 1), 1)
 
 
 def _read_only(setup: Setup, _: None) -> bool:
@@ -205,12 +179,11 @@ def _read_only(setup: Setup, _: None) -> bool:
         if os.geteuid() == 0:  # whom permissions do not stop
             os.seteuid(65534)
 
-    setup.afresh()
     setup.folder.parent.chmod(0o755)
     setup.folder.chmod(0o555)
-    refused = _refused(setup, dropped) and setup.path.read_bytes() == _OLD
+    refused = _refused(setup, dropped, 1, 2) and setup.path.read_bytes() == _OLD
     setup.folder.chmod(0o755)
-    return refused and setup.mended
+    return refused
 
 
 def _folder_gone(setup: Setup, _: None) -> bool:
@@ -220,8 +193,7 @@ def _folder_gone(setup: Setup, _: None) -> bool:
         write(run, setup.path)
         return 0
 
-    setup.afresh()
-    return forked(work) == (0, "") and setup.path.read_bytes() == setup.right and setup.mended
+    return forked(work) == (0, "") and setup.path.read_bytes() == setup.right
 
 
 def _gone_meanwhile(setup: Setup, _: None) -> bool:
@@ -231,29 +203,23 @@ def _gone_meanwhile(setup: Setup, _: None) -> bool:
             shutil.rmtree(setup.folder)
         return 0
 
-    setup.afresh()
     status, text = forked(work)
-    return status == 99 and text.startswith("FileNotFoundError") and setup.mended
+    return status == 99 and text.startswith("FileNotFoundError")
 
 
 def _nowhere(setup: Setup, _: None) -> bool:
-    def gone() -> None:
+    def work() -> int:
         place = setup.folder / "gone"
         place.mkdir()
         os.chdir(place)
         place.rmdir()
-
-    def work() -> int:
-        gone()
         return main([*FLAGS, "run.nc"])
 
-    setup.afresh()
     status, text = forked(work)
-    return status in (1, 2) and one_line(text) and setup.mended
+    return status in (1, 2) and one_line(text)
 
 
 def _two_at_once(setup: Setup, _: None) -> bool:
-    setup.afresh()
     first, second = begun(setup.run), begun(setup.run)
     both = ended(first) == ended(second) == (0, "")
-    return both and setup.path.read_bytes() == setup.right and setup.mended
+    return both and setup.path.read_bytes() == setup.right

@@ -12,7 +12,7 @@ from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracparticles.schemes import ALL_SCHEMES
 from scenes.extremes.fuzzing.harness import NotRun
-from scenes.extremes.fuzzing.strategies import between, chance, fields_of
+from scenes.extremes.fuzzing.strategies import among, between, chance, fields_of
 
 __all__ = ["cases", "changed", "refuse_dear", "rough", "runs"]
 
@@ -65,10 +65,10 @@ def _plausible(draw: st.DrawFn, wanted: dict[str, Any]) -> dict[str, Any]:
     beta = draw(st.one_of(between(0.05, 0.95), between(0.05, 0.95), st.sampled_from(_BETAS)))
     dim = wanted.get("dim") or draw(st.sampled_from((1,) * 5 + ALL_SCHEMES[scheme].dims))
     length, rate = draw(st.sampled_from(_UNITS)), draw(st.sampled_from(_UNITS))
-    width = draw(st.sampled_from((1.0, 4.0, 10.0, 30.0, 100.0)))
+    width = draw(among(1.0, 4.0, 10.0, 30.0, 100.0))
     time = length ** (1.0 + beta) / rate
-    start = draw(st.sampled_from((0.1, 0.5, 1.0, 5.0))) * time
-    span = draw(st.sampled_from((1e-3, 0.1, 1.0, 1.0, 3.0))) * time
+    start = draw(among(0.1, 0.5, 1.0, 5.0)) * time
+    span = draw(among(1e-3, 0.1, 1.0, 1.0, 3.0)) * time
     half_width = width * length
     assume(dim in ALL_SCHEMES[scheme].dims and all(1e-99 < x < 1e99 for x in (start, span, time)))
     fields = {

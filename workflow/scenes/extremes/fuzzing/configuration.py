@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import math
 import tempfile
 from collections.abc import Iterator
 from contextlib import chdir
@@ -13,86 +14,44 @@ from typing import Any
 
 import yaml
 from hypothesis import strategies as st
+from pydantic import BaseModel
 
 from fracparticles.run.case import Case
 from fracstudy.config import StudyConfig, batches, jobs, read_config, targets
 from fracstudy.scene import Scene, merged, resolved
-from scenes.extremes.fuzzing.harness import Property
-from scenes.extremes.fuzzing.strategies import chance, fields_of, numbers, texts
+from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.strategies import among, chance, fields_of, numbers, texts
 
 __all__ = ["PROPERTIES"]
 
+PROPERTIES = Properties()
+
 Tree = Any  # of mappings, lists and values, as YAML gives it
-_STUDY: Tree = {
-    "results_dir": "results",
-    "report_dir": "report",
-    "site_dir": "site",
-    "scenes_dir": "scenes",
-    "documents": {"own": {"title": "Our own"}},
-    "smoke": False,
-}
-_RUNS: Tree = [
-    {
-        "scheme": ["DD", "KPSE"],
-        "order": [2, 4],
-        "beta": [0.3, 0.5],
-        "half_width": 10.0,
-        "spacing": 0.5,
-        "dt": 0.01,
-    },
-    {
-        "scheme": "DVM",
-        "beta": 0.5,
-        "truncation": 6.0,
-        "spacing": 0.5,
-        "dt": 0.05,
-        "store": "metrics",
-    },
-]
-_SCENE: Tree = {
-    "title": "Errors",
-    "place": 3,
-    "runs": _RUNS,
-    "smoke": {"title": "Few errors"},
-    "variants": {"one": {"runs": [{"beta": 0.7}]}, "two": {"place": 4, "runs": [{}, {"dt": 0.1}]}},
-}
-_KEYS = sorted(
-    {
-        *StudyConfig.model_fields,
-        *Scene.model_fields,
-        *Case.model_fields,
-        "variants",
-        "smoke",
-        "title",
-    }
-)
+_STUDY: Tree = yaml.safe_load("""
+{results_dir: results, report_dir: report, site_dir: site, scenes_dir: scenes,
+ documents: {own: {title: Our own}}, smoke: false}
+""")
+_SCENE: Tree = yaml.safe_load("""
+title: Errors
+place: 3
+runs:
+- {scheme: [DD, KPSE], order: [2, 4], beta: [0.3, 0.5], half_width: 10.0, spacing: 0.5, dt: 0.01}
+- {scheme: DVM, beta: 0.5, truncation: 6.0, spacing: 0.5, dt: 0.05, store: metrics}
+smoke: {title: Few errors}
+variants: {one: {runs: [{beta: 0.7}]}, two: {place: 4, runs: [{}, {dt: 0.1}]}}
+""")
+_MODELS = (StudyConfig, Scene, Case)
+_FIELDS = {name for model in _MODELS for name in model.model_fields}
+_KEYS = sorted({*_FIELDS, "variants", "smoke", "title"})
+_ODD = (math.nan, math.inf, "1e-4", "{beta}", "{", "x/../y", "/", datetime.date(2020, 1, 1), b"x")
 _SCALARS = st.one_of(
-    st.none(),
-    st.booleans(),
-    st.integers(-3, 10**20),
-    numbers(),
-    st.sampled_from(
-        (
-            float("nan"),
-            float("inf"),
-            "1e-4",
-            "{beta}",
-            "{",
-            "x/../y",
-            "/",
-            datetime.date(2020, 1, 1),
-            b"x",
-        )
-    ),
-    texts(),
+    st.none(), st.booleans(), st.integers(-3, 10**20), numbers(), among(*_ODD), texts()
 )
+_NAMES = st.one_of(st.sampled_from(_KEYS), texts(), st.integers(0, 3))
 _TREES = st.recursive(
     _SCALARS,
     lambda inner: st.one_of(
-        st.lists(inner, max_size=3),
-        st.dictionaries(
-            st.one_of(st.sampled_from(_KEYS), texts(), st.integers(0, 3)), inner, max_size=3
-        ),
+        st.lists(inner, max_size=3), st.dictionaries(_NAMES, inner, max_size=3)
     ),
     max_leaves=5,
 )
@@ -102,13 +61,8 @@ def _places(tree: Tree, at: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
     """The ways to every value of a tree."""
     if at:
         yield at
-    inner = (
-        tree.items()
-        if isinstance(tree, dict)
-        else enumerate(tree)
-        if isinstance(tree, list)
-        else ()
-    )
+    of_list = enumerate(tree) if isinstance(tree, list) else ()
+    inner = tree.items() if isinstance(tree, dict) else of_list
     for key, value in inner:
         yield from _places(value, (*at, key))
 
@@ -141,16 +95,12 @@ def _changed(draw: st.DrawFn, whole: Tree) -> Tree:
 @st.composite
 def _files(draw: st.DrawFn) -> tuple[Tree, bytes]:
     """Draw a configuration, and the text of a scene that may be spoilt."""
-    text = yaml.safe_dump(draw(_changed(_SCENE)), allow_unicode=draw(st.booleans())).encode(
-        "utf-8", "surrogatepass"
-    )
+    scene, unicode = draw(_changed(_SCENE)), draw(st.booleans())
+    text = _bytes(yaml.safe_dump(scene, allow_unicode=unicode))
     if draw(chance(30)):
         at, length = draw(st.integers(0, len(text))), draw(st.integers(0, 5))
-        text = (
-            text[:at]
-            + draw(st.one_of(st.binary(max_size=3), texts().map(_bytes)))
-            + text[at + length :]
-        )
+        other = draw(st.one_of(st.binary(max_size=3), texts().map(_bytes)))
+        text = text[:at] + other + text[at + length :]
     return draw(_changed(_STUDY)) if draw(chance(40)) else _STUDY, text
 
 
@@ -158,6 +108,13 @@ def _bytes(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")
 
 
+def _combinations(block: BaseModel) -> int:
+    values = block.model_dump(exclude_none=True).values()
+    return prod(len(value) if isinstance(value, list) else 1 for value in values)
+
+
+@PROPERTIES.add("study.yaml, scene.yaml, runs", "its cases, or a line", share=8)
+@drawn(_files())
 def _read(parts: tuple[Tree, bytes]) -> float:
     """A configuration is refused, or all that is made of it fits together."""
     config, scene = parts
@@ -169,26 +126,19 @@ def _read(parts: tuple[Tree, bytes]) -> float:
         made = [case.path for group in groups.values() for case in group]
         wanted = {case.path for of_scene in cases.values() for case in of_scene}
         wrong = len(set(made)) != len(made) or set(made) != wanted
-        wrong |= sorted(
-            name for names in jobs(scenes, study.smoke).values() for name in names
-        ) != sorted(scenes)
-        wrong |= not set(scenes) <= set(targets(scenes))
+        of_jobs = [name for names in jobs(scenes, study.smoke).values() for name in names]
+        wrong |= sorted(of_jobs) != sorted(scenes) or not set(scenes) <= set(targets(scenes))
         for one in scenes.values():
             again = Scene(**one.packed(runs=True))
             wrong |= [case.path for case in again.cases] != [case.path for case in one.cases]
-            wrong |= len(one.cases) > sum(
-                prod(
-                    len(v) if isinstance(v, list) else 1
-                    for v in block.model_dump(exclude_none=True).values()
-                )
-                for block in one.runs
-            )
+            wrong |= len(one.cases) > sum(map(_combinations, one.runs))
         return 2.0 * wrong
 
 
-def _laid(parts: tuple[Tree, Tree, bool]) -> float:
+@PROPERTIES.add("smoke, variants", "laid over, nothing else", share=4)
+@drawn(_TREES, _TREES, st.booleans())
+def _laid(tree: Tree, other: Tree, smoke: bool) -> float:
     """To lay a tree over itself, or an empty one over it, changes nothing; what is resolved stays as it is."""
-    tree, other, smoke = parts
     before = deepcopy((tree, other))
     whole = resolved(tree, smoke)
     wrong = repr(merged(tree, {}) if isinstance(tree, dict) else tree) != repr(tree)
@@ -196,16 +146,3 @@ def _laid(parts: tuple[Tree, Tree, bool]) -> float:
     wrong |= isinstance(whole, dict) and repr(resolved(whole, smoke)) != repr(whole)
     merged(tree, other)
     return 2.0 * (wrong or repr((tree, other)) != repr(before))
-
-
-PROPERTIES = (
-    Property("study.yaml, scene.yaml, runs", "its cases, or a line", "", _files(), _read, 8),
-    Property(
-        "smoke, variants",
-        "laid over, nothing else",
-        "",
-        st.tuples(_TREES, _TREES, st.booleans()),
-        _laid,
-        4,
-    ),
-)

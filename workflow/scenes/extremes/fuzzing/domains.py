@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,15 +15,17 @@ from fracparticles.adaptive.follow import follow
 from fracparticles.bounded.interval import Interval
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import FORMS, VariableDiffusivity, VariableOrder
-from fracstudy.probe import Verdict
-from scenes.extremes.fuzzing.harness import Property
-from scenes.extremes.fuzzing.strategies import between
+from fracstudy.probe import HELD
+from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.strategies import among, between
 
 __all__ = ["PROPERTIES"]
 
-_ALPHAS = st.one_of(between(1.05, 1.95), st.sampled_from((1.01, 1.99)))
+PROPERTIES = Properties()
+
+_ALPHAS = st.one_of(between(1.05, 1.95), among(1.01, 1.99))
 _SEEDS = st.integers(0, 10**6)
-_DEGREES = st.sampled_from((1.0, 2.0, 4.0, 8.0))
+_DEGREES = among(1.0, 2.0, 4.0, 8.0)
 
 
 # --- operators whose coefficients vary -------------------------------------------------------------------
@@ -32,9 +35,16 @@ def _kernel(name: str, z: np.ndarray, s: Setting) -> np.ndarray:
     return np.asarray(fp.kernel(name, z / (s.overlap * s.spacing), s.alpha, 1, s.order))
 
 
-def _diffusivity(drawn: tuple[str, float, int, int, float]) -> float:
+@PROPERTIES.add("variable diffusivity", "the sums one by one", "naive sums", 2)
+@drawn(
+    st.sampled_from(tuple(FORMS)),
+    between(1.05, 1.95),
+    st.integers(4, 20),
+    among(2, 4),
+    among(1.0, 1e-12, 1e12),
+)
+def _diffusivity(form: str, alpha: float, n: int, order: int, size: float) -> float:
     """The sums of the three forms, one by one, on a truncated lattice."""
-    form, alpha, n, order, size = drawn
     s = Setting(alpha=alpha, n=n, spacing=0.25, order=order, overlap=2.0)
     operator, h, e = VariableDiffusivity(form, s), 0.25, 0.5
     (points,) = operator.points
@@ -56,9 +66,10 @@ def _diffusivity(drawn: tuple[str, float, int, int, float]) -> float:
     return float(np.abs(found - exact).max()) / (1e-9 * size * (h**-alpha))
 
 
-def _order(drawn: tuple[float, float, int, int]) -> float:
+@PROPERTIES.add("variable order", "each row's own sum", "naive sums", must=HELD)
+@drawn(between(1.02, 1.5), between(1.5, 1.98), st.integers(4, 12), among(2, 4))
+def _order(low: float, high: float, n: int, order: int) -> float:
     """Each row is that of a constant order, by its own sum."""
-    low, high, n, order = drawn
     s = Setting(alpha=1.5, n=n, spacing=0.25, order=order, overlap=2.0)
     x = 0.25 * np.arange(-n, n + 1.0)
     alpha = 0.5 * (low + high) + 0.5 * (high - low) * np.tanh(x)
@@ -73,20 +84,17 @@ def _order(drawn: tuple[float, float, int, int]) -> float:
 # --- intervals --------------------------------------------------------------------------------------------
 
 
-def _jacobi(drawn: tuple[float, int, float, float, int]) -> float:
+@PROPERTIES.add("an interval, stationary", "Jacobi polynomials, to 1e-3", "closed form", 2, HELD)
+@drawn(_ALPHAS, st.integers(60, 150), among(0.0, 3.0, -2e3), among(1.0, 0.25, 2.0**10), _SEEDS)
+def _jacobi(alpha: float, particles: int, middle: float, half: float, seed: int) -> float:
     """(1 - x^2)^(alpha/2) P_n, of which the operator makes -Gamma(alpha + n + 1) / n! P_n (Dyda et al. 2017)."""
-    alpha, particles, middle, half, seed = drawn
     shares, s = np.random.default_rng(seed).uniform(-1.0, 1.0, 5), 0.5 * alpha
     line = Interval(alpha=alpha, particles=particles, ends=(middle - half, middle + half))
 
     def polynomials(x: np.ndarray, weights: Any) -> np.ndarray:
         y = np.clip((x - middle) / half, -1.0, 1.0)
-        return np.asarray(
-            sum(
-                c * w * eval_jacobi(n, s, s, y)
-                for n, (c, w) in enumerate(zip(shares, weights, strict=True))
-            )
-        )
+        terms = enumerate(zip(shares, weights, strict=True))
+        return np.asarray(sum(c * w * eval_jacobi(n, s, s, y) for n, (c, w) in terms))
 
     rates = [gamma(alpha + n + 1.0) / math.factorial(n) for n in range(5)]
     found = line.stationary(lambda x: half**-alpha * polynomials(x, rates))
@@ -95,52 +103,58 @@ def _jacobi(drawn: tuple[float, int, float, float, int]) -> float:
     return float(np.abs(found - exact).max()) / (1e-3 * float(np.abs(shares).sum()))
 
 
-_Evolution = tuple[str, float, float, float, float]
+@dataclass(frozen=True)
+class _Evolution:
+    """An interval with a source and, where they are given, values outside, that vary in time."""
+
+    exterior: str
+    alpha: float
+    degree: float
+    w: float
+
+    def of(self, time: float, start: Any = None, since: float = 0.0, unit: float = 1.0) -> Any:
+        """Return it, and u after a time; lengths and times in `unit`."""
+        line = Interval(
+            alpha=self.alpha, particles=60, exterior=self.exterior, degree=self.degree,
+            ends=(-unit, unit), diffusivity=unit**self.alpha,
+        )  # fmt: skip
+        bell = lambda x: np.exp(-((x / unit) ** 2))  # noqa: E731
+        source = lambda x, t: (  # noqa: E731
+            np.exp(-2.0 * (x / unit - 0.2) ** 2) * np.sin(self.w * (t + since))
+        )
+        far = lambda y, t: np.cos(self.w * (t + since)) / (1.0 + (y / unit) ** 2)  # noqa: E731
+        outside = far if self.exterior == "given" else None
+        u = line.evolve(bell if start is None else start, time, source=source, outside=outside)
+        return line, u
 
 
-def _evolved(
-    drawn: _Evolution, time: float, start: Any = None, since: float = 0.0, unit: float = 1.0
-) -> Any:
-    """An interval with a source and, where they are given, values outside, that vary in time; times in `unit`."""
-    exterior, alpha, degree, _, w = drawn
-    line = Interval(
-        alpha=alpha, particles=60, exterior=exterior, degree=degree,
-        ends=(-unit, unit), diffusivity=unit**alpha,
-    )  # fmt: skip
-    outside = lambda y, t: np.cos(w * (t + since)) / (1.0 + (y / unit) ** 2)  # noqa: E731
-    return line, line.evolve(
-        (lambda x: np.exp(-((x / unit) ** 2))) if start is None else start,
-        time,
-        source=lambda x, t: np.exp(-2.0 * (x / unit - 0.2) ** 2) * np.sin(w * (t + since)),
-        outside=outside if exterior == "given" else None,
-    )
+_EXTERIORS = among("absorbing", "reflecting", "given")
 
 
-def _interval(drawn: _Evolution) -> float:
+@PROPERTIES.add("an interval, its run", "in parts, units and total the same")
+@drawn(_EXTERIORS, between(1.05, 1.95), _DEGREES, between(0.05, 2.0), between(0.5, 8.0))
+def _interval(exterior: str, alpha: float, degree: float, time: float, w: float) -> float:
     """In two parts, and in other units, it is the same; where nothing crosses the ends the total gains the source."""
-    exterior, *_, time, w = drawn
-    line, u = _evolved(drawn, time)
-    half = _evolved(drawn, 0.4 * time)[1]
-    parts = _evolved(drawn, 0.6 * time, half, 0.4 * time)[1]
-    scaled = _evolved(drawn, time, unit=2.0**20)[1]
-    size = float(np.abs(u).max())
-    off = max(float(np.abs(u - parts).max()), float(np.abs(u - scaled).max())) / (1e-7 * size)
-    if exterior == "reflecting":
-        before = float(line.volumes @ np.exp(-(line.x**2)))
-        gained = (
-            float(line.volumes @ np.exp(-2.0 * (line.x - 0.2) ** 2))
-            * (1.0 - math.cos(w * time))
-            / w
-        )
-        off = max(
-            off, abs(float(line.volumes @ u) - before - gained) / (1e-8 * (before + abs(gained)))
-        )
-    return off
+    one = _Evolution(exterior, alpha, degree, w)
+    line, u = one.of(time)
+    _, half = one.of(0.4 * time)
+    _, parts = one.of(0.6 * time, half, 0.4 * time)
+    _, scaled = one.of(time, unit=2.0**20)
+    apart = max(float(np.abs(u - other).max()) for other in (parts, scaled))
+    apart = apart / (1e-7 * float(np.abs(u).max()))
+    if exterior != "reflecting":
+        return apart
+    before = float(line.volumes @ np.exp(-(line.x**2)))
+    source = float(line.volumes @ np.exp(-2.0 * (line.x - 0.2) ** 2))
+    gained = source * (1.0 - math.cos(w * time)) / w
+    lost = abs(float(line.volumes @ u) - before - gained)
+    return max(apart, lost / (1e-8 * (before + abs(gained))))
 
 
-def _constant(drawn: tuple[float, float, float, float]) -> float:
+@PROPERTIES.add("an interval, a constant", "it stays", "closed form", must=HELD)
+@drawn(_ALPHAS, _DEGREES, between(1e-3, 10.0), among(1.0, -3.0, 1e-200, 1e200))
+def _constant(alpha: float, degree: float, time: float, value: float) -> float:
     """A constant inside and outside stays."""
-    alpha, degree, time, value = drawn
     line = Interval(alpha=alpha, particles=40, exterior="given", degree=degree)
     return float(np.abs(line.evolve(value, time, outside=value) / value - 1.0).max()) / 1e-9
 
@@ -148,9 +162,16 @@ def _constant(drawn: tuple[float, float, float, float]) -> float:
 # --- particles that follow -----------------------------------------------------------------------------------
 
 
-def _followed(drawn: tuple[float, float, float, float, float]) -> float:
+@PROPERTIES.add("particles that follow", "the sum of two, or a warning", "closed form")
+@drawn(
+    between(1.05, 1.95),
+    among(0.03, 0.3, 2.0),
+    between(-6.0, 6.0),
+    among(1.0, 0.1, -0.5),
+    among(1e-3, 0.1, 3.0),
+)
+def _followed(alpha: float, narrow: float, place: float, share: float, time: float) -> float:
     """Two fundamental solutions of other widths: to a thousandth of int |u|, or a warning."""
-    alpha, narrow, place, share, time = drawn
 
     def exact(x: np.ndarray, t: float) -> np.ndarray:
         other = fp.green(x - place, t + narrow**alpha, alpha)
@@ -164,85 +185,3 @@ def _followed(drawn: tuple[float, float, float, float, float]) -> float:
 
 
 # --- all ------------------------------------------------------------------------------------------------------
-
-PROPERTIES = (
-    Property(
-        "variable diffusivity",
-        "the sums one by one",
-        "naive sums",
-        st.tuples(
-            st.sampled_from(tuple(FORMS)),
-            between(1.05, 1.95),
-            st.integers(4, 20),
-            st.sampled_from((2, 4)),
-            st.sampled_from((1.0, 1e-12, 1e12)),
-        ),
-        _diffusivity,
-        2,
-    ),
-    Property(
-        "variable order",
-        "each row's own sum",
-        "naive sums",
-        st.tuples(
-            between(1.02, 1.5), between(1.5, 1.98), st.integers(4, 12), st.sampled_from((2, 4))
-        ),
-        _order,
-        1,
-        Verdict.HELD,
-    ),
-    Property(
-        "an interval, stationary",
-        "Jacobi polynomials, to 1e-3",
-        "closed form",
-        st.tuples(
-            _ALPHAS,
-            st.integers(60, 150),
-            st.sampled_from((0.0, 3.0, -2e3)),
-            st.sampled_from((1.0, 0.25, 2.0**10)),
-            _SEEDS,
-        ),
-        _jacobi,
-        2,
-        Verdict.HELD,
-    ),
-    Property(
-        "an interval, its run",
-        "in parts, units and total the same",
-        "",
-        st.tuples(
-            st.sampled_from(("absorbing", "reflecting", "given")),
-            between(1.05, 1.95),
-            _DEGREES,
-            between(0.05, 2.0),
-            between(0.5, 8.0),
-        ),
-        _interval,
-        1,
-    ),
-    Property(
-        "an interval, a constant",
-        "it stays",
-        "closed form",
-        st.tuples(
-            _ALPHAS, _DEGREES, between(1e-3, 10.0), st.sampled_from((1.0, -3.0, 1e-200, 1e200))
-        ),
-        _constant,
-        1,
-        Verdict.HELD,
-    ),
-    Property(
-        "particles that follow",
-        "the sum of two, or a warning",
-        "closed form",
-        st.tuples(
-            between(1.05, 1.95),
-            st.sampled_from((0.03, 0.3, 2.0)),
-            between(-6.0, 6.0),
-            st.sampled_from((1.0, 0.1, -0.5)),
-            st.sampled_from((1e-3, 0.1, 3.0)),
-        ),
-        _followed,
-        1,
-    ),
-)

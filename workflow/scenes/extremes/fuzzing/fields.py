@@ -12,57 +12,14 @@ from hypothesis import strategies as st
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from scenes.extremes.fuzzing.cases import cases, changed
-from scenes.extremes.fuzzing.harness import Property
+from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import anything, fields_of, given_fields, texts
 
 __all__ = ["PROPERTIES"]
 
+PROPERTIES = Properties()
+
 _LONGEST_NAME = 255  # bytes, of a file
-
-
-def _whole(given: dict[str, Any]) -> float:
-    """A case of any fields is refused, or is a case."""
-    return 2.0 * _wrong(Case(**given))
-
-
-def _wrong(case: Case) -> bool:
-    """Whether a case differs from what its text says, has no path of its own, or numbers that do not fit together."""
-    path = PurePosixPath(case.path)
-    end = case.t_initial + case.time_step * case.steps if case.steps else case.t_final
-    return (
-        Case.from_json(case.to_json()) != case
-        or Case.from_json(case.to_json()).path != case.path
-        or path.is_absolute()
-        or ".." in path.parts
-        or not all(
-            part.isprintable() and len(part.encode()) <= _LONGEST_NAME for part in path.parts
-        )
-        or case.particles != (2 * case.n + 1) ** case.dim
-        or not all(map(isfinite, (case.reach, case.extent, case.particle_spacing, case.span)))
-        or abs(case.particle_spacing * case.n - case.extent) > 1e-12 * case.extent
-        or abs(end - case.t_final) > 1e-12 * case.t_final
-    )
-
-
-def _another(parts: tuple[Case, dict[str, Any]]) -> float:
-    """A case with another value of a field is another case, with another path; one that is given again the same."""
-    case, other = parts
-    wrong = _wrong(case)
-    for name, value in other.items():
-        try:
-            new = changed(case, **{name: value})
-        except InvalidInput:
-            continue
-        same = json.loads(new.to_json()) == json.loads(case.to_json())
-        wrong |= (new == case) != same or _wrong(new)
-        # A default that is given differs in its text only.
-        wrong |= new.path == case.path and new.setting != case.setting
-    return 2.0 * wrong
-
-
-def _read(text: str) -> float:
-    """Any text is a case or refused."""
-    return 2.0 * _wrong(Case.from_json(text))
 
 
 @st.composite
@@ -91,22 +48,52 @@ _TEXTS = st.one_of(
     ),
 )
 
-PROPERTIES = (
-    Property(
-        "fields of a case",
-        "a whole case, or a line",
-        "",
-        st.one_of(given_fields(Case), _nearly()),
-        _whole,
-        20,
-    ),
-    Property(
-        "another field",
-        "another case, another path",
-        "",
-        st.tuples(cases(), st.fixed_dictionaries({}, optional=fields_of(Case))),
-        _another,
-        5,
-    ),
-    Property("text of a case", "a whole case, or a line", "", _TEXTS, _read, 10),
-)
+
+@PROPERTIES.add("fields of a case", "a whole case, or a line", share=20)
+@drawn(st.one_of(given_fields(Case), _nearly()))
+def _whole(given: dict[str, Any]) -> float:
+    """A case of any fields is refused, or is a case."""
+    return 2.0 * _wrong(Case(**given))
+
+
+def _wrong(case: Case) -> bool:
+    """Whether a case differs from what its text says, has no path of its own, or numbers that do not fit together."""
+    path = PurePosixPath(case.path)
+    end = case.t_initial + case.time_step * case.steps if case.steps else case.t_final
+    return (
+        Case.from_json(case.to_json()) != case
+        or Case.from_json(case.to_json()).path != case.path
+        or path.is_absolute()
+        or ".." in path.parts
+        or not all(
+            part.isprintable() and len(part.encode()) <= _LONGEST_NAME for part in path.parts
+        )
+        or case.particles != (2 * case.n + 1) ** case.dim
+        or not all(map(isfinite, (case.reach, case.extent, case.particle_spacing, case.span)))
+        or abs(case.particle_spacing * case.n - case.extent) > 1e-12 * case.extent
+        or abs(end - case.t_final) > 1e-12 * case.t_final
+    )
+
+
+@PROPERTIES.add("another field", "another case, another path", share=5)
+@drawn(cases(), st.fixed_dictionaries({}, optional=fields_of(Case)))
+def _another(case: Case, other: dict[str, Any]) -> float:
+    """A case with another value of a field is another case, with another path; one that is given again the same."""
+    wrong = _wrong(case)
+    for name, value in other.items():
+        try:
+            new = changed(case, **{name: value})
+        except InvalidInput:
+            continue
+        same = json.loads(new.to_json()) == json.loads(case.to_json())
+        wrong |= (new == case) != same or _wrong(new)
+        # A default that is given differs in its text only.
+        wrong |= new.path == case.path and new.setting != case.setting
+    return 2.0 * wrong
+
+
+@PROPERTIES.add("text of a case", "a whole case, or a line", share=10)
+@drawn(_TEXTS)
+def _read(text: str) -> float:
+    """Any text is a case or refused."""
+    return 2.0 * _wrong(Case.from_json(text))

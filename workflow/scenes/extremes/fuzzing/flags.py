@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import tempfile
+from collections.abc import Mapping
 from contextlib import chdir, redirect_stderr, redirect_stdout
 from functools import cache
 from pathlib import Path
@@ -17,47 +18,33 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
-from scenes.extremes.fuzzing.harness import Property
+from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import chance, fields_of, texts
 
 __all__ = ["PROPERTIES"]
 
+PROPERTIES = Properties()
+
 _STATUSES = (0, 1, 2, 3)  # done, the machine, the input, the solution
 _SPEAKS = ("error: ", "warning: ", "note: ")
 _FLAGS = [f"--{name.replace('_', '-')}" for name in fp.Case.model_fields]
-_WORDS = st.one_of(
-    texts(),
-    st.sampled_from(
-        [
-            *_FLAGS,
-            "-o",
-            "--output",
-            "--time-step",
-            "--spacing",
-            "--help",
-            "--version",
-            "--",
-            "-",
-            "--no-x",
-        ]
-    ),
-    st.sampled_from(
-        (
-            "solve",
-            "show",
-            "limit",
-            "run.nc",
-            "1e-400",
-            "0x10",
-            "1,5",
-            "nan",
-            "1e",
-            "٣",
-            "-1",
-            "--beta=",
-        )
-    ),
-)
+_OTHERS = ["-o", "--output", "--time-step", "--spacing", "--help", "--version", "--", "-", "--no-x"]
+_VALUES = [
+    "solve",
+    "show",
+    "limit",
+    "run.nc",
+    "1e-400",
+    "0x10",
+    "1,5",
+    "nan",
+    "1e",
+    "٣",
+    "-1",
+    "--beta=",
+]
+_WORDS = st.one_of(texts(), st.sampled_from([*_FLAGS, *_OTHERS]), st.sampled_from(_VALUES))
+_FILES = ("run.nc", "run.nc", "run.nc", "a/run.nc", ".", "/dev/null", "")
 
 
 def _text(value: Any) -> str:
@@ -69,11 +56,7 @@ def _solving(draw: st.DrawFn) -> list[str]:
     """Draw the flags of a case that is allowed, some of them spoilt."""
     case = draw(cases())
     given = {name: getattr(case, name) for name in case.model_fields_set}
-    words = [
-        "solve",
-        "-o",
-        draw(st.sampled_from(("run.nc", "run.nc", "run.nc", "a/run.nc", ".", "/dev/null", ""))),
-    ]
+    words = ["solve", "-o", draw(st.sampled_from(_FILES))]
     for name, value in given.items():
         if value is not None and not draw(chance(2)):
             spoilt = draw(chance(4))
@@ -84,29 +67,30 @@ def _solving(draw: st.DrawFn) -> list[str]:
     return words
 
 
+def _flags(given: Mapping[str, Any]) -> list[str]:
+    """The fields that are given as flags."""
+    return [f"--{n.replace('_', '-')}={_text(v)}" for n, v in given.items() if v is not None]
+
+
+_CASE = fields_of(fp.Case)
 _LIMITS = st.fixed_dictionaries(
-    {"scheme": fields_of(fp.Case)["scheme"], "beta": fields_of(fp.Case)["beta"]},
+    {name: _CASE[name] for name in ("scheme", "beta")},
     optional={
-        name: fields_of(fp.Case)[name]
-        for name in ("order", "overlap", "kernel_family", "spacing", "dim")
+        name: _CASE[name] for name in ("order", "overlap", "kernel_family", "spacing", "dim")
     },
-).map(
-    lambda given: [
-        "limit",
-        *(f"--{n.replace('_', '-')}={_text(v)}" for n, v in given.items() if v is not None),
-    ]
-)
+).map(lambda given: ["limit", *_flags(given)])
 
 
+@PROPERTIES.add("the command line", "done, or a line", share=8)
+@drawn(st.one_of(_solving(), _LIMITS, st.lists(_WORDS, max_size=6)))
 def _spoken(words: list[str]) -> float:
     """Any words end with a status, and with lines that say what they are."""
     _refuse_dear_words(words)
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         status, out, err = _run(words)
         files = [file for file in Path(folder).rglob("*") if not file.is_dir()]
-        wrong = status not in _STATUSES or any(
-            not line.startswith(_SPEAKS) for line in err.splitlines()
-        )
+        wrong = status not in _STATUSES
+        wrong |= not all(line.startswith(_SPEAKS) for line in err.splitlines())
         wrong |= (status != 0) != ("error: " in err)
         wrong |= status != 0 and (out != "" or files != [])
         if status == 0 and files:
@@ -114,26 +98,44 @@ def _spoken(words: list[str]) -> float:
         return 2.0 * wrong
 
 
+@PROPERTIES.add("flags of a case", "the bits of Python")
+@drawn(cases())
 def _same(case: fp.Case) -> float:
     """The flags of a case write the bits that Python writes, or refuse what it refuses."""
     refuse_dear(case)
-    words = ["solve", "--output=run.nc"]
-    words += [
-        f"--{name.replace('_', '-')}={_text(getattr(case, name))}"
-        for name in case.model_fields_set
-        if getattr(case, name) is not None
-    ]
+    given = {name: getattr(case, name) for name in case.model_fields_set}
+    words = ["solve", "--output=run.nc", *_flags(given)]
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         status, _, err = _run(words)
         try:
             fp.write(fp.solve(case), "other.nc")
         except (InvalidInput, fp.NonFiniteSolution) as error:
-            return 2.0 * (
-                status != (2 if isinstance(error, InvalidInput) else 3) or str(error) not in err
-            )
+            expected = 2 if isinstance(error, InvalidInput) else 3
+            return 2.0 * (status != expected or str(error) not in err)
         return 2.0 * (status != 0 or Path("run.nc").read_bytes() != Path("other.nc").read_bytes())
 
 
+@cache
+def _whole_file() -> bytes:
+    case = fp.Case(scheme="FD", beta=0.5, half_width=4.0, spacing=0.5, integrator="exponential")
+    with tempfile.TemporaryDirectory() as folder:
+        fp.write(fp.solve(case), Path(folder) / "run.nc")
+        return (Path(folder) / "run.nc").read_bytes()
+
+
+@st.composite
+def _spoilt_files(draw: st.DrawFn) -> bytes:
+    """Draw the bytes of a run's file, cut short or with some of them changed."""
+    content = bytearray(_whole_file())
+    if draw(st.booleans()):
+        return bytes(content[: draw(st.integers(0, len(content)))])
+    for _ in range(draw(st.integers(0, 20))):
+        content[draw(st.integers(0, len(content) - 1))] = draw(st.integers(0, 255))
+    return bytes(content)
+
+
+@PROPERTIES.add("show, a spoilt file", "shown, or a line", share=3)
+@drawn(_spoilt_files())
 def _shown(content: bytes) -> float:
     """What is in a file is shown, or refused in a line."""
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
@@ -165,36 +167,3 @@ def _refuse_dear_words(words: list[str]) -> None:
     except InvalidInput:
         return
     refuse_dear(case)
-
-
-@cache
-def _whole_file() -> bytes:
-    case = fp.Case(scheme="FD", beta=0.5, half_width=4.0, spacing=0.5, integrator="exponential")
-    with tempfile.TemporaryDirectory() as folder:
-        fp.write(fp.solve(case), Path(folder) / "run.nc")
-        return (Path(folder) / "run.nc").read_bytes()
-
-
-@st.composite
-def _spoilt_files(draw: st.DrawFn) -> bytes:
-    """Draw the bytes of a run's file, cut short or with some of them changed."""
-    content = bytearray(_whole_file())
-    if draw(st.booleans()):
-        return bytes(content[: draw(st.integers(0, len(content)))])
-    for _ in range(draw(st.integers(0, 20))):
-        content[draw(st.integers(0, len(content) - 1))] = draw(st.integers(0, 255))
-    return bytes(content)
-
-
-PROPERTIES = (
-    Property(
-        "the command line",
-        "done, or a line",
-        "",
-        st.one_of(_solving(), _LIMITS, st.lists(_WORDS, max_size=6)),
-        _spoken,
-        8,
-    ),
-    Property("flags of a case", "the bits of Python", "", cases(), _same, 1),
-    Property("show, a spoilt file", "shown, or a line", "", _spoilt_files(), _shown, 3),
-)

@@ -13,30 +13,28 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 from scipy.integrate import quad
-from scipy.special import gamma, j0
+from scipy.special import gamma
 
 import fracparticles as fp
 from fracparticles.graded.particles import FORMS
-from fracparticles.kernels.families import FAMILIES, KERNELS
-from fracparticles.schemes import ALL_SCHEMES
-from fracstudy.probe import Verdict
+from fracparticles.kernels.families import FAMILIES, KERNELS, kernel_transform
+from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Setting
+from fracparticles.schemes.spectrum import dense_matrix
+from fracstudy.probe import EPS, HELD, off
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
-from scenes.extremes.fuzzing.harness import NotRun, Property
-from scenes.extremes.fuzzing.strategies import anything, between, chance, numbers, texts
+from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
+from scenes.extremes.fuzzing.strategies import among, anything, between, chance, numbers, texts
+from scenes.extremes.long_and_short_times.profile import solution
 
 __all__ = ["PROPERTIES"]
 
-_EPS = 2.0**-52
+PROPERTIES = Properties()
+
 _ALPHAS = st.one_of(
-    between(1.02, 1.98),
-    between(1.02, 1.98),
-    st.sampled_from((1.0 + 1e-9, 1.001, 1.999, 2.0 - 1e-9)),
+    between(1.02, 1.98), between(1.02, 1.98), among(1.0 + 1e-9, 1.001, 1.999, 2.0 - 1e-9)
 )
-_ERRORS = [
-    n
-    for n in fp.__all__
-    if isinstance(getattr(fp, n), type) and issubclass(getattr(fp, n), BaseException)
-]
+_KINDS = {name: getattr(fp, name) for name in fp.__all__ if isinstance(getattr(fp, name), type)}
+_ERRORS = [name for name, kind in _KINDS.items() if issubclass(kind, BaseException)]
 _CALLED = [name for name in fp.__all__ if callable(getattr(fp, name)) and name not in _ERRORS]
 
 # --- anything for every argument -------------------------------------------------------------------------
@@ -46,13 +44,13 @@ _LIKELY: dict[str, st.SearchStrategy[Any]] = {
     "alpha": _ALPHAS,
     "beta": between(0.02, 0.98),
     "dim": st.integers(1, 3),
-    "order": st.sampled_from((2, 4, 6, 8, 10, 12)),
+    "order": among(2, 4, 6, 8, 10, 12),
     "overlap": between(0.8, 4.0),
     "terms": st.integers(0, 6),
     "points": st.integers(3, 40),
     "count": st.integers(1, 30),
     "form": st.sampled_from(FORMS),
-    "family": st.sampled_from((None, *FAMILIES)),
+    "family": among(None, *FAMILIES),
     "name": st.sampled_from(tuple(KERNELS)),
     "scheme": st.sampled_from(tuple(ALL_SCHEMES)),
     "case": cases(),
@@ -61,9 +59,9 @@ _LIKELY: dict[str, st.SearchStrategy[Any]] = {
     "operator": st.none(),
     "amplification": st.none(),
 }
-_ARRAYS = st.tuples(
-    st.integers(0, 12), st.integers(0, 10**6), st.sampled_from((1.0, 1.0, 1e-200, 1e200))
-).map(lambda drawn: drawn[2] * np.random.default_rng(drawn[1]).standard_normal(drawn[0]))
+_ARRAYS = st.tuples(st.integers(0, 12), st.integers(0, 10**6), among(1.0, 1.0, 1e-200, 1e200)).map(
+    lambda drawn: drawn[2] * np.random.default_rng(drawn[1]).standard_normal(drawn[0])
+)
 
 
 def _argument(parameter: inspect.Parameter) -> st.SearchStrategy[Any]:
@@ -89,6 +87,8 @@ def _calls(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     return name, given
 
 
+@PROPERTIES.add("arguments of every name", "a result, or a line", share=25)
+@drawn(_calls())
 def _called(call: tuple[str, dict[str, Any]]) -> float:
     """A call returns, or is refused; what it was given is as it was, and there is no file but a whole one."""
     name, given = call
@@ -127,13 +127,18 @@ def _inside(folder: str, path: Any) -> Any:
     return Path(folder) / "run.nc" if path is None or isinstance(path, Path) else path
 
 
-def _error(parts: tuple[Any, Any, str, str]) -> float:
+_LINES = texts().map(lambda text: " ".join(text.split()))
+
+
+@PROPERTIES.add("errors", "one line, the same when unpickled", "pickle", 5)
+@drawn(_LINES, anything(), _LINES, st.just("Mend it."))
+def _error(field: str, value: Any, allowed: str, remedy: str) -> float:
     """An error of ours is one line, whatever it is of, and goes from process to process."""
-    field, value, allowed, _ = parts
     wrong = False
     for name in _ERRORS:
         kind = getattr(fp, name)
-        error = kind(*parts) if kind is fp.InvalidInput else kind(f"{field} {allowed}")
+        ours = kind is fp.InvalidInput
+        error = kind(field, value, allowed, remedy) if ours else kind(f"{field} {allowed}")
         try:
             pickle.dumps(value)
         except Exception:  # the value's own
@@ -147,40 +152,25 @@ def _error(parts: tuple[Any, Any, str, str]) -> float:
 # --- right against something independent -------------------------------------------------------------------
 
 
-def _density(x: float, alpha: float, dim: int) -> float:
-    """The Fourier integral of exp(-k^alpha), by quadrature."""
-
-    def integral(of: Callable[[float], float], **weight: Any) -> float:
-        end = 42.0 ** (1.0 / alpha)  # exp(-42) = 6e-19
-        return float(
-            quad(
-                lambda k: of(k) * math.exp(-(k**alpha)), 0.0, end, epsabs=1e-14, limit=400, **weight
-            )[0]
-        )
-
-    if dim == 1:
-        return integral(lambda k: 1.0, weight="cos", wvar=x) / math.pi
-    if dim == 2:
-        return integral(lambda k: k * j0(k * x)) / (2.0 * math.pi)
-    if x < 1e-3:
-        return integral(lambda k: k * k * (1.0 - (k * x) ** 2 / 6.0)) / (2.0 * math.pi**2)
-    return integral(lambda k: k, weight="sin", wvar=x) / (2.0 * math.pi**2 * x)
+_XS = st.one_of(st.just(0.0), between(0.0, 3.0), between(0.0, 30.0))
+_POINTS = (_XS, numbers(1e-3, 1e3), _ALPHAS, st.integers(1, 3))
 
 
-def _green(parts: tuple[float, float, float, int]) -> float:
+@PROPERTIES.add("green", "the Fourier integral", "scipy, quadrature", 5, HELD)
+@drawn(*_POINTS)
+def _green(r: float, t: float, alpha: float, dim: int) -> float:
     """G by quadrature of its Fourier integral, to 1e-10 of its maximum."""
-    r, t, alpha, dim = parts
     scale = t ** (-1.0 / alpha)
     x = r / scale
     found = np.asarray(fp.green([x, -x], t, alpha, dim))
-    expected = scale**dim * _density(x * scale, alpha, dim)
     most = scale**dim * gamma(dim / alpha) / alpha  # of the size of G(0)
-    return float(np.abs(found - expected).max()) / (1e-10 * most)
+    return off(found, solution(np.array([x, x]), t, alpha, dim), 1e-10 * most)
 
 
-def _rates(parts: tuple[float, float, float, int]) -> float:
+@PROPERTIES.add("green_rate, _slope, _flux", "differences of G", share=5, must=HELD)
+@drawn(*_POINTS)
+def _rates(r: float, t: float, alpha: float, dim: int) -> float:
     """The rate is dG/dt, the slope dG/dr, and the flux r G / (alpha t): by differences of G, to 1e-6."""
-    r, t, alpha, dim = parts
     x, step = abs(r) * t ** (1.0 / alpha), 1e-4
     green = lambda x, t: float(np.asarray(fp.green(x, t, alpha, dim)))  # noqa: E731
     most = green(0.0, t)
@@ -200,25 +190,29 @@ def _rates(parts: tuple[float, float, float, int]) -> float:
     return max(map(abs, found)) / 1e-6
 
 
+@PROPERTIES.add("mean_radius", "(2 / pi) Gamma(1 - 1 / alpha)", "closed form", 3, HELD)
+@drawn(_ALPHAS)
 def _radius(alpha: float) -> float:
     return abs(fp.mean_radius(alpha) * math.pi / (2.0 * gamma(1.0 - 1.0 / alpha)) - 1.0) / (
-        16.0 * _EPS / (alpha - 1.0)
+        16.0 * EPS / (alpha - 1.0)
     )
 
 
-def _evolved(parts: tuple[float, int, float, float, int]) -> float:
+@PROPERTIES.add("evolve, fundamental", "the fundamental solution, or a warning", "closed form", 3)
+@drawn(_ALPHAS, st.integers(4, 200), between(0.1, 3.0), between(0.01, 5.0), st.integers(1, 6))
+def _evolved(alpha: float, half: int, start: float, span: float, terms: int) -> float:
     """From the fundamental solution to the fundamental solution, to a thousandth, or a warning."""
-    alpha, half, start, span, terms = parts
     h = 0.25
     x = h * np.arange(-half, half + 1)
     found = fp.evolve(np.asarray(fp.green(x, start, alpha)), h, alpha, span, terms=terms)
     exact = np.asarray(fp.green(x, start + span, alpha))
-    return float(np.abs(found - exact).max() / exact.max()) / 2e-2
+    return off(found, exact) / 2e-2
 
 
-def _periodic(parts: tuple[int, float, float, int]) -> float:
+@PROPERTIES.add("evolve, periodic", "every wave decays", "dense matrix", 3, HELD)
+@drawn(st.integers(8, 60), _ALPHAS, numbers(1e-6, 1e6), st.integers(0, 10**6))
+def _periodic(points: int, alpha: float, time: float, seed: int) -> float:
     """Without terms it is a diagonal on the waves of the lattice: the transform as a dense matrix."""
-    points, alpha, time, seed = parts
     u = np.random.default_rng(seed).standard_normal(points)
     k = 2.0 * np.pi * np.arange(points) / points
     waves = np.exp(1j * np.outer(np.arange(points), k))
@@ -229,9 +223,10 @@ def _periodic(parts: tuple[int, float, float, int]) -> float:
     )
 
 
-def _graded(parts: tuple[int, float, float, float, str]) -> float:
+@PROPERTIES.add("graded_particles, green_step", "the sums one by one", "naive sums", 2, HELD)
+@drawn(st.integers(1, 8), between(0.5, 50.0), _ALPHAS, numbers(1e-2, 1e2), st.sampled_from(FORMS))
+def _graded(half: int, reach: float, alpha: float, time: float, form: str) -> float:
     """The step against the sums one by one; the interpolated one mirrors and does not grow."""
-    half, reach, alpha, time, form = parts
     count = 2 * half + 1
     x, volumes = fp.graded_particles(count, reach, 1.0)
     matrix = fp.green_step(x, volumes, alpha, time, form)
@@ -245,128 +240,30 @@ def _graded(parts: tuple[int, float, float, float, str]) -> float:
     of_field = fp.green_step_of_field(count, reach, 1.0, alpha, time)
     mirrored = np.abs(of_field - of_field[::-1, ::-1]).max()
     size = max(1.0, float(np.abs(naive).max()))
-    return max(float(np.abs(matrix - naive).max()) / size, float(mirrored)) / (64.0 * _EPS * count)
+    return max(float(np.abs(matrix - naive).max()) / size, float(mirrored)) / (64.0 * EPS * count)
 
 
-def _kernel(parts: tuple[str, float, float, int, int]) -> float:
+@PROPERTIES.add("kernel", "the integral of its transform", "scipy, quadrature", 3, HELD)
+@drawn(st.sampled_from(tuple(KERNELS)), between(0.05, 8.0), _ALPHAS, among(2, 4, 8))
+def _kernel(name: str, r: float, alpha: float, order: int) -> float:
     """A kernel by quadrature of its transform, to 1e-8."""
-    name, r, alpha, dim, order = parts
-    from fracparticles.kernels.families import kernel_transform
-
     odd = KERNELS[name].parity == "odd"
-    if dim != 1 or name == "kappa":
+    if name == "kappa":
         raise NotRun("no plain integral")
     end = 42.0 ** (1.0 / alpha) if name == "E" else 30.0 + 2.0 * order
     hat = lambda k: float(np.asarray(kernel_transform(name, k, alpha, 1, order)))  # noqa: E731
-    value = (
-        quad(hat, 0.0, end, weight="sin" if odd else "cos", wvar=r, epsabs=1e-12, limit=400)[0]
-        / math.pi
-    )
-    found = float(np.asarray(fp.kernel(name, r, alpha, 1, order)))
-    return abs(found - (-value if odd else value)) / 1e-8
+    how: dict[str, Any] = {"weight": "sin" if odd else "cos", "wvar": r, "epsabs": 1e-12}
+    value = quad(hat, 0.0, end, limit=400, **how)[0] / math.pi
+    return off(fp.kernel(name, r, alpha, 1, order), -value if odd else value, 1e-8)
 
 
-def _limit(parts: tuple[str, float, float]) -> float:
+@PROPERTIES.add("stability_limit", "the spectral radius", "dense matrix", must=HELD)
+@drawn(among("DD", "KPSE", "FPSE", "FD"), between(0.05, 0.95), between(0.8, 3.0))
+def _limit(name: str, beta: float, overlap: float) -> float:
     """2 / a is the spectral radius of the matrix of many particles, from below."""
-    from fracparticles.schemes import SCHEMES
-    from fracparticles.schemes.setting import Setting
-    from fracparticles.schemes.spectrum import dense_matrix
-
-    name, beta, overlap = parts
     overlap = overlap if SCHEMES[name].has_kernel else 2.0
     setting = Setting(alpha=1.0 + beta, overlap=overlap, n=24)
     radius = float(np.abs(np.linalg.eigvals(dense_matrix(SCHEMES[name].operator(setting)))).max())
     a = fp.stability_limit(name, beta, overlap=overlap)
     low = 2.0 / a if a > 0.0 else math.inf
     return 0.0 if 0.8 * low <= radius <= 1.02 * low or not a else 2.0
-
-
-_XS = st.one_of(st.just(0.0), between(0.0, 3.0), between(0.0, 30.0))
-_POINTS = st.tuples(_XS, numbers(1e-3, 1e3), _ALPHAS, st.integers(1, 3))
-
-PROPERTIES = (
-    Property("arguments of every name", "a result, or a line", "", _calls(), _called, 25),
-    Property(
-        "errors",
-        "one line, the same when unpickled",
-        "pickle",
-        st.tuples(
-            texts(), anything(), texts().map(lambda t: " ".join(t.split())), st.just("Mend it.")
-        ).map(lambda drawn: (" ".join(drawn[0].split()), *drawn[1:])),
-        _error,
-        5,
-    ),
-    Property(
-        "green", "the Fourier integral", "scipy, quadrature", _POINTS, _green, 5, Verdict.HELD
-    ),
-    Property("green_rate, _slope, _flux", "differences of G", "", _POINTS, _rates, 5, Verdict.HELD),
-    Property(
-        "mean_radius",
-        "(2 / pi) Gamma(1 - 1 / alpha)",
-        "closed form",
-        _ALPHAS,
-        _radius,
-        3,
-        Verdict.HELD,
-    ),
-    Property(
-        "evolve, fundamental",
-        "the fundamental solution, or a warning",
-        "closed form",
-        st.tuples(
-            _ALPHAS, st.integers(4, 200), between(0.1, 3.0), between(0.01, 5.0), st.integers(1, 6)
-        ),
-        _evolved,
-        3,
-    ),
-    Property(
-        "evolve, periodic",
-        "every wave decays",
-        "dense matrix",
-        st.tuples(st.integers(8, 60), _ALPHAS, numbers(1e-6, 1e6), st.integers(0, 10**6)),
-        _periodic,
-        3,
-        Verdict.HELD,
-    ),
-    Property(
-        "graded_particles, green_step",
-        "the sums one by one",
-        "naive sums",
-        st.tuples(
-            st.integers(1, 8),
-            between(0.5, 50.0),
-            _ALPHAS,
-            numbers(1e-2, 1e2),
-            st.sampled_from(FORMS),
-        ),
-        _graded,
-        2,
-        Verdict.HELD,
-    ),
-    Property(
-        "kernel",
-        "the integral of its transform",
-        "scipy, quadrature",
-        st.tuples(
-            st.sampled_from(tuple(KERNELS)),
-            between(0.05, 8.0),
-            _ALPHAS,
-            st.just(1),
-            st.sampled_from((2, 4, 8)),
-        ),
-        _kernel,
-        3,
-        Verdict.HELD,
-    ),
-    Property(
-        "stability_limit",
-        "the spectral radius",
-        "dense matrix",
-        st.tuples(
-            st.sampled_from(("DD", "KPSE", "FPSE", "FD")), between(0.05, 0.95), between(0.8, 3.0)
-        ),
-        _limit,
-        1,
-        Verdict.HELD,
-    ),
-)

@@ -15,15 +15,28 @@ from random import Random
 from typing import Any
 
 from hypothesis import given, settings
-from hypothesis.strategies import SearchStrategy
+from hypothesis.strategies import SearchStrategy, tuples
 
-from fracstudy.probe import BAD, Probe, Verdict, probe
+from fracstudy.probe import BAD, Kind, Probe, Verdict
 
-__all__ = ["NotRun", "Outcome", "Property", "draw", "judged", "outcome", "row"]
+__all__ = [
+    "NotRun",
+    "Outcome",
+    "Properties",
+    "Property",
+    "draw",
+    "drawn",
+    "judged",
+    "outcome",
+    "row",
+]
 
 _BYTES = 8192  # more than any case takes
 _TRIES = 100  # a strategy may refuse what it has drawn
 _LONGEST = 60.0  # seconds: a case takes some milliseconds
+
+
+_Drawn = tuple[SearchStrategy[Any], Callable[..., float]]
 
 
 class NotRun(BaseException):
@@ -40,8 +53,7 @@ class Property:
 
     Attributes
     ----------
-    name : str
-    expected, source : str
+    name, expected, source : str
         See `Probe`.
     cases : SearchStrategy
         What draws a case.
@@ -62,6 +74,33 @@ class Property:
     must: Verdict | None = None
 
 
+class Properties(list[Property]):
+    """Those of a file, each said above the function that holds."""
+
+    def add(
+        self,
+        name: str,
+        expected: str,
+        source: str = "",
+        share: int = 1,
+        must: Verdict | None = None,
+    ) -> Callable[[_Drawn], Callable[..., float]]:
+        """Return what makes a property of a function that is `drawn`; see `Property`."""
+
+        def added(of: _Drawn) -> Callable[..., float]:
+            cases, holds = of
+            whole = Property(name, expected, source, cases, lambda case: holds(*case), share, must)
+            self.append(whole)
+            return holds
+
+        return added
+
+
+def drawn(*arguments: SearchStrategy[Any]) -> Callable[[Callable[..., float]], _Drawn]:
+    """Say what the arguments of a property are drawn from."""
+    return lambda holds: (tuples(*arguments), holds)
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What came of a case: the verdict, none if it was not run, and in words."""
@@ -79,7 +118,7 @@ def judged(one: Property, case: Callable[[], Any]) -> Outcome:
             return one.holds(case())
 
     try:
-        found = probe(one.name, "", one.expected, run, 1.0)
+        found = Kind(one.name, one.expected, 1.0)("", run)
     except NotRun as why:
         return Outcome(0, None, str(why))
     except Hang:

@@ -17,22 +17,18 @@ from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates
 from fracparticles.problems.solve import solve_problem
 from fracparticles.variable import FORMS
-from scenes.extremes.fuzzing.harness import Property
-from scenes.extremes.fuzzing.strategies import anything, between, given_fields, texts
+from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.strategies import among, anything, between, given_fields, texts
 
 __all__ = ["PROPERTIES"]
 
+PROPERTIES = Properties()
+
 _TOLERANCE = 1e-6  # rtol of the problems
 _ALLOWED = 100.0 * _TOLERANCE  # of the greatest |u| of a run: errors of the steps add up
-_ALPHAS = st.one_of(between(1.05, 1.95), st.sampled_from((1.01, 1.99)))
-_DIFFUSIVITIES = (
-    1.0,
-    0.3,
-    "1 + 0.5*tanh(x)",
-    "0.2 + exp(-x**2)",
-    "where(x > 0.3, 1, 0.1)",
-    "1 + x/(1 + x**2)",
-)
+_ALPHAS = st.one_of(between(1.05, 1.95), among(1.01, 1.99))
+_ROUGH = "where(x > 0.3, 1, 0.1)"
+_DIFFUSIVITIES = (1.0, 0.3, "1 + 0.5*tanh(x)", "0.2 + exp(-x**2)", _ROUGH, "1 + x/(1 + x**2)")
 _VELOCITIES = (None, 0.5, "-0.3*x", "sin(x)", "where(x > 0, -0.5, 0.5)", "x/(1 + x**2)")
 _SOURCES = (None, None, "exp(-x**2)", "1/(1 + (x - 1)**2)", "where(x > 0.3, 0.1, 0)")
 _IN_TIME = ("1 + 0.5*cos(3*t)", "(1 + 0.5*tanh(x))*(1.1 + sin(t))")
@@ -50,16 +46,15 @@ def _problems(draw: st.DrawFn, *, steady: bool = False, **wanted: Any) -> Proble
         "diffusivity": draw(st.sampled_from(_DIFFUSIVITIES if steady else _DIFFUSIVITIES + _IN_TIME)),
         "velocity": draw(st.sampled_from(_VELOCITIES)),
         "source": draw(st.sampled_from(_SOURCES if steady else (*_SOURCES, "exp(-x**2)*cos(4*t)"))),
-        "order": draw(st.sampled_from((2, 4))),
-        "exterior": draw(st.sampled_from(("open", "truncated"))),
+        "order": draw(among(2, 4)),
+        "exterior": draw(among("open", "truncated")),
         "half_width": 8.0,
         "spacing": 8.0 / draw(st.integers(10, 30)),
-        "t_final": draw(st.sampled_from((1e-3, 0.1, 0.5, 1.0))),
-        "integrator": draw(st.sampled_from(("auto", "auto", "rkc2", "dop853"))),
+        "t_final": draw(among(1e-3, 0.1, 0.5, 1.0)),
+        "integrator": draw(among("auto", "auto", "rkc2", "dop853")),
     }  # fmt: skip
-    return Problem(
-        **{name: value for name, value in (fields | wanted).items() if value is not None}
-    )
+    given = {name: value for name, value in (fields | wanted).items() if value is not None}
+    return Problem(**given)
 
 
 def _data(problem: Problem, seed: int) -> np.ndarray:
@@ -78,12 +73,40 @@ def _apart(u: np.ndarray, v: np.ndarray, *of: np.ndarray) -> float:
     return float(np.abs(u - v).max()) / (_ALLOWED * size) if size > 0.0 else 0.0
 
 
-Drawn = tuple[Problem, int]
+_SEEDS = st.integers(0, 10**6)
+_JSON = st.one_of(
+    anything(),
+    given_fields(Problem),
+    given_fields(Problem).map(lambda given: json.dumps(given, default=str)),
+    st.tuples(_problems(), st.integers(0, 300), texts()).map(
+        lambda parts: parts[0].to_json()[: parts[1]] + parts[2] + parts[0].to_json()[parts[1] :]
+    ),
+    _problems().map(lambda problem: problem.to_json()),
+)
+_STEADY = _problems(steady=True)
+_CONSERVING = st.one_of(
+    *(_problems(form=form, exterior="truncated") for form in ("FPSE", "exchange"))
+)
 
 
-def _matrix(drawn: Drawn) -> float:
+@PROPERTIES.add("text of a problem", "a whole problem, or a line", share=8)
+@drawn(_JSON)
+def _text(given: Any) -> float:
+    """A problem of any text or fields is refused, or is one that its own text gives again."""
+    problem = Problem(**given) if isinstance(given, dict) else Problem.from_json(given)
+    if not problem.reproducible:
+        return 0.0
+    again = Problem.from_json(problem.to_json())
+    return 2.0 * (again.to_json() != problem.to_json() or again.case != problem.case)
+
+
+@PROPERTIES.add(
+    "a problem, matrix", "exp(A T) u, to 100 rtol, or a warning", "scipy, dense matrix", 2
+)
+@drawn(_STEADY, _SEEDS)
+def _matrix(problem: Problem, seed: int) -> float:
     """R(u) = A u + b by unit vectors, and its exponential; a mode that grows makes errors grow."""
-    problem, u0 = drawn[0], _data(*drawn)
+    u0 = _data(problem, seed)
     rates, n, t = Rates(problem), u0.size, problem.t_initial
     b = rates(t, np.zeros(n))
     whole = np.zeros((n + 1, n + 1))
@@ -96,9 +119,43 @@ def _matrix(drawn: Drawn) -> float:
     return _apart(_solved(problem, u0), seen[-1], u0, *seen) / growth
 
 
-def _scaled(drawn: tuple[Problem, int, float, float]) -> float:
+@PROPERTIES.add(
+    "a problem, closed form", f"Ornstein and Uhlenbeck, to {_NEAR:g}, or a warning", "closed form"
+)
+@drawn(
+    between(1.1, 1.95),
+    st.sampled_from(tuple(FORMS)),
+    between(0.05, 2.0),
+    between(-3.0, 3.0),
+    among(0.1, 1.0, 3.0),
+    st.integers(3, 6),
+)
+def _known(alpha: float, form: str, c: float, v: float, d: float, across: int) -> float:
+    """a = v - c x and constant D, from the fundamental solution: one about v (1 - e) / c, e = exp(-c t), of the width
+
+    l^alpha = e^alpha + D (1 - e^alpha) / (alpha c).
+    """
+    e = math.exp(-c)
+    end = e**alpha + d * (1.0 - e**alpha) / (alpha * c)
+    width = min(1.0, end ** (1.0 / alpha))
+    half_width = 10.0 * (1.0 + end ** (1.0 / alpha)) + abs(v) / min(c, 1.0)
+    problem = Problem(
+        alpha=alpha, form=form, diffusivity=d, velocity=f"{v!r} - {c!r}*x", half_width=half_width,
+        spacing=width / across, t_final=1.0,
+    )  # fmt: skip
+    x = problem.case.x
+    found = _solved(problem, np.asarray(fp.green(x, 1.0, alpha)))
+    exact = np.asarray(fp.green(x - v * (1.0 - e) / c, end, alpha))
+    return float(np.abs(found - exact).sum() / exact.sum()) / _NEAR
+
+
+# --- all ------------------------------------------------------------------------------------------------------
+
+
+@PROPERTIES.add("a problem, other units", "the same, or a warning")
+@drawn(_problems(), _SEEDS, st.sampled_from(_UNITS), st.sampled_from(_UNITS))
+def _scaled(problem: Problem, seed: int, length: float, time: float) -> float:
     """The same in other units of length and of time."""
-    problem, seed, length, time = drawn
     u0 = _data(problem, seed)
     rate = length**problem.order_coefficient.constant * length / time  # type: ignore[operator]
 
@@ -121,126 +178,28 @@ def _scaled(drawn: tuple[Problem, int, float, float]) -> float:
     return _apart(_solved(problem.model_copy(update=fields), u0), _solved(problem, u0), u0)
 
 
-def _halves(drawn: Drawn) -> float:
+@PROPERTIES.add("a problem, in two parts", "the problem at once, or a warning")
+@drawn(_problems(), _SEEDS)
+def _halves(problem: Problem, seed: int) -> float:
     """To the middle, and from there to the end."""
-    problem, u0 = drawn[0], _data(*drawn)
+    u0 = _data(problem, seed)
     middle = 0.5 * problem.t_final
     half = _solved(problem.model_copy(update={"t_final": middle}), u0)
     last = _solved(problem.model_copy(update={"t_initial": middle}), half)
     return _apart(last, _solved(problem, u0), u0, half)
 
 
-def _mass(drawn: Drawn) -> float:
+@PROPERTIES.add("a problem, its total", "what the source gives, or a warning", "scipy, quadrature")
+@drawn(_CONSERVING, _SEEDS)
+def _mass(problem: Problem, seed: int) -> float:
     """The total gains what the source gives, by quadrature in time; nothing leaves a truncated lattice."""
-    problem, u0 = drawn[0], _data(*drawn)
+    u0 = _data(problem, seed)
     h, f = problem.case.particle_spacing, problem.reaction
     given = 0.0
     if f is not None:
         where = {"x": problem.case.x, "u": np.zeros(u0.size)}
-        given = quad(
-            lambda t: float(f({**where, "t": np.array(t)}).sum()),
-            0.0,
-            problem.t_final,
-            epsrel=1e-10,
-        )[0]
+        rate = lambda t: float(f({**where, "t": np.array(t)}).sum())  # noqa: E731
+        given = quad(rate, 0.0, problem.t_final, epsrel=1e-10)[0]
     found = _solved(problem, u0)
     size = float(np.abs(u0).sum() + np.abs(found).sum())
     return abs(float(found.sum() - u0.sum() - given)) / (_ALLOWED * size) if h > 0.0 else 2.0
-
-
-def _text(given: Any) -> float:
-    """A problem of any text or fields is refused, or is one that its own text gives again."""
-    problem = Problem(**given) if isinstance(given, dict) else Problem.from_json(given)
-    if not problem.reproducible:
-        return 0.0
-    again = Problem.from_json(problem.to_json())
-    return 2.0 * (again.to_json() != problem.to_json() or again.case != problem.case)
-
-
-def _known(drawn: tuple[float, str, float, float, float, int]) -> float:
-    """a = v - c x and constant D, from the fundamental solution: one about v (1 - e) / c, e = exp(-c t), of the width
-
-    l^alpha = e^alpha + D (1 - e^alpha) / (alpha c).
-    """
-    alpha, form, c, v, d, across = drawn
-    e = math.exp(-c)
-    end = e**alpha + d * (1.0 - e**alpha) / (alpha * c)
-    width = min(1.0, end ** (1.0 / alpha))
-    half_width = 10.0 * (1.0 + end ** (1.0 / alpha)) + abs(v) / min(c, 1.0)
-    problem = Problem(
-        alpha=alpha, form=form, diffusivity=d, velocity=f"{v!r} - {c!r}*x", half_width=half_width,
-        spacing=width / across, t_final=1.0,
-    )  # fmt: skip
-    x = problem.case.x
-    found = _solved(problem, np.asarray(fp.green(x, 1.0, alpha)))
-    exact = np.asarray(fp.green(x - v * (1.0 - e) / c, end, alpha))
-    return float(np.abs(found - exact).sum() / exact.sum()) / _NEAR
-
-
-# --- all ------------------------------------------------------------------------------------------------------
-
-_SEEDS = st.integers(0, 10**6)
-_JSON = st.one_of(
-    anything(),
-    given_fields(Problem),
-    given_fields(Problem).map(lambda given: json.dumps(given, default=str)),
-    st.tuples(_problems(), st.integers(0, 300), texts()).map(
-        lambda parts: parts[0].to_json()[: parts[1]] + parts[2] + parts[0].to_json()[parts[1] :]
-    ),
-    _problems().map(lambda problem: problem.to_json()),
-)
-_STEADY = _problems(steady=True)
-_CONSERVING = st.one_of(
-    *(_problems(form=form, exterior="truncated") for form in ("FPSE", "exchange"))
-)
-
-PROPERTIES = (
-    Property("text of a problem", "a whole problem, or a line", "", _JSON, _text, 8),
-    Property(
-        "a problem, matrix",
-        "exp(A T) u, to 100 rtol, or a warning",
-        "scipy, dense matrix",
-        st.tuples(_STEADY, _SEEDS),
-        _matrix,
-        2,
-    ),
-    Property(
-        "a problem, closed form",
-        f"Ornstein and Uhlenbeck, to {_NEAR:g}, or a warning",
-        "closed form",
-        st.tuples(
-            between(1.1, 1.95),
-            st.sampled_from(tuple(FORMS)),
-            between(0.05, 2.0),
-            between(-3.0, 3.0),
-            st.sampled_from((0.1, 1.0, 3.0)),
-            st.integers(3, 6),
-        ),
-        _known,
-        1,
-    ),
-    Property(
-        "a problem, other units",
-        "the same, or a warning",
-        "",
-        st.tuples(_problems(), _SEEDS, st.sampled_from(_UNITS), st.sampled_from(_UNITS)),
-        _scaled,
-        1,
-    ),
-    Property(
-        "a problem, in two parts",
-        "the problem at once, or a warning",
-        "",
-        st.tuples(_problems(), _SEEDS),
-        _halves,
-        1,
-    ),
-    Property(
-        "a problem, its total",
-        "what the source gives, or a warning",
-        "scipy, quadrature",
-        st.tuples(_CONSERVING, _SEEDS),
-        _mass,
-        1,
-    ),
-)

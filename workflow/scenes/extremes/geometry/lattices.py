@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,16 +15,20 @@ from fracparticles.run.reliability import LIMITS
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off, overheard
 
-__all__ = ["Errors", "counts", "evolved", "graded", "lattices"]
+__all__ = ["OF_A_FUNCTION", "Errors", "counts", "evolved", "graded", "lattices"]
 
 _START, _SPAN = 0.5, 1.0
 # A share d of the strength that is where it must not be is missed elsewhere: 2 d in the 1-norm. Nothing is said of
 # waves wrong by 0.05, of 0.05 beyond the lattice, nor, of data that are a function, of 0.05 between the particles.
 _ALLOWED = 2.0 * (LIMITS["wave_error"] + LIMITS["outside_share"])
-_OF_A_FUNCTION = _ALLOWED + 2.0 * LIMITS["between_particles"]
+OF_A_FUNCTION = _ALLOWED + 2.0 * LIMITS["between_particles"]
 _TAIL = 1e-3  # of the maximum: what `evolve` does not speak of
+
+
+def _allowed(centre: float | None) -> float:
+    return _ALLOWED if centre is None else OF_A_FUNCTION
 
 
 @dataclass
@@ -34,18 +37,15 @@ class Errors:
 
     panels: Panels = field(default_factory=Panels)
 
-    def of_run(self, kind: str, case: fp.Case, centre: float | None) -> float:
+    def of_run(self, kind: str, case: fp.Case, centre: float | None = None) -> float:
         """Run a case, and return sum V |u - exact| / sum V |exact|."""
         data = None if centre is None else _solution(case, centre, case.t_initial)
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
+        with overheard() as words:
             run = compute(case, data)
-        for one in caught:  # for the probe
-            warnings.warn(one.message, one.category, stacklevel=2)
         exact = _solution(case, centre or 0.0, case.t_final)(*case.positions)
         error = case.integral(np.abs(run.u - exact)) / case.integral(exact)
         worst = max(_over(name, value) for name, (value, _) in run.estimates.items())
-        said = "warned" if caught else "silent"
+        said = "warned" if words else "silent"
         self.panels.add(kind, said, min(max(worst, 1e-3), 1e3), min(max(error, 1e-4), 1e2))
         return float(error)
 
@@ -82,22 +82,6 @@ def _case(scheme: str, beta: float, **given: Any) -> fp.Case:
     return fp.Case(scheme=scheme, beta=beta, store="metrics", **fields)
 
 
-def _run(
-    errors: Errors,
-    kind: str,
-    scheme: str,
-    beta: float,
-    given: dict[str, Any],
-    centre: float | None,
-) -> float:
-    return errors.of_run(kind, _case(scheme, beta, **given), centre)
-
-
-def _of_count(case: fp.Case, usual: float) -> float:
-    at_the_end = abs(case.x[-1] / case.reach - 1.0) / 1e-15
-    return max(Errors().of_run("", case, None) / (2.0 * usual), at_the_end)
-
-
 def lattices(
     errors: Errors, beta: float, schemes: dict[int, list[str]], half_widths: dict[int, float]
 ) -> Iterator[Probe]:
@@ -109,14 +93,10 @@ def lattices(
         wide, h = half_widths[dim], {1: 0.1, 2: 0.25, 3: 0.5}[dim]
         for scheme in names:
             for kind, words, given, centre in _unsuitable(scheme, dim, wide, h):
-                function = centre is not None
-                yield probe(
-                    kind,
+                right = Kind(kind, "the exact solution", _allowed(centre), "closed form")
+                yield right(
                     f"{scheme}, n = {dim}, {words}",
-                    "the exact solution",
-                    partial(_run, errors, kind, scheme, beta, given, centre),
-                    _OF_A_FUNCTION if function else _ALLOWED,
-                    source="closed form",
+                    lambda: errors.of_run(kind, _case(scheme, beta, **given), centre),
                 )
 
 
@@ -139,31 +119,16 @@ def _unsuitable(scheme: str, dim: int, wide: float, h: float) -> Iterator[_Unsui
         if h < coarse <= wide / 8.0:
             yield "too coarse", f"h = {coarse:g}", {**base, "spacing": coarse}, None
     for exterior in one.exteriors:
+        usual = {**base, "exterior": exterior}
         for narrow in (0.5, 1.0, 4.0):
-            fields = {
-                **base,
-                "half_width": narrow,
-                "spacing": min(h, narrow / 8.0),
-                "exterior": exterior,
-            }
+            fields = {**usual, "half_width": narrow, "spacing": min(h, narrow / 8.0)}
             yield "too narrow", f"half-width {narrow:g}, {exterior}", fields, None
         for share in (0.5, 0.9, 1.0, 3.0):
-            fields = {**base, "exterior": exterior}
-            yield (
-                "off centre",
-                f"data at {share:g} of the half-width, {exterior}",
-                fields,
-                share * wide,
-            )
+            where = f"data at {share:g} of the half-width, {exterior}"
+            yield "off centre", where, usual, share * wide
         if dim == 1:
-            fields = {
-                **base,
-                "half_width": 40.0,
-                "spacing": 4.0,
-                "exterior": exterior,
-                "t_initial": 0.01,
-                "t_final": 0.02,
-            }
+            fields = {**usual, "half_width": 40.0, "spacing": 4.0}
+            fields |= {"t_initial": 0.01, "t_final": 0.02}
             yield "hidden", f"a peak half-way between particles, {exterior}", fields, 6.0
 
 
@@ -173,26 +138,14 @@ def counts(beta: float) -> Iterator[Probe]:
     The lattice ends at the half-width D exactly, h = D / round(D / h). A point of the same lattice is right whatever
     their number is: the runs are held against the exact solution, within twice the error at h = 1/8, D = 30.
     """
-    good = _case("KPSE", beta, half_width=30.0, spacing=0.125)
-    usual = Errors().of_run("", good, None)
-    for half, h in (
-        (30.0, 0.1249),
-        (30.0, 0.13),
-        (29.9, 0.125),
-        (math.pi * 10.0, 1.0 / 8.0),
-        (31.375, 0.125),
-    ):
+    usual = Errors().of_run("", _case("KPSE", beta, half_width=30.0, spacing=0.125))
+    right = Kind("spacing", "as with h = 1/8, D = 30", 1.0, "closed form", HELD)
+    pairs = ((30.0, 0.1249), (30.0, 0.13), (29.9, 0.125), (math.pi * 10.0, 0.125), (31.375, 0.125))
+    for half, h in pairs:
         case = _case("KPSE", beta, half_width=half, spacing=h)
-        yield probe(
-            "spacing",
-            f"D = {half:.4g}, h = {h:g}: N = {case.particles}, ends at D",
-            "as with h = 1/8, D = 30",
-            partial(_of_count, case, usual),
-            1.0,
-            source="closed form",
-            must=Verdict.HELD,
-        )
-    for name, given in {
+        name = f"D = {half:.4g}, h = {h:g}: N = {case.particles}, ends at D"
+        yield right(name, _of_count, case, usual)
+    bad: dict[str, dict[str, float]] = {
         "N = 15": {"spacing": 30.0 / 7.0},
         "N = 3": {"spacing": 30.0},
         "N = 1": {"spacing": 100.0},
@@ -205,23 +158,16 @@ def counts(beta: float) -> Iterator[Probe]:
         "overlap 1001": {"overlap": 1001.0},
         "1e12 particles": {"spacing": 1e-11},
         "half-width 1e-101": {"half_width": 1e-101, "spacing": 1e-103},
-    }.items():
-        yield probe(
-            "refused",
-            name,
-            "refused",
-            partial(
-                _run,
-                Errors(),
-                "",
-                "KPSE",
-                beta,
-                {"half_width": 30.0, "spacing": 0.1, **given},
-                None,
-            ),
-            0.0,
-            must=Verdict.REFUSED,
-        )
+    }
+    refused = Kind("refused", must=REFUSED)
+    for name, given in bad.items():
+        fields = {"half_width": 30.0, "spacing": 0.1, **given}
+        yield refused(name, lambda: compute(_case("KPSE", beta, **fields)))
+
+
+def _of_count(case: fp.Case, usual: float) -> float:
+    at_the_end = abs(case.x[-1] / case.reach - 1.0) / 1e-15
+    return max(Errors().of_run("", case) / (2.0 * usual), at_the_end)
 
 
 def evolved(beta: float, sizes: dict[int, list[int]]) -> Iterator[Probe]:
@@ -231,27 +177,15 @@ def evolved(beta: float, sizes: dict[int, list[int]]) -> Iterator[Probe]:
     resolved: the greatest error is to be within some thousandths, where it is silent.
     """
     alpha, half = 1.0 + beta, {1: 20.0, 2: 10.0, 3: 6.0}
+    right = Kind("evolve", "the exact solution", 5.0 * _TAIL, "closed form")
     for dim, some in sizes.items():
         for count in some:
-            yield probe(
-                "evolve",
-                f"n = {dim}, {count} points an axis",
-                "the exact solution",
-                partial(_of_evolve, alpha, dim, half[dim], count, 0.0),
-                5.0 * _TAIL,
-                source="closed form",
-                must=Verdict.REFUSED if count < 8 else None,
-            )
+            name, must = f"n = {dim}, {count} points an axis", REFUSED if count < 8 else None
+            yield right(name, _of_evolve, alpha, dim, half[dim], count, 0.0, must=must)
     for dim, count in ((1, 401), (2, 41)):
         for share in (0.3, 0.5, 0.9, 1.0, 1.1, 3.0, 1e6) if dim in sizes else ():
-            yield probe(
-                "evolve",
-                f"n = {dim}, data at {share:g} of the half-width",
-                "the exact solution",
-                partial(_of_evolve, alpha, dim, half[dim], count, share * half[dim]),
-                5.0 * _TAIL,
-                source="closed form",
-            )
+            name, centre = f"n = {dim}, data at {share:g} of the half-width", share * half[dim]
+            yield right(name, _of_evolve, alpha, dim, half[dim], count, centre)
 
 
 def _of_evolve(alpha: float, dim: int, half: float, count: int, centre: float) -> float:
@@ -260,63 +194,47 @@ def _of_evolve(alpha: float, dim: int, half: float, count: int, centre: float) -
     r = np.sqrt(sum(np.square(a - (centre if k == 0 else 0.0)) for k, a in enumerate(axes)))
     h = 2.0 * half / max(count - 1, 1)
     u = fp.evolve(np.asarray(fp.green(r, 1.0, alpha, dim)), h, alpha, 1.0)
-    exact = np.asarray(fp.green(r, 2.0, alpha, dim))
-    return float(np.abs(u - exact).max() / exact.max())
+    return off(u, np.asarray(fp.green(r, 2.0, alpha, dim)))
+
+
+_GRADED: tuple[tuple[str, dict[str, float], float | None], ...] = (
+    ("fitting", {}, None),
+    ("17 particles", {"spacing": 0.95}, None),
+    ("L = 100", {"graded_scale": 100.0, "spacing": 20.0}, None),
+    ("L = 1e-3", {"graded_scale": 1e-3, "spacing": 2.5e-4}, None),
+    ("D = 2", {"half_width": 2.0, "spacing": 0.1}, None),
+    ("D = 1e12", {"half_width": 1e12}, None),
+    ("data at 0.01 D", {}, 10.0),
+    ("data at 0.5 D", {}, 500.0),
+    ("data at D", {}, 1e3),
+    ("data at 10 D", {}, 1e4),
+)
 
 
 def graded(errors: Errors, beta: float) -> Iterator[Probe]:
     """Particles x_j = L sinh(s_j), few or many, narrow or wide, with data in the middle and where gaps are wide."""
-    for form in ("exchange", "quadrature", "interpolated"):
-        base = {"half_width": 1e3, "graded_scale": 1.0, "spacing": 0.25, "graded_form": form}
-        for words, given, centre in (
-            ("fitting", {}, None),
-            ("17 particles", {"spacing": 0.95}, None),
-            ("L = 100", {"graded_scale": 100.0, "spacing": 20.0}, None),
-            ("L = 1e-3", {"graded_scale": 1e-3, "spacing": 2.5e-4}, None),
-            ("D = 2", {"half_width": 2.0, "spacing": 0.1}, None),
-            ("D = 1e12", {"half_width": 1e12}, None),
-            ("data at 0.01 D", {}, 10.0),
-            ("data at 0.5 D", {}, 500.0),
-            ("data at D", {}, 1e3),
-            ("data at 10 D", {}, 1e4),
-        ):
-            yield probe(
-                "graded",
-                f"{form}, {words}",
-                "the exact solution",
-                partial(_run, errors, "graded", "GPSE", beta, {**base, **given}, centre),
-                _ALLOWED if centre is None else _OF_A_FUNCTION,
-                source="closed form",
-            )
-    for words, count, reach, scale in (
-        ("2 particles", 2, 1.0, 1.0),
-        ("1 particle", 1, 1.0, 1.0),
-        ("4 particles", 4, 1.0, 1.0),
-        ("reach 0", 3, 0.0, 1.0),
-        ("scale nan", 3, 1.0, math.nan),
+    right = Kind("graded", "the exact solution", source="closed form")
+    for form, (words, given, centre) in product(
+        ("exchange", "quadrature", "interpolated"), _GRADED
     ):
-        yield probe(
-            "refused",
-            f"graded, {words}",
-            "refused",
-            partial(_particles, count, reach, scale),
-            0.0,
-            must=Verdict.REFUSED,
+        usual = {"half_width": 1e3, "graded_scale": 1.0, "spacing": 0.25, "graded_form": form}
+        yield right(
+            f"{form}, {words}",
+            lambda: errors.of_run("graded", _case("GPSE", beta, **usual | given), centre),
+            bound=_allowed(centre),
         )
-    yield probe(
-        "graded",
-        "3 particles, exchange: sum V u is kept",
-        "the sum before",
-        partial(_of_three, 1.0 + beta),
-        # N roundings of the greatest term, that of the outer particles: V u to some ulp each.
-        16.0 * float(np.finfo(float).eps),
-        source="closed form",
-        must=Verdict.HELD,
-    )
-
-
-def _particles(count: int, reach: float, scale: float) -> float:
-    return float(np.abs(fp.graded_particles(count, reach, scale)[0]).max())
+    refused = Kind("refused", must=REFUSED)
+    for words, particles in {
+        "2 particles": (2, 1.0, 1.0),
+        "1 particle": (1, 1.0, 1.0),
+        "4 particles": (4, 1.0, 1.0),
+        "reach 0": (3, 0.0, 1.0),
+        "scale nan": (3, 1.0, math.nan),
+    }.items():
+        yield refused(f"graded, {words}", fp.graded_particles, *particles)
+    # N roundings of the greatest term, that of the outer particles: V u to some ulp each.
+    kept = Kind("graded", "the sum before", 16.0 * EPS, "closed form", HELD)
+    yield kept("3 particles, exchange: sum V u is kept", _of_three, 1.0 + beta)
 
 
 def _of_three(alpha: float) -> float:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
+from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,12 +17,11 @@ from fracparticles.lattice.fourier import FourierConvolution
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.base import LatticeScheme
 from fracparticles.schemes.spectrum import dense_matrix
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.geometry.printed import Kernels, matrix, places, power_sum
 
 __all__ = ["exteriors", "lattice_sums", "matrices"]
 
-_EPS = float(np.finfo(float).eps)
 _KERNELS = 1e-11  # the accuracy that `kernels.kernel` promises
 _LINE: dict[str, Any] = {
     "fft": FourierConvolution,
@@ -36,7 +36,7 @@ def _rounding(terms: int) -> float:
 
     A transform of length L leaves some log2 L roundings (Higham 2002, Sec. 24.1), of at most 4 N here.
     """
-    return _EPS * (terms + 8.0 * np.log2(4.0 * terms))
+    return EPS * (terms + 8.0 * np.log2(4.0 * terms))
 
 
 def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe]:
@@ -44,47 +44,29 @@ def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe
 
     Also beyond the ends of the lattice, up to seven points; w even and odd.
     """
-    expected = "the sum term by term"
+    right = Kind("sums", "the sum term by term", source="numpy, dense", must=HELD)
     for kind, some in sizes.items():
+        every = f"N {kind}: {', '.join(map(str, some))}"
         for name, convolution in _LINE.items():
-            yield probe(
-                "sums",
-                f"line, {name}, N {kind}: {', '.join(map(str, some))}",
-                expected,
-                partial(_worst, partial(_of_line, convolution), some),
-                _rounding(max(some)),
-                source="numpy, dense",
-                must=Verdict.HELD,
+            yield right(
+                f"line, {name}, {every}",
+                lambda: max(_of_line(convolution, size) for size in some),
+                bound=_rounding(max(some)),
             )
-        yield probe(
-            "sums",
-            f"line, banded, N {kind}: {', '.join(map(str, some))}, bands up to N",
-            expected,
-            partial(_worst, _of_band, some),
-            _rounding(2 * max(some)),
-            source="numpy, dense",
-            must=Verdict.HELD,
+        yield right(
+            f"line, banded, {every}, bands up to N",
+            lambda: max(map(_of_band, some)),
+            bound=_rounding(2 * max(some)),
         )
     for dim in [d for d in dims if d > 1]:
-        sides = (
-            [(1, 1), (3, 3), (7, 7), (3, 9), (9, 5)]
-            if dim == 3
-            else [(1, 1), (3, 3), (13, 13), (5, 19), (17, 11)]
-        )
+        larger = [(7, 7), (3, 9), (9, 5)] if dim == 3 else [(13, 13), (5, 19), (17, 11)]
+        sides = [(1, 1), (3, 3), *larger]
         for name, box in _BOX.items():
-            yield probe(
-                "sums",
+            yield right(
                 f"n = {dim}, {name}, from S^n to T^n: {', '.join(f'{a}-{b}' for a, b in sides)}",
-                expected,
-                partial(_worst, partial(_of_box, box, dim), sides),
-                _rounding(19**dim),
-                source="numpy, dense",
-                must=Verdict.HELD,
+                lambda: max(_of_box(box, dim, pair) for pair in sides),
+                bound=_rounding(19**dim),
             )
-
-
-def _worst(deviation: Callable[[Any], float], cases: list[Any]) -> float:
-    return max(deviation(case) for case in cases)
 
 
 def _of_line(convolution: Callable[..., Callable[[np.ndarray], np.ndarray]], size: int) -> float:
@@ -95,7 +77,7 @@ def _of_line(convolution: Callable[..., Callable[[np.ndarray], np.ndarray]], siz
         apart = np.arange(-pad, size + pad)[:, None] - np.arange(size)
         exact = (np.where(apart < 0, parity, 1) * w[np.abs(apart)]) @ u
         found = convolution(w, size, parity, pad)(u)
-        worst = max(worst, float(np.abs(found - exact).max() / _size(w, u)))
+        worst = max(worst, off(found, exact, _size(w, u)))
     return worst
 
 
@@ -108,7 +90,7 @@ def _of_band(size: int) -> float:
         every = np.append(w, np.zeros(size))
         exact = (np.where(apart < 0, parity, 1) * every[np.abs(apart)]) @ v
         found = BandedConvolution(w, parity)(v, np.empty(size))
-        worst = max(worst, float(np.abs(found - exact).max() / _size(w, v)))
+        worst = max(worst, off(found, exact, _size(w, v)))
     return worst
 
 
@@ -128,7 +110,7 @@ def _of_box(
         signs = 1.0 if odd is None else np.where(apart[..., odd] < 0, -1.0, 1.0)
         exact = (signs * w[tuple(np.moveaxis(np.abs(apart), -1, 0))]) @ u.reshape(-1)
         found = convolution([w], [odd], sources, targets)(u)[0].reshape(-1)
-        worst = max(worst, float(np.abs(found - exact).max() / _size(w, u)))
+        worst = max(worst, off(found, exact, _size(w, u)))
     return worst
 
 
@@ -143,20 +125,17 @@ def matrices(
 
     `half` has, by dimension, half the intervals of the lattices. The deviation is that of the greatest sum of a row.
     """
+    # An entry is the sum of N others in FPSE and DPSE, whose kernels cancel by some ten.
+    right = Kind("matrix", "the printed formula, entry by entry", _KERNELS, must=HELD)
     for name, one in SCHEMES.items():
-        for dim in [d for d in one.dims if d in half]:
-            for overlap in overlaps:
-                counts = [(2 * n + 1) ** dim for n in half[dim]]
-                yield probe(
-                    "matrix",
-                    f"{name}, n = {dim}, overlap {overlap:g}, N = {', '.join(map(str, counts))}",
-                    "the printed formula, entry by entry",
-                    partial(_of_matrices, one, beta, dim, orders, overlap, half[dim]),
-                    # An entry is the sum of N others in FPSE and DPSE, whose kernels cancel by some ten.
-                    _KERNELS,
-                    source="mpmath, dense" if name != "GPSE" else "QUADPACK, dense",
-                    must=Verdict.HELD,
-                )
+        source = "mpmath, dense" if name != "GPSE" else "QUADPACK, dense"
+        for dim, overlap in product([d for d in one.dims if d in half], overlaps):
+            counts = ", ".join(str((2 * n + 1) ** dim) for n in half[dim])
+            yield right(
+                f"{name}, n = {dim}, overlap {overlap:g}, N = {counts}",
+                lambda: _of_matrices(one, beta, dim, orders, overlap, half[dim]),
+                source=source,
+            )
 
 
 def _of_matrices(
@@ -168,15 +147,9 @@ def _of_matrices(
         kernels = Kernels(1.0 + beta, dim, order, family)
         for n in half:
             exact = matrix(one.name, kernels, n, overlap)
-            setting: dict[str, Any] = {
-                "alpha": 1.0 + beta,
-                "order": order,
-                "overlap": overlap,
-                "dim": dim,
-                "n": n,
-            }
+            setting = Setting(alpha=1.0 + beta, order=order, overlap=overlap, dim=dim, n=n)
             for summation in ("fft", "naive"):
-                found = dense_matrix(one.operator(Setting(**setting, summation=summation)))
+                found = dense_matrix(one.operator(replace(setting, summation=summation)))
                 difference, size = (np.abs(a).sum(axis=1).max() for a in (found - exact, exact))
                 worst = max(worst, float(difference / size) if size else float(difference))
     return worst
@@ -189,30 +162,16 @@ def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
     term is 7 f''' / 5760: for f ~ y^-5 and y >= 3 n that is (3 n)^-4 of the sum.
     """
     alpha = 1.0 + beta
-    for n in (1, 2, 8, 53):
-        for overlap in overlaps:
-            yield probe(
-                "exterior",
-                f"KPSE's kernel, n = {n}, overlap {overlap:g}",
-                "the sum to infinity",
-                partial(_of_exterior, alpha, n, overlap),
-                (3.0 * n) ** -4.0,
-                source="mpmath, QUADPACK",
-            )
+    power = 1.0 + alpha
+    for n, overlap in product((1, 2, 8, 53), overlaps):
+        right = Kind("exterior", "the sum to infinity", (3.0 * n) ** -4.0, "mpmath, QUADPACK")
+        yield right(f"KPSE's kernel, n = {n}, overlap {overlap:g}", _of_exterior, alpha, n, overlap)
+    refused = Kind("exterior", "refused: too few particles to fit", must=REFUSED)
     for n, terms in ((0, 1), (1, 2), (2, 3)):
-        yield probe(
-            "exterior",
+        yield refused(
             f"N = {2 * n + 1}, terms: {terms}",
-            "refused: too few particles to fit",
-            partial(_of_few, alpha, n, terms),
-            0.0,
-            must=Verdict.REFUSED,
+            lambda: far_field(lambda m: np.abs(m) ** -power, power, alpha, n, terms=terms),
         )
-
-
-def _of_few(alpha: float, n: int, terms: int) -> float:
-    far_field(lambda m: np.abs(m) ** -(1.0 + alpha), 1.0 + alpha, alpha, n, terms=terms)
-    return np.inf
 
 
 def _of_exterior(alpha: float, n: int, overlap: float) -> float:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import product
 
 import numpy as np
 
-from fracparticles.errors import StabilityWarning
 from fracparticles.graded.field import green_step_of_field
 from fracparticles.graded.particles import graded_particles, green_step
 from fracparticles.pse import (
@@ -21,15 +20,16 @@ from fracparticles.pse import (
     derivative,
 )
 from fracparticles.sph.derivatives import gradient, second_derivative
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, WARNED, Kind, Probe, off, overheard, quiet
+from scenes.extremes.irregular_particles.theory import volumes
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _N = 120
+_H = 10.0 / _N
 
 
-def probes(seeds: int) -> Iterator[Probe]:
+def probes() -> Iterator[Probe]:
     """All of them."""
     yield from _exchange()
     yield from _growth()
@@ -39,77 +39,47 @@ def probes(seeds: int) -> Iterator[Probe]:
     yield from _refused()
 
 
-def _scattered(jitter: float, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    h = 10.0 / _N
-    dice = np.random.default_rng(seed)
-    lattice = h * (np.arange(_N) + 0.5) - 5.0
-    x = (
-        dice.uniform(-5.0, 5.0, _N)
-        if jitter > 1.0
-        else lattice + jitter * h * dice.uniform(-1.0, 1.0, _N)
-    )
+def _words(jitter: float) -> str:
+    return "random" if jitter > 1.0 else f"jitter {jitter:g} h"
+
+
+def _scattered(jitter: float) -> tuple[np.ndarray, np.ndarray]:
+    """Particles in |x| < 5 with their volumes: of a lattice, each moved by up to `jitter` h, or anywhere."""
+    dice = np.random.default_rng(1)
+    if jitter > 1.0:
+        x = dice.uniform(-5.0, 5.0, _N)
+    else:
+        x = _H * (np.arange(_N) + 0.5) - 5.0 + jitter * _H * dice.uniform(-1.0, 1.0, _N)
     x = np.sort(x)
     return x, cell_volumes(x)
 
 
 def _exchange() -> Iterator[Probe]:
     """Strength exchange (26) in one, two and three dimensions, on any places with any volumes: nothing is lost."""
+    kept = Kind("conservation", "Σ Q kept", 64.0 * EPS, "exact sums", HELD)
     for dim, order in product((1, 2, 3), (2, 4)):
-        run = partial(_total_lost, dim, order)
-        case = f"PSE, {dim}-D, order {order}, random, any volumes"
-        yield probe(
-            "conservation",
-            case,
-            "Σ Q kept",
-            run,
-            64.0 * _EPS,
-            source="exact sums",
-            must=Verdict.HELD,
-        )
+        yield kept(f"PSE, {dim}-D, order {order}, random, any volumes", _total_lost, dim, order)
     for ratio in (1e100, 1e300):
-        run = partial(_uneven_lost, ratio)
-        case = f"PSE, volumes from 1 to {ratio:g}"
-        yield probe(
-            "conservation",
-            case,
-            "Σ Q kept",
-            run,
-            64.0 * _EPS,
-            source="exact sums",
-            must=Verdict.HELD,
-        )
+        yield kept(f"PSE, volumes from 1 to {ratio:g}", _uneven_lost, ratio)
+    # An eigenvalue is known to some ulps of the greatest.
+    none = Kind("growth", "no eigenvalue above zero", 64.0 * EPS, "dense eigenvalues", HELD)
     for jitter in (0.2, 0.5, 2.0):
-        run = partial(_greatest_eigenvalue, jitter)
-        case = f"PSE, kernel (20), {'random' if jitter > 1.0 else f'jitter {jitter:g} h'}"
-        # An eigenvalue is known to some ulps of the greatest.
-        yield probe(
-            "growth",
-            case,
-            "no eigenvalue above zero",
-            run,
-            64.0 * _EPS,
-            source="dense eigenvalues",
-            must=Verdict.HELD,
-        )
-
-
-def _quiet(*arguments: object) -> StrengthExchange:
-    """The exchange, without what it says of growth and gaps: it is asked for what it conserves."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return StrengthExchange(*arguments)  # type: ignore[arg-type]
+        yield none(f"PSE, kernel (20), {_words(jitter)}", _greatest_eigenvalue, jitter)
 
 
 def _total_lost(dim: int, order: int) -> float:
     dice = np.random.default_rng(dim)
     x, v = dice.uniform(0.0, 3.0, (60, dim)), dice.exponential(0.1, 60) + 1e-3
-    return _lost(_quiet(x, v, 0.6, construct_laplacian(order, dim)), dice.normal(size=60))
+    with quiet(Warning):  # of growth and gaps
+        exchange = StrengthExchange(x, v, 0.6, construct_laplacian(order, dim))
+    return _lost(exchange, dice.normal(size=60))
 
 
 def _uneven_lost(ratio: float) -> float:
     x, _ = _scattered(0.5)
     v = np.where(np.arange(_N) % 2, 1.0, ratio)
-    return _lost(_quiet(x, v, 0.2, GAUSSIAN_20), v * np.cos(x))
+    with quiet(Warning):
+        return _lost(StrengthExchange(x, v, 0.2, GAUSSIAN_20), v * np.cos(x))
 
 
 def _lost(exchange: StrengthExchange, q: np.ndarray) -> float:
@@ -127,181 +97,118 @@ def _greatest_eigenvalue(jitter: float) -> float:
 
 def _growth() -> Iterator[Probe]:
     """Kernels of higher order are negative somewhere: on irregular particles strengths may grow, and that is said."""
+    stays = Kind("growth", "no growth, no word", 0.01, "dense eigenvalues", HELD)
+    grows = replace(stays, expected="growth, at the rate said", must=WARNED)
     for order, overlap, jitter in product((4, 6, 8), (1.0, 2.0, 4.0), (0.2, 0.5, 2.0)):
-        x, v = _scattered(jitter)
-        exchange = _quiet(x, v, overlap * 10.0 / _N, construct(2, order))
+        makes = partial(StrengthExchange, *_scattered(jitter), overlap * _H, construct(2, order))
+        with quiet(Warning):
+            exchange = makes()
         greatest = float(np.linalg.eigvals(exchange.matrix.toarray()).real.max())
-        grows = greatest > 1e-5 * exchange.rate
-        run = partial(_growth_missed, x, v, order, overlap, greatest if grows else 0.0)
-        words = "random" if jitter > 1.0 else f"jitter {jitter:g} h"
-        expected = "growth, at the rate said" if grows else "no growth, no word"
-        yield probe(
-            "growth", f"PSE, order {order}, ε = {overlap:g} h, {words}", expected, run, 0.01,
-            source="dense eigenvalues", must=Verdict.WARNED if grows else Verdict.HELD,
-        )  # fmt: skip
+        greatest = greatest if greatest > 1e-5 * exchange.rate else 0.0
+        name = f"PSE, order {order}, ε = {overlap:g} h, {_words(jitter)}"
+        yield (grows if greatest else stays)(name, _growth_missed, makes, greatest)
 
 
-def _growth_missed(
-    x: np.ndarray, v: np.ndarray, order: int, overlap: float, greatest: float
-) -> tuple[float, str]:
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        StrengthExchange(x, v, overlap * 10.0 / _N, construct(2, order))
-    for one in caught:
-        warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
-    told = [str(w.message) for w in caught if issubclass(w.category, StabilityWarning)]
-    said = float(told[0].split("exp(")[1].split()[0]) if told else 0.0
+def _growth_missed(makes: Callable[[], object], greatest: float) -> tuple[float, str]:
+    with overheard() as words:
+        makes()
+    rates = [word.split("exp(")[1].split()[0] for word in words if "exp(" in word]
+    said = float(rates[0]) if rates else 0.0
     return abs(said - greatest) / max(greatest, 1.0), f"said {said:.2g}, is {greatest:.2g}"
 
 
 def _steps() -> Iterator[Probe]:
     """A Green step by exchange keeps the total on any particles; where it amplifies, it says so, and by how much."""
-    h = 10.0 / _N
-    for kind, right, overlap in product(
-        ("jittered", "random", "clustered", "one place"), (True, False), (0.5, 2.0)
-    ):
+    kept = Kind("conservation", "Σ V u kept", 64.0 * EPS, "exact sums", HELD)
+    stays = Kind("growth", "does not amplify", 1e-6, "dense eigenvalues", HELD)
+    grows = replace(stays, expected="amplifies, and says so", must=WARNED)
+    kinds = ("jittered", "random", "clustered", "one place")
+    for kind, right, overlap in product(kinds, (True, False), (0.5, 2.0)):
         if kind == "one place" and right:
             continue
         x, v = _crowd(kind)
-        v = v if right else np.full(_N, h)
-        run = partial(_columns_off, x, v, (overlap * h) ** 1.5)
-        case = f"GPSE step, {kind}, {'right' if right else 'wrong'} volumes, ε = {overlap:g} h"
-        yield probe(
-            "conservation",
-            case,
-            "Σ V u kept",
-            run,
-            64.0 * _EPS,
-            source="exact sums",
-            must=Verdict.HELD,
-        )
-        greatest = _greatest_factor(x, v, (overlap * h) ** 1.5)
-        grows = greatest > 1.0 + 1e-6
-        missed = partial(_factor_missed, x, v, (overlap * h) ** 1.5, greatest)
-        expected = "amplifies, and says so" if grows else "does not amplify"
-        yield probe(
-            "growth", case, expected, missed, 1e-6, source="dense eigenvalues",
-            must=Verdict.WARNED if grows else Verdict.HELD,
-        )  # fmt: skip
+        v = v if right else np.full(_N, _H)
+        makes = partial(green_step, x, v, 1.5, (overlap * _H) ** 1.5)
+        name = f"GPSE step, {kind}, {volumes(right)}, ε = {overlap:g} h"
+        yield kept(name, _columns_off, v, makes)
+        with quiet(Warning):
+            greatest = float(np.abs(np.linalg.eigvals(makes())).max())
+        yield (grows if greatest > 1.0 + 1e-6 else stays)(name, _factor_missed, makes, greatest)
 
 
 def _crowd(kind: str) -> tuple[np.ndarray, np.ndarray]:
     if kind == "one place":
-        return np.zeros(_N), np.full(_N, 10.0 / _N)
+        return np.zeros(_N), np.full(_N, _H)
     if kind != "clustered":
         return _scattered(0.5 if kind == "jittered" else 2.0)
     x = np.sort(np.random.default_rng(3).normal(size=_N))
     return x, cell_volumes(x)
 
 
-def _columns_off(x: np.ndarray, v: np.ndarray, time: float) -> float:
-    step = green_step(x, v, 1.5, time)
+def _columns_off(v: np.ndarray, makes: Callable[[], np.ndarray]) -> float:
+    step = makes()
     return float(np.abs(v @ step - v).max() / (v @ np.abs(step)).max())
 
 
-def _greatest_factor(x: np.ndarray, v: np.ndarray, time: float) -> float:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return float(np.abs(np.linalg.eigvals(green_step(x, v, 1.5, time))).max())
-
-
-def _factor_missed(x: np.ndarray, v: np.ndarray, time: float, greatest: float) -> tuple[float, str]:
+def _factor_missed(makes: Callable[[], np.ndarray], greatest: float) -> tuple[float, str]:
     """How much more is said than there is: the factor is a lower bound."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        green_step(x, v, 1.5, time)
-    for one in caught:
-        warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
-    said = float(str(caught[0].message).split("factor ")[1].split()[0]) if caught else 1.0
+    with overheard() as words:
+        makes()
+    said = float(words[0].split("factor ")[1].split()[0]) if words else 1.0
     return max(said * (1.0 - 1e-3) / greatest - 1.0, 0.0), f"said {said:.3g}, is {greatest:.3g}"
 
 
 def _graded() -> Iterator[Probe]:
     """Graded particles from 1e-100 to 1e100, steps from 1e-300 on: the exchange keeps constants."""
+    kept = Kind("graded", "rows are 1", 1e-12, "exact sums", HELD)
     for reach, scale in ((1e100, 1e-100), (1e-100, 1e-100), (1e100, 1e100), (1e-60, 1e60)):
-        run = partial(_graded_off, reach, scale)
-        case = f"graded, reach {reach:g}, scale {scale:g}"
-        yield probe(
-            "graded", case, "rows are 1", run, 1e-12, source="exact sums", must=Verdict.HELD
-        )
+        yield kept(f"graded, reach {reach:g}, scale {scale:g}", _graded_off, reach, scale)
+    still = Kind("graded", "the identity inside", 1e-9, "limit")
     for time in (1e-300, 1e-30):
-        run = partial(_identity_off, time)
-        yield probe(
-            "graded",
-            f"field step, D T = {time:g}",
-            "the identity inside",
-            run,
-            1e-9,
-            source="limit",
-        )
+        step = partial(green_step_of_field, 41, 10.0, 1.0, 1.5, time)
+        yield still(f"field step, D T = {time:g}", lambda: off(step()[1:-1, 1:-1], np.eye(39)))
 
 
 def _graded_off(reach: float, scale: float) -> float:
     x, v = graded_particles(41, reach, scale)
-    return float(
-        np.abs(green_step(x, v, 1.5, reach**1.5 if reach < 1e60 else 1.0).sum(axis=1) - 1.0).max()
-    )
-
-
-def _identity_off(time: float) -> float:
-    step = green_step_of_field(41, 10.0, 1.0, 1.5, time)
-    return float(np.abs(step - np.eye(41))[1:-1, 1:-1].max())
+    return off(green_step(x, v, 1.5, reach**1.5 if reach < 1e60 else 1.0).sum(axis=1), 1.0)
 
 
 def _gaps() -> Iterator[Probe]:
     """Particles that do not reach one another, or whose volumes are not theirs: wrong by far only with a word."""
     lattice = np.linspace(-5.0, 5.0, 101)
+    curvature = Kind("gaps", "f'' = 2, or a word", 0.1, "x²")
     for case, epsilon, volume in (
         ("ε = h / 100", 0.001, 0.1),
         ("volumes five times too large", 0.2, 0.5),
         ("volumes of h", 0.2, 0.1),
     ):
-        run = partial(_exchange_error, lattice, volume, epsilon)
-        yield probe("gaps", f"PSE, {case}", "f'' = 2, or a word", run, 0.1, source="x²")
+        yield curvature(f"PSE, {case}", _exchange_error, lattice, volume, epsilon)
     for case, z, epsilon in (
         ("among the particles", 0.05, 0.2),
         ("far from all", 50.0, 0.2),
         ("ε = h / 100", 0.0, 0.001),
     ):
-        run = partial(_derivative_error, lattice, z, epsilon)
-        yield probe("gaps", f"derivative (21), {case}", "f'' = 2, or a word", run, 0.1, source="x²")
+        second = partial(derivative, [z], [z * z], lattice, lattice**2, 0.1, epsilon)
+        name = f"derivative (21), {case}"
+        yield curvature(name, lambda: abs(float(second(GAUSSIAN_20, 2)[0]) / 2.0 - 1.0))
+    slope = Kind("gaps", "0 of a constant, or a word", 1e-12, "constants")
     for case, x in (("neighbours", np.arange(-3.0, 4.0)), ("one at 1.999 h", np.array([1.999]))):
-        run = partial(_slope_error, x)
-        yield probe(
-            "gaps",
+        yield slope(
             f"SPH gradient, {case}",
-            "0 of a constant, or a word",
-            run,
-            1e-12,
-            source="constants",
+            lambda: abs(float(gradient([0.0], x, 1.0, np.ones(x.size), 1.0)[0])),
         )
-        run = partial(_curvature_error, x)
-        yield probe(
-            "gaps", f"SPH second derivative, {case}", "f'' = 2, or a word", run, 1e-6, source="x²"
-        )
+        second = partial(second_derivative, [0.0], [0.0], x, 1.0, x * x, 1.0, 0.0)
+        name = f"SPH second derivative, {case}"
+        yield curvature(name, lambda: abs(float(second()[0]) / 2.0 - 1.0), bound=1e-6)
+    exact = Kind("gaps", "exact for lines", 1e-9, "lines", HELD)
     for jitter in (0.2, 0.5):
-        run = partial(_line_error, jitter)
-        case = f"corrected SPH gradient, jitter {jitter:g} h"
-        yield probe("gaps", case, "exact for lines", run, 1e-9, source="lines", must=Verdict.HELD)
+        yield exact(f"corrected SPH gradient, jitter {jitter:g} h", _line_error, jitter)
 
 
 def _exchange_error(x: np.ndarray, volume: float, epsilon: float) -> float:
     rate = StrengthExchange(x, volume, epsilon, GAUSSIAN_20).apply(volume * x * x) / volume
-    return float(np.abs(rate[30:71] / 2.0 - 1.0).max())
-
-
-def _derivative_error(x: np.ndarray, z: float, epsilon: float) -> float:
-    return abs(
-        float(derivative([z], [z * z], x, x * x, 0.1, epsilon, GAUSSIAN_20, 2)[0]) / 2.0 - 1.0
-    )
-
-
-def _slope_error(x: np.ndarray) -> float:
-    return abs(float(gradient([0.0], x, 1.0, np.ones(x.size), 1.0)[0]))
-
-
-def _curvature_error(x: np.ndarray) -> float:
-    return abs(float(second_derivative([0.0], [0.0], x, 1.0, x * x, 1.0, 0.0)[0]) / 2.0 - 1.0)
+    return off(rate[30:71] / 2.0, 1.0)
 
 
 def _line_error(jitter: float) -> float:
@@ -315,18 +222,16 @@ def _line_error(jitter: float) -> float:
 def _refused() -> Iterator[Probe]:
     """What means nothing."""
     x = np.arange(9.0)
-    cases = {
-        "two particles in one place, cells": lambda: float(cell_volumes([0.0, 0.0])[0]),
-        "a volume of zero": lambda: StrengthExchange(x, 0.0, 1.0, GAUSSIAN_20).rate,
-        "volumes of 5e-324": lambda: StrengthExchange(x, 5e-324, 1.0, GAUSSIAN_20).rate,
-        "volumes of 1e307": lambda: StrengthExchange(x, 1e307, 1.0, GAUSSIAN_20).rate,
-        "a gradient from one particle, in its place": lambda: float(
-            gradient([0.0], [0.0], 1.0, [1.0], 1.0)[0]
-        ),
-        "a Green step of no time": lambda: float(green_step(x, np.ones(9), 1.5, 0.0)[0, 0]),
-        "volumes of 1e200 for a step": lambda: float(
-            green_step(x, np.full(9, 1e200), 1.5, 1.0)[0, 0]
-        ),
-    }
-    for case, run in cases.items():
-        yield probe("refused", case, "refused", run, 0.0, must=Verdict.REFUSED)
+    yield from Kind("refused", must=REFUSED).of(
+        {
+            "two particles in one place, cells": lambda: cell_volumes([0.0, 0.0]),
+            "a volume of zero": lambda: StrengthExchange(x, 0.0, 1.0, GAUSSIAN_20),
+            "volumes of 5e-324": lambda: StrengthExchange(x, 5e-324, 1.0, GAUSSIAN_20),
+            "volumes of 1e307": lambda: StrengthExchange(x, 1e307, 1.0, GAUSSIAN_20),
+            "a gradient from one particle, in its place": lambda: gradient(
+                [0.0], [0.0], 1.0, [1.0], 1.0
+            ),
+            "a Green step of no time": lambda: green_step(x, np.ones(9), 1.5, 0.0),
+            "volumes of 1e200 for a step": lambda: green_step(x, np.full(9, 1e200), 1.5, 1.0),
+        }
+    )

@@ -24,6 +24,7 @@ __all__ = ["figure"]
 
 _FORMS = ("DD", "FPSE", "KPSE", "GPSE", "DPSE")
 _HOLLOW: dict[str, Any] = {"markerfacecolor": "none"}
+_PREDICTED: dict[str, Any] = {"color": "black", "linewidth": 0.9, "linestyle": ":"}
 _LEVELS: dict[str, dict[str, Any]] = {
     "lattice": {"color": "0.3", "marker": "o"},
     "jitter 0.3, right volumes": {"color": COLOURS["KPSE"], "marker": MARKERS["KPSE"]},
@@ -40,12 +41,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     _jitter(jitter, panels["jitter"])
     _spacing(spacing, panels["spacing"])
     handles = [entry(form, **_look(form)) for form in _FORMS]
-    handles.append(
-        entry("KPSE, predicted random part", color="black", linewidth=0.9, linestyle=":")
-    )
-    handles.append(
-        entry("hollow, dashed: all volumes h", color="0.4", linestyle="--", marker="o", **_HOLLOW)
-    )
+    handles.append(entry("KPSE, predicted random part", **_PREDICTED))
+    wrong: dict[str, Any] = {"color": "0.4", "linestyle": "--", "marker": "o", **_HOLLOW}
+    handles.append(entry("hollow, dashed: all volumes h", **wrong))
     legend_below(drawn, handles, columns=4)
     return drawn
 
@@ -57,7 +55,7 @@ def _look(form: str) -> dict[str, Any]:
 def _jitter(ax: Axes, part: pd.DataFrame) -> None:
     for (form, right), points in part.groupby(["series", "right"]):
         if form == "KPSE, predicted":
-            ax.plot(points["x"], points["y"], color="black", linewidth=0.9, linestyle=":")
+            ax.plot(points["x"], points["y"], **_PREDICTED)
             continue
         line = {} if right else {"linestyle": "--", **_HOLLOW}
         ax.plot(points["x"], points["y"], markersize=4.5, **{**_look(str(form)), **line})

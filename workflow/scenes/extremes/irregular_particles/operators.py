@@ -14,7 +14,6 @@ import numpy as np
 from fracparticles.kernels.families import kernel
 from fracparticles.pse import cell_volumes
 from fracparticles.special import green
-from fracparticles.special.stable import green as fundamental
 
 __all__ = ["CONSERVATIVE", "FORMS", "arranged", "matrix", "rate_of_change", "weight"]
 
@@ -23,8 +22,10 @@ CONSERVATIVE = ("KPSE", "GPSE", "FPSE", "DPSE")
 _STEP = 1e-4  # of a derivative in time, relative
 
 
-def arranged(kind: str, x: np.ndarray, jitter: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions, in order, and the volumes that belong to them: half the way to either neighbour.
+def arranged(
+    kind: str, x: np.ndarray, jitter: float, seed: int, right: bool = True
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions, in order, and the volumes that belong to them: half the way to either neighbour, or all h.
 
     `jittered`: each of the lattice moved by up to `jitter` h either way; `random`: anywhere; `clustered`: anywhere in
     the middle half, every other one in the middle tenth.
@@ -38,7 +39,7 @@ def arranged(kind: str, x: np.ndarray, jitter: float, seed: int) -> tuple[np.nda
         if kind == "clustered":
             places *= np.where(np.arange(x.size) % 2 == 0, 0.1, 0.5)
     places = np.sort(places)
-    return places, cell_volumes(places)
+    return places, cell_volumes(places) if right else np.full(x.size, h)
 
 
 def weight(form: str, r: np.ndarray, alpha: float, epsilon: float) -> np.ndarray:
@@ -78,5 +79,5 @@ def _exchanged(weights: np.ndarray) -> np.ndarray:
 
 def rate_of_change(x: np.ndarray, t: float, alpha: float) -> np.ndarray:
     """Return du/dt of the fundamental solution, -(-Laplacian)^(alpha/2) u, by a central difference in time."""
-    later, sooner = (fundamental(x, t * (1.0 + s * _STEP), alpha) for s in (1.0, -1.0))
+    later, sooner = (green(x, t * (1.0 + s * _STEP), alpha) for s in (1.0, -1.0))
     return np.asarray((later - sooner) / (2.0 * _STEP * t))

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
-from itertools import chain, product
+from itertools import product
 
 import numpy as np
-import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special.stable import green
 from fracstudy.inputs import Inputs, Result
-from fracstudy.probe import Probe, Verdict, frame, probe
+from fracstudy.panels import Panels
+from fracstudy.probe import EPS, HELD, Kind, Probe, frame, off
 from scenes.extremes.irregular_particles import companions, theory
 from scenes.extremes.irregular_particles.operators import (
     CONSERVATIVE,
@@ -26,7 +25,6 @@ from scenes.extremes.irregular_particles.operators import (
 
 __all__ = ["study"]
 
-_EPS = float(np.finfo(float).eps)
 _ALPHA, _START = 1.5, 0.5
 _INNER = 0.5  # of the half-width: where errors are taken
 _FINER = 4  # lattice of a reference
@@ -45,58 +43,41 @@ def study(
 ) -> Result:
     """One row a probe. The series: relative errors of du/dt against the jitter, and against h."""
     x = np.linspace(-half_width, half_width, particles)
-    probes = chain(
-        _lattice(overlap),
-        _conserved(x, overlap),
-        theory.probes(x, overlap, seeds),
-        companions.probes(seeds),
-    )
-    table = frame(probes)
-    series = [
-        _against_jitter(x, overlap, jitters, seeds),
-        _against_spacing(half_width, levels, seeds),
+    probes = [
+        *_lattice(overlap),
+        *_conserved(x, overlap),
+        *theory.probes(x, overlap, seeds),
+        *companions.probes(),
     ]
-    return Result(table, (), pd.concat(series, ignore_index=True))
+    panels = Panels()
+    _add_jitter(panels, x, overlap, jitters, seeds)
+    _add_spacing(panels, half_width, levels, seeds)
+    return Result(frame(probes), (), panels.frame[["series", "x", "y", "right", "panel"]])
 
 
 def _lattice(overlap: float) -> Iterator[Probe]:
-    """On a lattice each form is the scheme of the library."""
+    """On a lattice each form is the scheme of the library, whose sums are transforms."""
+    same = Kind("lattice", "the scheme", 1e-12, "dense matrix", HELD)
     for form in FORMS:
-        run, bound = (
-            partial(_off_lattice, form, overlap),
-            1e-12,
-        )  # the sums of the library are transforms
-        yield probe(
-            "lattice",
-            f"{form}, written out",
-            "the scheme",
-            run,
-            bound,
-            source="dense matrix",
-            must=Verdict.HELD,
-        )
+        yield same(f"{form}, written out", _off_lattice, form, overlap)
 
 
 def _off_lattice(form: str, overlap: float) -> float:
     setting = Setting(n=30, spacing=0.1, alpha=_ALPHA, overlap=overlap)
     x = 0.1 * np.arange(-30, 31)
     ours = matrix(form, x, np.full(x.size, 0.1), _ALPHA, 0.1 * overlap)
-    library = dense_matrix(SCHEMES[form].operator(setting))
-    return float(np.abs(ours - library).max() / np.abs(library).max())
+    return off(ours, dense_matrix(SCHEMES[form].operator(setting)))
 
 
 def _conserved(x: np.ndarray, overlap: float) -> Iterator[Probe]:
     """sum V du/dt is round-off of its terms, whatever the positions, whatever the volumes; DD has no such luck."""
+    # Each term is rounded some times, and the sum of N^2 adds a digit.
+    kept = Kind("conservation", "Σ V u kept", 64.0 * EPS, "exact sums", HELD)
     arrangements = (("jittered", 0.1), ("jittered", 0.5), ("random", 0.0), ("clustered", 0.0))
     for form, (kind, jitter), right in product(CONSERVATIVE, arrangements, (True, False)):
-        run = partial(_lost, form, x, overlap, kind, jitter, right)
-        words = f"{kind} {jitter:g}" if jitter else kind
-        case = f"{form}, {words}, {'right' if right else 'wrong'} volumes"
-        # Each term is rounded some times, and the sum of N^2 adds a digit.
-        bound = 64.0 * _EPS
-        yield probe(
-            "conservation", case, "Σ V u kept", run, bound, source="exact sums", must=Verdict.HELD
-        )
+        places = f"{kind} {jitter:g}" if jitter else kind
+        name = f"{form}, {places}, {theory.volumes(right)}"
+        yield kept(name, _lost, form, x, overlap, kind, jitter, right)
 
 
 def _lost(form: str, x: np.ndarray, overlap: float, kind: str, jitter: float, right: bool) -> float:
@@ -112,11 +93,10 @@ def _lost(form: str, x: np.ndarray, overlap: float, kind: str, jitter: float, ri
 Rate = Callable[[np.ndarray], np.ndarray]
 
 
-def _against_jitter(
-    x: np.ndarray, overlap: float, jitters: Sequence[float], seeds: int
-) -> pd.DataFrame:
+def _add_jitter(
+    panels: Panels, x: np.ndarray, overlap: float, jitters: Sequence[float], seeds: int
+) -> None:
     """What disorder alone costs: against the same form on a lattice four times as fine, with the same epsilon."""
-    rows = []
     epsilon = overlap * float(x[1] - x[0])
     fine = np.linspace(x[0], x[-1], _FINER * (x.size - 1) + 1)
     volumes = np.full(fine.size, float(fine[1] - fine[0]))
@@ -125,39 +105,33 @@ def _against_jitter(
         reference = CubicSpline(fine, smooth)
         for jitter, right in product(jitters, (True, False)):
             y = _error(form, x, overlap, jitter, right, seeds, reference)
-            rows.append({"series": form, "x": jitter, "y": y, "right": right})
+            panels.add("jitter", form, jitter, y, right=right)
     for jitter, right in product(jitters, (True, False)):
         y = theory.predicted("KPSE", x, epsilon, jitter, right)
-        rows.append({"series": "KPSE, predicted", "x": jitter, "y": y, "right": right})
-    return pd.DataFrame(rows).assign(panel="jitter")
+        panels.add("jitter", "KPSE, predicted", jitter, y, right=right)
 
 
 def _error(
     form: str, x: np.ndarray, overlap: float, jitter: float, right: bool, seeds: int, exact: Rate
 ) -> float:
     """The root mean square error of du/dt in |x| < L/2 over that of du/dt, over the seeds."""
-    h, off, size = float(x[1] - x[0]), 0.0, 0.0
+    h, missed, size = float(x[1] - x[0]), 0.0, 0.0
     for seed in range(seeds):
-        places, volumes = arranged("jittered", x, jitter, seed)
-        volumes = volumes if right else np.full(x.size, h)
+        places, volumes = arranged("jittered", x, jitter, seed, right)
         found = matrix(form, places, volumes, _ALPHA, overlap * h) @ green(places, _START, _ALPHA)
         inner = np.abs(places) < _INNER * x[-1]
-        off += float(((found - exact(places))[inner] ** 2).sum())
+        missed += float(((found - exact(places))[inner] ** 2).sum())
         size += float((rate_of_change(places, _START, _ALPHA)[inner] ** 2).sum())
-    return float(np.sqrt(off / size))
+    return float(np.sqrt(missed / size))
 
 
-def _against_spacing(half_width: float, levels: Sequence[int], seeds: int) -> pd.DataFrame:
+def _add_spacing(panels: Panels, half_width: float, levels: Sequence[int], seeds: int) -> None:
     """The whole error of KPSE, epsilon = 2 h."""
-    rows = []
     for count, (jitter, right) in product(levels, ((0.0, True), (0.3, True), (0.3, False))):
         x = np.linspace(-half_width, half_width, count)
         y = _error("KPSE", x, _USUAL, jitter, right, seeds, _solution)
-        name = (
-            "lattice" if jitter == 0.0 else f"jitter 0.3, {'right' if right else 'wrong'} volumes"
-        )
-        rows.append({"series": name, "x": float(x[1] - x[0]), "y": y, "right": right})
-    return pd.DataFrame(rows).assign(panel="spacing")
+        name = f"jitter 0.3, {theory.volumes(right)}" if jitter else "lattice"
+        panels.add("spacing", name, float(x[1] - x[0]), y, right=right)
 
 
 def _solution(x: np.ndarray) -> np.ndarray:

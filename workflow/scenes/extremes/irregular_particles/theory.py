@@ -14,17 +14,19 @@ Places x_j = (j + xi_j) h, xi uniform in [-J, J], so that var xi = J^2 / 3:
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from itertools import product
 from math import sqrt
 
 import numpy as np
 
 from fracparticles.special.stable import green
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.irregular_particles.operators import arranged, matrix, rate_of_change, weight
 
-__all__ = ["predicted", "probes"]
+__all__ = ["predicted", "probes", "volumes"]
+
+How = tuple[str, float, bool]
+"""Kind of the places, the jitter of a lattice, and whether the volumes fit."""
 
 _ALPHA, _START = 1.5, 0.5
 _FINE = 8  # points of a reference integral for one particle
@@ -38,29 +40,28 @@ def probes(x: np.ndarray, overlap: float, seeds: int) -> Iterator[Probe]:
     three times that is allowed, which is 0.27 for six; a power of h is that of two.
     """
     close = 3.0 / sqrt(20.0 * seeds)
-    source, must = "error theory", Verdict.HELD
+    right_error = Kind("accuracy", "the predicted error", close, "error theory", HELD)
     for form, jitter, right in product(("KPSE", "GPSE"), (0.05, 0.2, 0.5), (True, False)):
-        run = partial(_ratio_off, form, x, overlap, "jittered", jitter, right, seeds)
-        case = f"{form}, jitter {jitter:g} h, {_words(right)}"
-        yield probe("accuracy", case, "the predicted error", run, close, source=source, must=must)
+        how, name = ("jittered", jitter, right), f"{form}, jitter {jitter:g} h, {volumes(right)}"
+        yield right_error(name, _ratio_off, form, x, overlap, how, seeds)
     for form in ("KPSE", "GPSE"):
-        run = partial(_ratio_off, form, x, overlap, "random", 0.0, False, seeds)
-        case = f"{form}, random places, equal volumes"
-        yield probe("accuracy", case, "the predicted error", run, close, source=source, must=must)
+        how, name = ("random", 0.0, False), f"{form}, random places, equal volumes"
+        yield right_error(name, _ratio_off, form, x, overlap, how, seeds)
+    power = Kind("order lost", "the predicted power", 2.0 * close, "error theory", HELD)
     for right in (True, False):
-        run = partial(_power_off, x, overlap, right, seeds)
-        case, bound = f"KPSE, ε = {overlap:g} h, jitter 0.3 h, {_words(right)}", 2.0 * close
-        yield probe("order lost", case, "the predicted power", run, bound, source=source, must=must)
+        name = f"KPSE, ε = {overlap:g} h, jitter 0.3 h, {volumes(right)}"
+        yield power(name, _power_off, x, overlap, right, seeds)
 
 
-def _words(right: bool) -> str:
+def volumes(right: bool) -> str:
+    """Return the words for volumes that fit the places, or do not."""
     return f"{'right' if right else 'wrong'} volumes"
 
 
 def predicted(form: str, x: np.ndarray, epsilon: float, jitter: float, right: bool) -> float:
     """Return the predicted rms error of du/dt over the rms of du/dt, for |x| < L/2."""
     exact = rate_of_change(np.linspace(-0.5, 0.5, 201) * x[-1], _START, _ALPHA)
-    error = _rms(form, x, epsilon, "jittered", jitter, right)
+    error = _rms(form, x, epsilon, ("jittered", jitter, right))
     return error / float(np.sqrt((exact**2).mean()))
 
 
@@ -81,8 +82,8 @@ def _norms(form: str, x: np.ndarray, epsilon: float) -> np.ndarray:
     return total / _POINTS
 
 
-def _rms(form: str, x: np.ndarray, epsilon: float, kind: str, jitter: float, right: bool) -> float:
-    h = float(x[1] - x[0])
+def _rms(form: str, x: np.ndarray, epsilon: float, how: How) -> float:
+    (kind, jitter, right), h = how, float(x[1] - x[0])
     values, first, second, third = _norms(form, x, epsilon)
     if kind == "random":
         return float(np.sqrt(h * values))
@@ -103,17 +104,14 @@ def _cubes(jitter: float) -> float:
     return float((w * here * (here + 2.0 * there)).sum())
 
 
-def _errors(
-    form: str, x: np.ndarray, overlap: float, kind: str, jitter: float, right: bool, seeds: int
-) -> float:
+def _errors(form: str, x: np.ndarray, overlap: float, how: How, seeds: int) -> float:
     """The rms of sum less integral, for |x| < L/2, over the seeds."""
     h = float(x[1] - x[0])
-    epsilon, found = overlap * h, []
+    (kind, jitter, right), epsilon, found = how, overlap * h, []
     fine = np.linspace(x[0] - 0.5 * h, x[-1] + 0.5 * h, _FINE * x.size + 1)
     middle, step = 0.5 * (fine[1:] + fine[:-1]), float(fine[1] - fine[0])
     for seed in range(seeds):
-        places, volumes = arranged(kind, x, jitter, seed)
-        volumes = volumes if right else np.full(x.size, h)
+        places, volumes = arranged(kind, x, jitter, seed, right)
         sums = matrix(form, places, volumes, _ALPHA, epsilon) @ green(places, _START, _ALPHA)
         inner = np.abs(places) < 0.5 * x[-1]
         integrals = [step * float(_g(form, float(p), middle, epsilon).sum()) for p in places[inner]]
@@ -121,11 +119,9 @@ def _errors(
     return float(np.sqrt((np.concatenate(found) ** 2).mean()))
 
 
-def _ratio_off(
-    form: str, x: np.ndarray, overlap: float, kind: str, jitter: float, right: bool, seeds: int
-) -> tuple[float, str]:
-    measured = _errors(form, x, overlap, kind, jitter, right, seeds)
-    expected = _rms(form, x, overlap * float(x[1] - x[0]), kind, jitter, right)
+def _ratio_off(form: str, x: np.ndarray, overlap: float, how: How, seeds: int) -> tuple[float, str]:
+    measured = _errors(form, x, overlap, how, seeds)
+    expected = _rms(form, x, overlap * float(x[1] - x[0]), how)
     return abs(measured / expected - 1.0), f"{measured:.1e}, predicted {expected:.1e}"
 
 
@@ -134,7 +130,7 @@ def _power_off(x: np.ndarray, overlap: float, right: bool, seeds: int) -> tuple[
     for count in (x.size, 2 * x.size - 1):
         y = np.linspace(x[0], x[-1], count)
         how = "jittered", 0.3, right
-        measured.append(_errors("KPSE", y, overlap, *how, seeds))
-        expected.append(_rms("KPSE", y, overlap * float(y[1] - y[0]), *how))
+        measured.append(_errors("KPSE", y, overlap, how, seeds))
+        expected.append(_rms("KPSE", y, overlap * float(y[1] - y[0]), how))
     found, power = (float(np.log2(sizes[0] / sizes[1])) for sizes in (measured, expected))
     return abs(found - power), f"{found:.1f}, predicted {power:.1f}"

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
-from typing import Any
+from itertools import product
 
 import numpy as np
 
 import fracparticles as fp
 from fracparticles.special import central_mass, tail_mass
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.long_and_short_times.profile import profile, rate, tail_constant
 
 __all__ = ["probes"]
 
 _RADII = np.array([0.0, 0.3, 1.0, 3.0, 10.0, 1e3, 1e6])
 _NEAR = _RADII[:5]
-EPS = float(np.finfo(float).eps)
 
 
 def _rounded(t: float) -> float:
@@ -36,16 +34,14 @@ def _profile(alpha: float, n: int, t: float) -> float:
 def _rate(alpha: float, n: int, t: float) -> float:
     scale = t ** (1.0 / alpha)
     ours = np.asarray(fp.green_rate(_NEAR * scale, t, alpha, n)) * scale**n * t
-    exact = rate(_NEAR, alpha, n)
-    return float(np.abs(ours - exact).max() / np.abs(exact).max())
+    return off(ours, rate(_NEAR, alpha, n))
 
 
 def _flux(alpha: float, n: int, t: float) -> float:
     """Q = r G / (alpha t)."""
     scale = t ** (1.0 / alpha)
     ours = np.asarray(fp.green_flux(_NEAR * scale, t, alpha, n)) * scale ** (n - 1) * t
-    exact = _NEAR * profile(_NEAR, alpha, n) / alpha
-    return float(np.abs(ours - exact).max() / exact.max())
+    return off(ours, _NEAR * profile(_NEAR, alpha, n) / alpha)
 
 
 def _exponent(alpha: float, n: int, t: float) -> float:
@@ -64,9 +60,7 @@ def _constant(alpha: float, n: int, t: float) -> float:
 
 def _mass(alpha: float, n: int, t: float) -> float:
     radii = _RADII * t ** (1.0 / alpha)
-    return float(
-        np.abs(central_mass(radii, t, alpha, n) + tail_mass(radii, t, alpha, n) - 1.0).max()
-    )
+    return off(central_mass(radii, t, alpha, n) + tail_mass(radii, t, alpha, n), 1.0)
 
 
 _WHAT: dict[str, tuple[Callable[..., float], str, str, float]] = {
@@ -81,30 +75,11 @@ _WHAT: dict[str, tuple[Callable[..., float], str, str, float]] = {
 
 def probes(betas: list[float], times: list[float], dims: list[int]) -> Iterator[Probe]:
     """Each against the profile at t = 1, scaled. In space t = 1e-75 makes rates of 1e280, which are numbers yet."""
-    for beta in betas:
-        for t in times:
-            for n in dims:
-                for name, (function, expected, source, bound) in _WHAT.items():
-                    yield probe(
-                        "fundamental solution",
-                        f"{name}, n = {n}, beta = {beta:g}, t = {t:.0e}",
-                        expected,
-                        partial(function, 1.0 + beta, n, t),
-                        bound + _rounded(t),
-                        source=source,
-                        must=Verdict.HELD,
-                    )
+    for beta, t, n, (name, what) in product(betas, times, dims, _WHAT.items()):
+        function, expected, source, bound = what
+        right = Kind("fundamental solution", expected, bound + _rounded(t), source, HELD)
+        case = f"{name}, n = {n}, beta = {beta:g}, t = {t:.0e}"
+        yield right(case, function, 1.0 + beta, n, t)
+    refused = Kind("fundamental solution", "refused: above 1e308", must=REFUSED)
     for t in (1e-305, 5e-324):
-        yield probe(
-            "fundamental solution",
-            f"peak, n = 3, beta = 0.1, t = {t:.0e}",
-            "refused: above 1e308",
-            partial(_peak, t),
-            0.0,
-            must=Verdict.REFUSED,
-        )
-
-
-def _peak(t: float) -> Any:
-    fp.green(0.0, t, 1.1, 3)
-    return np.inf
+        yield refused(f"peak, n = 3, beta = 0.1, t = {t:.0e}", fp.green, 0.0, t, 1.1, 3)

@@ -36,7 +36,7 @@ def study(
         *functions.probes(betas, times, dims),
         *runs.long_probes(betas, ratios, dims),
         *runs.short_probes(betas, shares, dims),
-        *bounded.probes(betas, ratios),
+        *bounded.probes(betas),
     ]
     panels = Panels()
     runs.add_profiles(panels, betas[-1] if len(betas) == 1 else betas[1], ratios)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 from itertools import product
 
 import mpmath
@@ -17,11 +16,10 @@ from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
 from fracparticles.markers.source import GaussianSource, advance_weights
 from fracparticles.markers.stability import extremes
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _SPOKEN = 0.1  # error of a run that must be spoken of
 _ETA = extremes(SHAPES["S8"]).eta
 _WORD = "within 10 %, or a word"
@@ -39,23 +37,13 @@ def probes(count: int, reynolds: Sequence[float]) -> Iterator[Probe]:
 
 def _exact() -> Iterator[Probe]:
     """The point source of Burgers from R = 1e-100 to 1e8, and the square from t = 1e-30 to 1e10, with many digits."""
+    right = Kind("exact", "f and its integral", source="mpmath")
     for reynolds in (1e-100, 1e-10, 1.0, 299.0, 301.0, 1e5, 1e8):
-        # The shock is R ulp wide.
-        run_, bound = partial(_source_off, reynolds), 1e-13 + 64.0 * _EPS * reynolds
-        yield probe(
-            "exact",
-            f"point source, R = {reynolds:g}",
-            "f and its integral",
-            run_,
-            bound,
-            source="mpmath",
-        )
+        bound = 1e-13 + 64.0 * EPS * reynolds  # the shock is R ulp wide
+        yield right(f"point source, R = {reynolds:g}", _source_off, reynolds, bound=bound)
     for t in (1e-30, 1e-6, 1.0, 99.9, 100.1, 1e10):
-        run_ = partial(_square_off, t)
         # The integral is known to some ulps of the total, over any stretch.
-        yield probe(
-            "exact", f"square, t = {t:g}", "f and its integral", run_, 64.0 * _EPS, source="mpmath"
-        )
+        yield right(f"square, t = {t:g}", _square_off, t, bound=64.0 * EPS)
 
 
 def _source_off(reynolds: float) -> float:
@@ -93,10 +81,10 @@ def _square_off(t: float) -> float:
 
 def _burgers(count: int, numbers: Sequence[float]) -> Iterator[Probe]:
     """A point source to its triangle: Reynolds numbers from a Gaussian to a shock narrower than epsilon, any step."""
+    word = Kind("Burgers", _WORD, _SPOKEN, "Cole-Hopf")
     for reynolds, factor in product(numbers, (0.5, 1.1, 3.0)):
-        run_ = partial(_shock_error, reynolds, factor, count)
         case = f"Burgers, R = {reynolds:g}, dt = {factor:g} η ε²/μ"
-        yield probe("Burgers", case, _WORD, run_, _SPOKEN, source="Cole-Hopf")
+        yield word(case, _shock_error, reynolds, factor, count)
 
 
 def _shock_error(reynolds: float, factor: float, count: int) -> float:
@@ -109,20 +97,19 @@ def _shock_error(reynolds: float, factor: float, count: int) -> float:
     end = run(x, np.full(count, total / count), velocity, dt=time / steps, steps=steps)
     z = exact.quantile(total * np.linspace(0.02, 0.98, 97), 1.0 + time)
     f = exact.value(z, 1.0 + time)
-    return float(np.abs(end.field(z) - f).max() / f.max())
+    return off(end.field(z), f)
 
 
 def _kdv(count: int) -> Iterator[Probe]:
     """Solitons, the shocks of this equation, from wide to narrower than epsilon; steps up to a hundredth."""
-    for c, background in ((1.0, 0.1), (4.0, 1.0), (16.0, 1.0), (100.0, 1.0)):
-        for dt in (1e-4, 1e-3, 1e-2):
-            run_ = partial(_soliton_error, c, background, dt, 0.3, count)
-            case = f"soliton c = {c:g} on {background:g}, dt = {dt:g}"
-            yield probe("KdV", case, _WORD, run_, _SPOKEN, source="soliton")
-    run_ = partial(_soliton_error, 16.0, 1.0, 1e-3, 1.5, count)
-    yield probe("KdV", "soliton narrower than ε", _WORD, run_, _SPOKEN, source="soliton")
-    run_ = partial(_soliton_error, 16.0, 0.0, 1e-3, 0.1, count)
-    yield probe("KdV", "a soliton on nothing", "refused", run_, 0.0, must=Verdict.REFUSED)
+    word = Kind("KdV", _WORD, _SPOKEN, "soliton")
+    solitons = ((1.0, 0.1), (4.0, 1.0), (16.0, 1.0), (100.0, 1.0))
+    for (c, background), dt in product(solitons, (1e-4, 1e-3, 1e-2)):
+        case = f"soliton c = {c:g} on {background:g}, dt = {dt:g}"
+        yield word(case, _soliton_error, c, background, dt, 0.3, count)
+    yield word("soliton narrower than ε", _soliton_error, 16.0, 1.0, 1e-3, 1.5, count)
+    refused = Kind("KdV", must=REFUSED)
+    yield refused("a soliton on nothing", _soliton_error, 16.0, 0.0, 1e-3, 0.1, count)
 
 
 def _soliton_error(c: float, background: float, dt: float, epsilon: float, count: int) -> float:
@@ -132,46 +119,22 @@ def _soliton_error(c: float, background: float, dt: float, epsilon: float, count
     end = run(x, w, MarkerVelocity(SHAPES["S8"], epsilon, kdv, 2), dt=dt, steps=steps)
     z = soliton.speed * dt * steps + np.linspace(-1.0, 1.0, 81)
     f = soliton.value(z, dt * steps)
-    return float(np.abs(end.field(z) - f).max() / f.max())
+    return off(end.field(z), f)
 
 
 def _nonlinear(count: int) -> Iterator[Probe]:
     """The steady state of nonlinear diffusion at steps about the limit; beyond the time where f vanishes."""
-    problem = NonlinearDiffusion()
+    problem, strong = NonlinearDiffusion(), NonlinearDiffusion(1e100, 1.0, 1.0)
+    word = Kind("nonlinear", _WORD, _SPOKEN, "closed form")
     for factor in (0.5, 0.9, 1.2, 3.0):
-        run_ = partial(_steady_error, problem, factor, count)
-        yield probe(
-            "nonlinear",
-            f"steady state, dt = {factor:g} of the limit",
-            _WORD,
-            run_,
-            _SPOKEN,
-            source="closed form",
-        )
-    lines = Lines(problem, 6.0, 60, 2.5)
-    run_ = partial(_lines_at, lines, 1e3)
-    case = "lines beyond the time where f vanishes"
-    yield probe("nonlinear", case, "refused", run_, 0.0, must=Verdict.REFUSED)
-    for f in (-1e4, 1e300):
-        must = Verdict.REFUSED if f < 0.0 else Verdict.HELD
-        strong = NonlinearDiffusion(1e100, 1.0, 1.0)
-        run_ = partial(_diffusivity, strong, f)
-        yield probe(
-            "nonlinear",
-            f"D(f) of f = {f:g}, D₀ = 1e100",
-            "zero" if f > 0 else "refused",
-            run_,
-            0.0,
-            must=must,
-        )
-
-
-def _diffusivity(problem: NonlinearDiffusion, f: float) -> float:
-    return float(problem.diffusivity([f])[0])
-
-
-def _lines_at(lines: Lines, until: float) -> float:
-    return float(lines.solve(Gaussian().value(lines.x), [until])[0].max())
+        case = f"steady state, dt = {factor:g} of the limit"
+        yield word(case, _steady_error, problem, factor, count)
+    lines, refused = Lines(problem, 6.0, 60, 2.5), Kind("nonlinear", must=REFUSED)
+    start = Gaussian().value(lines.x)
+    yield refused("lines beyond the time where f vanishes", lines.solve, start, [1e3])
+    yield refused("D(f) of f = -10000, D₀ = 1e100", strong.diffusivity, [-1e4])
+    zero = Kind("nonlinear", "zero", must=HELD)
+    yield zero("D(f) of f = 1e+300, D₀ = 1e100", lambda: float(strong.diffusivity([1e300])[0]))
 
 
 def _steady_error(problem: NonlinearDiffusion, factor: float, count: int) -> float:
@@ -182,30 +145,19 @@ def _steady_error(problem: NonlinearDiffusion, factor: float, count: int) -> flo
     end = run(x, w, velocity, dt=dt, steps=max(3, math.ceil(0.05 / dt)))
     z = np.linspace(-0.6, 0.6, 61)
     f = problem.steady(z)
-    return float(np.abs(end.field(z) - f).max() / f.max())
+    return off(end.field(z), f)
 
 
 def _sources(count: int) -> Iterator[Probe]:
     """Sources that feed, drain, or take more in a step than there is; strengths beyond the numbers."""
+    word, refused = Kind("source", _WORD, _SPOKEN, "closed form"), Kind("source", must=REFUSED)
     for q, dt in ((1.0, 0.005), (-0.5, 0.005), (1.0, 0.1)):
-        run_ = partial(_fed_error, q, dt, count)
-        yield probe("source", f"q = {q:g}, dt = {dt:g}", _WORD, run_, _SPOKEN, source="closed form")
-    run_ = partial(_fed_error, -30.0, 0.02, count)
-    yield probe("source", "a sink of 30 times f", "refused", run_, 0.0, must=Verdict.REFUSED)
-    strong: dict[str, tuple[Callable[[], float], Verdict]] = {
-        "q = 1e300 far out": (
-            lambda: float(abs(GaussianSource(1e300, 2).rate([1e100])[0])),
-            Verdict.HELD,
-        ),
-        "q = 1e300 for 1e100": (
-            lambda: float(GaussianSource(1e300).solution([0.0], 1e100)[0]),
-            Verdict.REFUSED,
-        ),
-    }
-    for case, (call, must) in strong.items():
-        yield probe(
-            "source", case, "zero" if must is Verdict.HELD else "refused", call, 0.0, must=must
-        )
+        yield word(f"q = {q:g}, dt = {dt:g}", _fed_error, q, dt, count)
+    yield refused("a sink of 30 times f", _fed_error, -30.0, 0.02, count)
+    far = GaussianSource(1e300, 2)
+    zero = Kind("source", "zero", must=HELD)
+    yield zero("q = 1e300 far out", lambda: float(abs(far.rate([1e100])[0])))
+    yield refused("q = 1e300 for 1e100", GaussianSource(1e300).solution, [0.0], 1e100)
 
 
 def _fed_error(q: float, dt: float, count: int) -> float:
@@ -215,16 +167,10 @@ def _fed_error(q: float, dt: float, count: int) -> float:
     x, w = advance_weights(x, w, velocity, source.rate, dt=dt, steps=steps)
     z = np.linspace(-1.0, 1.0, 41)
     f = source.solution(z, dt * steps)
-    return float(np.abs(velocity.fields(x, w, z)[0] - f).max() / f.max())
+    return off(velocity.fields(x, w, z)[0], f)
 
 
 def _nothing() -> Iterator[Probe]:
     """What looks at markers needs some."""
-    run_ = partial(_spectrum, np.array([5.0]))
-    yield probe(
-        "marker tools", "a spectrum of no markers", "refused", run_, 0.0, must=Verdict.REFUSED
-    )
-
-
-def _spectrum(x: np.ndarray) -> float:
-    return float(marker_spectrum(x, [1.0], 1.0)[0])
+    refused = Kind("marker tools", must=REFUSED)
+    yield refused("a spectrum of no markers", marker_spectrum, np.array([5.0]), [1.0], 1.0)

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
-from itertools import chain, product
-
-import pandas as pd
+from itertools import product
 
 from fracparticles.errors import FracparticlesWarning
 from fracstudy.inputs import Inputs, Result
-from fracstudy.probe import frame
-from scenes.extremes.moving_particles import diffusion_velocity, equations, markers, sums, walk
+from fracstudy.panels import Panels
+from fracstudy.probe import frame, quiet
+from scenes.extremes.moving_particles import (
+    equations,
+    markers,
+    sums,
+    velocity_fields,
+    velocity_limits,
+    walk,
+)
+from scenes.extremes.moving_particles.cloud import Cloud
 
 __all__ = ["study"]
 
 _FACTORS = (0.5, 0.8, 0.95, 1.05, 1.2, 1.5)  # of the limit of a step
-_SMOOTH = ("S4", "S6", "S8")
 
 
 def study(
@@ -37,35 +42,23 @@ def study(
     The series: what a step multiplies the fastest wave by, measured and predicted; and errors of runs against the
     overlap or support, with whether they spoke.
     """
-    probes = chain(
-        sums.probes(particles),
-        diffusion_velocity.probes(orders, half_width, spacing),
-        walk.probes(walkers),
-        markers.probes(shapes, markers_in_a_run, supports),
-        equations.probes(markers_in_a_run, reynolds),
-    )
-    errors = pd.concat(
-        [
-            diffusion_velocity.overlap_errors(half_width, spacing, orders),
-            markers.support_errors(markers_in_a_run, supports),
-        ]
-    )
-    return Result(
-        frame(probes),
-        (),
-        pd.concat([_growth(orders), errors.assign(panel="error")], ignore_index=True),
-    )
-
-
-def _growth(orders: Sequence[int]) -> pd.DataFrame:
-    rows = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", FracparticlesWarning)  # half of them are beyond the limit
+    cloud, panels = Cloud(half_width, spacing), Panels()
+    probes = [
+        *sums.probes(particles),
+        *velocity_fields.probes(cloud, orders),
+        *velocity_limits.probes(cloud, orders),
+        *walk.probes(walkers),
+        *markers.probes(shapes, markers_in_a_run, supports),
+        *equations.probes(markers_in_a_run, reynolds),
+    ]
+    with quiet(FracparticlesWarning):  # half of the steps are beyond the limit
         for order, factor in product(orders, _FACTORS):
-            rows.append(
-                (f"DVM {order}", factor, *diffusion_velocity.growth_of_a_wave(order, factor))
-            )
-        for name, factor in product(_SMOOTH, _FACTORS):
-            rows.append((name, factor, *markers.wave_growth(name, factor)))
-    columns = ["series", "x", "y", "predicted"]
-    return pd.DataFrame(rows, columns=columns).assign(panel="growth")
+            found, predicted = velocity_limits.growth_of_a_wave(order, factor)
+            panels.add("growth", f"DVM {order}", factor, found, predicted=predicted)
+        for name, factor in product(markers.SMOOTH, _FACTORS):
+            found, predicted = markers.wave_growth(name, factor)
+            panels.add("growth", name, factor, found, predicted=predicted)
+    velocity_limits.add_overlap_errors(panels, cloud, orders)
+    markers.add_support_errors(panels, markers_in_a_run, supports)
+    series = panels.frame[["series", "x", "y", "predicted", "panel", "spoke"]]
+    return Result(frame(probes), (), series)

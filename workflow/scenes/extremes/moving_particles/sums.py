@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from functools import partial
 from typing import Any
 
 import mpmath
@@ -17,11 +16,10 @@ from fracparticles.moving.scattered import (
     NonuniformFourierSum,
     smooth_kernel,
 )
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _WIDTH, _EPSILON, _H = 5.0, 0.1, 0.1
 _REMESHED = 1000  # times
 _MOMENTS = {"M4'": 3, "Lambda3": 4}
@@ -57,10 +55,9 @@ def _sums(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
         "α = 1 + 1e-12": (x, q, _EPSILON, 1.0 + 1e-12),
         "α = 2 - 1e-12": (x, q, _EPSILON, 2.0 - 1e-12),
     }
+    right = Kind("sums", "the sum over pairs", 1.0, "all pairs")
     for case, how in cases.items():
-        yield probe(
-            "sums", case, "the sum over pairs", partial(_off, *how), 1.0, source="all pairs"
-        )
+        yield right(case, _off, *how)
 
 
 def _off(x: np.ndarray, q: np.ndarray, epsilon: float, alpha: float = 1.5) -> float:
@@ -76,9 +73,9 @@ def _off(x: np.ndarray, q: np.ndarray, epsilon: float, alpha: float = 1.5) -> fl
 def _far_tails() -> Iterator[Probe]:
     """Neighbours where the sum is tiny: relative to its own terms, exp(-d^2), but for those beyond 6.5 epsilon."""
     for distance in (1.0, 3.0, 5.0):
-        bound = 64.0 * _EPS + 21 * math.exp(distance**2 - _REACH**2)
-        case, run = f"{distance:g} ε beyond the particles", partial(_far_tail, distance)
-        yield probe("sums", case, "the sum of the terms", run, bound, source="mpmath")
+        bound = 64.0 * EPS + 21 * math.exp(distance**2 - _REACH**2)
+        right = Kind("sums", "the sum of the terms", bound, "mpmath")
+        yield right(f"{distance:g} ε beyond the particles", _far_tail, distance)
 
 
 def _far_tail(z: float) -> float:
@@ -98,32 +95,22 @@ def _refused_sums(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
         "a strength too many": (x, np.append(q, 1.0)),
     }
     for case, arrays in cases.items():
-        run = partial(_greatest, sums, *arrays)
-        yield probe("sums", case, "refused", run, 0.0, must=Verdict.REFUSED)
-
-
-def _greatest(function: Any, *arguments: Any) -> float:
-    return float(np.abs(function(*arguments)).max())
+        yield Kind("sums", must=REFUSED)(case, sums, *arrays)
 
 
 def _remeshing(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
     """Moments of the strengths are kept to the ulps of the positions; a lattice stays as it is."""
-    for name in _MOMENTS:
+    refused = Kind("remeshing", must=REFUSED)
+    for name, count in _MOMENTS.items():
         for offset in (0.0, 1e6, 1e8):
             # A position is rounded to an ulp of it, some 50 spacings from where moments are taken.
-            bound = 16.0 * _EPS * (1.0 + (offset + _WIDTH) / _H)
-            case, expected = f"{name}, particles at {offset:g}", f"{_MOMENTS[name]} moments kept"
-            run = partial(_moments_lost, x, q, name, offset)
-            yield probe("remeshing", case, expected, run, bound, source="exact sums")
-        run, case = partial(_moved, x, q, name), f"{name}, {_REMESHED} times"
-        yield probe("remeshing", case, "no bit changes", run, 0.0, must=Verdict.HELD)
-        far = partial(_remeshed, np.append(x, 1e12), np.append(q, 1.0), name)
-        case = f"{name}, a particle at 1e12"
-        yield probe("remeshing", case, "refused", far, 0.0, must=Verdict.REFUSED)
-
-
-def _remeshed(x: np.ndarray, q: np.ndarray, name: str) -> float:
-    return float(remesh(x, q, _H, name)[0].size)
+            bound = 16.0 * EPS * (1.0 + (offset + _WIDTH) / _H)
+            kept = Kind("remeshing", f"{count} moments kept", bound, "exact sums")
+            yield kept(f"{name}, particles at {offset:g}", _moments_lost, x, q, name, offset)
+        still = Kind("remeshing", "no bit changes", must=HELD)
+        yield still(f"{name}, {_REMESHED} times", _moved, x, q, name)
+        far = np.append(x, 1e12), np.append(q, 1.0), _H, name
+        yield refused(f"{name}, a particle at 1e12", remesh, *far)
 
 
 def _moments_lost(x: np.ndarray, q: np.ndarray, name: str, offset: float) -> float:
@@ -150,18 +137,17 @@ def _strong(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _elimination(x: np.ndarray, q: np.ndarray) -> Iterator[Probe]:
     """What is kept and what is left out make the whole, whatever the threshold."""
+    found = Kind("threshold", "every strength is found", EPS * float(np.abs(q).sum()), "exact sums")
     for threshold in (0.0, 1e-300, 0.5, float(np.nextafter(1.0, 0.0))):
-        run, bound = partial(_unaccounted, x, q, threshold), _EPS * float(np.abs(q).sum())
-        case = f"threshold {threshold:.3g}"
-        yield probe("threshold", case, "every strength is found", run, bound, source="exact sums")
-    cases = {
-        "threshold 1": (q, 1.0),
-        "strengths of zero": (0.0 * q, 0.0),
-        "a total beyond 1e308": (np.append(1.7e308, np.full(q.size - 1, 1e308)), 0.6),
-    }
-    for case, how in cases.items():
-        run = partial(_unaccounted, x, *how)
-        yield probe("threshold", case, "refused", run, 0.0, must=Verdict.REFUSED)
+        yield found(f"threshold {threshold:.3g}", _unaccounted, x, q, threshold)
+    huge = np.append(1.7e308, np.full(q.size - 1, 1e308))
+    yield from Kind("threshold", must=REFUSED).of(
+        {
+            "threshold 1": lambda: eliminate(x, q, 1.0),
+            "strengths of zero": lambda: eliminate(x, 0.0 * q, 0.0),
+            "a total beyond 1e308": lambda: eliminate(x, huge, 0.6),
+        }
+    )
 
 
 def _unaccounted(x: np.ndarray, q: np.ndarray, threshold: float) -> float:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
-from itertools import pairwise
+from itertools import pairwise, product
 
 import mpmath
 import numpy as np
@@ -20,14 +19,12 @@ from fracparticles.moving.random_walk import (
     walk,
 )
 from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
-_SURE = (
-    2.3  # sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov)
-)
+# sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov).
+_SURE = 2.3
 _SEED = 7
 Law = Callable[[np.ndarray], np.ndarray]
 
@@ -42,17 +39,12 @@ def probes(walkers: int) -> Iterator[Probe]:
 
 def _laws(walkers: int) -> Iterator[Probe]:
     """Increments next to alpha = 1 and 2: Cauchy's law and the normal one of variance 2; in many steps as in one."""
-    for alpha, law in (
-        (float(np.nextafter(1.0, 2.0)), _cauchy),
-        (1.0 + 1e-6, _cauchy),
-        (2.0 - 1e-6, _normal),
-        (float(np.nextafter(2.0, 1.0)), _normal),
-    ):
-        for steps in (1, 10):
-            run = partial(_distance, alpha, law, walkers, steps)
-            case = f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}"
-            expected = f"the law of α = {round(alpha)}"
-            yield probe("walk", case, expected, run, _SURE, source="closed form", must=Verdict.HELD)
+    next_to = float(np.nextafter(1.0, 2.0)), float(np.nextafter(2.0, 1.0))
+    for alpha, steps in product((next_to[0], 1.0 + 1e-6, 2.0 - 1e-6, next_to[1]), (1, 10)):
+        right = Kind("walk", f"the law of α = {round(alpha)}", _SURE, "closed form", HELD)
+        law = _cauchy if alpha < 1.5 else _normal
+        name = f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}"
+        yield right(name, _distance, alpha, law, walkers, steps)
 
 
 def _near(alpha: float) -> str:
@@ -76,13 +68,13 @@ def _distance(alpha: float, law: Law, walkers: int, steps: int) -> float:
 
 def _units() -> Iterator[Probe]:
     """The same numbers in other units, to the end of what is a length; beyond, the walk says so."""
+    same = Kind("walk", "the same walk", 64.0 * EPS, "scaling")
     for alpha, unit in ((1.5, 1e-60), (1.5, 1e60), (1.001, 1e95)):
-        run = partial(_other_units, alpha, unit)
-        case = f"α = {alpha:g}, lengths times {unit:g}"
-        yield probe("walk", case, "the same walk", run, 64.0 * _EPS, source="scaling")
+        yield same(f"α = {alpha:g}, lengths times {unit:g}", _other_units, alpha, unit)
+    refused = Kind("walk", must=REFUSED)
     for case, time in (("(D dt)^(1/α) = 1e-120", 1e-100), ("(D dt)^(1/α) = 1e120", 1e100)):
-        run = partial(_walked, time)
-        yield probe("walk", case, "refused", run, 0.0, must=Verdict.REFUSED)
+        dice = np.random.default_rng(_SEED)
+        yield refused(case, lambda: walk([0.0], 1.2, time, dice, diffusivity=time**0.44))
 
 
 def _other_units(alpha: float, unit: float) -> float:
@@ -94,27 +86,22 @@ def _other_units(alpha: float, unit: float) -> float:
     return float(np.abs(other / unit / plain - 1.0).max()) / math.log(max(unit, 1.0 / unit))
 
 
-def _walked(time: float) -> float:
-    return float(walk([0.0], 1.2, time, np.random.default_rng(_SEED), diffusivity=time**0.44)[0])
-
-
 def _cells() -> Iterator[Probe]:
     """Every walker inside is counted, also next to the end; masses of cells near and far are those of Cauchy's law."""
     ends = np.array([-1.0, np.nextafter(-1.0, -2.0), np.nextafter(1.0, 0.0), 1.0])
+    inside = Kind("cells", "two are inside", must=HELD)
     for cells in (3, 7, 10, 1000):
-        run = partial(_miscounted, ends, cells)
-        case = f"walkers at the ends of {cells} cells"
-        yield probe("cells", case, "two are inside", run, 0.0, must=Verdict.HELD)
+        yield inside(f"walkers at the ends of {cells} cells", _miscounted, ends, cells)
     edges = np.array([-np.inf, -1e100, -1e8, -1.0, 0.0, 1e-8, 1.0, 1e8, 1e100, np.inf])
     for k, (low, high) in enumerate(pairwise(edges)):
-        run = partial(_mass_off, edges, k)
-        case = f"cell from {low:g} to {high:g}, α = 1 + 1e-12"
         # Of a tail x^-alpha the small part of alpha is seen as its logarithm.
         nearest = min(max(abs(low), 1.0), max(abs(high), 1.0))
-        bound = 2e-12 * (1.0 + math.log(nearest))
-        yield probe("cells", case, "its mass, relative", run, bound, source="closed form")
-    run = partial(_mass_off, edges[::-1], 4)
-    yield probe("cells", "cells that fall", "refused", run, 0.0, must=Verdict.REFUSED)
+        right = Kind(
+            "cells", "its mass, relative", 2e-12 * (1.0 + math.log(nearest)), "closed form"
+        )
+        yield right(f"cell from {low:g} to {high:g}, α = 1 + 1e-12", _mass_off, edges, k)
+    refused = Kind("cells", must=REFUSED)
+    yield refused("cells that fall", cell_masses, edges[::-1], 1.0, 1.0 + 1e-12)
 
 
 def _miscounted(ends: np.ndarray, cells: int) -> float:
@@ -131,24 +118,22 @@ def _mass_off(edges: np.ndarray, k: int) -> float:
 
 def _numbers() -> Iterator[Probe]:
     """Deviations of counts and numbers of walkers for masses from 1e-300 to one."""
+    # Logarithms of up to 1000 log 1000 are rounded.
+    mean = Kind("cells", "E |N/n - p|", 1e-11, "scipy")
     for p, n in ((1e-300, 10), (1e-9, 1000), (0.5, 1), (0.3, 1000), (1.0 - 1e-12, 1000)):
-        run = partial(_deviation_off, p, n)
-        case = f"{n} walkers, p = {p:.3g}"
-        # Logarithms of up to 1000 log 1000 are rounded.
-        yield probe("cells", case, "E |N/n - p|", run, 1e-11, source="scipy")
+        yield mean(f"{n} walkers, p = {p:.3g}", _deviation_off, p, n)
+    few = Kind("cells", "where few are left", 1e-10, "closed form")
     for count in (1, 10**4, 10**12):
-        run = partial(_few_off, count)
-        yield probe(
-            "cells", f"{count:.0e} walkers, α = 1 + 1e-12", "where few are left", run, 1e-10, source="closed form"
-        )  # fmt: skip
-    refused: dict[str, Callable[[], float]] = {
-        "no mass to equal": lambda: walkers_to_equal([0.0, 0.0], 0.1),
-        "masses of 1e-320": lambda: walkers_to_equal([1e-320], 0.1),
-        "10^400 walkers": lambda: few_walkers_beyond(10**400, 1.0, 1.0, 1.5),
-        "2.5 walkers": lambda: float(stable_variates(1.5, 2.5, np.random.default_rng())[0]),  # type: ignore[arg-type]
-    }
-    for case, call in refused.items():
-        yield probe("cells", case, "refused", call, 0.0, must=Verdict.REFUSED)
+        yield few(f"{count:.0e} walkers, α = 1 + 1e-12", _few_off, count)
+    dice = np.random.default_rng()
+    yield from Kind("cells", must=REFUSED).of(
+        {
+            "no mass to equal": lambda: walkers_to_equal([0.0, 0.0], 0.1),
+            "masses of 1e-320": lambda: walkers_to_equal([1e-320], 0.1),
+            "10^400 walkers": lambda: few_walkers_beyond(10**400, 1.0, 1.0, 1.5),
+            "2.5 walkers": lambda: stable_variates(1.5, 2.5, dice),  # type: ignore[arg-type]
+        }
+    )
 
 
 def _deviation_off(p: float, n: int) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES, SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
 
-__all__ = ["EPS", "case_of", "deviation", "matrix_of", "point", "run"]
+__all__ = ["case_of", "cases_of", "deviation", "matrix_of", "point", "run"]
 
 EPS = float(np.finfo(float).eps)
 
@@ -28,6 +29,13 @@ def case_of(scheme: str, beta: float, **given: Any) -> fp.Case:
     else:
         fields.setdefault("integrator", "exponential")
     return fp.Case(scheme=scheme, beta=beta, store="metrics", **fields)
+
+
+def cases_of(beta: float, schemes: list[str], **given: Any) -> Iterator[fp.Case]:
+    """Return such a case of each scheme and each of its exteriors."""
+    for scheme in schemes:
+        for exterior in ALL_SCHEMES[scheme].exteriors:
+            yield case_of(scheme, beta, exterior=exterior, **given)
 
 
 def run(case: fp.Case, u0: Any) -> np.ndarray:

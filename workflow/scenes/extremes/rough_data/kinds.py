@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.rough_data.cases import case_of, deviation, run
 
 __all__ = ["probes"]
@@ -23,38 +21,14 @@ def probes(beta: float) -> Iterator[Probe]:
     case = case_of("KPSE", beta)
     bump = np.round(100.0 * np.exp(-case.x * case.x))
     exact = run(case, bump)
+    same = Kind("kind of data", "as float64", must=HELD)
+    refused = Kind("refused", bound=-1.0, must=REFUSED)
     for words, data in _right(bump).items():
-        yield probe(
-            "kind of data",
-            words,
-            "as float64",
-            partial(_from, case, data, exact),
-            0.0,
-            must=Verdict.HELD,
-        )
+        yield same(words, lambda: deviation(run(case, data), exact))
     for words, make in _wrong(bump).items():
-        for entry, use in (
-            ("solve", partial(run, case)),
-            ("prepare", prepare(case).solve),
-        ):
-            if entry == "prepare" and words.startswith("function"):
-                continue
-            yield probe(
-                "refused",
-                f"{words}, {entry}",
-                "refused",
-                partial(_used, use, make),
-                -1.0,
-                must=Verdict.REFUSED,
-            )
-
-
-def _from(case: Case, data: Any, exact: np.ndarray) -> float:
-    return deviation(run(case, data), exact)
-
-
-def _used(use: Callable[[Any], np.ndarray], make: Callable[[], Any]) -> float:
-    return float(np.abs(use(make())).max())
+        yield refused(f"{words}, solve", lambda: run(case, make()))
+        if not words.startswith("function"):
+            yield refused(f"{words}, prepare", lambda: prepare(case).solve(make()))
 
 
 def _right(bump: np.ndarray) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from functools import partial
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,8 @@ from scipy.linalg import expm
 from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
 from fracparticles.schemes import ALL_SCHEMES
-from fracstudy.probe import Probe, Verdict, probe
-from scenes.extremes.rough_data.cases import EPS, case_of, deviation, matrix_of, run
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
+from scenes.extremes.rough_data.cases import case_of, cases_of, deviation, matrix_of, run
 
 __all__ = ["exact", "sizes", "symmetries", "units"]
 
@@ -47,23 +47,16 @@ def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
 
     The estimates may warn of the data, but that excuses nothing: the discrete problem is solved.
     """
-    for scheme in schemes:
-        for exterior in ALL_SCHEMES[scheme].exteriors:
-            case = case_of(scheme, beta, exterior=exterior)
-            whole = _whole(case)
-            # The series rounds T |lambda| 2^-52 of its terms some 64 times, which an open exterior may make larger
-            # than their sum.
-            stiffness = case.span * float(np.abs(matrix_of(case)).sum(axis=1).max())
-            bound = max(_SAME, 64.0 * EPS * stiffness)
-            for words, u0 in _shapes(case.x).items():
-                yield probe(
-                    "exact",
-                    f"{scheme}, {exterior}, {words}",
-                    "exp(A T) u0",
-                    partial(_from, case, u0, whole @ u0),
-                    bound,
-                    source="scipy, dense",
-                )
+    right = Kind("exact", "exp(A T) u0", source="scipy, dense")
+    for case in cases_of(beta, schemes):
+        whole = _whole(case)
+        # The series rounds T |lambda| 2^-52 of its terms some 64 times, which an open exterior may make larger than
+        # their sum.
+        stiffness = case.span * float(np.abs(matrix_of(case)).sum(axis=1).max())
+        bound = max(_SAME, 64.0 * EPS * stiffness)
+        for words, u0 in _shapes(case.x).items():
+            name = f"{case.scheme}, {case.exterior}, {words}"
+            yield right(name, lambda: deviation(run(case, u0), whole @ u0), bound=bound)
 
 
 def _whole(case: Case) -> np.ndarray:
@@ -77,61 +70,37 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
 
     Sums of strengths near 1.8e308 overflow: refused. Zero stays zero.
     """
+    same = Kind("size", "the solution times the same", must=HELD)
     for scheme in schemes:
         for dim in [d for d in dims if d in ALL_SCHEMES[scheme].dims]:
             small = {} if dim == 1 else {"half_width": 3.0, "spacing": 0.375}
-            for exterior in ALL_SCHEMES[scheme].exteriors:
-                case = case_of(scheme, beta, dim=dim, exterior=exterior, **small)
+            for case in cases_of(beta, [scheme], dim=dim, **small):
                 u0 = np.exp(-sum(np.square(part) for part in case.positions))
                 dense = case.particles < _DENSE
-                usual = (
-                    (_whole(case) @ u0.ravel()).reshape(u0.shape)
-                    if dense
-                    else prepare(case).solve(u0)
-                )
+                by_matrix = (_whole(case) @ u0.ravel()).reshape(u0.shape) if dense else None
+                usual = prepare(case).solve(u0) if by_matrix is None else by_matrix
                 for size in (1e-300, 1e-320, 1e306, -1.0):
-                    digits = max(
-                        1.0, math.ulp(abs(size)) / abs(size) / EPS
-                    )  # lost to denormal numbers
-                    yield probe(
-                        "size",
-                        f"{scheme}, n = {dim}, {exterior}, data times {size:g}",
-                        "the solution times the same",
-                        partial(_from_scaled, case, u0, size, usual),
-                        10.0 * _SAME * digits,
+                    lost = max(1.0, math.ulp(abs(size)) / abs(size) / EPS)  # to denormal numbers
+                    yield same(
+                        f"{scheme}, n = {dim}, {case.exterior}, data times {size:g}",
+                        lambda: deviation(_scaled_back(run(case, size * u0), size), usual),
+                        bound=10.0 * _SAME * lost,
                         source="scipy, dense" if dense else "",
-                        must=Verdict.HELD,
                     )
+    bounded = Kind("size", "at most what was given", source="maximum principle")
+    overflows = replace(bounded, expected="refused", must=REFUSED)
     for scheme in schemes:
         case = case_of(scheme, beta)
-        for words, u0, must in (
-            ("1.7e308 everywhere", np.full(case.shape, 1.7e308), Verdict.REFUSED),
-            ("1e308, both signs", 1e308 * (-1.0) ** np.arange(case.particles), Verdict.REFUSED),
-            ("zero", np.zeros(case.shape), None),
-            ("-0.0", -np.zeros(case.shape), None),
-            ("5e-324 on one particle", np.where(case.x == 0.0, 5e-324, 0.0), None),
+        for words, u0, kind in (
+            ("1.7e308 everywhere", np.full(case.shape, 1.7e308), overflows),
+            ("1e308, both signs", 1e308 * (-1.0) ** np.arange(case.particles), overflows),
+            ("zero", np.zeros(case.shape), bounded),
+            ("-0.0", -np.zeros(case.shape), bounded),
+            ("5e-324 on one particle", np.where(case.x == 0.0, 5e-324, 0.0), bounded),
         ):
-            yield probe(
-                "size",
-                f"{scheme}, {words}",
-                "refused" if must else "at most what was given",
-                partial(_grown, case, u0),
-                0.0,
-                source="maximum principle",
-                must=must,
+            yield kind(
+                f"{scheme}, {words}", lambda: float(np.abs(run(case, u0)).max() > np.abs(u0).max())
             )
-
-
-def _from(case: Case, u0: np.ndarray, exact: np.ndarray) -> float:
-    return deviation(run(case, u0), exact)
-
-
-def _from_scaled(case: Case, u0: np.ndarray, size: float, exact: np.ndarray) -> float:
-    return deviation(_scaled_back(run(case, size * u0), size), exact)
-
-
-def _grown(case: Case, u0: np.ndarray) -> float:
-    return float(np.abs(run(case, u0)).max() > np.abs(u0).max())
 
 
 def _scaled_back(u: np.ndarray, size: float) -> np.ndarray:
@@ -143,57 +112,30 @@ def _scaled_back(u: np.ndarray, size: float) -> np.ndarray:
 def symmetries(beta: float, schemes: list[str]) -> Iterator[Probe]:
     """Sums of data, mirrored data, and on the infinite lattice shifted data: of noise on particles in the middle."""
     rng = np.random.default_rng(5)
+    linear = Kind("sum of data", "S(3 u - 2 v) = 3 S u - 2 S v", 10.0 * _SAME)
+    mirror = Kind("mirror", "the mirrored solution", 10.0 * _SAME)
+    # What comes back from an end at 400 after T = 1/2: twice T 400^-(1+alpha), and the ends move by 37 h.
+    shift = Kind("shift", "the moved solution", 2.0 * 0.5 * 390.0 ** -(2.0 + beta) * 17.0)
     for scheme in schemes:
-        for exterior in ALL_SCHEMES[scheme].exteriors:
-            case = case_of(scheme, beta, exterior=exterior)
+        for case in cases_of(beta, [scheme]):
             u, v = rng.standard_normal((2, case.particles))
-            solve = prepare(case).solve
-            scale = float(np.abs(solve(u)).max() + np.abs(solve(v)).max())
-            yield probe(
-                "sum of data",
-                f"{scheme}, {exterior}, noise",
-                "S(3 u - 2 v) = 3 S u - 2 S v",
-                partial(_of_sum, solve, u, v, scale),
-                10.0 * _SAME,
+            solve, name = prepare(case).solve, f"{scheme}, {case.exterior}, noise"
+            size = float(np.abs(solve(u)).max() + np.abs(solve(v)).max())
+            yield linear(
+                name, lambda: off(solve(3.0 * u - 2.0 * v), 3.0 * solve(u) - 2.0 * solve(v), size)
             )
-            yield probe(
-                "mirror",
-                f"{scheme}, {exterior}, noise",
-                "the mirrored solution",
-                partial(_of_mirror, solve, u, scale),
-                10.0 * _SAME,
-            )
+            yield mirror(name, lambda: off(solve(u[::-1].copy()), solve(u)[::-1], size))
         if scheme == "DPSE":  # whose truncated potential reaches everywhere
             continue
         wide = case_of(scheme, beta, half_width=400.0)
-        solve = prepare(wide).solve
-        u = np.where(np.abs(wide.x) <= 2.0, rng.standard_normal(wide.particles), 0.0)
-        middle = np.abs(wide.x) <= 20.0
-        yield probe(
-            "shift",
-            f"{scheme}, noise on |x| <= 2, moved by 37 h, |x| <= 20 of 400",
-            "the moved solution",
-            partial(_of_shift, solve, u, middle),
-            # What comes back from an end at 400 after T = 1/2: twice T 400^-(1+alpha), and the ends move by 37 h.
-            2.0 * 0.5 * 390.0 ** -(2.0 + beta) * 17.0,
-        )
-
-
-def _of_sum(solve: Advance, u: np.ndarray, v: np.ndarray, size: float) -> float:
-    return _apart(solve(3.0 * u - 2.0 * v), 3.0 * solve(u) - 2.0 * solve(v), size)
-
-
-def _of_mirror(solve: Advance, u: np.ndarray, size: float) -> float:
-    return _apart(solve(u[::-1].copy()), solve(u)[::-1], size)
+        noise = np.where(np.abs(wide.x) <= 2.0, rng.standard_normal(wide.particles), 0.0)
+        name = f"{scheme}, noise on |x| <= 2, moved by 37 h, |x| <= 20 of 400"
+        yield shift(name, _of_shift, prepare(wide).solve, noise, np.abs(wide.x) <= 20.0)
 
 
 def _of_shift(solve: Advance, u: np.ndarray, middle: np.ndarray) -> float:
     here, there = solve(u), np.roll(solve(np.roll(u, 37)), -37)
-    return _apart(there[middle], here[middle], float(np.abs(here).max()))
-
-
-def _apart(u: np.ndarray, v: np.ndarray, size: float) -> float:
-    return float(np.abs(u - v).max() / size)
+    return off(there[middle], here[middle], float(np.abs(here).max()))
 
 
 def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
@@ -201,39 +143,23 @@ def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
 
     h = D / n and the time of the run are rounded anew: some ulp of each, of which T |lambda| are seen.
     """
+    same = Kind("units", "the same in other units", 1e-10, must=HELD)
+    moving = replace(
+        same, bound=1e-6, must=None
+    )  # whose sums are exact to 1e-11 of the peak, a step
+    others = ((1e-6, 1.0), (1.0, 1e6), (1e-30, 1.0), (1e30, 1e-10), (1e40, 1e60))
     for scheme in schemes:
+        kind = moving if ALL_SCHEMES[scheme].moving else same
         for dim in [d for d in dims if d in ALL_SCHEMES[scheme].dims]:
             plain: dict[str, Any] = {"half_width": 8.0, "spacing": 0.5} if dim > 1 else {}
             usual = case_of(scheme, beta, dim=dim, **plain, t_initial=0.5, t_final=1.0)
-            for c, diffusivity in (
-                (1e-6, 1.0),
-                (1.0, 1e6),
-                (1e-30, 1.0),
-                (1e30, 1e-10),
-                (1e40, 1e60),
-            ):
-                time = c ** (1.0 + beta) / diffusivity
-                fields = {
-                    "t_initial": 0.5 * time,
-                    "t_final": time,
-                    "diffusivity": diffusivity,
-                    "dim": dim,
-                }
-                fields |= {"half_width": c * usual.reach, "spacing": c * usual.spacing}
-                yield probe(
-                    "units",
-                    f"{scheme}, n = {dim}, lengths times {c:g}, D = {diffusivity:g}",
-                    "the same in other units",
-                    partial(_in_other_units, scheme, beta, usual, c, fields),
-                    1e-10
-                    if not ALL_SCHEMES[scheme].moving
-                    else 1e-6,  # whose sums are exact to 1e-11 of the peak, a step
-                    must=Verdict.HELD if not ALL_SCHEMES[scheme].moving else None,
+            for c, d in others:
+                time = c ** (1.0 + beta) / d
+                fields = {"half_width": c * usual.reach, "spacing": c * usual.spacing}
+                fields |= {"t_initial": 0.5 * time, "t_final": time, "diffusivity": d, "dim": dim}
+                yield kind(
+                    f"{scheme}, n = {dim}, lengths times {c:g}, D = {d:g}",
+                    lambda: deviation(
+                        c**dim * run(case_of(scheme, beta, **fields), None), run(usual, None)
+                    ),
                 )
-
-
-def _in_other_units(
-    scheme: str, beta: float, usual: Any, c: float, fields: dict[str, Any]
-) -> float:
-    u = run(case_of(scheme, beta, **fields), None)
-    return deviation(c**usual.dim * u, run(usual, None))

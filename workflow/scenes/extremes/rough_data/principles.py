@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
 
 import numpy as np
 
 from fracparticles.run.case import Case
-from fracparticles.run.reliability import LIMITS
-from fracparticles.schemes import ALL_SCHEMES, SCHEMES
+from fracparticles.schemes import SCHEMES
 from fracparticles.special.stable import green
 from fracparticles.time.whole_space import evolve
-from fracstudy.probe import Probe, Verdict, probe
-from scenes.extremes.rough_data.cases import case_of, matrix_of, point, run
+from fracstudy.probe import WARNED, Kind, Probe
+from scenes.extremes.geometry.lattices import OF_A_FUNCTION
+from scenes.extremes.rough_data.cases import case_of, cases_of, matrix_of, point, run
 
 __all__ = ["bounds", "functions", "point_masses", "signs"]
 
@@ -43,21 +42,15 @@ def signs(beta: float) -> Iterator[Probe]:
         a = matrix_of(case)
         least = float((a - np.diag(np.diag(a)) + np.diag(np.full(len(a), np.inf))).min())
         positive = least >= 0.0
-        yield probe(
-            "sign",
-            f"{scheme}, order {order}, beta = {alpha_less_one:g}, one particle",
-            "stays positive" if positive else "turns negative",
-            partial(_sign, case, positive),
-            0.0,
-            source="weights of the matrix",
-        )
+        expected = "stays positive" if positive else "turns negative"
+        name = f"{scheme}, order {order}, beta = {alpha_less_one:g}, one particle"
+        yield Kind("sign", expected, source="weights of the matrix")(name, _sign, case, positive)
 
 
 def _sign(case: Case, positive: bool) -> tuple[float, str]:
     u = run(case, point(case))
     least = float(u.min() / u.max())
-    found = least >= -_ROUNDED
-    return float(found != positive), f"least u {least:.1e} of the peak"
+    return float((least >= -_ROUNDED) != positive), f"least u {least:.1e} of the peak"
 
 
 def bounds(beta: float, dims: list[int]) -> Iterator[Probe]:
@@ -66,6 +59,8 @@ def bounds(beta: float, dims: list[int]) -> Iterator[Probe]:
     KPSE and GPSE, order II: A has no negative weight off the diagonal and A 1 = 0, so that exp(A T) is a mean.
     """
     rng = np.random.default_rng(11)
+    within = Kind("bounds", "within the bounds of the data", _ROUNDED, "maximum principle")
+    total = Kind("total", "the total of the data", _ROUNDED, "closed form")
     for scheme in ("KPSE", "GPSE"):
         for dim in dims:
             plain = {} if dim == 1 else {"half_width": 4.0, "spacing": 0.5}
@@ -76,26 +71,11 @@ def bounds(beta: float, dims: list[int]) -> Iterator[Probe]:
                 "one point": point(case),
                 "one point at a corner": point(case, 0),
             }.items():
-                yield probe(
-                    "bounds",
+                yield within(f"{scheme}, n = {dim}, {words}", _beyond, case, u0)
+                yield total(
                     f"{scheme}, n = {dim}, {words}",
-                    "within the bounds of the data",
-                    partial(_beyond, case, u0),
-                    _ROUNDED,
-                    source="maximum principle",
+                    lambda: float(abs(run(case, u0).sum() - u0.sum()) / np.abs(u0).sum()),
                 )
-                yield probe(
-                    "total",
-                    f"{scheme}, n = {dim}, {words}",
-                    "the total of the data",
-                    partial(_of_total, case, u0),
-                    _ROUNDED,
-                    source="closed form",
-                )
-
-
-def _of_total(case: Case, u0: np.ndarray) -> float:
-    return float(abs(run(case, u0).sum() - u0.sum()) / np.abs(u0).sum())
 
 
 def _beyond(case: Case, u0: np.ndarray) -> float:
@@ -111,49 +91,26 @@ def point_masses(beta: float, half_width: float) -> Iterator[Probe]:
     """
     for scheme in ("DD", "FPSE", "KPSE"):
         case = case_of(scheme, beta, half_width=half_width, spacing=0.05)
-        setting = case.setting
-        symbol = float(SCHEMES[scheme].symbol(np.array([np.pi]), setting)[0])
-        predicted = float(np.exp(symbol * setting.rate * case.span))
-        yield probe(
-            "wave of two",
-            f"{scheme}, one particle, T = 0.5, h = 0.05",
-            f"keeps {predicted:.2f} of its amplitude",
-            partial(_wave, case, predicted),
-            0.02,  # of the wave: the ends of the lattice reflect some of it
-            source="Fourier symbol",
-            must=Verdict.WARNED,
-        )
-    for scheme in ("KPSE", "GPSE"):
-        given = {"exterior": "open", "half_width": half_width, "t_final": 1.0}
-        cases = [case_of(scheme, beta, spacing=h, **given) for h in (0.1, 0.05)]
-        yield probe(
-            "point mass",
-            f"{scheme}, h = 0.1 and 0.05, open",
-            "the fundamental solution" + (", error falls 4 times" if scheme == "KPSE" else ""),
-            partial(_converges, cases, scheme),
-            1.0,
-            source="closed form",
-        )
-    for n in (2, 3):
-        case = case_of(
-            "GPSE",
-            beta,
-            dim=n,
-            half_width=6.0,
-            spacing=0.5 if n == 2 else 0.75,
-            exterior="open",
-            t_final=1.0,
-        )
-        yield probe(
-            "point mass",
-            f"GPSE, n = {n}, one step, open",
-            "the fundamental solution",
-            partial(_error, case),
-            # The open exterior continues the data by nothing; what is left is the particle's own share,
-            # 1 - sum_j V E_j for V E_0, the error of the quadrature: exp(-(2 pi / h)^alpha T).
-            1e-6,
-            source="closed form",
-        )
+        symbol = float(SCHEMES[scheme].symbol(np.array([np.pi]), case.setting)[0])
+        predicted = float(np.exp(symbol * case.setting.rate * case.span))
+        # of the wave: the ends of the lattice reflect some of it
+        bound, expected = 0.02, f"keeps {predicted:.2f} of its amplitude"
+        wave = Kind("wave of two", expected, bound, "Fourier symbol", WARNED)
+        yield wave(f"{scheme}, one particle, T = 0.5, h = 0.05", _wave, case, predicted)
+    spreads = Kind("point mass", "the fundamental solution", 1.0, "closed form")
+    given = {"exterior": "open", "t_final": 1.0}
+    kpse, gpse = (
+        [case_of(scheme, beta, half_width=half_width, spacing=h, **given) for h in (0.1, 0.05)]
+        for scheme in ("KPSE", "GPSE")
+    )
+    falls = f"{spreads.expected}, error falls 4 times"
+    yield spreads("KPSE, h = 0.1 and 0.05, open", _falls_fourfold, kpse, expected=falls)
+    yield spreads("GPSE, h = 0.1 and 0.05, open", _exact, gpse)
+    for n, h in ((2, 0.5), (3, 0.75)):
+        case = case_of("GPSE", beta, dim=n, half_width=6.0, spacing=h, **given)
+        # The open exterior continues the data by nothing; what is left is the particle's own share,
+        # 1 - sum_j V E_j for V E_0, the error of the quadrature: exp(-(2 pi / h)^alpha T).
+        yield spreads(f"GPSE, n = {n}, one step, open", _error, case, bound=1e-6)
 
 
 def functions(beta: float, schemes: list[str]) -> Iterator[Probe]:
@@ -162,21 +119,10 @@ def functions(beta: float, schemes: list[str]) -> Iterator[Probe]:
     What the estimates let pass: 0.05 of a wave, 0.05 beyond the lattice and 0.05 between the particles, each of them
     missing in one place and found in another.
     """
-    allowed = 2.0 * sum(
-        LIMITS[name] for name in ("wave_error", "outside_share", "between_particles")
-    )
-    for scheme in schemes:
-        for exterior in ALL_SCHEMES[scheme].exteriors:
-            case = case_of(scheme, beta, half_width=20.0, exterior=exterior)
-            for words, u in _ROUGH.items():
-                yield probe(
-                    "function",
-                    f"{scheme}, {exterior}, {words}, h = 0.25",
-                    "the solution on a fine lattice",
-                    partial(_of_function, case, u),
-                    allowed,
-                    source="evolve",
-                )
+    right = Kind("function", "the solution on a fine lattice", OF_A_FUNCTION, "evolve")
+    for case in cases_of(beta, schemes, half_width=20.0):
+        for words, u in _ROUGH.items():
+            yield right(f"{case.scheme}, {case.exterior}, {words}, h = 0.25", _of_function, case, u)
 
 
 _ROUGH: dict[str, Callable[[np.ndarray], np.ndarray]] = {
@@ -217,9 +163,11 @@ def _error(case: Case) -> float:
     return float(np.abs(run(case, point(case)) - exact).sum() / exact.sum())
 
 
-def _converges(cases: list[Case], scheme: str) -> tuple[float, str]:
-    errors = [_error(case) for case in cases]
-    words = " to ".join(f"{error:.0e}" for error in errors)
-    if scheme == "GPSE":
-        return errors[0] / 1e-9, words
-    return abs(errors[0] / errors[1] - 4.0) / 0.4, words
+def _falls_fourfold(cases: list[Case]) -> tuple[float, str]:
+    coarse, fine = map(_error, cases)
+    return abs(coarse / fine - 4.0) / 0.4, f"{coarse:.0e} to {fine:.0e}"
+
+
+def _exact(cases: list[Case]) -> tuple[float, str]:
+    coarse, fine = map(_error, cases)
+    return coarse / 1e-9, f"{coarse:.0e} to {fine:.0e}"

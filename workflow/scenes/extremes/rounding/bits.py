@@ -7,14 +7,13 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 
 __all__ = ["CASES", "digests", "probes"]
 
@@ -54,17 +53,12 @@ def _elsewhere(threads: int, seed: int = 0) -> dict[str, str]:
         "from scenes.extremes.rounding.bits import digests\n"
         "print(*map('='.join, digests().items()), sep=';')"
     )
-    paths = [str(Path(__file__).parents[3]), *sys.path]
-    own = {name: str(threads) for name in _THREADS}
-    environment = {
-        **os.environ,
-        **own,
-        "PYTHONHASHSEED": str(seed),
-        "PYTHONPATH": os.pathsep.join(filter(None, paths)),
-    }
+    paths = [str(Path(__file__).parents[3]), *filter(None, sys.path)]
+    own = {"PYTHONHASHSEED": str(seed), "PYTHONPATH": os.pathsep.join(paths)}
+    own |= {name: str(threads) for name in _THREADS}
     done = subprocess.run(
         [sys.executable, "-c", program],
-        env=environment,
+        env=os.environ | own,
         capture_output=True,
         text=True,
         check=True,
@@ -81,13 +75,10 @@ def probes(threads: list[int], workflow: bool) -> Iterator[Probe]:
         f"{n} thread{'s' if n > 1 else ''}, another process": _elsewhere(n, seed)
         for seed, n in enumerate(threads)
     }
+    same = Kind("bits", "the same bits", must=HELD)
     for what, found in others.items():
         for name, digest in first.items():
-            yield probe(
-                "bits", f"{name}, {what}", "the same bits",
-                partial(_compared, digest, found[name]),
-                0.0, must=Verdict.HELD,
-            )  # fmt: skip
+            yield same(f"{name}, {what}", _compared, digest, found[name])
     if workflow:
         yield from _workflows()
 
@@ -100,10 +91,9 @@ def _workflows() -> Iterator[Probe]:
     """Two runs and their table, by one job after the other and by two at once."""
     from scenes.extremes.faults.workflows import Project
 
+    same = Kind("bits", "the same bytes", must=HELD)
     with TemporaryDirectory() as name:
-        files = [Project(Path(name) / f"j{jobs}", Path.cwd()).end(jobs) for jobs in (1, 2)]
-        for path in files[0]:
-            yield probe(
-                "bits", f"{Path(path).parts[0]}: {Path(path).name}, -j1 and -j2", "the same bytes",
-                partial(_compared, files[0][path], files[1].get(path)), 0.0, must=Verdict.HELD,
-            )  # fmt: skip
+        alone, at_once = (Project(Path(name) / f"j{jobs}", Path.cwd()).end(jobs) for jobs in (1, 2))
+        for path, data in alone.items():
+            kind, file = Path(path).parts[0], Path(path).name
+            yield same(f"{kind}: {file}, -j1 and -j2", _compared, data, at_once.get(path))

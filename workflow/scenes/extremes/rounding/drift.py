@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import partial
+from collections.abc import Iterable, Iterator
 from math import fsum, sqrt
 from typing import Any
 
@@ -15,11 +14,10 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS, step
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, Kind, Probe, off
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
 _SINGLE = float(np.finfo(np.float32).eps)
 _FIELDS = {"scheme": "KPSE", "beta": 0.5, "half_width": 5.0, "spacing": 0.5}
 _SHARE = 0.5  # of the stability limit
@@ -45,61 +43,51 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
     u0 = np.random.default_rng(9).uniform(0.5, 1.5, operator.size)
     mass, terms = fsum(u0), operator.size
 
-    def drift(u: np.ndarray) -> float:
-        return max(abs(fsum(map(float, u)) / mass - 1.0), 0.5 * _EPS)
-
-    u, done = u0, 0
-    stepped = []
-    for n in counts:
-        u = step(operator, STEP_POLYNOMIALS["euler"], case.time_step, n - done, u)
-        stepped.append(drift(u))
-        done = n
-    series = [drift(prepare(_case(n)).solve(u0)) for n in counts]
+    u, stepped = u0, []
+    for n in np.diff(counts, prepend=0).tolist():
+        u = step(operator, STEP_POLYNOMIALS["euler"], case.time_step, n, u)
+        stepped.append(_drift(u, mass))
+    series = [_drift(prepare(_case(n)).solve(u0), mass) for n in counts]
     single = _by_matrix(matrix, u0, counts, np.float32)
     compensated = _compensated(matrix, u0, counts, mass)
-    for name, values in (
-        ("float64, step by step", stepped),
-        ("float64, one series", series),
-        ("float32", single),
-        ("float64, compensated", compensated),
-    ):
+    ways = (
+        ("float64, step by step", "step by step", stepped, EPS),
+        ("float64, one series", "one series", series, EPS),
+        ("float32", "float32, for comparison", single, _SINGLE),
+        ("float64, compensated", "compensated, for comparison", compensated, EPS),
+    )
+    for name, _, values, _ in ways:
         points.add("drift", name, counts, values)
-    walk, worst = [sqrt(n) for n in counts], [float(n * terms) for n in counts]
-    points.add("drift", "eps sqrt(n)", counts, [_EPS * one for one in walk])
-    points.add("drift", "eps n N", counts, [_EPS * one for one in worst])
+    points.add("drift", "eps sqrt(n)", counts, [EPS * sqrt(n) for n in counts])
+    points.add("drift", "eps n N", counts, [EPS * float(n * terms) for n in counts])
 
-    for name, values, eps in (
-        ("step by step", stepped, _EPS),
-        ("one series", series, _EPS),
-        ("float32, for comparison", single, _SINGLE),
-        ("compensated, for comparison", compensated, _EPS),
-    ):
-        for n, value in zip(
-            counts[1::2] if len(counts) > 3 else counts,
-            values[1::2] if len(counts) > 3 else values,
-            strict=True,
-        ):
-            yield probe(
-                "mass", f"KPSE, {n:.0e} steps of Euler, {name}", "kept; drift below n N eps",
-                partial(float, value), n * terms * eps, source="math.fsum", must=Verdict.HELD,
-            )  # fmt: skip
-    both = float(np.abs(prepare(_case(most)).solve(u0) / u - 1.0).max())
-    yield probe(
-        "mass", f"KPSE, {most:.0e} steps, step by step and one series", "the same, below n N eps",
-        partial(float, both), most * terms * _EPS, must=Verdict.HELD,
-    )  # fmt: skip
+    kept = Kind("mass", "kept; drift below n N eps", source="math.fsum", must=HELD)
+    shown = slice(1, None, 2) if len(counts) > 3 else slice(None)
+    for _, name, values, eps in ways:
+        for n, value in zip(counts[shown], values[shown], strict=True):
+            case_ = f"KPSE, {n:.0e} steps of Euler, {name}"
+            yield kept(case_, float, value, bound=n * terms * eps)
+    same = Kind("mass", "the same, below n N eps", most * terms * EPS, must=HELD)
+    yield same(
+        f"KPSE, {most:.0e} steps, step by step and one series",
+        lambda: off(prepare(_case(most)).solve(u0) / u, 1.0),
+    )
+
+
+def _drift(u: Iterable[float], mass: float) -> float:
+    """How far the sum of the strengths is from that at the start; half an ulp, if it is not."""
+    return max(abs(fsum(map(float, u)) / mass - 1.0), 0.5 * EPS)
 
 
 def _by_matrix(matrix: np.ndarray, u0: np.ndarray, counts: list[int], kind: type) -> list[float]:
     """The drift where all numbers are of a kind."""
     a: Any = matrix.astype(kind)
     u: Any = u0.astype(kind)
-    start, done, found = fsum(map(float, u)), 0, []
-    for n in counts:
-        for _ in range(n - done):
+    start, found = fsum(map(float, u)), []
+    for n in np.diff(counts, prepend=0):
+        for _ in range(n):
             u = a @ u
-        done = n
-        found.append(max(abs(fsum(map(float, u)) / start - 1.0), 0.5 * _EPS))
+        found.append(_drift(u, start))
     return found
 
 
@@ -107,13 +95,11 @@ def _compensated(matrix: np.ndarray, u0: np.ndarray, counts: list[int], mass: fl
     """The drift where what one step rounds off is added in the next (Kahan)."""
     change = matrix - np.eye(len(matrix))
     change -= np.diag(change.sum(axis=0))  # columns that sum up to zero, to the last bit but one
-    u, lost, done, found = u0.copy(), np.zeros_like(u0), 0, []
-    for n in counts:
-        for _ in range(n - done):
+    u, lost, found = u0.copy(), np.zeros_like(u0), []
+    for n in np.diff(counts, prepend=0):
+        for _ in range(n):
             added = change @ u + lost
             total = u + added
-            lost = added - (total - u)
-            u = total
-        done = n
-        found.append(max(abs(fsum([*u, *lost]) / mass - 1.0), 0.5 * _EPS))
+            u, lost = total, added - (total - u)
+        found.append(_drift([*u, *lost], mass))
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
+from itertools import product
 from math import fsum, log2
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,19 +19,15 @@ from fracparticles.arguments import operand, real_array
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.spectrum import dense_matrix
 from fracstudy.inputs import write_table
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 
 __all__ = ["probes"]
 
-_EPS = float(np.finfo(float).eps)
-_FIELDS: dict[str, Any] = {
-    "beta": 0.5,
-    "half_width": 5.0,
-    "integrator": "exponential",
-    "t_initial": 0.5,
-}
-HELD, REFUSED = Verdict.HELD, Verdict.REFUSED
+_FIELDS: dict[str, Any] = {"beta": 0.5, "half_width": 5.0, "t_initial": 0.5}
+_FIELDS["integrator"] = "exponential"
+_SAME = Kind("type", "the bits of float64", must=HELD)
 
 
 def probes(particles: int) -> Iterator[Probe]:
@@ -48,9 +44,6 @@ def _kinds() -> Iterator[Probe]:
     """Strengths of other types and layouts: widened, the same bits as those of their values in float64; or refused."""
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.random.default_rng(3).uniform(-1.0, 1.0, case.shape)
-    spaced = np.repeat(u0, 3)[::3]
-    written = u0.copy()
-    written.flags.writeable = False
     for name, given in {
         "float32": u0.astype(np.float32),
         "float16": u0.astype(np.float16),
@@ -58,39 +51,20 @@ def _kinds() -> Iterator[Probe]:
         "int8": np.rint(100 * u0).astype(np.int8),
         "uint64": np.rint(100 * np.abs(u0)).astype(np.uint64),
         "big-endian float64": u0.astype(">f8"),
-        "a stride of three": spaced,
+        "a stride of three": np.repeat(u0, 3)[::3],
         "a negative stride": u0[::-1].copy()[::-1],
-        "read-only": written,
+        "read-only": np.frombuffer(u0.tobytes()),
     }.items():
-        yield probe(
-            "type",
-            f"strengths of {name}",
-            "the bits of float64",
-            partial(_other_bits, case, given),
-            0.0,
-            must=HELD,
-        )
-    bad = {
+        yield _SAME(f"strengths of {name}", _other_bits, case, given)
+    refused = Kind("type", must=REFUSED)
+    for name, given in {
         "complex": np.ones(case.shape, complex),
         "bool": np.ones(case.shape, bool),
         "text": np.ones(case.shape, str),
         "object": np.ones(case.shape, object),
         "a longdouble beyond float64": u0.astype(np.longdouble) * np.longdouble("1e4000"),
-    }
-    for name, given in bad.items():
-        yield probe(
-            "type",
-            f"strengths of {name}",
-            "refused",
-            partial(_solved, case, given),
-            0.0,
-            must=REFUSED,
-        )
-
-
-def _solved(case: Case, given: np.ndarray) -> float:
-    fp.solve(case, given)
-    return np.nan
+    }.items():
+        yield refused(f"strengths of {name}", fp.solve, case, given)
 
 
 def _other_bits(case: Case, given: np.ndarray) -> float:
@@ -106,7 +80,8 @@ def _other_bits(case: Case, given: np.ndarray) -> float:
 def _functions() -> Iterator[Probe]:
     """Public functions of float32: the value at the number in float64, not one of single precision."""
     x = np.linspace(-3.0, 3.0, 31).astype(np.float32)
-    time, alpha = np.float32(0.7), np.float32(1.3)
+    narrow = x, np.float32(0.7), np.float32(1.3)
+    wide = x.astype(float), float(narrow[1]), float(narrow[2])
     functions: dict[str, Callable[..., Any]] = {
         "green": lambda x, t, a: fp.green(x, t, a),
         "green_flux": lambda x, t, a: fp.green_flux(x, t, a),
@@ -115,142 +90,91 @@ def _functions() -> Iterator[Probe]:
         "kernel G": lambda x, t, a: fp.kernel("G", x, a),
         "evolve": lambda x, t, a: fp.evolve(np.exp(-(x.astype(float) ** 2)), 0.2, a, t),
     }
-    narrow, wide = (x, time, alpha), (x.astype(float), float(time), float(alpha))
     for name, function in functions.items():
-        run = partial(_unlike, function, narrow, wide)
-        yield probe("type", f"{name} of float32", "the bits of float64", run, 0.0, must=HELD)
-    third = np.array([1.0 / 3.0], dtype=np.float32)
-    for kept in (real_array("x", third), operand("x", third, (1,))):
-        # The number in single precision next to a third is 11184811 / 2^25.
-        run = partial(_apart, kept, np.array([11184811.0 / 2.0**25]), np.ones(1))
-        yield probe(
-            "type", "a third as float32", "11184811 / 2^25", run, 0.0, source="IEEE 754", must=HELD
+        yield _SAME(
+            f"{name} of float32",
+            lambda: float(not np.array_equal(function(*narrow), function(*wide))),
         )
-
-
-def _unlike(function: Callable[..., Any], narrow: Any, wide: Any) -> float:
-    return float(not np.array_equal(function(*narrow), function(*wide)))
-
-
-def _apart(found: Any, exact: Any, scale: Any) -> float:
-    """The greatest difference, in units of a scale."""
-    return float(np.max(np.abs(found - exact) / scale))
+    third = np.array([1.0 / 3.0], dtype=np.float32)
+    # The number in single precision next to a third is 11184811 / 2^25.
+    exact = Kind("type", "11184811 / 2^25", 0.0, "IEEE 754", HELD)
+    for kept in (real_array("x", third), operand("x", third, (1,))):
+        yield exact("a third as float32", off, kept, 11184811.0 / 2.0**25, 1.0)
 
 
 def _sums(particles: int) -> Iterator[Probe]:
     """Sums of terms of both signs: round-off is eps N sum |w u| by loops, eps 8 log2(N) |w| |u| by transforms."""
-    half, h = particles // 2, 10.0 / (particles - 1)
-    rng = np.random.default_rng(5)
-    data = {
-        "one size": rng.uniform(-1.0, 1.0, particles),
-        "sizes 1e-8 to 1e8": rng.choice([-1.0, 1.0], particles)
-        * 10.0 ** rng.uniform(-8.0, 8.0, particles),
-        "cancelling": np.tile([1.0, -1.0], half + 1)[:particles]
-        * (1.0 + 1e-12 * np.arange(particles)),
-    }
+    fields = {"spacing": 10.0 / (particles - 1), **_FIELDS}
+    rng, count = np.random.default_rng(5), np.arange(particles)
+    data = {"one size": rng.uniform(-1.0, 1.0, particles)}
+    signs = rng.choice([-1.0, 1.0], particles)
+    data["sizes 1e-8 to 1e8"] = signs * 10.0 ** rng.uniform(-8.0, 8.0, particles)
+    data["cancelling"] = np.where(count % 2, -1.0, 1.0) * (1.0 + 1e-12 * count)
     rows = rng.choice(particles, 5, replace=False)
+    within = Kind("sum", "mpmath.fdot, in units of its bound", 1.0, "mpmath", HELD)
     for scheme in ("DD", "KPSE"):
-        case = Case(scheme=scheme, spacing=h, **_FIELDS)
+        case = Case(scheme=scheme, **fields)
         sums = {
-            name: SCHEMES[scheme].operator(
-                Case(scheme=scheme, spacing=h, summation=name, **_FIELDS).setting
-            )
+            name: SCHEMES[scheme].operator(Case(scheme=scheme, summation=name, **fields).setting)
             for name in ("fft", "naive")
         }
         weights = np.array([sums["naive"].apply(unit)[rows] for unit in np.eye(particles)]).T
         for what, u in data.items():
-            exact = np.array(
-                [float(mpmath.fdot(map(mpmath.mpf, row), map(mpmath.mpf, u))) for row in weights]
-            )
-            size = np.abs(weights) @ np.abs(u)
+            exact = np.array([float(mpmath.fdot(row, u)) for row in weights.tolist()])
             largest = np.linalg.norm(weights, axis=1) * np.linalg.norm(u)
+            scales = {
+                "fft": EPS * (largest * 8.0 * log2(particles)),
+                "naive": EPS * (np.abs(weights) @ np.abs(u) * particles),
+            }
             for name, operator in sums.items():
-                scale = largest * 8.0 * log2(particles) if name == "fft" else size * particles
-                case_in_words = f"{scheme}, {case.particles} particles, {what}, {name}"
-                run = partial(_apart, operator.apply(u)[rows], exact, _EPS * scale)
-                yield probe(
-                    "sum",
-                    case_in_words,
-                    "mpmath.fdot, in units of its bound",
-                    run,
-                    1.0,
-                    source="mpmath",
-                    must=HELD,
+                yield within(
+                    f"{scheme}, {case.particles} particles, {what}, {name}",
+                    lambda: float(np.max(np.abs(operator.apply(u)[rows] - exact) / scales[name])),
                 )
+    case = Case(scheme="KPSE", **fields)
+    h = case.particle_spacing
     for what, u in data.items():
-        case = Case(scheme="KPSE", spacing=h, **_FIELDS)
-        bound = _EPS * (16.0 + log2(particles)) * float(np.abs(u).sum()) * case.particle_spacing
-        whole = case.particle_spacing * fsum(u)
-        run = partial(_apart, case.integral(u), whole, 1.0)
-        yield probe(
-            "sum",
-            f"mass of {particles} particles, {what}",
-            "math.fsum, pairwise",
-            run,
-            bound,
-            source="math.fsum",
-            must=HELD,
+        bound = EPS * (16.0 + log2(particles)) * float(np.abs(u).sum()) * h
+        right = Kind("sum", "math.fsum, pairwise", bound, "math.fsum", HELD)
+        yield right(
+            f"mass of {particles} particles, {what}", lambda: abs(case.integral(u) - h * fsum(u))
         )
 
 
 def _series() -> Iterator[Probe]:
     """exp(A T) u0 of 17 particles against 50 digits: round-off T |A| eps times the condition of the modes of A."""
-    for scheme in ("DD", "FPSE", "KPSE"):
-        for span in (1.0, 1e3, 1e6):
-            case = Case(
-                scheme=scheme,
-                beta=0.5,
-                half_width=4.0,
-                spacing=0.5,
-                integrator="exponential",
-                t_final=0.5 + span,
-            )
-            u0 = np.linspace(1.0, 2.0, 17)
+    within = Kind("series", "exp(A T) u0, in units of (10 + T |A|) eps", 1.0, "mpmath", HELD)
+    fields = {"beta": 0.5, "half_width": 4.0, "spacing": 0.5, "integrator": "exponential"}
+    for scheme, span in product(("DD", "FPSE", "KPSE"), (1.0, 1e3, 1e6)):
+        case = Case(scheme=scheme, t_final=0.5 + span, **fields)
+        yield within(f"{scheme}, 17 particles, T = {span:.0e}", _of_series, case)
 
-            def run(case: Case = case, u0: np.ndarray = u0) -> float:
-                ready = prepare(case)
-                assert ready.operator is not None
-                matrix = np.array([ready.operator.apply(unit) for unit in np.eye(17)]).T
-                with mpmath.workdps(50):
-                    exact = mpmath.expm(
-                        mpmath.matrix(matrix.tolist()) * mpmath.mpf(case.span)
-                    ) * mpmath.matrix(u0.tolist())
-                    exact = np.array([float(one) for one in exact])
-                condition = float(np.linalg.cond(np.linalg.eig(matrix)[1]))  # 1 if A is symmetric
-                stiffness = case.span * float(np.abs(matrix).sum(axis=1).max()) * condition
-                return float(
-                    np.abs(ready.solve(u0) - exact).max()
-                    / np.abs(u0).max()
-                    / (_EPS * (10.0 + stiffness))
-                )
 
-            yield probe(
-                "series",
-                f"{scheme}, 17 particles, T = {span:.0e}",
-                "exp(A T) u0, in units of (10 + T |A|) eps",
-                run,
-                1.0,
-                source="mpmath",
-                must=HELD,
-            )
+def _of_series(case: Case) -> float:
+    u0, matrix = np.linspace(1.0, 2.0, 17), _matrix(case)
+    with mpmath.workdps(50):
+        whole = mpmath.expm(mpmath.matrix(matrix.tolist()) * mpmath.mpf(case.span))
+        exact = np.array([float(one) for one in whole * mpmath.matrix(u0.tolist())])
+    condition = float(np.linalg.cond(np.linalg.eig(matrix)[1]))  # 1 if A is symmetric
+    stiffness = case.span * float(np.abs(matrix).sum(axis=1).max()) * condition
+    return off(prepare(case).solve(u0), exact, np.abs(u0).max()) / (EPS * (10.0 + stiffness))
+
+
+def _matrix(case: Case) -> np.ndarray:
+    return dense_matrix(SCHEMES[case.scheme].operator(case.setting))
 
 
 def _kept() -> Iterator[Probe]:
     """Numbers at the ends of the range, written and read: the same bits."""
     numbers = np.array(
-        [0.1, -0.0, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 1.0 + _EPS, np.pi]
+        [0.1, -0.0, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 1.0 + EPS, np.pi]
     )
+    same = Kind("kept", "the same bits", must=HELD)
+    lattice = {"half_width": 5.0 + 1e-15, "spacing": 0.25, "integrator": "exponential"}
+    case = Case(scheme="KPSE", beta=0.1 + 0.2, **lattice)
     with TemporaryDirectory() as name:
         folder = Path(name)
-        case = Case(
-            scheme="KPSE",
-            beta=0.1 + 0.2,
-            half_width=5.0 + 1e-15,
-            spacing=0.25,
-            integrator="exponential",
-        )
-        run = fp.solve(case)
-        run = run.assign(odd=("i", numbers))
+        run = fp.solve(case).assign(odd=("i", numbers))
 
         def file() -> float:
             fp.write(run, folder / "run.nc")
@@ -263,52 +187,27 @@ def _kept() -> Iterator[Probe]:
             return float(read.tobytes() != numbers.tobytes())
 
         ends = "5e-324 to 1.8e308, -0"
-        yield probe("kept", f"a NetCDF file, {ends}", "the same bits", file, 0.0, must=HELD)
-        yield probe("kept", f"a table, {ends}", "the same bits", table, 0.0, must=HELD)
-        yield probe(
-            "kept",
-            "a case as JSON",
-            "the same case",
-            lambda: float(Case.from_json(case.to_json()) != case),
-            0.0,
-            must=HELD,
-        )
+        yield same(f"a NetCDF file, {ends}", file)
+        yield same(f"a table, {ends}", table)
+    again = Kind("kept", "the same case", must=HELD)
+    yield again("a case as JSON", lambda: float(Case.from_json(case.to_json()) != case))
 
 
 def _arithmetic() -> Iterator[Probe]:
     """What a library that is loaded may switch off for all: numbers below the normal ones, and rounding to nearest."""
     compute(Case(scheme="DVM", beta=0.5, half_width=5.0, spacing=0.5, dt=0.05, t_final=0.6))
-    least = np.float64(2.2250738585072014e-308)
-    yield probe(
-        "arithmetic",
-        "half of the least normal number",
-        "not flushed to zero",
-        lambda: float(least / 2.0 * 2.0 != least),
-        0.0,
-        source="IEEE 754",
-        must=HELD,
-    )
-    yield probe(
-        "arithmetic",
+    least, one = np.float64(2.2250738585072014e-308), np.float64(1.0)
+    normal = Kind("arithmetic", "not flushed to zero", 0.0, "IEEE 754", HELD)
+    yield normal("half of the least normal number", lambda: float(least / 2.0 * 2.0 != least))
+    even = Kind("arithmetic", "rounded to even", 0.0, "IEEE 754", HELD)
+    yield even(
         "1 + eps / 2 and 1 + 3 eps / 2",
-        "rounded to even",
-        lambda: float((1.0 + _EPS / 2.0 != 1.0) or (1.0 + 1.5 * _EPS != 1.0 + 2.0 * _EPS)),
-        0.0,
-        source="IEEE 754",
-        must=HELD,
+        lambda: float(one + EPS / 2.0 != 1.0 or one + 1.5 * EPS != 1.0 + 2.0 * EPS),
     )
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.full(case.shape, 3e-310)
-    operator = prepare(case).operator
-    assert operator is not None
-    matrix = np.array([operator.apply(unit) for unit in np.eye(u0.size)]).T
-    exact = expm(matrix * case.span) @ np.full(u0.size, 3.0)
-    yield probe(
-        "arithmetic",
-        "strengths of 3e-310",
-        "to the 5e-324 that they have",
-        lambda: float(np.abs(compute(case, u0).u * 1e300 * 1e10 - exact).max()),
-        5e-324 * 1e300 * 1e10 + 1e-12,
-        source="scipy",
-        must=HELD,
+    exact = expm(_matrix(case) * case.span) @ np.full(u0.size, 3.0)
+    bound, expected = 5e-324 * 1e300 * 1e10 + 1e-12, "to the 5e-324 that they have"
+    yield Kind("arithmetic", expected, bound, "scipy", HELD)(
+        "strengths of 3e-310", lambda: off(compute(case, u0).u * 1e300 * 1e10, exact, 1.0)
     )

@@ -12,7 +12,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.time import STEP_POLYNOMIALS, step
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, Kind, Probe
 
 __all__ = ["measured", "probes"]
 
@@ -26,7 +26,7 @@ def measured(
     half: int, overlaps: list[float], orders: list[int], factors: list[float]
 ) -> pd.DataFrame:
     """Return the growth per step of each setting and step, and the spectral radius of p(A dt), from the matrix."""
-    rows: list[dict[str, Any]] = []
+    rows = []
     for scheme, integrator, setting in _settings(half, overlaps, orders):
         # The table moves the eigenvalues, not the limit of the exact kernels: that is what a user compares dt with.
         limit = stability_limit(
@@ -42,17 +42,11 @@ def measured(
             dt = factor * limit * 0.5 * p.stability_interval
             u = step(operator, p, dt, _STEPS - _LAST, start)
             v = step(operator, p, dt, _LAST, u)
-            rows.append(
-                {
-                    "scheme": scheme,
-                    "integrator": integrator,
-                    "setting": setting,
-                    "factor": factor,
-                    "measured": (np.linalg.norm(v) / np.linalg.norm(u)) ** (1.0 / _LAST),
-                    "predicted": _radius(integrator, eigenvalues * dt),
-                }
-            )
-    return pd.DataFrame(rows)
+            growth = (np.linalg.norm(v) / np.linalg.norm(u)) ** (1.0 / _LAST)
+            radius = _radius(integrator, eigenvalues * dt)
+            rows.append((scheme, integrator, setting, factor, growth, radius))
+    columns = ["scheme", "integrator", "setting", "factor", "measured", "predicted"]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def _settings(
@@ -88,23 +82,16 @@ def _radius(integrator: str, z: np.ndarray) -> float:
 def probes(measured: pd.DataFrame) -> Iterator[Probe]:
     """One probe a setting and step: |v| / |u| over fifty steps, v = p(A dt)^50 u, is the radius to the power of 50."""
     for row in measured.itertuples():
-        yield probe(
-            "growth per step",
+        right = Kind("growth per step", f"{row.predicted:.2f}", _BOUND, "dense matrix", HELD)
+        yield right(
             f"{_named(row.scheme, row.setting)}, {row.integrator}, dt = {row.factor:g} a",
-            f"{row.predicted:.2f}",
-            lambda row=row: (abs(row.measured - row.predicted), f"{row.measured:.2f}"),
-            _BOUND,
-            source="dense matrix",
-            must=Verdict.HELD,
+            lambda: (abs(row.measured - row.predicted), f"{row.measured:.2f}"),
         )
 
 
 def _named(scheme: str, setting: Setting) -> str:
     words = [f"{scheme}, order {setting.order}, s = {setting.overlap:g}"]
-    if setting.dim > 1:
-        words.append(f"n = {setting.dim}")
-    if setting.is_open:
-        words.append("open")
-    if setting.kernel_table is not None:
-        words.append("table")
+    words += [f"n = {setting.dim}"] if setting.dim > 1 else []
+    words += ["open"] if setting.is_open else []
+    words += [] if setting.kernel_table is None else ["table"]
     return ", ".join(words)

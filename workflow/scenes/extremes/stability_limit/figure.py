@@ -52,24 +52,12 @@ def _map(ax: Axes, points: pd.DataFrame, colours: Any) -> Any:
     beta, overlap, limit = grid.columns.to_numpy(), grid.index.to_numpy(), grid.to_numpy()
     ax.set(xlim=(beta[0], beta[-1]), ylim=(overlap[0], overlap[-1]), facecolor="0.75")
     ax.grid(visible=False)
-    shown = ax.pcolormesh(
-        beta,
-        overlap,
-        np.where(limit > 0.0, limit, np.nan),
-        norm=colours,
-        cmap="viridis",
-        shading="gouraud" if (limit > 0.0).all() else "nearest",
-        rasterized=True,
-    )
+    field = beta, overlap, np.where(limit > 0.0, limit, np.nan)
+    shading = "gouraud" if (limit > 0.0).all() else "nearest"
+    how: dict[str, Any] = {"cmap": "viridis", "shading": shading, "rasterized": True}
+    shown = ax.pcolormesh(*field, norm=colours, **how)
     if limit.shape[0] > 2 and limit.shape[1] > 2:
-        lines = ax.contour(
-            beta,
-            overlap,
-            np.where(limit > 0.0, limit, np.nan),
-            levels=_LEVELS,
-            colors="white",
-            linewidths=0.7,
-        )
+        lines = ax.contour(*field, levels=_LEVELS, colors="white", linewidths=0.7)
         ax.clabel(lines, fmt="%g", fontsize=7)
     return shown
 
@@ -79,14 +67,8 @@ def _growth(ax: Axes, points: pd.DataFrame) -> None:
     ax.plot(ends, ends, color="0.5", linewidth=0.9)
     ax.axvline(1.0, color="0.6", linewidth=0.8, linestyle=":")
     for integrator, part in points.groupby("series"):
-        ax.plot(
-            part["x"],
-            part["y"],
-            linestyle="none",
-            marker=_INTEGRATORS[integrator],
-            markerfacecolor="none",
-            markersize=5.0,
-            label=integrator,
-        )
+        look: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "none", "markersize": 5.0}
+        marker = _INTEGRATORS[integrator]
+        ax.plot(part["x"], part["y"], label=integrator, marker=marker, **look)
     ax.set(xlabel=r"spectral radius of $p(A \Delta t)$", ylabel="measured growth per step")
     ax.legend(loc="upper left")

@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.stability import stability_limit
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.stability_limit.independent import symbol
 
 __all__ = ["against_an_independent_symbol", "in_boxes", "refused"]
@@ -21,66 +21,53 @@ _POINTS = 4001
 
 def against_an_independent_symbol(orders: list[int], overlaps: list[float]) -> Iterator[Probe]:
     """a = 2 / -min A(theta), and zero where A(theta) > 0 somewhere; by scipy's minimiser on scipy's functions."""
-    for scheme, order, s in product(("DD", "FPSE", "KPSE"), orders, overlaps):
-        for beta in (0.1, 0.9):
-            expected = _limit(scheme, beta, order, s)
-            yield probe(
-                "limit a",
-                f"{scheme}, order {order}, beta = {beta:g}, s = {s:g}",
-                f"{expected:.3g}" if expected else "zero: the symbol is positive",
-                lambda e=expected, a=(scheme, beta, order, s): _deviation(stability_limit(*a), e),
-                # The minimiser: the root of eps in theta, whose square counts; at a small overlap the digits that an
-                # exchange loses to K^(0), s^-alpha over the range.
-                1e-9,
-                source="scipy",
-                must=Verdict.HELD,
-            )
+    # The minimiser: the root of eps in theta, whose square counts; at a small overlap the digits that an exchange loses
+    # to K^(0), s^-alpha over the range.
+    right = Kind("limit a", bound=1e-9, source="scipy", must=HELD)
+    for scheme, order, s, beta in product(("DD", "FPSE", "KPSE"), orders, overlaps, (0.1, 0.9)):
+        a = _limit(scheme, beta, order, s)
+        yield right(
+            f"{scheme}, order {order}, beta = {beta:g}, s = {s:g}",
+            lambda: _deviation(stability_limit(scheme, beta, order, s), a),
+            expected=f"{a:.3g}" if a else "zero: the symbol is positive",
+        )
     for scheme, beta in product(("DD", "FPSE", "KPSE"), (1e-6, 0.5, 1.0 - 1e-6)):
-        expected = SCHEMES[scheme].closed_form_limit(beta, 1000.0)
-        yield probe(
-            "limit a",
+        a = SCHEMES[scheme].closed_form_limit(beta, 1000.0)
+        # The aliases that the closed form leaves out are zero here.
+        right = Kind("limit a", f"{a:.3g}", 1e-9, "closed form", HELD)
+        yield right(
             f"{scheme}, order 2, beta = {beta:g}, s = 1000",
-            f"{expected:.3g}",
-            lambda e=expected, a=(scheme, beta, 2, 1000.0): _deviation(stability_limit(*a), e),
-            1e-9,  # the aliases that the closed form leaves out are zero here
-            source="closed form",
-            must=Verdict.HELD,
+            lambda: _deviation(stability_limit(scheme, beta, 2, 1000.0), a),
         )
     for order, s in product((2, 4), (0.6, 1.25, 2.0)):
-        yield probe(
-            "limit a",
-            f"DPSE, order {order}, beta = 0.1, s = {s:g}",
-            "positive: no wave grows",
-            lambda a=("DPSE", 0.1, order, s): (
-                float(stability_limit(*a) <= 0.0),
-                f"{stability_limit(*a):.2g}",
-            ),
-            0.0,
-        )
+        positive = Kind("limit a", "positive: no wave grows")
+        yield positive(f"DPSE, order {order}, beta = 0.1, s = {s:g}", _not_positive, order, s)
+
+
+def _not_positive(order: int, s: float) -> tuple[float, str]:
+    a = stability_limit("DPSE", 0.1, order, s)
+    return float(a <= 0.0), f"{a:.2g}"
 
 
 def in_boxes(overlaps: list[float]) -> Iterator[Probe]:
     """The same in the plane and in space, on grids of wave vectors: the limit is no higher there, nor much lower."""
+    # The points are 0.05 (0.2) apart or closer: a quadratic minimum is missed by the square of it.
+    missed, counts = {2: 0.01, 3: 0.05}, {2: 61, 3: 17}
+    right = Kind("limit a", "that of scipy's symbol", source="scipy", must=HELD)
     for (scheme, order), dim, s in product((("DD", 2), ("DD", 12), ("KPSE", 4)), (2, 3), overlaps):
         if s < {2: 0.75, 3: 1.5}[dim]:
             continue  # so many aliases take scipy too long
-        count = {2: 61, 3: 17}[dim]
-        axis = np.linspace(0.0, np.pi, count)
-        near = np.linspace(0.0, min(np.pi, 4.0 / s), count)
+        axis = np.linspace(0.0, np.pi, counts[dim])
+        near = np.linspace(0.0, min(np.pi, 4.0 / s), counts[dim])
         theta = np.stack(np.meshgrid(*[np.union1d(axis, near)] * dim, indexing="ij"), axis=-1)
         theta = theta.reshape(-1, dim)
         theta = theta[(np.diff(theta, axis=1) >= 0.0).all(axis=1)]
-        yield probe(
-            "limit a",
+        yield right(
             f"{scheme}, order {order}, beta = 0.5, s = {s:g}, n = {dim}",
-            "that of scipy's symbol",
-            lambda t=theta, a=(scheme, 0.5, order, s, dim): _below(
-                stability_limit(*a), symbol(a[0], t, 1.5, a[2], a[3])
+            lambda: _below(
+                stability_limit(scheme, 0.5, order, s, dim), symbol(scheme, theta, 1.5, order, s)
             ),
-            # The points are 0.05 (0.2) apart or closer: a quadratic minimum is missed by the square of it.
-            {2: 0.01, 3: 0.05}[dim],
-            source="scipy",
-            must=Verdict.HELD,
+            bound=missed[dim],
         )
 
 
@@ -98,15 +85,9 @@ def refused() -> Iterator[Probe]:
         "FD in the plane": ("FD", 0.5, 2, 2.0, 2),
         "no scheme": ("XPSE", 0.5),
     }
+    row = Kind("refused", "an error of ours", must=REFUSED)
     for name, arguments in cases.items():
-        yield probe(
-            "refused",
-            name,
-            "an error of ours",
-            lambda a=arguments: stability_limit(*a),
-            0.0,
-            must=Verdict.REFUSED,
-        )
+        yield row(name, stability_limit, *arguments)
 
 
 def _limit(scheme: str, beta: float, order: int, s: float) -> float:
@@ -154,7 +135,6 @@ def _below(found: float, values: np.ndarray) -> tuple[float, str]:
     if values.max() > 1e-9 * -values.min():
         return found, f"{found:.3g}"
     expected = -2.0 / values.min()
-    high = (
-        max(0.0, found / expected - 1.0 - 1e-9) * 1e9
-    )  # a limit above the samples' is wrong in any case
+    # A limit above the samples' is wrong in any case.
+    high = max(0.0, found / expected - 1.0 - 1e-9) * 1e9
     return max(high, 1.0 - found / expected), f"{found:.3g}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
 import numpy as np
 from scipy.linalg import eigh, expm
@@ -11,7 +12,7 @@ from scipy.linalg import eigh, expm
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, eigenvalue_bounds
 from fracparticles.schemes.stability import stability_limit
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, Kind, Probe
 
 __all__ = ["eigenvalues", "transient_growth"]
 
@@ -24,25 +25,26 @@ def eigenvalues(half: int, orders: list[int], overlaps: list[float]) -> Iterator
 
     A defective eigenvalue of A is split by the root of the round-off: that much is allowed.
     """
-    bound = 10.0 * float(np.sqrt(np.finfo(float).eps))
-    for scheme, exterior, order in product(("DD", "FPSE", "KPSE"), ("truncated", "open"), orders):
-        for s, table in [*((s, None) for s in overlaps), (3.3, 0.3)]:
-            setting = Setting(
-                alpha=1.98, n=half, order=order, overlap=s, exterior=exterior, kernel_table=table
-            )
-            open_too_narrow = exterior == "open" and half < 4.0 * s
-            if open_too_narrow:
-                continue
-            words = "" if table is None else ", table"
-            yield probe(
-                "eigenvalues",
-                f"{scheme}, order {order}, s = {s:g}, {exterior}{words}",
-                "within the bounds",
-                lambda scheme=scheme, setting=setting: _beyond(scheme, setting),
-                bound,
-                source="dense matrix",
-                must=Verdict.HELD,
-            )
+    bound = 10.0 * float(np.sqrt(EPS))
+    right = Kind("eigenvalues", "within the bounds", bound, "dense matrix", HELD)
+    tables = [*((s, None) for s in overlaps), (3.3, 0.3)]
+    every = product(("DD", "FPSE", "KPSE"), ("truncated", "open"), orders, tables)
+    for scheme, exterior, order, (s, table) in every:
+        if exterior == "open" and half < 4.0 * s:  # too narrow
+            continue
+        fields: dict[str, Any] = {"overlap": s, "exterior": exterior, "kernel_table": table}
+        setting = Setting(alpha=1.98, n=half, order=order, **fields)
+        name = f"{scheme}, order {order}, s = {s:g}, {exterior}{', table' if table else ''}"
+        yield right(name, _beyond, scheme, setting)
+
+
+def _beyond(scheme: str, setting: Setting) -> tuple[float, str]:
+    operator = SCHEMES[scheme].operator(setting)
+    low, high = eigenvalue_bounds(scheme, setting, operator)
+    values = np.linalg.eigvals(dense_matrix(operator)).real
+    over = max(low - values.min(), values.max() - high) / (high - low)
+    words = "within" if over <= 0.0 else "at the bound" if over < 1e-6 else f"{over:.0e} beyond"
+    return max(0.0, float(over)), words
 
 
 def transient_growth(half: int) -> Iterator[Probe]:
@@ -57,51 +59,25 @@ def transient_growth(half: int) -> Iterator[Probe]:
         reach = float(eigh(0.5 * (matrix + matrix.T), eigvals_only=True)[-1])
         normal = exterior == "truncated" and scheme != "FPSE"
         condition = 1.0 if normal else float(np.linalg.cond(np.linalg.eig(matrix)[1]))
-        shown = "at most 1" if normal else "at most the condition of the modes"
-        yield probe(
-            "transient growth",
+        expected = "at most 1" if normal else "at most the condition of the modes"
+        # Of the zero eigenvalue round-off makes eps |A|, over t up to 1e6.
+        bounded = Kind("transient growth", expected, 1e-8, must=HELD)
+        yield bounded(
             f"{name}, exp(A t)",
-            shown,
-            lambda m=matrix, c=condition, w=reach: _worst([expm(t * m) for t in _TIMES], c, w),
-            # Of the zero eigenvalue round-off makes eps |A|, over t up to 1e6.
-            1e-8,
+            lambda: _worst([expm(t * matrix) for t in _TIMES], condition, reach),
             source="scipy",
-            must=Verdict.HELD,
         )
-        dt = 0.99 * stability_limit(scheme, 0.5, order)
-        one = np.eye(len(matrix)) + dt * matrix @ (np.eye(len(matrix)) + 0.5 * dt * matrix)
-        yield probe(
-            "transient growth",
+        dt, one = 0.99 * stability_limit(scheme, 0.5, order), np.eye(len(matrix))
+        p = one + dt * matrix @ (one + 0.5 * dt * matrix)
+        yield bounded(
             f"{name}, p(A dt)^n, rk2, dt = 0.99 a",
-            shown,
-            lambda p=one, c=condition, w=reach: _worst(
-                [np.linalg.matrix_power(p, int(n)) for n in _STEPS], c, w
-            ),
-            1e-8,
+            lambda: _worst([np.linalg.matrix_power(p, int(n)) for n in _STEPS], condition, reach),
             source="dense matrix",
-            must=Verdict.HELD,
         )
+        # The next term of the exponential, t |A|^2 / 2, against |A|.
+        rate = Kind("numerical range", f"log |exp(A t)| / t = {reach:.0e}", 1e-3, "scipy", HELD)
         short = 1e-3 / np.abs(matrix).sum(axis=1).max()
-        yield probe(
-            "numerical range",
-            f"{name}, t -> 0",
-            f"log |exp(A t)| / t = {reach:.0e}",
-            lambda m=matrix, w=reach, t=short: _rate(m, w, t),
-            # The next term of the exponential, t |A|^2 / 2, against |A|.
-            1e-3,
-            source="scipy",
-            must=Verdict.HELD,
-        )
-
-
-def _beyond(scheme: str, setting: Setting) -> tuple[float, str]:
-    operator = SCHEMES[scheme].operator(setting)
-    low, high = eigenvalue_bounds(scheme, setting, operator)
-    values = np.linalg.eigvals(dense_matrix(operator)).real
-    over = max(low - values.min(), values.max() - high) / (high - low)
-    return max(
-        0.0, float(over)
-    ), "within" if over <= 0.0 else "at the bound" if over < 1e-6 else f"{over:.0e} beyond"
+        yield rate(f"{name}, t -> 0", _rate, matrix, reach, short)
 
 
 def _worst(matrices: list[np.ndarray], condition: float, reach: float) -> tuple[float, str]:

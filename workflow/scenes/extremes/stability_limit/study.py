@@ -5,12 +5,11 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
-import pandas as pd
 
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, frame
+from fracstudy.probe import frame
 from scenes.extremes.stability_limit import amplification, growth, limits, normality
 
 __all__ = ["SHOWN", "study"]
@@ -33,17 +32,18 @@ def study(
     For the figure, the limit on a grid of `map_betas` and `map_overlaps`, and the growth per step, measured and
     predicted.
     """
-    probes: list[Probe] = []
     measured = amplification.measured(half, overlaps, orders, factors)
-    probes += amplification.probes(measured)
-    probes += growth.words(half, factors)
-    probes += growth.hidden(half)
-    probes += growth.overflow()
-    probes += limits.against_an_independent_symbol(orders, overlaps)
-    probes += limits.in_boxes(overlaps)
-    probes += limits.refused()
-    probes += normality.eigenvalues(half, orders, overlaps)
-    probes += normality.transient_growth(min(half, 40))
+    probes = [
+        *amplification.probes(measured),
+        *growth.words(half, factors),
+        *growth.hidden(half),
+        *growth.overflow(),
+        *limits.against_an_independent_symbol(orders, overlaps),
+        *limits.in_boxes(overlaps),
+        *limits.refused(),
+        *normality.eigenvalues(half, orders, overlaps),
+        *normality.transient_growth(min(half, 40)),
+    ]
     panels = Panels()
     for scheme, order in SHOWN:
         for beta in map_betas:
@@ -52,4 +52,4 @@ def study(
     for (factor, integrator), part in measured.groupby(["factor", "integrator"]):
         more = {"factor": factor, "beta": np.nan}
         panels.add("growth", integrator, part["predicted"], part["measured"].to_numpy(), **more)
-    return Result(frame(probes), (), pd.DataFrame(panels.frame))
+    return Result(frame(probes), (), panels.frame)

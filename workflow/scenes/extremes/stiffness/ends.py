@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
 
 import mpmath as mp
 import numpy as np
@@ -12,41 +13,31 @@ from fracparticles.errors import NonFiniteSolution
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 from fracparticles.time.rkc import ChebyshevStep, stages_for
-from fracstudy.probe import Probe, Verdict, probe
-from scenes.extremes.stiffness.ways import exact_modes, stiff
+from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe, off
+from scenes.extremes.stiffness.ways import Stiff, exact_modes, power_of_step, stiff
 
 __all__ = ["at_the_limit", "conservation", "decay", "refused", "spoken_of"]
 
 
-def conservation(half: int, stiffness: list[float], most: float) -> Iterator[Probe]:
+_MEAN = Kind("the end", "the mean of the data everywhere", source="closed form", must=HELD)
+
+
+def _exponential(one: Stiff, stiffness: float) -> Case:
+    return one.case(integrator="exponential", t_final=stiffness / -one.lowest)
+
+
+def conservation(half: int, stiffness: list[float]) -> Iterator[Probe]:
     """The mass of the exchange schemes, and of KPSE, whose matrix is symmetric, the end: the mean everywhere."""
-    for scheme in ("KPSE", "FPSE", "DPSE"):
+    mass = Kind("mass", "that of the data", source="closed form", must=HELD)
+    for scheme, value in product(("KPSE", "FPSE", "DPSE"), stiffness):
+        if scheme != "KPSE" and value > 1e7:
+            continue
         one = stiff(scheme, half)
-        for value in stiffness:
-            if scheme != "KPSE" and value > 1e7:
-                continue
-            case = one.case(integrator="exponential", t_final=value / -one.lowest)
-            yield probe(
-                "mass",
-                f"{scheme}, exponential, T |lambda| = {value:.0e}",
-                "that of the data",
-                lambda case=case, u0=one.u0: abs(prepare(case).solve(u0).sum() / u0.sum() - 1.0),
-                one.bound(value),
-                source="closed form",
-                must=Verdict.HELD,
-            )
-            if scheme == "KPSE" and value >= 1e6:
-                yield probe(
-                    "the end",
-                    f"KPSE, exponential, T |lambda| = {value:.0e}",
-                    "the mean of the data everywhere",
-                    lambda case=case, u0=one.u0: np.abs(
-                        prepare(case).solve(u0) / u0.mean() - 1.0
-                    ).max(),
-                    one.bound(value),
-                    source="closed form",
-                    must=Verdict.HELD,
-                )
+        solve, u0, bound = prepare(_exponential(one, value)).solve, one.u0, one.bound(value)
+        name = f"{scheme}, exponential, T |lambda| = {value:.0e}"
+        yield mass(name, lambda: abs(solve(u0).sum() / u0.sum() - 1.0), bound=bound)
+        if scheme == "KPSE" and value >= 1e6:
+            yield _MEAN(name, lambda: off(solve(u0) / u0.mean(), 1.0), bound=bound)
 
 
 def decay(schemes: list[str], half: int, stiffness: list[float]) -> Iterator[Probe]:
@@ -54,116 +45,18 @@ def decay(schemes: list[str], half: int, stiffness: list[float]) -> Iterator[Pro
 
     Data of 1e-290 decay as those of one do, with the same digits, down to the smallest number.
     """
+    right = Kind("decay", "that of its modes, or zero", source="mpmath", must=HELD)
     for scheme in (name for name in ("DD", "FD") if name in schemes):
         one = stiff(scheme, half)
         of = exact_modes(one)
-        for value in stiffness:
-            if value > 1e9:
-                continue
-            time = value / -one.lowest
+        for value in (value for value in stiffness if value <= 1e9):
+            time, solve = value / -one.lowest, prepare(_exponential(one, value)).solve
             for size in (1.0, 1e-250, 1e250):
-                case = one.case(integrator="exponential", t_final=time)
-                yield probe(
-                    "decay",
+                yield right(
                     f"{scheme}, u of {size:.0e}, T |lambda| = {value:.0e}",
-                    "that of its modes, or zero",
-                    lambda case=case, s=size, t=time, one=one, of=of: _decayed(
-                        prepare(case).solve(s * one.u0), s, of(lambda z: mp.exp(z * t))
-                    ),
-                    one.bound(value) + 1e-9,  # so many pieces, each to 1e-10
-                    source="mpmath",
-                    must=Verdict.HELD,
+                    lambda: _decayed(solve(size * one.u0), size, of(lambda z: mp.exp(z * time))),
+                    bound=one.bound(value) + 1e-9,  # so many pieces, each to 1e-10
                 )
-
-
-def at_the_limit(half: int, stiffness: list[float]) -> Iterator[Probe]:
-    """Series of so many steps, of the limit itself and of a millionth: p(A dt)^n in forty digits.
-
-    A step at the limit hardly damps the shortest wave; the series may amplify what is beyond by two, over the run.
-    """
-    stages = {"euler": 1, "rk2": 2, "rk4": 4}
-    one = stiff("KPSE", half)
-    of = exact_modes(one)
-    for integrator, count in stages.items():
-        limit = one.case(integrator=integrator, dt=1.0).largest_stable_step
-        for share in (1e-6, 1.0 - 1e-8):  # n steps may come out as n (1 - 1e-9)
-            for value in stiffness if share > 0.5 else stiffness[:-1]:
-                dt = share * limit
-                steps = max(2, int(value / -one.lowest / dt))
-                fields = {"integrator": integrator, "dt": dt, "t_final": steps * dt}
-                case = one.case(**fields, evaluation="series")
-
-                def power(z: Any, case: Case = case, count: int = count) -> Any:
-                    z = z * mp.mpf(case.time_step)
-                    return sum(z**k / mp.factorial(k) for k in range(count + 1)) ** case.steps
-
-                yield probe(
-                    "many steps",
-                    f"KPSE, {integrator}, dt = {share:g} a, T |lambda| = {value:.0e}",
-                    f"p(A dt)^n, n = {case.steps:.0e}",
-                    lambda case=case, power=power: _relative(
-                        prepare(case).solve(one.u0), of(power)
-                    ),
-                    10.0
-                    * one.bound(
-                        value
-                    ),  # of rk4 the polynomial is steeper at the limit than the exponential anywhere
-                    source="mpmath",
-                    must=Verdict.HELD,
-                )
-
-
-def spoken_of(half: int, stiffness: list[float]) -> Iterator[Probe]:
-    """T |lambda| so large that round-off matters: a warning, and the error within what it says, 64 T |lambda| eps."""
-    one = stiff("KPSE", half)
-    for value in sorted({1e8, max(1e8, *stiffness)}):
-        case = one.case(integrator="exponential", t_final=value / -one.lowest)
-        yield probe(
-            "a word",
-            f"KPSE, exponential, T |lambda| = {value:.0e}",
-            "the mean, and a warning of the round-off",
-            lambda case=case, u0=one.u0: np.abs(compute(case, u0).u / u0.mean() - 1.0).max(),
-            one.bound(value),
-            source="closed form",
-            must=Verdict.WARNED,
-        )
-
-
-def refused(half: int) -> Iterator[Probe]:
-    """Runs that would take too long, steps that are too many, stages beyond the last."""
-    kpse, fpse = stiff("KPSE", half), stiff("FPSE", half)
-    one = ChebyshevStep(5)
-    tries: dict[str, Callable[[], Any]] = {
-        "T |lambda| = 1e13": lambda: prepare(kpse.case(integrator="exponential", t_final=1e13)),
-        "FPSE, T |lambda| = 1e11": lambda: prepare(
-            fpse.case(integrator="exponential", t_final=1e11 / -fpse.lowest)
-        ),
-        "1e17 steps": lambda: kpse.case(integrator="rk2", dt=1e-17, t_final=1.0),
-        "a stabilised step of z = 5e4": lambda: stages_for(5e4),
-        "251 stages": lambda: ChebyshevStep(251),
-        "rates of another shape": lambda: one.advance(
-            lambda y: y[:-1], np.ones(3), dt=1.0, steps=1
-        ),
-        "data that are nan": lambda: one.advance(
-            lambda y: -y, np.array([1.0, np.nan]), dt=1.0, steps=1
-        ),
-    }
-    for name, run in tries.items():
-        yield probe(
-            "refused",
-            name,
-            "an error of ours",
-            lambda run=run: float(run() is not None),
-            0.0,
-            must=Verdict.REFUSED,
-        )
-    yield probe(
-        "overflow",
-        "5 stages, z = -1e10",
-        "an error, no warning of numpy's",
-        lambda: _overflows(one),
-        0.0,
-    )
 
 
 def _decayed(u: np.ndarray, size: float, exact: np.ndarray) -> tuple[float, str]:
@@ -171,12 +64,66 @@ def _decayed(u: np.ndarray, size: float, exact: np.ndarray) -> tuple[float, str]
     greatest = float(np.abs(exact).max())
     if greatest * min(size, 1.0) < 1e-300:
         return float(np.abs(u / max(size, 1.0)).max() > 1e-299), "below every number"
-    return float(np.abs(u / size - exact).max()) / greatest, f"{greatest:.0e} of the data"
+    return off(u / size, exact), f"{greatest:.0e} of the data"
+
+
+def at_the_limit(half: int, stiffness: list[float]) -> Iterator[Probe]:
+    """Series of so many steps, of the limit itself and of a millionth: p(A dt)^n in forty digits.
+
+    A step at the limit hardly damps the shortest wave; the series may amplify what is beyond by two, over the run.
+    """
+    one = stiff("KPSE", half)
+    of = exact_modes(one)
+    # n steps may come out as n (1 - 1e-9)
+    for integrator, share in product(("euler", "rk2", "rk4"), (1e-6, 1.0 - 1e-8)):
+        dt = share * one.case(integrator=integrator, dt=1.0).largest_stable_step
+        for value in stiffness if share > 0.5 else stiffness[:-1]:
+            steps = max(2, int(value / -one.lowest / dt))
+            step = {"integrator": integrator, "dt": dt, "t_final": steps * dt}
+            case = one.case(**step, evaluation="series")
+            power = power_of_step(case)
+            # Of rk4 the polynomial is steeper at the limit than the exponential anywhere.
+            bound, expected = 10.0 * one.bound(value), f"p(A dt)^n, n = {case.steps:.0e}"
+            yield Kind("many steps", expected, bound, "mpmath", HELD)(
+                f"KPSE, {integrator}, dt = {share:g} a, T |lambda| = {value:.0e}",
+                lambda: _relative(prepare(case).solve(one.u0), of(power)),
+            )
 
 
 def _relative(u: np.ndarray, exact: np.ndarray) -> tuple[float, str]:
-    deviation = float(np.abs(u - exact).max() / np.abs(exact).max())
-    return deviation, f"{deviation:.0e}"
+    return off(u, exact), f"{off(u, exact):.0e}"
+
+
+def spoken_of(half: int, stiffness: list[float]) -> Iterator[Probe]:
+    """T |lambda| so large that round-off matters: a warning, and the error within what it says, 64 T |lambda| eps."""
+    one = stiff("KPSE", half)
+    told = replace(_MEAN, kind="a word", expected="the mean, and a warning of the round-off")
+    for value in sorted({1e8, max(1e8, *stiffness)}):
+        yield told(
+            f"KPSE, exponential, T |lambda| = {value:.0e}",
+            lambda: off(compute(_exponential(one, value), one.u0).u / one.u0.mean(), 1.0),
+            bound=one.bound(value),
+            must=WARNED,
+        )
+
+
+def refused(half: int) -> Iterator[Probe]:
+    """Runs that would take too long, steps that are too many, stages beyond the last."""
+    kpse, fpse = stiff("KPSE", half), stiff("FPSE", half)
+    one, ones, hole = ChebyshevStep(5), np.ones(3), np.array([1.0, np.nan])
+    yield from Kind("refused", "an error of ours", must=REFUSED).of(
+        {
+            "T |lambda| = 1e13": lambda: prepare(kpse.case(integrator="exponential", t_final=1e13)),
+            "FPSE, T |lambda| = 1e11": lambda: prepare(_exponential(fpse, 1e11)),
+            "1e17 steps": lambda: kpse.case(integrator="rk2", dt=1e-17, t_final=1.0),
+            "a stabilised step of z = 5e4": lambda: stages_for(5e4),
+            "251 stages": lambda: ChebyshevStep(251),
+            "rates of another shape": lambda: one.advance(lambda y: y[:-1], ones, dt=1.0, steps=1),
+            "data that are nan": lambda: one.advance(lambda y: -y, hole, dt=1.0, steps=1),
+        }
+    )
+    overflow = Kind("overflow", "an error, no warning of numpy's")
+    yield overflow("5 stages, z = -1e10", _overflows, one)
 
 
 def _overflows(step: ChebyshevStep) -> float:

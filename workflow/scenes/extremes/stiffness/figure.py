@@ -13,15 +13,11 @@ from fracstudy.style import axes_row, legend_below, log_log, panel_title
 
 __all__ = ["figure"]
 
+_HOLLOW = {"markerfacecolor": "none"}
 _LOOK: dict[str, dict[str, Any]] = {
     "rk2, stepping": {"color": "#D55E00", "marker": "s"},
     "stabilised": {"color": "#CC79A7", "marker": "D"},
-    "rk2, series": {
-        "color": "#009E73",
-        "marker": "^",
-        "markersize": 8.0,
-        "markerfacecolor": "none",
-    },
+    "rk2, series": {"color": "#009E73", "marker": "^", "markersize": 8.0, **_HOLLOW},
     "exponential": {"color": "#0072B2", "marker": "o", "markersize": 3.5},
 }
 _TITLES = {"applications": ("operator applications", "work"), "error": ("relative error", "error")}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fracstudy.inputs import Inputs, Result
-from fracstudy.probe import Probe, frame
+from fracstudy.probe import frame
 from scenes.extremes.stiffness import ends, ways
 
 __all__ = ["study"]
@@ -17,12 +17,13 @@ def study(
     Ways that need more than `most` applications of the operator are counted, not run. For the figure, applications and
     error of each way.
     """
-    probes: list[Probe] = []
     found, series = ways.probes(schemes, half, stiffness, most)
-    probes += found
-    probes += ends.conservation(half, stiffness, most)
-    probes += ends.decay(schemes, half, stiffness)
-    probes += ends.at_the_limit(half, stiffness)
-    probes += ends.spoken_of(half, stiffness)
-    probes += ends.refused(half)
+    probes = [
+        *found,
+        *ends.conservation(half, stiffness),
+        *ends.decay(schemes, half, stiffness),
+        *ends.at_the_limit(half, stiffness),
+        *ends.spoken_of(half, stiffness),
+        *ends.refused(half),
+    ]
     return Result(frame(probes), (), series)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, factorial
+from itertools import product
+from math import ceil
 from typing import Any
 
 import mpmath as mp
@@ -17,13 +18,13 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.time import STEP_POLYNOMIALS
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.panels import Panels
-from fracstudy.probe import Probe, Verdict, probe
+from fracstudy.probe import EPS, HELD, Kind, Probe, off
 
-__all__ = ["EPS", "Stiff", "exact_modes", "probes", "stiff"]
+__all__ = ["Stiff", "exact_modes", "power_of_step", "probes", "stiff"]
 
-EPS = float(np.finfo(float).eps)
 # Measured, of a Chebyshev series: an application of A is exact to some ulps of |lambda|, and the recurrence adds to it.
 _ULPS = 64.0
 # FPSE and DPSE are similar to operators with orthogonal modes by a matrix of so large a condition, which magnifies.
@@ -51,16 +52,10 @@ class Stiff:
         return _CONDITION.get(self.scheme, 1.0) * (_ULPS * EPS * stiffness + 1e-10)
 
 
-def stiff(scheme: str, half: int, beta: float = 0.5, **more: Any) -> Stiff:
+def stiff(scheme: str, half: int) -> Stiff:
     """Return a scheme on 2 `half` + 1 particles with rough data."""
-    fields = {
-        "scheme": scheme,
-        "beta": beta,
-        "half_width": float(half),
-        "spacing": 1.0,
-        "t_initial": 0.0,
-        **more,
-    }
+    fields = {"scheme": scheme, "beta": 0.5, "half_width": float(half), "spacing": 1.0}
+    fields["t_initial"] = 0.0
     case = Case(**fields, integrator="exponential", t_final=1.0)
     noise = np.random.default_rng(2).uniform(0.0, 1.0, case.particles)
     lowest = case.symbol_range[0] * case.setting.rate
@@ -94,44 +89,42 @@ def _modes(
         return values, modes, mp.lu_solve(modes, mp.matrix(u0))
 
 
+def power_of_step(case: Case) -> Callable[[Any], Any]:
+    """Return z -> p(z dt)^n of a run by steps, in as many digits as z has."""
+    stages = STEP_POLYNOMIALS[case.resolved_integrator].stages
+
+    def power(z: Any) -> Any:
+        z = z * mp.mpf(case.time_step)
+        return sum(z**k / mp.factorial(k) for k in range(stages + 1)) ** case.steps
+
+    return power
+
+
 def probes(
     schemes: list[str], half: int, stiffness: list[float], most: float
 ) -> tuple[list[Probe], pd.DataFrame]:
     """Exponential, series, stepping and stabilised steps, for each T |lambda|; and the figure."""
-    made: list[Probe] = []
-    panels = Panels()
-    for scheme in schemes:
+    made, panels = [], Panels()
+    for scheme, value in product(schemes, stiffness):
         one = stiff(scheme, half)
         of = exact_modes(one)
-        for value in stiffness:
-            time = value / -one.lowest
-            for way, run, f, applications, extra in _ways(one, time):
-                counted = applications > most or value > _AFFORDABLE.get(scheme, np.inf)
-                error: list[float] = []
-                if not counted:
-                    made.append(
-                        probe(
-                            way,
-                            f"{scheme}, T |lambda| = {value:.0e}",
-                            "f(A) u in forty digits",
-                            lambda run=run, f=f, of=of, log=error: _deviation(run(), of(f), log),
-                            one.bound(value) + extra,
-                            source="mpmath",
-                            must=Verdict.HELD,
-                        )
-                    )
-                if scheme == "KPSE":
-                    panels.add("applications", way, value, applications)
-                    if error:
-                        panels.add("error", way, value, max(error[0], EPS))
+        for way, run, f, applications, extra in _ways(one, value / -one.lowest):
+            if scheme == "KPSE":
+                panels.add("applications", way, value, applications)
+            if applications > most or value > _AFFORDABLE.get(scheme, np.inf):
+                continue
+            right = Kind(way, "f(A) u in forty digits", one.bound(value) + extra, "mpmath", HELD)
+            name = f"{scheme}, T |lambda| = {value:.0e}"
+            made.append(right(name, lambda: _deviation(run(), of(f))))
+            if scheme == "KPSE" and np.isfinite(made[-1].deviation):
+                panels.add("error", way, value, max(made[-1].deviation, EPS))
     return made, panels.frame
 
 
-def _deviation(u: np.ndarray, exact: np.ndarray, log: list[float]) -> tuple[float, str]:
+def _deviation(u: np.ndarray, exact: np.ndarray) -> tuple[float, str]:
     """Against the solution, or against 1e-280 where it has decayed to less."""
-    size = max(float(np.abs(exact).max()), 1e-280)
-    log.append(float(np.abs(u - exact).max()) / size)
-    return log[0], f"{log[0]:.0e}"
+    deviation = off(u, exact, max(float(np.abs(exact).max()), 1e-280))
+    return deviation, f"{deviation:.0e}"
 
 
 def _ways(
@@ -139,33 +132,23 @@ def _ways(
 ) -> Iterator[tuple[str, Callable[[], np.ndarray], Callable[[Any], Any], int, float]]:
     """Yield the way, the run, the function of A that it is, its applications, and what else its bound holds."""
     exponential = one.case(integrator="exponential", t_final=time)
-    count = _applications(exponential)
     yield (
         "exponential",
         lambda: prepare(exponential).solve(one.u0),
         lambda z: mp.exp(z * time),
-        count,
+        _applications(exponential),
         0.0,
     )
     steps = max(2, ceil(time * -one.lowest / 1.8))
-    dt = time / steps
-    for way, evaluation in (("rk2, series", "series"), ("rk2, stepping", "stepping")):
-        case = one.case(integrator="rk2", dt=dt, t_final=time, evaluation=evaluation)
-        step, number = case.time_step, case.steps
-        count = 2 * number if evaluation == "stepping" else _applications(case)
-        yield (
-            way,
-            lambda case=case: prepare(case).solve(one.u0),
-            lambda z, step=step, number=number: (
-                sum((z * step) ** k / factorial(k) for k in range(3)) ** number
-            ),
-            count,
-            0.0,
-        )
+    for evaluation in ("series", "stepping"):
+        fields = {"integrator": "rk2", "dt": time / steps, "t_final": time}
+        case = one.case(**fields, evaluation=evaluation)
+        count = 2 * case.steps if evaluation == "stepping" else _applications(case)
+        run = lambda: prepare(case).solve(one.u0)  # noqa: E731
+        yield f"rk2, {evaluation}", run, power_of_step(case), count, 0.0
     largest = 0.95 * ChebyshevStep(_STAGES).stability_interval
     number = max(4, ceil(time * -one.lowest / largest))
-    z = time * -one.lowest / number
-    stages = stages_for(z)
+    stages = stages_for(time * -one.lowest / number)
     rkc = ChebyshevStep(stages)
     operator = SCHEMES[one.scheme].operator(exponential.setting)
     yield (

@@ -1,15 +1,11 @@
 """The operators by quadrature of their definitions, for the four functions by name, and deviations from them."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import gamma
 
 from fracparticles.sph.closed_forms import FUNCTIONS
 from fracparticles.sph.definition import defining_integral
 from scenes.ghorbani.operators import SLOPES, Order, order_at
-
-__all__ = ["at_zero", "caputo", "derivative", "deviation", "integral"]
 
 
 def integral(name: str, x: np.ndarray, order: Order) -> np.ndarray:

@@ -1,7 +1,5 @@
 """Sec. 5: the forms (33)-(36) without a singular kernel, and the two lines of (4) and (6), against the definitions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
@@ -15,8 +13,6 @@ from fracparticles.sph.definition import defining_integral
 from fracstudy.findings import Finding, measured
 from scenes.ghorbani.operators import CURVATURES, LABELS, SLOPES, Order, central_slope, order_at
 from scenes.ghorbani.sph_closed_forms import definitions as by
-
-__all__ = ["findings"]
 
 _NEAR = np.array([1e-8, 1e-6])  # points next to x = a
 _CELLS = 400
@@ -83,12 +79,9 @@ def _at_the_end(orders: list[float]) -> Finding:
         (name, o): np.polyfit(np.log(_NEAR), np.log(np.abs(by.derivative(name, _NEAR, o))), 1)[0]
         for name, o in product(FUNCTIONS, orders)
     }
-    excess = {
-        LABELS[name]: max(abs(powers[name, o] + o) for o in orders)
-        for name in FUNCTIONS
-        if by.at_zero(name)
-    }
-    bounded = min(power for (name, _), power in powers.items() if not by.at_zero(name))
+    infinite = [name for name in FUNCTIONS if by.at_zero(name)]
+    excess = {LABELS[s]: max(abs(powers[s, o] + o) for o in orders) for s in infinite}
+    bounded = min(power for (name, _), power in powers.items() if name not in infinite)
     return measured("S-DEF.35_end", excess=excess, bounded=bounded)
 
 
@@ -118,10 +111,8 @@ def _memory(x: np.ndarray, variable: dict[str, float]) -> Finding:
     at = x[:, None] - distance
     gaps = {}
     # The order under the integral, and at x' = a.
-    for kind, argument, end in (
-        ("Type II, α(x′)", at, np.zeros_like(x)),
-        ("Type III, α(x − x′)", distance, x),
-    ):
+    kinds = {"Type II, α(x′)": (at, np.zeros_like(x)), "Type III, α(x − x′)": (distance, x)}
+    for kind, (argument, end) in kinds.items():
         alpha, first = order_at(variable, argument), order_at(variable, end)
         weight = measure * distance ** (alpha - 1.0) / gamma(alpha)
         part = measure * distance**alpha / gamma(1.0 + alpha)

@@ -1,7 +1,5 @@
 """The closed forms of the Appendix and the non-singular ones of Sec. 5, against the definitions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import pi, sqrt
 from typing import Any
@@ -19,11 +17,7 @@ from scenes.ghorbani.sph_closed_forms import definitions as by
 from scenes.ghorbani.sph_closed_forms import non_singular
 from scenes.ghorbani.sph_closed_forms.definitions import deviation
 
-__all__ = ["PRINTED", "study"]
-
-_EQUATIONS = {
-    "sin": ("A1", "A5"), "cos": ("A2", "A6"), "exp": ("A3", "A7"), "cubic": ("A4", "A8"),
-}  # fmt: skip
+_EQUATIONS = {name: (f"A{k}", f"A{k + 4}") for k, name in enumerate(LABELS, start=1)}
 
 
 def _upper(s: float | np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -80,10 +74,8 @@ def study(
         for name, (caputo, derivative) in _EQUATIONS.items()
     ]
     table = pd.DataFrame(rows)
-    findings = [
-        *_closed_forms(x, orders, variable, table),
-        *non_singular.findings(x, orders, variable),
-    ]
+    found = _closed_forms(x, orders, variable, table)
+    findings = [*found, *non_singular.findings(x, orders, variable)]
     return Result(table, inputs.judged(findings))
 
 
@@ -126,17 +118,14 @@ def _closed_forms(
         ours = PRINTED[_EQUATIONS[name][1]](x, -order_at(order, x))
         return deviation(ours, by.integral(name, x, order))
 
-    alpha = order_at(variable, x)
-    constant = {
-        e: max(integral_gap(name, a) for a in orders) for name, (_, e) in _EQUATIONS.items()
-    }
-    caputo = max(
-        deviation(PRINTED[e](x, alpha), by.caputo(name, x, variable))
-        for name, (e, _) in _EQUATIONS.items()
-    )
-    integral = max(integral_gap(name, variable) for name in _EQUATIONS)
-    yield measured("S-APP.integral", deviation=constant)
-    valid = {"Caputo derivative": caputo, "RL integral": integral}
+    def caputo_gap(name: str) -> float:
+        ours = PRINTED[_EQUATIONS[name][0]](x, order_at(variable, x))
+        return deviation(ours, by.caputo(name, x, variable))
+
+    gaps = {e: max(integral_gap(s, a) for a in orders) for s, (_, e) in _EQUATIONS.items()}
+    yield measured("S-APP.integral", deviation=gaps)
+    valid = {"Caputo derivative": max(map(caputo_gap, _EQUATIONS))}
+    valid["RL integral"] = max(integral_gap(name, variable) for name in _EQUATIONS)
     yield measured("S-APP.type_one", deviation=valid)
     invalid = table.set_index("function")["RL derivative, deviation, Type I"]
     yield measured("S-APP.type_one_derivative", deviation=dict(invalid))

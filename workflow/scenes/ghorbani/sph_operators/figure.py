@@ -1,26 +1,15 @@
 """An SPH operator on the four functions: Figs. 3 to 9."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import entry, legend_below
+from fracstudy.panels import pick
+from fracstudy.style import Axes, Figure, Look, entry, legend_below
 from scenes.ghorbani.operators import OPERATORS, SUMS, TITLES
 
-__all__ = ["figure"]
-
 _LEAST = 1e-9  # a smaller error, where a curve happens to cross zero, is not drawn
-_HOLLOW: dict[str, Any] = {
-    "color": SUMS["standard"][1],
-    "marker": "o",
-    "linestyle": "",
-    "markerfacecolor": "none",
-}
+_HOLLOW: Look = {"marker": "o", "linestyle": "", "markerfacecolor": "none"}
+_HOLLOW["color"] = SUMS["standard"][1]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, operator: str) -> Figure:
@@ -29,7 +18,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, operator: str) -> Figur
     drawn = Figure(figsize=(2.5 * len(names), 4.9), layout="constrained")
     axes = drawn.subplots(2, len(names), sharex=True, squeeze=False, height_ratios=(1.0, 1.15))
     for (upper, lower), name in zip(axes.T, names, strict=True):
-        curves = dict(tuple(series[series["function"] == name].groupby("method")))
+        curves = dict(tuple(pick(series, function=name).groupby("method")))
         standard = curves["standard"]
         finite = standard[np.isfinite(standard["exact"])]
         upper.plot(finite["x"], finite["exact"], color="black")

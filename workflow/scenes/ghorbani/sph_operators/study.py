@@ -1,7 +1,5 @@
 """The SPH approximation of fractional operators: Figs. 3 to 9, and the repair of the integral."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from itertools import product
 from typing import Any, Literal
@@ -15,9 +13,8 @@ from fracparticles.sph.integrals import METHODS
 from fracparticles.sph.norms import r2_score, relative_l2
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-from scenes.ghorbani.operators import LABELS, OPERATORS, Order, order_at
-
-__all__ = ["study"]
+from fracstudy.panels import Panels
+from scenes.ghorbani.operators import LABELS, OPERATORS, Order
 
 _MARGIN = 5  # particles within 4 h, 4.4 s, of an end: their sums of sums see it
 
@@ -39,43 +36,32 @@ def study(
     line = ParticleLine(0.0, length, count, smoothing_ratio)
     item = dict(zip(("standard", "modified"), inputs.items, strict=False))
     inner = slice(_MARGIN, -_MARGIN)
-    rows, curves = [], []
+    rows, panels = [], Panels()
     for name, method in product(FUNCTIONS, METHODS):
-        x, exact, ours = _values(line, operator, order, name, method)
+        x, exact, ours = OPERATORS[operator].compared(line, name, order, method)
         error, figure = np.abs(ours - exact), item.get(method)
-        columns = {"x": x, "exact": exact, "sph": ours.real, "error": error}
-        curves.append(pd.DataFrame({"function": name, "method": method, **columns}))
+        curve = {"x": x, "exact": exact, "sph": ours.real, "error": error}
+        panels.add(function=name, method=method, **curve)
         away = relative_l2(exact[inner], ours[inner])
-        rows.append(
-            {
-                "function": name,
-                "sums": method,
-                "L2, printed": inputs.printed.get(f"{figure}.{name}.L2"),
-                "L2": relative_l2(exact, ours),
-                "R2, printed": inputs.printed.get(f"{figure}.{name}.R2"),
-                "R2": r2_score(exact, ours),
-                "L2 of the real part": relative_l2(exact, ours.real),
-                f"L2 more than {_MARGIN} particles from the ends": away,
-                "largest error": float(error.max()),
-                "range": float(np.ptp(exact)),
-            }
-        )
+        row = {
+            "function": name,
+            "sums": method,
+            "L2, printed": inputs.printed.get(f"{figure}.{name}.L2"),
+            "L2": relative_l2(exact, ours),
+            "R2, printed": inputs.printed.get(f"{figure}.{name}.R2"),
+            "R2": r2_score(exact, ours),
+            "L2 of the real part": relative_l2(exact, ours.real),
+            f"L2 more than {_MARGIN} particles from the ends": away,
+            "largest error": float(error.max()),
+            "range": float(np.ptp(exact)),
+        }
+        rows.append(row)
     table = pd.DataFrame(rows)
     findings = list(_findings(table.set_index(["function", "sums"]), inputs.printed, item))
     if "modified" in item and not isinstance(order, dict):
         findings += _others(line, order, **item)
     shown = table.drop(columns="range").replace({"function": LABELS})
-    return Result(shown, findings, pd.concat(curves, ignore_index=True))
-
-
-def _values(
-    line: ParticleLine, operator: str, order: Order, name: str, method: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The particles that are judged, the closed form there, and the approximation."""
-    kind, function, alpha = OPERATORS[operator], FUNCTIONS[name], order_at(order, line.x_all)
-    ours = kind.approximate(line, function.value(line.x_all), alpha, method=method)
-    exact = kind.exact(function, line.x, alpha[line.inside])
-    return line.x[kind.first :], exact[kind.first :], ours[kind.first :]
+    return Result(shown, findings, panels.frame)
 
 
 def _findings(
@@ -99,19 +85,14 @@ def _findings(
             l2=dict(standard["L2"].rename(LABELS)),
             halved=table.loc[(claimed, "halved"), "L2"],
         )
-        yield measured(
-            f"{figure}.agreement",
-            **_deviations(standard["deviation"], claimed),
-            others={"the error L2 (39) instead": _deviations(standard["L2"], claimed)},
-        )
+        of_l2 = {"the error L2 (39) instead": _deviations(standard["L2"], claimed)}
+        agreement = _deviations(standard["deviation"], claimed)
+        yield measured(f"{figure}.agreement", **agreement, others=of_l2)
     if "modified" in item:
         sine = table.loc["sin"]
-        yield measured(
-            f"{item['modified']}.effective",
-            l2_ratio=sine.loc["modified", "L2"] / sine.loc["standard", "L2"],
-            short_ratio=sine.loc["modified", "short"] / sine.loc["standard", "short"],
-            l2=dict(sine["L2"]),
-        )
+        ratio = sine.loc["modified", ["L2", "short"]] / sine.loc["standard", ["L2", "short"]]
+        numbers = {"l2_ratio": ratio["L2"], "short_ratio": ratio["short"], "l2": dict(sine["L2"])}
+        yield measured(f"{item['modified']}.effective", **numbers)
 
 
 def _deviations(by_function: pd.Series, claimed: str) -> dict[str, Any]:
@@ -123,17 +104,14 @@ def _deviations(by_function: pd.Series, claimed: str) -> dict[str, Any]:
 def _others(line: ParticleLine, order: float, standard: str, modified: str) -> Iterator[Finding]:
     """The integral's errors beside those of the two derivatives, and what the modified form does to all three."""
     l2, real = {}, {}
-    for operator, name, method in product(OPERATORS, FUNCTIONS, ("standard", "modified")):
-        _, exact, ours = _values(line, operator, order, name, method)
-        case = OPERATORS[operator].name, LABELS[name], method
+    for operator, name, method in product(OPERATORS.values(), FUNCTIONS, ("standard", "modified")):
+        _, exact, ours = operator.compared(line, name, order, method)
+        case = operator.name, LABELS[name], method
         l2[case], real[case] = relative_l2(exact, ours), relative_l2(exact, ours.real)
     l2, real = (pd.Series(errors).unstack(sort=False) for errors in (l2, real))
     worst = l2["standard"].groupby(level=0, sort=False).max()
     integral = worst.pop(OPERATORS["rl_integral"].name)
     yield measured(f"{standard}.contrast", ratio=dict(integral / worst), l2=dict(worst))
     ratio, ratio_real = (dict(errors["modified"] / errors["standard"]) for errors in (l2, real))
-    yield measured(
-        f"{modified}.all_operators",
-        ratio=ratio,
-        others={"the real part alone": {"ratio": ratio_real}},
-    )
+    others = {"the real part alone": {"ratio": ratio_real}}
+    yield measured(f"{modified}.all_operators", ratio=ratio, others=others)

@@ -1,7 +1,5 @@
 """Secs. 3.1, 3.2: the kernel approximation of a function, its gradient and its integral, and their sums."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import sin
 
@@ -13,8 +11,6 @@ from fracparticles.sph.cubic_spline import spline, spline_gradient, spline_integ
 from fracstudy.findings import Finding, measured
 from scenes.ghorbani.operators import LABELS
 
-__all__ = ["findings"]
-
 _H, _POINT = 0.1, 0.7  # smoothing length, and the point where (11) and (13) are tried on cos x
 _PIECES = _H * np.array([-2.0, -1.0, 0.0, 1.0, 2.0])  # the spline is a polynomial between these
 _BETWEEN = np.linspace(0.0, 1.0, 21)  # of the way from a particle to the next
@@ -23,24 +19,18 @@ _FINER = 4
 
 def findings(line: ParticleLine) -> Iterator[Finding]:
     """What the text says of (11), (13) and (15)."""
-    near = _POINT + _PIECES
+    near, exact = _POINT + _PIECES, -sin(_POINT)
     by_other = -_quadrature(lambda y: np.cos(y) * -spline_gradient(_POINT - y, _H), near)
-    yield measured(
-        "S-EQ.gradient",
-        deviation=_off(by_other, -sin(_POINT)),
-        others={"the gradient taken by x": {"deviation": _off(-by_other, -sin(_POINT))}},
-    )
+    by_x = {"the gradient taken by x": {"deviation": _off(-by_other, exact)}}
+    yield measured("S-EQ.gradient", deviation=_off(by_other, exact), others=by_x)
     # Of cos the kernel makes a multiple, so that the integral of (12) over [0, x] is one of sin.
     factor = _quadrature(lambda z: np.cos(z) * spline(z, _H), _PIECES)
     single = _quadrature(
         lambda y: np.cos(y) * (spline_integral(_POINT - y, _H) - spline_integral(-y, _H)),
         np.sort([*_PIECES, *near]),
     )
-    yield measured(
-        "S-EQ.exchange",
-        deviation=_off(single, factor * sin(_POINT)),
-        smoothing=_off(single, sin(_POINT)),
-    )
+    deviation, smoothing = (_off(single, -f * exact) for f in (factor, 1.0))
+    yield measured("S-EQ.exchange", deviation=deviation, smoothing=smoothing)
     yield _any_point(line)
     yield from _truncated(line)
 
@@ -81,10 +71,6 @@ def _truncated(line: ParticleLine) -> Iterator[Finding]:
 
     finer = ParticleLine(line.a, line.b, _FINER * (line.count - 1) + 1, line.smoothing_ratio)
     bare, full = errors(line, virtual=False), errors(line, virtual=True)
-    yield measured(
-        "S-EQ.truncated",
-        ratio=bare[[0, 2]].min() / bare[1],
-        remaining=errors(finer, virtual=False)[0] / bare[0],
-        end=bare[0],
-    )
+    ratio, remaining = bare[[0, 2]].min() / bare[1], errors(finer, virtual=False)[0] / bare[0]
+    yield measured("S-EQ.truncated", ratio=ratio, remaining=remaining, end=bare[0])
     yield measured("S-EQ.virtual", ratio=full[[0, 2]].max() / full[1], end=full[0])

@@ -1,9 +1,6 @@
 """What the text leaves open about its sums, each choice changed in turn, and its equations as printed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -15,37 +12,29 @@ from fracparticles.sph.derivatives import correction, gradient, second_derivativ
 from fracparticles.sph.norms import relative_l2
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-from scenes.ghorbani.operators import (
-    CURVATURES,
-    LABELS,
-    OPERATORS,
-    SLOPES,
-    Order,
-    central_slope,
-    order_at,
-)
+from scenes.ghorbani import operators
+from scenes.ghorbani.operators import CURVATURES, LABELS, OPERATORS, SLOPES, Order, order_at
 from scenes.ghorbani.sph_readings import kernel
 from scenes.ghorbani.sph_readings.sums import Reading, approximate
 
-__all__ = ["CASES", "READINGS", "study"]
-
-_OURS = Reading()
+_DIGITS, _SINGULAR = "that of the digits", "singular sums (23), (25), (26)"
+_ETA = "η = 0.0001 / h², (37) as printed"
 READINGS = {
-    "that of the digits": _OURS,
-    "no terms j > i": replace(_OURS, ahead="none"),
-    "terms j > i with |x_i - x_j|": replace(_OURS, ahead="absolute"),
-    "norms of the real part": replace(_OURS, real=True),
-    "gradients not corrected": replace(_OURS, correction="none"),
-    "gradients times L, (19) as printed": replace(_OURS, correction="multiplied"),
-    "no virtual particles": replace(_OURS, virtual=False),
-    "exact f', f''": replace(_OURS, exact=True),
-    "η = 0.0001 / h², (37) as printed": replace(_OURS, eta="1/h^2"),
-    "singular sums (23), (25), (26)": replace(_OURS, singular=True),
-    "half volumes at the two ends": replace(_OURS, halved=True),
-    "x = 0 judged for the RL derivative": replace(_OURS, first=True),
-    "(20) with f' at the auxiliary particle": replace(_OURS, midpoint="itself"),
-    "(20) with the average of f' times the power": replace(_OURS, midpoint="product"),
-    "(20) with N auxiliary particles": replace(_OURS, last=True),
+    _DIGITS: Reading(),
+    "no terms j > i": Reading(ahead="none"),
+    "terms j > i with |x_i - x_j|": Reading(ahead="absolute"),
+    "norms of the real part": Reading(real=True),
+    "gradients not corrected": Reading(correction="none"),
+    "gradients times L, (19) as printed": Reading(correction="multiplied"),
+    "no virtual particles": Reading(virtual=False),
+    "exact f', f''": Reading(exact=True),
+    _ETA: Reading(eta="1/h^2"),
+    _SINGULAR: Reading(singular=True),
+    "half volumes at the two ends": Reading(halved=True),
+    "x = 0 judged for the RL derivative": Reading(first=True),
+    "(20) with f' at the auxiliary particle": Reading(midpoint="itself"),
+    "(20) with the average of f' times the power": Reading(midpoint="product"),
+    "(20) with N auxiliary particles": Reading(last=True),
 }
 # Figure: operator, function, whether of variable order, whether by the modified sums.
 CASES = {
@@ -96,11 +85,11 @@ def study(
 def _errors(line: ParticleLine, orders: list[Order], reading: Reading) -> dict[str, float]:
     errors = {}
     for case, (operator, name, varies, modified) in CASES.items():
-        alpha, kind = order_at(orders[varies], line.x_all), OPERATORS[operator]
+        kind, alpha = OPERATORS[operator], order_at(orders[varies], line.x_all)
         judged = slice(0 if reading.first else kind.first, None)
-        exact = kind.exact(FUNCTIONS[name], line.x, alpha[line.inside])[judged]
+        exact = kind.exact(FUNCTIONS[name], line.x, alpha[line.inside])
         ours = approximate(line, name, operator, alpha, modified, reading)[judged]
-        errors[case] = relative_l2(exact, ours.real if reading.real else ours)
+        errors[case] = relative_l2(exact[judged], ours.real if reading.real else ours)
     return errors
 
 
@@ -113,9 +102,8 @@ def _gradients(line: ParticleLine) -> Iterator[Finding]:
 
     factor, of_x = correction(line.x, x, volume, h), plain(x)
     of_one = np.abs(plain(np.ones_like(x))).max() * h
-    regular, corrected, printed = (
-        np.abs(g - 1.0).max() for g in (of_x, of_x / factor, of_x * factor)
-    )
+    gradients = (of_x, of_x / factor, of_x * factor)
+    regular, corrected, printed = (np.abs(g - 1.0).max() for g in gradients)
     yield measured("S-EQ.consistency", of_one=of_one, of_x=corrected)
     yield measured("S-EQ.consistency_regular", of_one=of_one, of_x=regular)
     yield measured("S-EQ.L_inverse", printed=printed, plain=regular, meant=corrected)
@@ -128,10 +116,8 @@ def _gradients(line: ParticleLine) -> Iterator[Finding]:
 
 def _auxiliary(line: ParticleLine) -> Finding:
     """(20): the volume of N auxiliary particles, and of the midpoints there are, against the length."""
-    length = line.b - line.a
-    printed, meant = (
-        abs(n * line.spacing / length - 1.0) for n in (line.count, line.midpoints.size)
-    )
+    numbers = (line.count, line.midpoints.size)
+    printed, meant = (abs(n * line.spacing / (line.b - line.a) - 1.0) for n in numbers)
     return measured("S-EQ.auxiliary", printed=printed, meant=meant, count=line.count)
 
 
@@ -142,14 +128,14 @@ def _double_sum(line: ParticleLine, order: float, variable: dict[str, float]) ->
 
     def errors(kind: Order, exact: np.ndarray) -> tuple[float, float]:
         alpha = order_at(kind, line.x_all)
-        inner = approximate(line, "sin", "rl_integral", 1.0 - alpha, False, _OURS)
+        inner = approximate(line, "sin", "rl_integral", 1.0 - alpha, False, Reading())
         ours = OPERATORS["rl_derivative"].approximate(line, sine.value(line.x_all), alpha)
         printed, meant = (relative_l2(exact, v[1:-1]) for v in (inner * vanishing, ours))
         return printed, meant
 
     printed, meant = errors(order, sine.rl(here, order))
     # There is no closed form for the derivative of variable order, but for the integral.
-    exact = central_slope(lambda x: sine.rl(x, order_at(variable, x) - 1.0), here)
+    exact = operators.central_slope(lambda x: sine.rl(x, order_at(variable, x) - 1.0), here)
     both = dict(zip(("printed", "meant"), errors(variable, exact), strict=True))
     return measured("S-EQ.double_sum", printed=printed, meant=meant, variable=both)
 
@@ -157,11 +143,9 @@ def _double_sum(line: ParticleLine, order: float, variable: dict[str, float]) ->
 def _orders(line: ParticleLine, variable: dict[str, float]) -> Iterator[Finding]:
     """The left side of (32), and the range of alpha(x)."""
     alpha = order_at(variable, line.x_all)
-    ours = approximate(line, "sin", "caputo", alpha, False, _OURS)
-    order = alpha[line.inside]
-    printed, meant = (
-        relative_l2(FUNCTIONS["sin"].caputo(line.x, a), ours) for a in (1.0 - order, order)
-    )
+    ours = approximate(line, "sin", "caputo", alpha, False, Reading())
+    order, exact = alpha[line.inside], FUNCTIONS["sin"].caputo
+    printed, meant = (relative_l2(exact(line.x, a), ours) for a in (1.0 - order, order))
     yield measured("S-EQ.caputo_order", printed=printed, meant=meant)
     yield measured("S-EQ.order_range", least=order.min(), greatest=order.max())
 
@@ -173,37 +157,30 @@ def _singularity(
     errors: Mapping[str, Mapping[str, float]],
 ) -> Iterator[Finding]:
     """Sec. 5: the infinite terms of (23), what the sums without them give, and what a derivative costs."""
-    singular, ours = (
-        pd.Series(errors[name]) for name in ("singular sums (23), (25), (26)", "that of the digits")
-    )
+    singular, ours = (pd.Series(errors[name]) for name in (_SINGULAR, _DIGITS))
     distance = line.x[:, None] - line.x
     share = spline_integral(distance, line.smoothing)
     infinite = (distance == 0.0) & (share > 0.0) & (order < 1.0)
-    yield measured(
-        "S-EQ.singular", finite=np.count_nonzero(~infinite.any(axis=1)), ratio=dict(singular / ours)
-    )
-    same = table["figures with the same digits"]
-    yield measured(
-        "S-EQ.non_singular", figures=same["singular sums (23), (25), (26)"], of=len(CASES)
-    )
+    finite = np.count_nonzero(~infinite.any(axis=1))
+    yield measured("S-EQ.singular", finite=finite, ratio=dict(singular / ours))
+    same = table["figures with the same digits"][_SINGULAR]
+    yield measured("S-EQ.non_singular", figures=same, of=len(CASES))
     apart = np.abs(line.x[:, None] - line.x_all)
     near = np.count_nonzero((apart > 0.0) & (apart < SUPPORT * line.smoothing))
-    terms = np.count_nonzero(share > 0.0)
-    yield measured(
-        "S-EQ.cost", share=near / terms, near=near / line.count, terms=terms / line.count
-    )
+    terms, count = np.count_nonzero(share > 0.0), line.count
+    yield measured("S-EQ.cost", share=near / terms, near=near / count, terms=terms / count)
 
 
 def _eta(line: ParticleLine, errors: Mapping[str, Mapping[str, float]]) -> Finding:
     """(37) with eta as printed, with 0.0001 h^2 and with none, for f'' of cos(pi x)."""
     h, case = line.smoothing, "Fig. 3, cos"
     f, exact = FUNCTIONS["cos"].value(line.x_all), CURVATURES["cos"](line.x)
-    printed, meant, without = (
-        relative_l2(
-            exact, second_derivative(line.x, f[line.inside], line.x_all, line.spacing, f, h, eta)
-        )
-        for eta in (1e-4 / h**2, 1e-4 * h**2, 0.0)
-    )
+
+    def error(eta: float) -> float:
+        here, x, s = f[line.inside], line.x_all, line.spacing
+        return relative_l2(exact, second_derivative(line.x, here, x, s, f, h, eta))
+
+    printed, meant, without = map(error, (1e-4 / h**2, 1e-4 * h**2, 0.0))
     return measured(
         "S-EQ.eta",
         printed=printed,
@@ -211,8 +188,8 @@ def _eta(line: ParticleLine, errors: Mapping[str, Mapping[str, float]]) -> Findi
         without=without,
         eta=1e-4 / h**2,
         over_h=1e-4 / h**3,
-        caputo=errors["η = 0.0001 / h², (37) as printed"][case],
-        caputo_meant=errors["that of the digits"][case],
+        caputo=errors[_ETA][case],
+        caputo_meant=errors[_DIGITS][case],
     )
 
 
@@ -220,12 +197,9 @@ def _score(line: ParticleLine, orders: list[Order]) -> Finding:
     """(40), with the squares of the complex deviations as printed and with those of their absolute values."""
     plain, absolute = {}, {}
     for case, (operator, name, varies, _) in CASES.items():
-        alpha, kind = order_at(orders[varies], line.x_all), OPERATORS[operator]
-        exact = kind.exact(FUNCTIONS[name], line.x, alpha[line.inside])[kind.first :]
-        spread = np.sum((exact - exact.mean()) ** 2)
         for method in ("standard", "modified"):
-            f = FUNCTIONS[name].value(line.x_all)
-            off = kind.approximate(line, f, alpha, method=method)[kind.first :] - exact
+            _, exact, ours = OPERATORS[operator].compared(line, name, orders[varies], method)
+            off, spread = ours - exact, np.sum((exact - exact.mean()) ** 2)
             plain[case, method] = 1.0 - np.sum(off**2).real / spread
             absolute[case, method] = 1.0 - np.sum(np.abs(off) ** 2) / spread
     return measured(
@@ -240,12 +214,8 @@ def _score(line: ParticleLine, orders: list[Order]) -> Finding:
 
 def _right_handed(line: ParticleLine, order: float) -> Finding:
     """The operators on [x, b] of exp x, whose mirror image has closed forms."""
-    function, alpha = FUNCTIONS["exp"], np.full(line.count, order)
     errors = {}
     for kind in OPERATORS.values():
-        ours = kind.approximate(line, function.value(line.x_all), order, side="right")[::-1]
-        exact = np.sum(
-            [c * kind.exact(g, line.x, alpha) for c, g in function.mirrored(line.b)], axis=0
-        )
-        errors[kind.name] = relative_l2(exact[kind.first :], ours[kind.first :])
+        _, exact, ours = kind.compared(line, "exp", order, side="right")
+        errors[kind.name] = relative_l2(exact, ours)
     return measured("S-EQ.right_handed", error=errors)

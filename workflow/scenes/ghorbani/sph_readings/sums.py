@@ -1,7 +1,5 @@
 """The SPH operators as dense sums, with the choices that the paper's text leaves open as parameters."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import pi
 from typing import Literal
@@ -14,8 +12,6 @@ from fracparticles.sph.closed_forms import FUNCTIONS
 from fracparticles.sph.cubic_spline import spline_integral
 from fracparticles.sph.derivatives import correction, gradient, second_derivative
 from scenes.ghorbani.operators import SLOPES
-
-__all__ = ["Reading", "approximate"]
 
 
 @dataclass(frozen=True)

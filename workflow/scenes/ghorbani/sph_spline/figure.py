@@ -1,21 +1,16 @@
 """The cubic spline of Fig. 2, and its sums over the particles."""
 
-from __future__ import annotations
-
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, note
-
-__all__ = ["figure"]
+from fracstudy.style import BLUE, GREEN, RED, Figure, axes_row, draw, note
 
 # Label, colour and, in the first panel, place of the label.
 _KERNEL = {
-    "W": (r"$hW$", "#0072B2", (0.75, 0.42)),
-    "dW": (r"$h^2\,\nabla W$", "#D55E00", (-1.75, 0.52)),
-    "integral": (r"$\widetilde{W}$", "#009E73", (0.95, 0.82)),
+    "W": (r"$hW$", BLUE, (0.75, 0.42)),
+    "dW": (r"$h^2\,\nabla W$", RED, (-1.75, 0.52)),
+    "integral": (r"$\widetilde{W}$", GREEN, (0.95, 0.82)),
 }
-_SUMS = {"sum": (r"$\sum s\,W_{ij}$", "#0072B2"), "L": (r"$L_i$ of (19)", "#D55E00")}
+_SUMS = {"sum": (r"$\sum s\,W_{ij}$", BLUE), "L": (r"$L_i$ of (19)", RED)}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, smoothing_ratio: float) -> Figure:
@@ -23,11 +18,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, smoothing_ratio: float)
     drawn, (kernel, sums) = axes_row(2, height=3.0, width=3.8)
     curves = dict(tuple(series.groupby("curve")))
     for name, (label, colour, place) in _KERNEL.items():
-        kernel.plot(curves[name]["x"], curves[name]["y"], color=colour)
+        draw(kernel, curves[name], color=colour)
         kernel.text(*place, label, color=colour)
     kernel.set(xlabel="distance $x / h$", ylabel="cubic spline (22)", xlim=(-2.5, 2.5))
     for name, (label, colour) in _SUMS.items():
-        sums.plot(curves[name]["x"], curves[name]["y"], color=colour, label=label)
+        draw(sums, curves[name], color=colour, label=label)
     sums.axhline(1.0, color="0.4", linewidth=0.8)
     sums.axvline(smoothing_ratio, color="0.4", linewidth=0.8, linestyle=":")
     chosen = f"$h = {smoothing_ratio:g}\\,s$"

@@ -1,7 +1,5 @@
 """The cubic spline of Fig. 2, and what it does on equally spaced particles."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -12,8 +10,7 @@ from fracparticles.sph.cubic_spline import SUPPORT, spline, spline_gradient, spl
 from fracparticles.sph.derivatives import correction
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["kernel_sums", "study"]
+from fracstudy.panels import Panels
 
 _RADII = (0.0, 0.5, 1.0, 1.5, 2.0)
 _PIECES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])  # the spline is a polynomial between these
@@ -43,24 +40,15 @@ def study(inputs: Inputs, *, smoothing_ratio: float, ratios: list[float]) -> Res
     table = pd.DataFrame({"x / h": q, **{name: of(q, 1.0) for name, of in shown.items()}})
     table["W~ at -x"] = spline_integral(-q, 1.0)
     inside, beyond = (float(spline(SUPPORT * x, 1.0)) for x in (1.0 / _OUTSIDE, _OUTSIDE))
+    excess = {f"h = {h:g}": abs(_by_pieces(spline, h).sum() - 1.0) for h in _LENGTHS}
+    gap = {"derivative": _largest_gap(spline_gradient, spline)}
+    gap["integral"] = _largest_gap(spline, spline_integral)
     total, factor = kernel_sums(smoothing_ratio)
+    sums: dict[str, Any] = {"ratio": smoothing_ratio, "total": total, "factor": factor}
     findings = [
         measured("S-F2.support", inside=inside, beyond=beyond),
-        measured(
-            "S-F2.unit_mass",
-            excess={f"h = {h:g}": abs(_by_pieces(spline, h).sum() - 1.0) for h in _LENGTHS},
-        ),
-        measured(
-            "S-F2.analytic",
-            gap={
-                "derivative": _largest_gap(spline_gradient, spline),
-                "integral": _largest_gap(spline, spline_integral),
-            },
-            end=spline_integral(SUPPORT, 1.0),
-            ratio=smoothing_ratio,
-            total=total,
-            factor=factor,
-        ),
+        measured("S-F2.unit_mass", excess=excess),
+        measured("S-F2.analytic", gap=gap, end=spline_integral(SUPPORT, 1.0), **sums),
     ]
     return Result(table, findings if "S-F2" in inputs.items else (), _series(*ratios))
 
@@ -81,17 +69,9 @@ def _series(low: float, high: float) -> pd.DataFrame:
     """Panels "kernel" (curves W, dW, integral) and "sums" (sum, L, by h / s)."""
     q, ratios = np.linspace(-2.5, 2.5, 501), np.linspace(low, high, 241)
     sums = np.array([kernel_sums(ratio) for ratio in ratios])
-    curves = {
-        ("kernel", "W"): (q, spline(q, 1.0)),
-        ("kernel", "dW"): (q, spline_gradient(q, 1.0)),
-        ("kernel", "integral"): (q, spline_integral(q, 1.0)),
-        ("sums", "sum"): (ratios, sums[:, 0]),
-        ("sums", "L"): (ratios, sums[:, 1]),
-    }
-    return pd.concat(
-        [
-            pd.DataFrame({"panel": panel, "curve": name, "x": x, "y": y})
-            for (panel, name), (x, y) in curves.items()
-        ],
-        ignore_index=True,
-    )
+    panels = Panels()
+    for name, of in (("W", spline), ("dW", spline_gradient), ("integral", spline_integral)):
+        panels.add("kernel", curve=name, x=q, y=of(q, 1.0))
+    for name, column in zip(("sum", "L"), sums.T, strict=True):
+        panels.add("sums", curve=name, x=ratios, y=column)
+    return panels.frame

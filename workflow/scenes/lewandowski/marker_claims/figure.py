@@ -1,31 +1,24 @@
 """Markers per eps, the best eps, the parts of the error, and a field that turns negative."""
 
-from __future__ import annotations
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import name_ticks, note
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, four_panels, symbol
+from fracstudy.style import RED, Axes, Figure, axes_row, draw, log_log, name_ticks, note
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 from scenes.lewandowski.square_profile import LOADINGS, SquareRuns
 
-__all__ = ["figure"]
-
 _MARKERS = {"S1": "s", "S2": "D", "S3": "v", "S4": "o", "S8": "^"}
-_RED = "#D55E00"
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, run: SquareRuns) -> Figure:
     """Draw (a) E by markers per eps, (b) the best eps, (c) the parts of the error, (d) F that turns negative."""
-    titles = (
+    titles = [
         "number of markers; grey: 10 to 15",
         "measured (points) and formula (lines)",
         "the parts of (17), from midpoints",
         "",
-    )
-    figure, axes = four_panels(8.8, 6.6, *titles)
+    ]
+    figure, axes = axes_row(titles, width=4.4, height=3.3, rows=2)
     _numbers(axes[0], pick(series, panel="E"))
     axes[0].set_ylabel(f"error norm $E({SquareRuns.model_validate(run).t_final:g})$")
     _best(axes[1], pick(series, panel="best ε"))
@@ -41,7 +34,7 @@ def _numbers(ax: Axes, series: pd.DataFrame) -> None:
             curve, label = pick(part, loading=LOADINGS[loading]), f"{symbol(name)}, {loading}"
             draw(ax, curve, f"o{line}", label=label, **style)
     ax.axvspan(10.0, 15.0, color="0.5", alpha=0.15, linewidth=0)
-    ax.set(xscale="log", yscale="log", xlabel=r"markers per $\varepsilon$ at the end")
+    log_log(ax, xlabel=r"markers per $\varepsilon$ at the end")
     name_ticks(ax, (0.02, 0.05, 0.1, 0.2), "y")
     ax.legend(loc="lower left")
 
@@ -52,19 +45,16 @@ def _best(ax: Axes, series: pd.DataFrame) -> None:
         part = part.sort_values("x")
         draw(ax, part, _MARKERS.get(name, "o"), **style)
         ax.plot(part["x"], part["predicted"], color=SHAPE_COLOURS[name], linewidth=1.0)
-    ticks = sorted(series["x"].unique())
-    ax.set(xscale="log", yscale="log", xlabel="distance of the markers $h$")
-    name_ticks(ax, ticks)
+    log_log(ax, xlabel="distance of the markers $h$")
+    name_ticks(ax, sorted(series["x"].unique()))
     name_ticks(ax, (0.1, 0.2, 0.5, 1.0), "y")
     ax.set_ylabel(r"best support parameter $\varepsilon$")
     ax.legend(loc="upper left", ncols=2)
 
 
 def _parts(ax: Axes, series: pd.DataFrame) -> None:
-    looks = {
-        "position": ("-", r"position, $\hat e$ (18)"),
-        "representation": (":", "representation"),
-    }
+    looks = {"position": ("-", r"position, $\hat e$ (18)")}
+    looks["representation"] = (":", "representation")
     for name, part in series.groupby("series"):
         for what, (line, label) in looks.items():
             style = {"color": SHAPE_COLOURS[name], "markersize": 3.5}
@@ -83,12 +73,12 @@ def _denominator(ax: Axes, series: pd.DataFrame) -> None:
     below, above = at[at["y"] <= 0.0], at[at["y"] > 0.0]
     draw(ax, pick(series, series="F"), color=SHAPE_COLOURS["S8"])
     draw(ax, above, "|", color="0.35", markersize=7)
-    draw(ax, below, "X", color=_RED, markersize=8)
+    draw(ax, below, "X", color=RED, markersize=8)
     ax.axhline(0.0, color="0.3", linewidth=0.8)
     x, y = below[["x", "y"]].iloc[0]
     depth = f"{y:.2g}".replace("-", "−")
-    centred = {"ha": "center", "va": "center", "color": _RED}
-    arrow = {"arrowstyle": "-", "color": _RED}
+    centred = {"ha": "center", "va": "center", "color": RED}
+    arrow = {"arrowstyle": "-", "color": RED}
     note(ax, f"F = {depth}\nat a marker", (x, y), (-62, -8), arrowprops=arrow, **centred)
     ax.set(xlabel="$x$", ylabel="$F$, the denominator of (7)")
     ax.set_yscale("symlog", linthresh=1e-3)

@@ -1,17 +1,11 @@
 """Figs. 14-16: the error norm."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, entry, legend_below, name_ticks, note
-from scenes.lewandowski.marker_style import LOADING_LOOKS, draw, symbol
-
-__all__ = ["figure"]
+from fracstudy.style import Axes, Figure, axes_row, draw, entry, legend_below, name_ticks, note
+from scenes.lewandowski.marker_style import LOADING_LOOKS, symbol
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

@@ -1,7 +1,5 @@
 """Figs. 14-16: the error norm E(t) of the square profile with S4, S7 and S8."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,17 +8,8 @@ import pandas as pd
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import (
-    INFINITE,
-    LOADINGS,
-    SHAPES,
-    SquareRuns,
-    Starts,
-    Trace,
-    delay,
-)
-
-__all__ = ["study"]
+from scenes.lewandowski import square_profile
+from scenes.lewandowski.square_profile import INFINITE, LOADINGS, SHAPES, SquareRuns, Starts, Trace
 
 _LINEAR = 0.95  # correlation of E with t
 
@@ -39,11 +28,8 @@ def study(inputs: Inputs, *, run: SquareRuns, long: SquareRuns, seed: int, seeds
     of_infinite = [_turn(trace)["E grows"] for trace in infinite.runs if trace.loading == "random"]
     numbers = _numbers(starts)
     numbers["M-F14.traced"]["infinite"] = np.mean(of_infinite)
-    findings = [
-        measured(claim, others={"other seeds": others[claim]}, **of_claim)
-        for claim, of_claim in numbers.items()
-    ]
-    findings.append(_law(starts, SquareRuns.model_validate(long)))
+    law = _law(starts, SquareRuns.model_validate(long))
+    findings = [*square_profile.with_other_seeds(numbers, others), law]
     panels = Panels()
     for trace in starts.runs:
         where = {"loading": trace.loading, "seed": trace.seed}
@@ -96,11 +82,7 @@ def _numbers(starts: Starts) -> dict[str, dict[str, Any]]:
             "correlation": np.nan_to_num(np.corrcoef(rank.T)[0, 1]),
         },
         "M-F15.grows": _growth("S7", starts),
-        "M-F16.exponential": {
-            "left": np.median(left),
-            "most": max(left),
-            "number": len(s8),
-        },
+        "M-F16.exponential": {"left": np.median(left), "most": max(left), "number": len(s8)},
     }
 
 
@@ -135,7 +117,10 @@ def _law(starts: Starts, long: SquareRuns) -> Finding:
     whole = long.trace("S8", "midpoints")
     half = long.having(t_final=0.5 * end).trace("S8", "midpoints", follow=False)
     log_at = np.interp(end * np.array([0.1, 0.25, 0.5, 1.0]), whole.t, np.log(whole.error))
-    late = [delay(long.z, trace.end.field(long.z), trace.t[-1]) for trace in (half, whole)]
+    late = [
+        square_profile.delay(long.z, trace.end.field(long.z), trace.t[-1])
+        for trace in (half, whole)
+    ]
     return measured(
         "M-F16.law",
         ratio=np.median(exponential / power),

@@ -1,15 +1,10 @@
 """Figs. 8-10: F on the fixed grid."""
 
-from __future__ import annotations
-
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import entry, legend_below
+from fracstudy.style import Figure, draw, entry, legend_below
 from scenes.lewandowski import marker_style as look
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -18,8 +13,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     figure, panels, _ = look.shape_panels(shapes, tuple(look.LOADING_LOOKS), first=8)
     for ax, shape, loading in panels:
         here, colour = pick(series, series=shape, loading=loading), look.SHAPE_COLOURS[shape]
-        look.draw(ax, pick(series, panel="field", series="exact"), **look.EXACT)
-        look.draw(ax, pick(here, panel="field"), color=colour, linewidth=1.5)
+        draw(ax, pick(series, panel="field", series="exact"), **look.EXACT)
+        draw(ax, pick(here, panel="field"), color=colour, linewidth=1.5)
         look.strokes(ax, pick(here, panel="markers")["x"], colour)
         ax.set(xlim=(-9.0, 9.0), ylim=(-0.045, 0.36))
     entries = [entry(f"$F$ with {look.symbol(s)}", color=look.SHAPE_COLOURS[s]) for s in shapes]

@@ -1,15 +1,10 @@
 """Figs. 8-10: the square profile with S4, S7 and S8 on the fixed grid, and its wiggles."""
 
-from __future__ import annotations
-
 from typing import Any
 
-from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
-from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import INFINITE, SHAPES, SquareRuns, Starts
-
-__all__ = ["study"]
+from fracstudy.panels import Panels, pick
+from scenes.lewandowski.square_profile import INFINITE, SHAPES, SquareRuns, Starts, with_other_seeds
 
 
 def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int) -> Result:
@@ -19,27 +14,23 @@ def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int) -> Result:
     """
     square = SquareRuns.model_validate(run)
     starts = Starts(square, SHAPES, range(seed, seed + seeds))
-    first = _numbers(square, starts, range(seed, seed + seeds))
     again = range(seed + seeds, seed + 2 * seeds)
+    first = _numbers(square, starts, range(seed, seed + seeds))
     second = _numbers(square, Starts(square, SHAPES, again), again)
-    findings = [
-        measured(claim, others={"other seeds": second[claim]}, **numbers)
-        for claim, numbers in first.items()
-    ]
     panels = Panels()
     panels.add("field", "exact", square.z, square.exact)
     for trace in starts.first:
         panels.add("field", trace.shape, square.z, trace.end.field(square.z), loading=trace.loading)
         panels.add("markers", trace.shape, trace.end.x, 0.0, loading=trace.loading)
     table = starts.table(["relative error", "F(0) / f(0)", "maxima", "empty"])
-    return Result(table, inputs.judged(findings), panels.frame)
+    return Result(table, inputs.judged(with_other_seeds(first, second)), panels.frame)
 
 
 def _numbers(square: SquareRuns, starts: Starts, seeds: range) -> dict[str, dict[str, Any]]:
     """What is measured of these starts for each claim."""
     found, clustered = starts.measured, starts.clustered
     mean = {shape: starts.mean(shape) for shape in SHAPES}
-    quiet = found[found["loading"] == "midpoints"].set_index("S")
+    quiet = pick(found, loading="midpoints").set_index("S")
     level = quiet["relative error"]
     infinite = Starts(square, [INFINITE.name], seeds)
     with_clusters = {
@@ -68,7 +59,7 @@ def _numbers(square: SquareRuns, starts: Starts, seeds: range) -> dict[str, dict
 
 def _better(starts: Starts, shape: str) -> float:
     """The part of the seeds that give a smaller error than with S4."""
-    at_random = starts.measured[starts.measured["loading"] == "random"]
+    at_random = pick(starts.measured, loading="random")
     errors = at_random.pivot(index="seed", columns="S", values="relative error")
     errors = errors[[shape, "S4"]].dropna()
     return float((errors[shape] < errors["S4"]).mean())

@@ -1,18 +1,12 @@
 """Why markers cluster, and the time step."""
 
-from __future__ import annotations
-
 from itertools import cycle
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, entry, legend_below, name_ticks, note
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
-
-__all__ = ["figure"]
+from fracstudy.style import RED, Axes, Figure, axes_row, draw, entry, legend_below, name_ticks, note
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 
 _HOLLOW = {"marker": "o", "markerfacecolor": "white", "linestyle": ""}
 
@@ -42,7 +36,7 @@ def _rates(ax: Axes, series: pd.DataFrame, shapes: list[str]) -> None:
         draw(ax, points, color=SHAPE_COLOURS[name], **_HOLLOW)
     end = lines["x"].max()
     ax.axhline(0.0, color="0.3", linewidth=0.8)
-    ax.axhspan(0.0, 2.6, color="#D55E00", alpha=0.07, linewidth=0)
+    ax.axhspan(0.0, 2.6, color=RED, alpha=0.07, linewidth=0)
     ax.text(end - 0.1, 2.5, "clusters grow", ha="right", va="top", fontsize=8, color="#A04000")
     ax.set(xlim=(0.0, end), ylim=(-5.2, 2.6), xlabel=r"wavenumber $k = \varepsilon q$")
     ax.set_ylabel(r"rate of perturbations $\times\ \varepsilon^2$")

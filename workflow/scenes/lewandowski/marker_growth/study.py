@@ -1,8 +1,7 @@
 """The time step, and what perturbations of equally spaced markers do: -k^2 S^(k) against runs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.lewandowski.square_profile import INFINITE, SquareRuns
-
-__all__ = ["study"]
 
 
 def study(
@@ -34,18 +31,15 @@ def study(
     `shapes` and `supports` for which the largest step is sought, `steps` are dt / eps^2 for the square profile.
     """
     square = SquareRuns.model_validate(run)
-    rates = pd.DataFrame([row for name in lattices for row in _rates(name, **lattices[name])])
+    rates = pd.DataFrame(row for name in lattices for row in _rates(name, **lattices[name]))
     predicted = rates["of the lattice"].fillna(rates["-k² S^(k)"])
     table = rates.assign(deviation=rates["measured"] - predicted)
     eta = {name: extremes(shape_function(name)).eta for name in limits["shapes"]}
     found = pd.DataFrame(
-        [
-            {"S": name, "ε": e, "η": largest_step(SHAPES[name], e), "predicted": eta[name]}
-            for name in eta
-            for e in limits["supports"]
-        ]
+        {"S": name, "ε": e, "η": largest_step(SHAPES[name], e), "predicted": eta[name]}
+        for name, e in product(eta, limits["supports"])
     )
-    profile = pd.DataFrame([_profile(square, name, step) for name in eta for step in steps])
+    profile = pd.DataFrame(_profile(square, *case) for case in product(eta, steps))
     panels, k = Panels(), np.linspace(0.0, wavenumbers, 301)
     for name in lattices:
         panels.add("rate", name, k, rate(shape_function(name), k))
@@ -57,22 +51,15 @@ def study(
     return Result(table, inputs.judged(findings), panels.frame)
 
 
-def _rates(name: str, modes: list[int], **lattice: Any) -> list[dict[str, Any]]:
+def _rates(name: str, modes: list[int], **lattice: Any) -> Iterator[dict[str, Any]]:
     shape = shape_function(name)
-    rows: list[dict[str, Any]] = []
     spacing = lattice["period"] / round(lattice["period"] / lattice["spacing"])
     for mode in modes:
         k, ours = measured_rate(shape, mode, **lattice)
-        row = {
-            "S": name,
-            "k = ε q": k,
-            "-k² S^(k)": float(rate(shape, k)),
-            "of the lattice": np.nan,
-        }
-        if shape.smoothness is None or shape.smoothness >= 2:
-            row["of the lattice"] = float(lattice_rate(shape, k, spacing))
-        rows.append({**row, "measured": ours})
-    return rows
+        smooth = shape.smoothness is None or shape.smoothness >= 2
+        predicted = float(lattice_rate(shape, k, spacing)) if smooth else np.nan
+        row = {"S": name, "k = ε q": k, "-k² S^(k)": float(rate(shape, k))}
+        yield {**row, "of the lattice": predicted, "measured": ours}
 
 
 def _profile(square: SquareRuns, name: str, step: float) -> dict[str, Any]:
@@ -93,10 +80,9 @@ def _step(rates: pd.DataFrame, limits: pd.DataFrame, profile: pd.DataFrame) -> I
         measured=eta.mean(),
         off=(limits["η"] / limits["predicted"] - 1.0).abs().max(),
     )
-    growth = dict(rates.groupby("S")["measured"].max())
-    _, growth[INFINITE.name] = measured_rate(
-        INFINITE, 8, spacing=0.0625, period=16.0, amplitude=1e-4
-    )
+    growth = rates.groupby("S")["measured"].max()
+    lattice: dict[str, Any] = {"spacing": 0.0625, "period": 16.0}
+    _, growth[INFINITE.name] = measured_rate(INFINITE, 8, amplitude=1e-4, **lattice)
     yield measured("M-C1.ensures", growth=growth, predicted=extremes(INFINITE).growth)
     first, last = (getattr(profile.dropna().groupby("S")["E"], end)() for end in ("first", "last"))
     yield measured("M-C1.classical", ratio=last / first, step=profile.dropna()["step"].max())

@@ -1,19 +1,14 @@
 """Figs. 1-4: the initial loading."""
 
-from __future__ import annotations
+from itertools import chain
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from scenes.lewandowski.marker_style import EXACT, SHAPE_COLOURS, draw
+from fracstudy.style import BLUE, RED, Axes, Figure, draw, legend_below
+from scenes.lewandowski.marker_style import EXACT, SHAPE_COLOURS
 
-__all__ = ["figure"]
-
-_LOADINGS = {
-    "uniform": ("uniform", "#0072B2", ":"),
-    "equal": ("equal weight", "#D55E00", "--"),
-}
+_LOADINGS = {"uniform": ("uniform", BLUE, ":"), "equal": ("equal weight", RED, "--")}
 # Shape function, factor of the support parameter, colour and line of the errors.
 _FIGURES = {
     "Fig. 1": ("S_3", 1.0, SHAPE_COLOURS["S3"], "-"),
@@ -27,10 +22,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, support: float, shown: 
     """Draw Figs. 1-4 at the x_0 shown, and below them the errors against x_0."""
     figure = Figure(figsize=(8.8, 5.6), layout="constrained")
     grid = figure.add_gridspec(2, 4, height_ratios=(1.0, 1.0))
-    first = None
+    upper: list[Axes] = []
     for column, (name, (shape, wider, _, _)) in enumerate(_FIGURES.items()):
-        ax = figure.add_subplot(grid[0, column], sharey=first)
-        first = first or ax
+        ax = figure.add_subplot(grid[0, column], sharey=upper[0] if upper else None)
+        upper.append(ax)
         panel = pick(series, panel=name)
         draw(ax, pick(panel, series="exact"), **EXACT)
         for row, (loading, (label, colour, line)) in enumerate(_LOADINGS.items()):
@@ -41,8 +36,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, support: float, shown: 
         ax.set_title(rf"{name}: ${shape}$, $\varepsilon = {wider * support:g}$", loc="left")
         ax.set(xlabel="$x$", ylim=(-0.13, 0.62))
         ax.tick_params(labelleft=column == 0)
-    assert first is not None
-    first.set_ylabel(r"$x \exp(-x^2)$ and $F$")
+    upper[0].set_ylabel(r"$x \exp(-x^2)$ and $F$")
     for column, (loading, (title, colour, _)) in zip((0, 2), _LOADINGS.items(), strict=True):
         ax = figure.add_subplot(grid[1, column : column + 2])
         for name, (shape, wider, hue, line) in _FIGURES.items():
@@ -54,7 +48,6 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, support: float, shown: 
         ax.set_title(title, loc="left", color=colour)
         if column == 0:
             ax.set_ylabel("relative $L^2$ error")
-    handles, labels = first.get_legend_handles_labels()
-    more, names = ax.get_legend_handles_labels()
-    figure.legend([*handles, *more], [*labels, *names], loc="outside lower center", ncols=7)
+    entries = (one.get_legend_handles_labels()[0] for one in (upper[0], ax))
+    legend_below(figure, list(chain(*entries)), 7)
     return figure

@@ -1,25 +1,16 @@
 """Figs. 1-4: x exp(-x^2) by 32 markers, uniform and of equal weight, for every x_0 that the figures may mean."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 import pandas as pd
 
-from fracparticles.markers import (
-    SHAPES,
-    MarkerVelocity,
-    Ramp,
-    equal_weight,
-    shape_function,
-    uniform,
-)
+from fracparticles.markers import SHAPES, MarkerVelocity, equal_weight, shape_function, uniform
+from fracparticles.markers.profiles import Ramp
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _POINTS = 801
 # Figure: shape function, factor of the support parameter, factor of the number of markers.
@@ -104,10 +95,9 @@ def _field(
 def _errors(end: float, support: float, markers: int) -> dict[str, float]:
     ramp, z = Ramp(end), np.linspace(0.0, end, _POINTS)
     exact, errors = ramp.value(z), {}
-    for figure in _FIGURES:
-        for loading in _LOADINGS:
-            gap = _field(figure, loading, ramp, support, markers, z) - exact
-            errors[f"{figure}, {loading}"] = float(np.linalg.norm(gap) / np.linalg.norm(exact))
+    for case in product(_FIGURES, _LOADINGS):
+        gap = _field(*case, ramp, support, markers, z) - exact
+        errors[", ".join(case)] = float(np.linalg.norm(gap) / np.linalg.norm(exact))
     return errors
 
 
@@ -128,15 +118,11 @@ def _equal_weight(ramp: Ramp, count: int) -> Iterator[Finding]:
     part = (np.arange(1, count + 1) - 0.5) / count
     printed = np.sqrt(-np.log(1.0 - part * (1.0 - np.exp(-(ramp.end**2)))))
     yield measured("M-F1.positions", miss=np.abs(printed - x).max())
-    even = _markers("uniform", ramp, count)[1].sum()
-    yield measured("M-F1.uniform", miss=abs(even / ramp.total - 1.0))
-    yield measured(
-        "M-F1.weights",
-        miss=abs(1.0 / ramp.total - 1.0),
-        right=abs(weights.sum() / ramp.total - 1.0),
-        factor=1.0 / ramp.total,
-        end=ramp.end,
-    )
+    even, total = _markers("uniform", ramp, count)[1].sum(), ramp.total
+    yield measured("M-F1.uniform", miss=abs(even / total - 1.0))
+    right = abs(weights.sum() / total - 1.0)
+    away = {"miss": abs(1.0 / total - 1.0), "right": right}
+    yield measured("M-F1.weights", **away, factor=1.0 / total, end=ramp.end)
 
 
 def _apart(ramp: Ramp, count: int) -> Iterator[Finding]:
@@ -177,8 +163,7 @@ def _more(ramp: Ramp, support: float, count: int) -> Iterator[Finding]:
     def smoother(times: int) -> dict[str, float]:
         return {
             f"{figure}, {_CALLED[s]}": rough(shape, s, times) / rough(shape, s, 1)
-            for figure, shape in shapes.items()
-            for s in _LOADINGS
+            for (figure, shape), s in product(shapes.items(), _LOADINGS)
         }
 
     others = {"twice as many": {"ratio": smoother(2)}}

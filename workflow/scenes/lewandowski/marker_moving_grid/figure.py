@@ -1,19 +1,11 @@
 """Figs. 11-13: F on the moving grid of the markers, and their spectrum."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import entry, legend_below, note
+from fracstudy.style import Axes, Figure, Look, draw, entry, legend_below, note
 from scenes.lewandowski import marker_style as look
-
-__all__ = ["figure"]
 
 _REPRESENTED = {"color": "0.55", "linewidth": 0.9}
 
@@ -21,16 +13,15 @@ _REPRESENTED = {"color": "0.55", "linewidth": 0.9}
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw F at the markers, f there, and f as the same markers represent it; below, the spectrum of the markers."""
     shapes = list(series.loc[series["panel"] == "field", "series"].unique())
-    figure, panels, spectra = look.shape_panels(
-        shapes, ("midpoints", "random"), first=11, more=True
-    )
+    starts = ("midpoints", "random")
+    figure, panels, spectra = look.shape_panels(shapes, starts, first=11, more=True)
     for ax, shape, loading in panels:
         here, colour = pick(series, series=shape, loading=loading), look.SHAPE_COLOURS[shape]
         at = pick(here, panel="field")
-        look.draw(ax, pick(here, panel="exact"), **look.EXACT)
-        look.draw(ax, pick(here, panel="representation"), **_REPRESENTED)
+        draw(ax, pick(here, panel="exact"), **look.EXACT)
+        draw(ax, pick(here, panel="representation"), **_REPRESENTED)
         dots = {"markersize": 4.5, "markeredgewidth": 0.0, "alpha": 0.8}
-        look.draw(ax, at, ".", color=colour, **dots)
+        draw(ax, at, ".", color=colour, **dots)
         look.strokes(ax, at["x"], colour)
         _clusters(ax, pick(here, panel="centres"), colour)
         ax.set(xlim=(-7.0, 7.0), ylim=(-0.045, 0.36))
@@ -58,10 +49,10 @@ def _clusters(ax: Axes, centres: pd.DataFrame, colour: str) -> None:
 
 def _spectrum(ax: Axes, series: pd.DataFrame, colour: str) -> None:
     """The mean spectrum from random starts, and where perturbations grow fastest, if they do."""
-    look.draw(ax, pick(series, panel="spectrum"), color=colour)
+    draw(ax, pick(series, panel="spectrum"), color=colour)
     ax.axhline(1.0, color="0.3", linewidth=0.8)
     fastest = float(pick(series, panel="fastest")["x"].iloc[0])
-    small: dict[str, Any] = {"va": "top", "fontsize": 7.5, "color": "0.3"}
+    small: Look = {"va": "top", "fontsize": 7.5, "color": "0.3"}
     if fastest > 0.0:
         ax.axvline(fastest, color="0.3", linewidth=0.9, linestyle="--")
         ax.text(fastest + 0.12, 220.0, "fastest growth", **small)

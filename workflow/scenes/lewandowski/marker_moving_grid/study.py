@@ -1,7 +1,5 @@
 """Figs. 11-13: F at the markers, their clusters, and what represents f there."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,17 +10,8 @@ from fracparticles.markers.stability import extremes
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.lewandowski.square_profile import (
-    INFINITE,
-    LOADINGS,
-    SHAPES,
-    SquareRuns,
-    Starts,
-    Trace,
-    shape,
-)
-
-__all__ = ["study"]
+from scenes.lewandowski import square_profile
+from scenes.lewandowski.square_profile import INFINITE, LOADINGS, SHAPES, SquareRuns, Starts, shape
 
 _K = np.linspace(3.0, 12.0, 181)  # eps q of the spectra
 _CLUSTER = ("S4", "S7")
@@ -37,30 +26,26 @@ def study(inputs: Inputs, *, run: SquareRuns, seed: int, seeds: int, compared: l
     as many others.
     """
     square = SquareRuns.model_validate(run)
-    starts = Starts(square, (*SHAPES, *compared), range(seed, seed + seeds))
-    starts.measured["representation"] = _representations(square, starts)
+    shapes, first = (*SHAPES, *compared), range(seed, seed + seeds)
     again = range(seed + seeds, seed + 2 * seeds)
-    second = Starts(square, (*SHAPES, *compared), again)
-    power = {s: _mean_spectrum(starts, s, square.support) for s in (*SHAPES, *compared)}
-    onset = {s: extremes(shape(s)) for s in SHAPES}
-    ours = _numbers(square, starts, range(seed, seed + seeds), compared)
-    others = _numbers(square, second, again, compared)
-    findings = [
-        measured(claim, others={"other seeds": others[claim]}, **numbers)
-        for claim, numbers in ours.items()
-    ]
+    starts = Starts(square, shapes, first)
+    starts.measured["representation"] = _representations(square, starts)
+    ours = _numbers(square, starts, first, compared)
+    others = _numbers(square, Starts(square, shapes, again), again, compared)
     change = {s: _step_change(square, starts, s) for s in _CLUSTER}
-    findings.append(measured("M-F11.integration", change=change))
+    integration = measured("M-F11.integration", change=change)
+    findings = [*square_profile.with_other_seeds(ours, others), integration]
     table = starts.table(["relative error", "representation", "empty"])
     apart = ours["M-F11.distance"]["apart"]
     peaks = [apart.get(s, np.nan) for s in table["S"]]
     at_random = table["loading"] == LOADINGS["random"]
     table["distance of clusters / ε"] = np.where(at_random, peaks, np.nan)
     panels = _panels(square, starts)
-    for s, mean in power.items():
-        panels.add("spectrum", s, _K, mean, loading="random")
+    for s in shapes:
+        spectrum = _mean_spectrum(starts, s, square.support)
+        panels.add("spectrum", s, _K, spectrum, loading="random")
     for s in SHAPES:
-        panels.add("fastest", s, onset[s].k_growth, 0.0)
+        panels.add("fastest", s, extremes(shape(s)).k_growth, 0.0)
     return Result(table, inputs.judged(findings), panels.frame)
 
 
@@ -107,7 +92,7 @@ def _representations(square: SquareRuns, starts: Starts) -> list[float]:
     return [square.relative_error(_represented(trace, square, square.z)) for trace in starts.runs]
 
 
-def _represented(trace: Trace, square: SquareRuns, z: np.ndarray) -> np.ndarray:
+def _represented(trace: square_profile.Trace, square: SquareRuns, z: np.ndarray) -> np.ndarray:
     """f at the markers of the end, each with its cell, as they represent it at z."""
     x = np.sort(trace.end.x)
     return trace.end.velocity.fields(x, square.f(x) * np.gradient(x), z)[0]
@@ -115,14 +100,12 @@ def _represented(trace: Trace, square: SquareRuns, z: np.ndarray) -> np.ndarray:
 
 def _mean_spectrum(starts: Starts, name: str, epsilon: float) -> np.ndarray:
     """The mean spectrum of the markers from the random starts."""
-    return np.mean(
-        [
-            marker_spectrum(trace.end.x, _K / epsilon, 4.0 / 3.0 * starts.within)
-            for trace in starts.runs
-            if (trace.shape, trace.loading) == (name, "random")
-        ],
-        axis=0,
-    )
+    spectra = [
+        marker_spectrum(trace.end.x, _K / epsilon, 4.0 / 3.0 * starts.within)
+        for trace in starts.runs
+        if (trace.shape, trace.loading) == (name, "random")
+    ]
+    return np.mean(spectra, axis=0)
 
 
 def _step_change(square: SquareRuns, starts: Starts, name: str) -> float:

@@ -1,8 +1,7 @@
 """Loading markers in the plane by decoupled marginals, Sec. 2.2."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,6 @@ from fracparticles.markers.plane import TwoBlobs, decoupled, reconstruct, sequen
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels, pick
-
-__all__ = ["study"]
 
 Loading = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -45,29 +42,28 @@ def study(
     def distance(one: np.ndarray, other: np.ndarray) -> float:
         return cell * float(np.abs(one - other).sum()) / TwoBlobs(0.0).total
 
+    def field(markers: Loading) -> np.ndarray:
+        return reconstruct(SHAPES["S8"], support, markers, z, z)
+
     rows, even = [], {}
     for part in a:
         density = TwoBlobs(part)
-        markers = _even(density, per_axis[-1], half_width)
-        even[part] = distance(
-            reconstruct(SHAPES["S8"], support, markers, z, z), density.value(x, y)
-        )
-        f, product = density.value(x, y), density.product(x, y)
-        for name, load in _WAYS.items():
-            for n in per_axis:
-                markers = load(density, n)
-                field, w = reconstruct(SHAPES["S8"], support, markers, z, z), markers[2]
-                row = {
-                    "a": part,
-                    "loading": name,
-                    "N": w.size,
-                    "relative L1 error": distance(field, f),
-                    "F against the product": distance(field, product),
-                    "f against the product": distance(f, product),
-                    "total / sigma": float(w.sum()) / density.total,
-                    "effective part of the markers": float(w.sum() ** 2 / (w * w).sum() / w.size),
-                }
-                rows.append(row)
+        f, independent = density.value(x, y), density.product(x, y)
+        even[part] = distance(field(_even(density, per_axis[-1], half_width)), f)
+        for (name, load), n in product(_WAYS.items(), per_axis):
+            markers = load(density, n)
+            ours, w = field(markers), markers[2]
+            row = {
+                "a": part,
+                "loading": name,
+                "N": w.size,
+                "relative L1 error": distance(ours, f),
+                "F against the product": distance(ours, independent),
+                "f against the product": distance(f, independent),
+                "total / sigma": float(w.sum()) / density.total,
+                "effective part of the markers": float(w.sum() ** 2 / (w * w).sum() / w.size),
+            }
+            rows.append(row)
     table, panels = pd.DataFrame(rows), Panels()
     finest = pick(table, N=table["N"].max())
     panels.add("errors", finest["loading"], finest["a"], finest["relative L1 error"])
@@ -82,13 +78,12 @@ def study(
     some = np.ix_(*2 * [np.arange(0, grid, max(1, grid // 96))])
     f = density.value(x[some], y[some])
     panels.add("density", "f", x[some].ravel(), y[some].ravel(), z=f.ravel())
-    diffused = _diffused(min(24, per_axis[-1]), support, z)
-    findings = _findings(finest, even, diffused, _PER_EPS)
+    findings = _findings(finest, even, _diffused(min(24, per_axis[-1]), support, z))
     return Result(table, inputs.judged(findings), panels.frame)
 
 
 def _findings(
-    finest: pd.DataFrame, even: Mapping[float, float], diffused: float, neighbours: float
+    finest: pd.DataFrame, even: Mapping[float, float], diffused: float
 ) -> Iterator[Finding]:
     error = finest.pivot(index="a", columns="loading", values="relative L1 error")
     paper, far = pick(finest, loading=_PAPER), error.index.max()
@@ -100,7 +95,7 @@ def _findings(
     yield measured("M-C7.simple", error=error[_SEQUENTIAL].max())
     yield measured("M-C7.uniform", error=pd.Series(even).rename_axis("a"))
     yield measured("M-C7.plane_diffusion", error=diffused)
-    yield measured("M-C7.complexity", neighbours=[2.0 * neighbours, np.pi * neighbours**2])
+    yield measured("M-C7.complexity", neighbours=[2.0 * _PER_EPS, np.pi * _PER_EPS**2])
 
 
 def _even(density: TwoBlobs, per_axis: int, half_width: float) -> Loading:

@@ -1,18 +1,11 @@
 """The shape functions and their Fourier transforms."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below, note
-from scenes.lewandowski.marker_style import SHAPE_COLOURS, draw, symbol
+from fracstudy.style import RED, Figure, Look, axes_row, draw, legend_below, note
+from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 from scenes.lewandowski.square_profile import SHAPES
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, wavenumbers: float) -> Figure:
@@ -24,11 +17,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, wavenumbers: float) -> 
             draw(ax, pick(series, panel=panel, series=name), label=symbol(name), **style)
     shapes.set(xlabel=r"$x / \varepsilon$", ylabel=r"shape function $\varepsilon S_\varepsilon$")
     transforms.axhline(0.0, color="0.3", linewidth=0.8)
-    transforms.axhspan(-0.25, 0.0, color="#D55E00", alpha=0.07, linewidth=0)
+    transforms.axhspan(-0.25, 0.0, color=RED, alpha=0.07, linewidth=0)
     transforms.set(xlim=(0.0, wavenumbers), ylim=(-0.25, 0.4))
     transforms.set_xlabel(r"wavenumber $k = \varepsilon q$")
     transforms.set_ylabel(r"Fourier transform $\widehat{S}(k)$")
-    place: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
+    place: Look = {"xycoords": "axes fraction", "ha": "right"}
     note(transforms, "negative: perturbations grow", (0.98, 0.03), (0, 0), color="#A04000", **place)
     legend_below(figure, shapes, columns=8)
     return figure

@@ -1,7 +1,5 @@
 """The shape functions S1 to S8: their constants, moments, smoothness and Fourier transforms."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -12,8 +10,6 @@ from fracparticles.markers.stability import extremes
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _SEARCHED = 30.0  # the largest k that is looked at for the largest growth
 _CONSTANTS = {"S5": "mu", "S6": "beta", "S7": "alpha"}  # what a shape function's own is called
@@ -70,8 +66,6 @@ def _findings(rows: pd.DataFrame) -> Iterator[Finding]:
     slope = {name: abs(float(SHAPES[name](1.0, 1))) for name in ("S3", "S4")}
     yield measured("M-SHAPES.slope", slope=slope["S4"], quadratic=slope["S3"])
     hat, k = SHAPES["S2"], np.linspace(10.0, 20.0, 401)
-    rough = (
-        np.exp(-0.25 * k * k).max() / hat.transform(k).max()
-    )  # exp(-x^2) / sqrt(pi), the Gaussian
-    yield measured("M-SHAPES.smoother", tail=rough)
+    gaussian = np.exp(-0.25 * k * k)  # the transform of exp(-x^2) / sqrt(pi)
+    yield measured("M-SHAPES.smoother", tail=gaussian.max() / hat.transform(k).max())
     yield measured("M-SHAPES.demanding", neighbours=SHAPES["S8"].reach / hat.reach)

@@ -1,18 +1,12 @@
 """Figs. 5-7: the support parameter."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import entry, legend_below, name_ticks
-from scenes.lewandowski.marker_style import EXACT, LOADING_LOOKS, draw
+from fracstudy.style import Axes, Figure, draw, entry, legend_below, name_ticks
+from scenes.lewandowski.marker_style import EXACT, LOADING_LOOKS
 from scenes.lewandowski.square_profile import SquareRuns
-
-__all__ = ["figure"]
 
 _TICKS = {"error": (0.02, 0.05, 0.1, 0.2, 0.5), "slope": (1, 2, 5, 10, 20, 50)}
 _LABELS = {"error": "relative $L^2$ error", "slope": r"$\max|F_x| \,/\, \max|f_x|$"}

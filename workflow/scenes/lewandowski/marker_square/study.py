@@ -1,8 +1,7 @@
 """Figs. 5-7: the square profile with a small, a large and an intermediate support parameter."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.lewandowski.square_profile import LOADINGS, SQUARE, SquareRuns, Trace, delay
-
-__all__ = ["study"]
 
 _COARSE = 1.0  # the half-width of the square: what "large scale features" are
 
@@ -81,9 +78,8 @@ def _apart(square: SquareRuns, trace: Trace, epsilon: float) -> dict[str, float]
     """The error of what is wider than the square in F, and the distance of F from S_eps * f over that from f."""
     z, f, exact = square.z, trace.end.field(square.z), square.exact
     step = z[1] - z[0]
-    coarse, coarse_exact = (
-        gaussian_filter1d(g, _COARSE / step, mode="constant") for g in (f, exact)
-    )
+    wide = partial(gaussian_filter1d, sigma=_COARSE / step, mode="constant")
+    coarse, coarse_exact = wide(f), wide(exact)
     kernel = shape_function("S8")((z[:, None] - z) / epsilon) / epsilon
     smoothed = step * kernel @ exact
     return {
@@ -103,45 +99,33 @@ def _findings(
             for title, of in readings.items()
             if epsilon in of.index
         }
-        numbers, *others = each.values()
-        return measured(claim, others=dict(zip([*each][1:], others, strict=True)), **numbers)
+        numbers = each.pop(next(iter(each)))
+        return measured(claim, others=each, **numbers)
 
     def supports(of: pd.DataFrame) -> dict[str, Any]:
         """The error at the intermediate eps over the least one, and the greatest over the least."""
-        error = of["relative error"]
+        error, best = of["relative error"], of["relative error"].idxmin()
         few = error.reindex([small, middle, large]).min()
-        best = error.idxmin()
         ratio = {"of the three of Figs. 5 to 7": error[middle] / few}
         ratio["of all that were tried"] = error[middle] / error[best]
         excess = {name: m - 1.0 for name, m in ratio.items()}
-        spread = error.max() / error[best]
-        return {"ratio": ratio, "excess": excess, "best": best, "range": spread}
+        return {"ratio": ratio, "excess": excess, "best": best, "range": error.max() / error[best]}
 
     yield measured("M-F5.exact", gap=_closed_form(square))
     yield found("M-F5.slope", small, 1.0, excess="largest slope / exact")
     yield found("M-F5.cause", small, error="coarse error", whole="relative error")
     yield found("M-F5.oscillates", small, maxima="maxima")
-    yield found(
-        "M-F6.slope",
-        large,
-        slope="largest slope / exact",
-        late="delay",
-        left="error left by the delay",
-    )
+    slope, left = "largest slope / exact", "error left by the delay"
+    yield found("M-F6.slope", large, slope=slope, late="delay", left=left)
     yield found("M-F6.smoothed", large, peak="F(0) / f(0)", distance="from the smoothed f")
     yield found("M-F7.good", middle, error="relative error")
-    ours, *rest = (supports(of) for of in readings.values() if middle in of.index)
-    titles = [title for title, of in readings.items() if middle in of.index][1:]
-    by = dict(zip(titles, rest, strict=True))
+    others = {title: supports(of) for title, of in readings.items() if middle in of.index}
+    ours = others.pop(next(iter(others)))
     for claim in ("M-F7.optimal", "M-F7.crucial"):
-        yield measured(claim, others=by, **ours)
-    error = readings[LOADINGS["midpoints"]]["relative error"]
-    lines = _lines(square)
-    yield measured(
-        "M-F7.accuracy",
-        ratio={f"ε = {middle:g}": error[middle] / lines, "the best ε": error.min() / lines},
-        lines=lines,
-    )
+        yield measured(claim, others=others, **ours)
+    error, lines = readings[LOADINGS["midpoints"]]["relative error"], _lines(square)
+    ratio = {f"ε = {middle:g}": error[middle] / lines, "the best ε": error.min() / lines}
+    yield measured("M-F7.accuracy", ratio=ratio, lines=lines)
 
 
 def _closed_form(square: SquareRuns) -> float:

@@ -1,31 +1,21 @@
 """Burgers, Korteweg-de Vries and a source by one marker solver."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import legend_below, name_ticks, note, slope_triangle
-from scenes.lewandowski.marker_style import HOLLOW, draw, four_panels
+from fracstudy.style import Axes, Figure, axes_row, draw, legend_below, log_log, name_ticks, note
+from scenes.lewandowski.marker_style import HOLLOW
 
-__all__ = ["figure"]
-
-_BLUE, _RED, _GREEN, _PINK, _SKY, _ORANGE = (
-    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00",
-)  # fmt: skip
 _PROFILES: dict[str, tuple[str, dict[str, Any]]] = {
     "initial": ("$f_0$", {"color": "0.55", "linestyle": ":"}),
     "exact": ("exact", {"color": "black"}),
-    "in the velocity": ("source in the velocity", {"color": _RED, "linestyle": "--"}),
-    "in the weights": (
-        "source in the weights",
-        {"color": _BLUE, "linestyle": (0, (1, 1.5)), "linewidth": 2.6},
-    ),
+    "in the velocity": ("source in the velocity", {"color": style.RED, "linestyle": "--"}),
+    "in the weights": ("source in the weights", {"color": style.BLUE, "linestyle": (0, (1, 1.5))}),
 }
+_PROFILES["in the weights"][1]["linewidth"] = 2.6
 
 
 def figure(
@@ -33,13 +23,13 @@ def figure(
 ) -> Figure:
     """Draw (a) Burgers' equation, (b) a soliton, (c) a source, (d) the errors."""
     profile, t = rf"{source['q']['0']:g}\,\exp(-x^2)", source["t_final"]
-    titles = (
+    titles = [
         f"Burgers, $R = {burgers['shown']:g}$; lines: Cole-Hopf",
         "KdV: a soliton on a background",
         rf"source $Q = {profile}$, $t = {t:g}$",
         "errors",
-    )
-    figure, axes = four_panels(8.6, 6.8, *titles)
+    ]
+    figure, axes = axes_row(titles, width=4.3, height=3.4, rows=2)
     _burgers(axes[0], pick(series, panel="burgers"))
     _kdv(axes[1], pick(series, panel="kdv"))
     _source(axes[2], pick(series, panel="source 0"))
@@ -49,7 +39,8 @@ def figure(
 
 
 def _burgers(ax: Axes, series: pd.DataFrame) -> None:
-    for (t, part), colour in zip(series.groupby("t"), (_ORANGE, _GREEN, _BLUE), strict=False):
+    colours = (style.ORANGE, style.GREEN, style.BLUE)
+    for (t, part), colour in zip(series.groupby("t"), colours, strict=False):
         exact, dots = pick(part, series="exact"), pick(part, series="markers").sort_values("x")
         draw(ax, exact, color="black", linewidth=0.9)
         draw(ax, dots.iloc[:: max(1, len(dots) // 40)], color=colour, **HOLLOW)
@@ -64,7 +55,7 @@ def _kdv(ax: Axes, series: pd.DataFrame) -> None:
         draw(ax, part, line, color="black", linewidth=0.9)
         note(ax, f"$t = {t:g}$", _peak(part), (0, 4), ha="center")
     dots = pick(series, series="markers").sort_values("x")
-    draw(ax, dots.iloc[:: max(1, len(dots) // 80)], color=_BLUE, **HOLLOW)
+    draw(ax, dots.iloc[:: max(1, len(dots) // 80)], color=style.BLUE, **HOLLOW)
     ax.set(xlabel="$x$", ylabel="$F$ at the markers", ylim=(0.0, 1.15 * series["y"].max()))
 
 
@@ -74,17 +65,17 @@ def _peak(curve: pd.DataFrame) -> tuple[float, float]:
 
 
 def _source(ax: Axes, series: pd.DataFrame) -> None:
-    for name, (label, style) in _PROFILES.items():
-        draw(ax, pick(series, series=name), label=label, **{"linewidth": 1.2, **style})
+    for name, (label, look) in _PROFILES.items():
+        draw(ax, pick(series, series=name), label=label, **{"linewidth": 1.2, **look})
     ax.set(xlabel="$x$", ylabel="$F$", ylim=(0.0, 1.5 * series["y"].max()))
     ax.legend(loc="upper left", ncols=2)
 
 
 def _errors(ax: Axes, series: pd.DataFrame) -> None:
-    colours = iter((_ORANGE, _GREEN, _PINK, _SKY))
+    colours = iter((style.ORANGE, style.GREEN, style.PINK, style.SKY))
     for name, part in series.groupby("series", sort=False):
         if name.startswith("a source"):
-            colour = _RED if "velocity" in name else _BLUE
+            colour = style.RED if "velocity" in name else style.BLUE
             marker, line = ("^", "--") if "without" in name else ("s", "-")
             total, way = name.removeprefix("a source ").split(", ")
             label = f"source, {total.replace(' a', '').replace('without', 'no')}, {way}"
@@ -93,8 +84,6 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
             colour, label = next(colours), rf"{name}, three $\epsilon$" if soliton else name
             marker, line = ("D", "") if soliton else ("o", "-")
         draw(ax, part, color=colour, marker=marker, linestyle=line, label=label)
-    counts = sorted(series.loc[~series["series"].str.startswith("KdV"), "x"].unique())
-    ax.set(xscale="log", yscale="log", xlabel="number of markers $N$")
-    ax.set_ylabel("relative $L^1$ error")
-    name_ticks(ax, counts)
-    slope_triangle(ax, 140.0, 0.75 * series["y"].min(), -1.0)
+    log_log(ax, xlabel="number of markers $N$", ylabel="relative $L^1$ error")
+    name_ticks(ax, sorted(series.loc[~series["series"].str.startswith("KdV"), "x"].unique()))
+    style.slope_triangle(ax, 140.0, 0.75 * series["y"].min(), -1.0)

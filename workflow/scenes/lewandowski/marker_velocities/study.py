@@ -1,38 +1,26 @@
 """One marker solver for other equations, Secs. 2.1 and 4: Burgers, Korteweg-de Vries, a source."""
 
-from __future__ import annotations
-
 import math
+from itertools import product
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from fracparticles.errors import NonFiniteSolution
-from fracparticles.markers import (
-    SHAPES,
-    Gaussian,
-    MarkerVelocity,
-    Square,
-    equal_weight,
-    run,
-    uniform,
-)
+from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, equal_weight, run, uniform
 from fracparticles.markers.burgers import PointSource, burgers
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.kdv import Soliton, kdv
+from fracparticles.markers.profiles import Square
 from fracparticles.markers.source import GaussianSource, advance_weights, source_flux
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
-__all__ = ["kdv_residual", "study"]
-
 _STEP = 1e-3  # of difference quotients
-_SOURCES = {
-    2: "a source without total",
-    0: "a source with a total",
-}  # by derivative of the Gaussian
+# By derivative of the Gaussian.
+_SOURCES = {2: "a source without total", 0: "a source with a total"}
 _VELOCITY, _WEIGHTS = "in the velocity", "in the weights"
 
 
@@ -63,12 +51,8 @@ def study(
 ) -> Result:
     """Burgers against Cole-Hopf, KdV against the soliton, and a source in the velocity or in the weights."""
     errors = _Errors()
-    findings = [
-        *_burgers(errors, **burgers),
-        *_kdv(errors, **kdv),
-        *_source(errors, **source),
-        _carried(),
-    ]
+    findings = [*_burgers(errors, **burgers), *_kdv(errors, **kdv)]
+    findings += [*_source(errors, **source), _carried()]
     return Result(pd.DataFrame(errors.rows), inputs.judged(findings), errors.panels.frame)
 
 
@@ -107,25 +91,16 @@ def _burgers(
             row = {"equation": "Burgers", "case": case, "N": count, "eps": epsilon, "dt": dt}
             field, f = velocity.fields(x, w, s)[0], exact.value(s, end)
             errors.add(f"Burgers, {case}", field, f, **row, t=end)
-    cases = {r: errors.of(f"R = {r:g}") for r in reynolds}
-    of = {
-        r: pd.Series({k: e[j] for k, e in cases.items()}).rename_axis("R")
-        for r, j in (("few", 0), ("many", -1))
-    }
-    falls = {k: np.diff(e).max() for k, e in cases.items()}
-    numbers = {"error": of["many"], "few": of["few"], "change": pd.Series(falls).rename_axis("R")}
+    cases = each(lambda r: errors.of(f"R = {r:g}"), R=reynolds)
+    many, few = cases.str[-1], cases.str[0]
+    falls = cases.map(lambda e: np.diff(e).max())
     # The jump is sqrt(2 M / t), the pulse sqrt(2 M t) long, the front 8 mu / jump wide.
-    sharp = reynolds[-1]
+    sharp, ends = reynolds[-1], [markers[0], markers[-1]]
+    of_sharp: dict[str, Any] = {"error": many[sharp], "change": falls[sharp], "few": few[sharp]}
+    of_sharp |= {"front": 2.0 / sharp, "support": epsilon / math.sqrt(2.0 * total * end)}
     return [
-        measured("M-C6.burgers", **numbers, markers=[markers[0], markers[-1]]),
-        measured(
-            "M-C6.shocks",
-            error=cases[sharp][-1],
-            change=falls[sharp],
-            few=cases[sharp][0],
-            front=2.0 / sharp,
-            support=epsilon / math.sqrt(2.0 * total * end),
-        ),
+        measured("M-C6.burgers", error=many, few=few, change=falls, markers=ends),
+        measured("M-C6.shocks", **of_sharp),
     ]
 
 
@@ -167,12 +142,9 @@ def _kdv(
         errors.panels.add("kdv", "exact", z, soliton.value(z - centre, t), t=t)
     reached = _bare_soliton(errors, Soliton(c), t_final, **bare)
     found, alone = errors.of(case), errors.rows[-1]
-    signed = {count: _signed(count) for count in (128, 256)}
-    ratio = {count: with_zero / positive for count, (positive, with_zero) in signed.items()}
-    numbers: dict[str, Any] = {
-        "reached": reached,
-        "stopped": alone["stopped"] or "it goes on to the end",
-    }
+    (positive, signed), (finer, finer_signed) = _signed(128), _signed(256)
+    stopped = alone["stopped"] or "it goes on to the end"
+    numbers: dict[str, Any] = {"reached": reached, "stopped": stopped}
     return [
         measured("M-C6.kdv_velocity", miss=kdv_residual(soliton, residual_half_width)),
         measured(
@@ -185,10 +157,10 @@ def _kdv(
         ),
         measured(
             "M-C6.positive",
-            ratio=ratio[128],
-            positive=signed[128][0],
-            signed=signed[128][1],
-            others={"twice as many markers": {"ratio": ratio[256]}},
+            ratio=signed / positive,
+            positive=positive,
+            signed=signed,
+            others={"twice as many markers": {"ratio": finer_signed / finer}},
             **numbers,
         ),
     ]
@@ -246,42 +218,35 @@ def _source(
 ) -> list[Finding]:  # fmt: skip
     """Sources `q` times the derivative of the Gaussian that is the key; `step` is dt / eps^2."""
     z = np.linspace(-4.0, 4.0, 801)
-    for derivative, name in _SOURCES.items():
-        source, panel = GaussianSource(q[str(derivative)], derivative), f"source {derivative}"
-        exact = source.solution(z, t_final)
-        for way in (_VELOCITY, _WEIGHTS):
-            for count in markers:
-                epsilon = support * math.sqrt(markers[0] / count)
-                steps = math.ceil(t_final / (step * epsilon**2))
-                time: dict[str, Any] = {"dt": t_final / steps, "steps": steps}
-                x, w = equal_weight(Gaussian(), count)
-                if way == _VELOCITY:
-                    velocity = FourierMarkerVelocity(epsilon, source_flux(source.cumulative))
-                    x = run(x, w, velocity, **time).x
-                else:
-                    velocity = FourierMarkerVelocity(epsilon)
-                    x, w = advance_weights(x, w, velocity, source.rate, **time)
-                field = velocity.fields(x, w, z)[0]
-                case = f"{name}, {way}"
-                row = {"equation": "source", "case": case, "N": count, "eps": epsilon}
-                errors.add(case, field, exact, **row, dt=time["dt"], t=t_final)
-            errors.panels.add(panel, way, z, field)
+    sources = {name: GaussianSource(q[str(of)], of) for of, name in _SOURCES.items()}
+    last: dict[str, dict[str, float]] = {_VELOCITY: {}, _WEIGHTS: {}}
+    for name, source in sources.items():
+        exact, panel = source.solution(z, t_final), f"source {source.derivative}"
+        for way, count in product(last, markers):
+            epsilon = support * math.sqrt(markers[0] / count)
+            steps = math.ceil(t_final / (step * epsilon**2))
+            time: dict[str, Any] = {"dt": t_final / steps, "steps": steps}
+            x, w = equal_weight(Gaussian(), count)
+            if way == _VELOCITY:
+                velocity = FourierMarkerVelocity(epsilon, source_flux(source.cumulative))
+                x = run(x, w, velocity, **time).x
+            else:
+                velocity = FourierMarkerVelocity(epsilon)
+                x, w = advance_weights(x, w, velocity, source.rate, **time)
+            field, case = velocity.fields(x, w, z)[0], f"{name}, {way}"
+            row = {"equation": "source", "case": case, "N": count, "eps": epsilon}
+            errors.add(case, field, exact, **row, dt=time["dt"], t=t_final)
+            last[way][name] = errors.of(case)[-1]
+            if count == markers[-1]:
+                errors.panels.add(panel, way, z, field)
         errors.panels.add(panel, "exact", z, exact)
         errors.panels.add(panel, "initial", z, Gaussian().value(z))
-    sources = [GaussianSource(q[str(derivative)], derivative) for derivative in _SOURCES]
-    gained = {
-        name: source.total * t_final / (Gaussian().total + source.total * t_final)
-        for name, source in zip(_SOURCES.values(), sources, strict=True)
-    }
+    gain = sources[_SOURCES[0]].total * t_final
+    gained, most = gain / (Gaussian().total + gain), markers[-1]
+    error, weights = last.values()
     return [
-        measured(
-            "M-C6.source",
-            error={name: errors.of(f"{name}, {_VELOCITY}")[-1] for name in _SOURCES.values()},
-            weights={name: errors.of(f"{name}, {_WEIGHTS}")[-1] for name in _SOURCES.values()},
-            gained=gained[_SOURCES[0]],
-            markers=markers[-1],
-        ),
-        measured("M-C6.source_velocity", miss=max(_substituted(source) for source in sources)),
+        measured("M-C6.source", error=error, weights=weights, gained=gained, markers=most),
+        measured("M-C6.source_velocity", miss=max(map(_substituted, sources.values()))),
     ]
 
 

@@ -1,22 +1,15 @@
 """The change of the total strength over time."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, log_log, name_ticks, note, scheme_style
-
-__all__ = ["figure"]
+from fracstudy.style import Figure, Look, axes_row, draw, log_log, name_ticks, note, scheme_style
 
 _FLOOR = float(np.finfo(float).eps) / 2.0  # a change of zero is drawn here
-_OUTFLOW: dict[str, Any] = {"color": "black", "linewidth": 4.0, "alpha": 0.25}
-_RINGS: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "none"}
+_OUTFLOW: Look = {"color": "black", "linewidth": 4.0, "alpha": 0.25}
+_RINGS: Look = {"markerfacecolor": "none", "linestyle": "none"}
 _SIZES = {"DD": 9.0, "FPSE": 7.0, "KPSE": 5.0}  # of the rings
-_FREE: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "--"}  # not remeshed
+_FREE: Look = {"markerfacecolor": "none", "linestyle": "--"}  # not remeshed
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -24,27 +17,23 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     figure, (ax,) = axes_row(1, width=6.4, height=4.2)
     series = series.sort_values("x").assign(y=series["y"].clip(lower=_FLOOR))
     moving = series["scheme"] == "DVM"
-    for part, line, label in (
-        (series[~moving], "-", "exact outflow"),
-        (series[moving], ":", "exact outflow, DVM's $D$"),
-    ):
-        outflow = part.groupby("x")["outflow"].first()
-        ax.plot(outflow.index, outflow, linestyle=line, label=label, **_OUTFLOW)
+    for of_dvm, line, more in ((False, "-", ""), (True, ":", ", DVM's $D$")):
+        outflow = series[moving == of_dvm].groupby("x")["outflow"].first()
+        ax.plot(outflow.index, outflow, line, label=f"exact outflow{more}", **_OUTFLOW)
     groups = dict(iter(series.groupby(["exterior", "scheme"])))
     for (exterior, scheme), points in groups.items():
         if exterior == "truncated":
-            ax.plot(points["x"], points["y"], **scheme_style(scheme, label=scheme))
+            draw(ax, points, **scheme_style(scheme, label=scheme))
     for scheme, size in _SIZES.items():
         if ("open", scheme) in groups:
-            points = groups["open", scheme]
-            style = scheme_style(scheme, markersize=size, **_RINGS)
-            ax.plot(points["x"], points["y"], label=f"{scheme}, open exterior", **style)
+            look = scheme_style(scheme, markersize=size, **_RINGS)
+            draw(ax, groups["open", scheme], label=f"{scheme}, open exterior", **look)
     for exterior in series.loc[moving, "exterior"].sort_index().unique():
         points = groups[exterior, "DVM"]
         if len(points) > 1:  # the table has the others
             name = exterior.replace("M4'", "$M_4'$").replace("remeshing none", "no remeshing")
-            style = scheme_style("DVM", **_FREE if exterior == "remeshing none" else {})
-            ax.plot(points["x"], points["y"], label=f"DVM, {name}", **style)
+            look = scheme_style("DVM", **_FREE if exterior == "remeshing none" else {})
+            draw(ax, points, label=f"DVM, {name}", **look)
     ax.axhline(2.0 * _FLOOR, color="0.5", linewidth=0.8, linestyle=":")
     style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "top", "color": "0.35"}
     note(ax, "one unit in the last place", (1.0, 2.0 * _FLOOR), (0, -3), **style)

@@ -1,7 +1,6 @@
 """Total strength over time, Eq. (18): which schemes keep it, and what the others lose."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,8 +13,7 @@ from fracparticles.schemes.base import OnePass
 from fracparticles.special.stable import central_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study", "weight_sum"]
+from fracstudy.panels import pick
 
 _REMESHINGS = "M4'", "Lambda3"  # the interpolation functions of the paper's time
 
@@ -26,7 +24,7 @@ NEEDS: dict[str, list[Any]] = {
 }
 
 _EPS = float(np.finfo(float).eps)
-_CLAIMED = ("DPSE", "FPSE", "KPSE", "GPSE", "DD")
+_CLAIMED = ("DD", "DPSE", "FPSE", "GPSE", "KPSE")
 _TWO_PASSES = {
     "DPSE": (dpse.potential_weights, dpse.laplacian_weights),
     "FPSE": (fpse.flux_weights, fpse.divergence_weights),
@@ -56,26 +54,26 @@ def study(inputs: Inputs, *, shown_beta: float) -> Result:
     runs["left out"] = runs["eliminated_strength"] / runs["mass_initial"]
     runs["usual"] = np.isclose(runs["t_final"], runs["t_final"].mode()[0])
     shown = runs[runs["usual"]]
-    table = pd.DataFrame(
-        {
-            "scheme": shown["scheme"],
-            "order": shown["order"].map(ORDERS).where(~shown["scheme"].isin(["GPSE", "FD"]), "-"),
-            "beta": shown["beta"],
-            "exterior": shown["exterior"],
-            "M(t_f) / M(t_0) - 1": shown["change"],
-            "in ulp": (shown["change"] / _EPS).round(),
-            "round-off, bound": shown["bound"],
-            "exact outflow / M(t_0)": shown["outflow"],
-            "change + exact outflow": shown["change"] + shown["outflow"],
-            "put beyond ±D by remeshing / M(t_0)": shown["lost"],
-            "left out as too weak / M(t_0)": shown["left out"],
-        }
-    ).sort_values(["exterior", "scheme", "beta", "order"], ascending=[False, True, True, True])
+    columns = {
+        "scheme": shown["scheme"],
+        "order": shown["order"].map(ORDERS).where(~shown["scheme"].isin(["GPSE", "FD"]), "-"),
+        "beta": shown["beta"],
+        "exterior": shown["exterior"],
+        "M(t_f) / M(t_0) - 1": shown["change"],
+        "in ulp": (shown["change"] / _EPS).round(),
+        "round-off, bound": shown["bound"],
+        "exact outflow / M(t_0)": shown["outflow"],
+        "change + exact outflow": shown["change"] + shown["outflow"],
+        "put beyond ±D by remeshing / M(t_0)": shown["lost"],
+        "left out as too weak / M(t_0)": shown["left out"],
+    }
+    key = ["exterior", "scheme", "beta", "order"]
+    table = pd.DataFrame(columns).sort_values(key, ascending=[False, True, True, True])
     series = runs[np.isclose(runs["beta"], shown_beta) & (runs["order"] == 2) & ~weak]
     series = series.assign(x=series["t_final"] - series["t_initial"], y=series["change"].abs())
     findings = [*_lattice(runs), *_moving(runs[moving]), _moments()]
-    columns = ["scheme", "exterior", "x", "y", "outflow", "bound"]
-    return Result(table, inputs.judged(findings), series[columns])
+    series = series[["scheme", "exterior", "x", "y", "outflow", "bound"]]
+    return Result(table, inputs.judged(findings), series)
 
 
 def _outflow(run: Any) -> float:
@@ -116,60 +114,49 @@ def _round_off(run: Any) -> float:
     return 4.0 * _EPS * np.log2(4.0 * n) * weight_sum(run.scheme, *lattice) * time
 
 
-def _lattice(runs: pd.DataFrame) -> list[Finding]:
+def _lattice(runs: pd.DataFrame) -> Iterator[Finding]:
     """The exchange schemes and DD, truncated: the change over the bound of its round-off, and the exact outflow."""
-    opened = runs[runs["exterior"] == "open"]
-    findings = []
-    for scheme, here in runs[runs["exterior"] == "truncated"].groupby("scheme"):
+    opened, truncated = (pick(runs, exterior=name) for name in ("open", "truncated"))
+    for scheme in _CLAIMED:
+        here = pick(truncated, scheme=scheme).set_index("beta")
         change = here["change"].abs()
-        share = (change / here["bound"]).groupby(here["beta"])
+        share = (change / here["bound"]).groupby("beta")
+        more = {"outflow": here["outflow"].max(), "share": share.max()}
         if scheme == "DD":
-            least = (change / here["outflow"]).groupby(here["beta"])
+            least = (change / here["outflow"]).groupby("beta")
             missed = (opened["change"] + opened["outflow"]).abs().max()
-            more = {"outflow": least.agg(np.min), "missed": missed, "share": share.min()}
-        else:
-            more = {"outflow": here["outflow"].max(), "share": share.max()}
-        if scheme in _CLAIMED:
-            found = measured(
-                f"L-C18.{scheme}",
-                runs=here["run"],
-                change=change.groupby(here["beta"]).max(),
-                count=len(here),
-                **more,
-            )
-            findings.append(found)
-    return findings
+            more = {"outflow": least.min(), "missed": missed, "share": share.min()}
+        numbers = {"change": change.groupby("beta").max(), "count": len(here), **more}
+        yield measured(f"L-C18.{scheme}", runs=here["run"], **numbers)
 
 
-def _moving(runs: pd.DataFrame) -> list[Finding]:
+def _moving(runs: pd.DataFrame) -> Iterator[Finding]:
     """DVM without remeshing, and with it: what is missing must be what remeshing put beyond the ends, or left out."""
-    free, remeshed = runs[runs["remeshing"] == "none"], runs[runs["remeshing"] != "none"]
+    by_beta = runs.set_index("beta")
+    free, remeshed = (by_beta[(by_beta["remeshing"] == "none") == alone] for alone in (True, False))
     gone = remeshed["lost"] + remeshed["left out"]
-    full = remeshed[remeshed["usual"] & (remeshed["threshold"] == 0.0)].set_index("beta")
+    full = remeshed[remeshed["usual"] & (remeshed["threshold"] == 0.0)]
     usual = free[free["usual"]]
-    stretch = (usual["largest_spacing"] / usual["particle_spacing"]).groupby(usual["beta"]).min()
-    return [
-        measured(
-            "L-C18.DVM",
-            runs=free["run"],
-            change=free["change"].abs().groupby(free["beta"]).max(),
-            share=(free["change"].abs() / free["bound"]).groupby(free["beta"]).max(),
-            count=len(free),
-        ),
-        measured(
-            "L-C18.DVM_remeshed",
-            runs=remeshed["run"],
-            share=(remeshed["change"].abs() / remeshed["bound"]).groupby(remeshed["beta"]).min(),
-            lost=(-full["change"]).groupby("beta").max(),
-            outflow=full["outflow"].groupby("beta").max(),
-            rest=((remeshed["change"] + gone).abs() / remeshed["bound"]).max(),
-            weak=remeshed["left out"].abs().max(),
-        ),
-        measured("L-C18.DVM_distortion", runs=usual["run"], stretch=stretch),
-        measured(
-            "L-C18.DVM_overlap", runs=usual["run"], overlap=usual["overlap"].iloc[0] / stretch
-        ),
-    ]
+    stretch = (usual["largest_spacing"] / usual["particle_spacing"]).groupby("beta").min()
+    yield measured(
+        "L-C18.DVM",
+        runs=free["run"],
+        change=free["change"].abs().groupby("beta").max(),
+        share=(free["change"].abs() / free["bound"]).groupby("beta").max(),
+        count=len(free),
+    )
+    yield measured(
+        "L-C18.DVM_remeshed",
+        runs=remeshed["run"],
+        share=(remeshed["change"].abs() / remeshed["bound"]).groupby("beta").min(),
+        lost=(-full["change"]).groupby("beta").max(),
+        outflow=full["outflow"].groupby("beta").max(),
+        rest=((remeshed["change"] + gone).abs() / remeshed["bound"]).max(),
+        weak=remeshed["left out"].abs().max(),
+    )
+    yield measured("L-C18.DVM_distortion", runs=usual["run"], stretch=stretch)
+    overlap = usual["overlap"].iloc[0] / stretch
+    yield measured("L-C18.DVM_overlap", runs=usual["run"], overlap=overlap)
 
 
 def _moments() -> Finding:

@@ -1,33 +1,27 @@
 """The stability of DVM and GPSE against the limit of DD."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, log_log, name_ticks, panel_title
-
-__all__ = ["figure"]
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import COLOURS, ERROR, Axes, Figure, Look, axes_row, log_log, scheme_style
 
 _STOPPED = 3.0  # where the marks of runs that stop are drawn
-_DVM: dict[str, Any] = {"color": COLOURS["DVM"], "marker": MARKERS["DVM"]}
-_LOOKS: dict[str, dict[str, Any]] = {
-    "DVM, no remeshing": {**_DVM, "markerfacecolor": "none", "linestyle": "--"},
-    "DVM, M4'": _DVM,
-    "GPSE, open exterior": {"color": COLOURS["GPSE"], "marker": MARKERS["GPSE"]},
+_LOOKS: dict[str, Look] = {
+    "DVM, no remeshing": scheme_style("DVM", markerfacecolor="none", linestyle="--"),
+    "DVM, M4'": scheme_style("DVM"),
+    "GPSE, open exterior": scheme_style("GPSE"),
 }
-_CROSS: dict[str, Any] = {"marker": "x", "linestyle": "", "markersize": 6, "markeredgewidth": 1.5}
+_CROSS: Look = {"marker": "x", "linestyle": "", "markersize": 6, "markeredgewidth": 1.5}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the factor of a wave in a step and (b) the error of runs, against the step over DD's limit."""
-    drawn, (growth, error) = axes_row(2, width=4.5, height=3.9)
-    _factors(growth, series[series["panel"] == "growth"])
-    _errors(error, series[series["panel"] == "error"])
+    titles = ("growth of the worst wave", "error of runs")
+    drawn, (growth, error) = axes_row(titles, width=4.5, height=3.9)
+    _factors(growth, pick(series, panel="growth"))
+    _errors(error, pick(series, panel="error"))
     for ax in (growth, error):
         right = ax.get_xlim()[1]
         ax.axvspan(1.0, right, color="0.95", zorder=0)
@@ -39,25 +33,22 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 
 
 def _factors(ax: Axes, series: pd.DataFrame) -> None:
-    waves = series[series["run"] == "DVM"]
+    waves = pick(series, run="DVM").sort_values("factor")
     largest = waves["factor"].max()
-    hollow = {"color": COLOURS["DVM"], "linestyle": "", "markerfacecolor": "none"}
-    looks = {2: ("II", "p", 6), 4: ("IV", "h", 9)}
-    for order, (name, marker, size) in looks.items():
-        part = waves[waves["order"] == order].sort_values("factor")
-        label = f"DVM {name}, measured"
-        look: dict[str, Any] = {"marker": marker, "markersize": size, "label": label, **hollow}
+    hollow: Look = {"color": COLOURS["DVM"], "linestyle": "", "markerfacecolor": "none"}
+    fine = np.linspace(0.0, largest, 200)
+    z = -2.0 * fine
+    predicted = r"$1 + z + z^2/2$, $z = \Delta t\,A_\mathrm{DD}$"
+    for order, name, marker, size in ((2, "II", "p", 6), (4, "IV", "h", 9)):
+        part, label = pick(waves, order=order), f"DVM {name}, measured"
+        look = {"marker": marker, "markersize": size, "label": label, **hollow}
         ax.plot(part["factor"], part["measured"], **look)
         if order == 2:
-            fine = np.linspace(0.0, largest, 200)
-            z = -2.0 * fine
-            predicted = r"$1 + z + z^2/2$, $z = \Delta t\,A_\mathrm{DD}$"
             ax.plot(fine, 1.0 + z + 0.5 * z * z, color=COLOURS["DD"], label=predicted)
-    part = series[(series["run"] == "GPSE") & (series["factor"] <= 1.05 * largest)]
+    part = pick(series, run="GPSE").query("factor <= 1.05 * @largest")
     ax.plot(part["factor"], part["predicted"], color=COLOURS["GPSE"], label="GPSE, short waves")
     ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle=":")
     ax.set(xlim=(0.0, 1.03 * largest), ylim=(0.0, None), ylabel="factor of a wave in a step")
-    panel_title(ax, "a", "growth of the worst wave")
 
 
 def _errors(ax: Axes, series: pd.DataFrame) -> None:
@@ -71,6 +62,5 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
             ax.plot(stopped, marks, color=_LOOKS[name]["color"], label=label, **_CROSS)
     log_log(ax)
     low, high = ax.get_xlim()
-    name_ticks(ax, [tick for tick in (0.25, 0.5, 1.0, 2.0, 4.0) if low <= tick <= high])
-    ax.set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
-    panel_title(ax, "b", "error of runs")
+    style.name_ticks(ax, [tick for tick in (0.25, 0.5, 1.0, 2.0, 4.0) if low <= tick <= high])
+    ax.set_ylabel(ERROR)

@@ -7,10 +7,9 @@ the rate -D |k|^alpha eta^(k epsilon) xi, which is DD's symbol: a midpoint step 
 z = dt A_DD(k h), and that exceeds one where D dt / h^alpha exceeds DD's limit a.
 """
 
-from __future__ import annotations
-
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from itertools import product
 from typing import Any
@@ -26,19 +25,16 @@ from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import advect, compute, initial_strengths
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.stability import stability_limit
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["displacement_growth", "gpse_factors", "study", "worst_wave"]
+from fracstudy.panels import pick
 
 _STEPS = 3  # of which a measured growth is the mean
 _XI = 1e-5  # displacement of a wave, in spacings: its square is what linearity neglects
 _SEED = 1e-6  # relative perturbation of a run's strengths, far above round-off: the same on every machine
 _RUINED = 10.0  # an error that has grown so many times is no longer that of the discretisation
-_WEAK, _EVERY = (
-    1e-3,
-    10,
-)  # of the peak: a very small strength; states between two that are looked at
+_WEAK = 1e-3  # of the peak: a very small strength
+_EVERY = 10  # states between two that are looked at
 _WAVES = np.linspace(0.0, np.pi, 4001)
 _BETAS = (0.1, 0.5, 0.9)
 _RUNS: dict[str, dict[str, Any]] = {
@@ -103,31 +99,30 @@ def study(
     grid = {"beta": beta, "truncation": truncation}
     waves = _growth(1.0 + beta, growth, half)
     runs = pd.concat([_runs(name, {**grid, "spacing": spacing}, factors) for name in _RUNS])
-    ruined, error = _ruined(runs) & runs["stopped"].isna(), runs["error"]
-    # Saturated chaos: its size is a result, its digits are nobody's.
-    shown = error.where(~ruined, error.map(lambda e: float(f"{e:.0e}")))
-    outcome = np.where(runs["stopped"].notna(), "stopped", np.where(ruined, "ruined", "fine"))
-    table = pd.DataFrame(
-        {
-            "run": runs["run"],
-            "step / limit of DD": runs["factor"],
-            "Δt": runs["dt"],
-            "error (48)": shown,
-            "steps": runs["steps"],
-            "outcome": outcome,
-            "after t": runs["stopped"],
-            "growth of the worst wave in a step": runs["growth"],
-        }
-    )
+    stopped, error = runs["stopped"].notna(), runs["error"]
+    ruined = _ruined(runs) & ~stopped
+    columns = {
+        "run": runs["run"],
+        "step / limit of DD": runs["factor"],
+        "Δt": runs["dt"],
+        # Saturated chaos: its size is a result, its digits are nobody's.
+        "error (48)": error.where(~ruined, error.map(lambda e: float(f"{e:.0e}"))),
+        "steps": runs["steps"],
+        "outcome": np.where(stopped, "stopped", np.where(ruined, "ruined", "fine")),
+        "after t": runs["stopped"],
+        "growth of the worst wave in a step": runs["growth"],
+    }
+    table = pd.DataFrame(columns)
+
+    def limit(beta: float) -> float:
+        return stability_limit("DD", beta) * printed_spacing[beta] ** (1.0 + beta) / printed_step
+
     findings: list[Finding] = []
     if inputs.items:
-        limits = {
-            beta: stability_limit("DD", beta) * h ** (1.0 + beta) / printed_step
-            for beta, h in printed_spacing.items()
-        }
+        unseeded = _unseeded({**grid, "spacing": spacing}, runs)
         findings = [
             *_gpse(runs, overlap),
-            *_dvm(runs, _unseeded({**grid, "spacing": spacing}, runs), waves, limits),
+            *_dvm(runs, unseeded, waves, each(limit, beta=printed_spacing)),
             _bounded(grid, spacings),
             *_weak([Case(scheme="DVM", **fields) for fields in ends]),
         ]
@@ -169,23 +164,20 @@ def _runs(
     for factor in factors:
         case = Case(**grid, **_RUNS[name], dt=factor * limit, t_initial=start)
         # With a trace of the worst wave, so that round-off need not provide it.
-        k = worst_wave(case.alpha, 2) / case.particle_spacing
-        u, stopped, remeshings = _final_field(
-            case, initial_strengths(case)[0] * (1.0 + seed * np.cos(k * case.x))
-        )
+        trace = seed * np.cos(worst_wave(case.alpha, 2) / case.particle_spacing * case.x)
+        u, stopped, remeshings = _final_field(case, initial_strengths(case)[0] * (1.0 + trace))
         growth = _midpoint(-2.0 * case.time_step / limit) if case.scheme == "DVM" else np.nan
-        rows.append(
-            {
-                "run": name,
-                "factor": case.time_step / limit,
-                "dt": case.time_step,
-                "steps": case.steps,
-                "error": np.nan if u is None else relative_l1_error(case, u),
-                "stopped": stopped,
-                "growth": growth,
-                "remeshed": remeshings / case.steps,
-            }
-        )
+        row = {
+            "run": name,
+            "factor": case.time_step / limit,
+            "dt": case.time_step,
+            "steps": case.steps,
+            "error": np.nan if u is None else relative_l1_error(case, u),
+            "stopped": stopped,
+            "growth": growth,
+            "remeshed": remeshings / case.steps,
+        }
+        rows.append(row)
     runs = pd.DataFrame(rows)
     return runs.assign(ratio=runs["error"] / runs["error"].iloc[runs["dt"].argmin()])
 
@@ -196,16 +188,22 @@ def _ruined(runs: pd.DataFrame) -> pd.Series:
 
 def _unseeded(grid: dict[str, float], runs: pd.DataFrame) -> pd.DataFrame:
     """The runs of DVM above the limit once more without a trace of the worst wave, beside that of the smallest step."""
-    factors = runs.loc[runs["run"] == "DVM, M4'", "factor"]
+    factors = pick(runs, run="DVM, M4'")["factor"]
     chosen = [factors.min(), *factors[factors > 1.0]]
     return pd.concat([_runs(name, grid, chosen, 0.0) for name in _RUNS if name.startswith("DVM")])
+
+
+@contextmanager
+def _no_warning() -> Iterator[None]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", StabilityWarning)
+        yield
 
 
 def _final_field(case: Case, u0: np.ndarray) -> tuple[np.ndarray | None, float, int]:
     """The field at the end, nan and the number of remeshings, or None and the time after which the run stopped."""
     times: list[float] = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", StabilityWarning)
+    with _no_warning():
         if case.scheme != "DVM":
             return compute(case, u0).u, np.nan, 0
         try:
@@ -219,21 +217,15 @@ def _gpse(runs: pd.DataFrame, overlaps: list[float]) -> Iterator[Finding]:
     """The factors of a step over all waves, and the errors of runs with steps on both sides of DD's limit."""
     factors = [gpse_factors(1.0 + beta, s) for beta, s in product(_BETAS, overlaps)]
     here = runs[runs["run"].str.startswith("GPSE")]
-    error = here["error"]
-    change = error.max() / error.min() - 1.0
-    yield measured(
-        "L-C11.GPSE",
-        lowest=min(f.min() for f in factors),
-        excess=max(f.max() for f in factors) - 1.0,
-        change=change,
-        factor=here["factor"].max(),
-    )
+    error, change = here["error"], here["error"].max() / here["error"].min() - 1.0
+    ends = {"lowest": np.min(factors), "excess": np.max(factors) - 1.0}
+    yield measured("L-C11.GPSE", **ends, change=change, factor=here["factor"].max())
     apart = here["dt"].max() / here["dt"].min()
     yield measured("L-C11.GPSE_exact", change=change, apart=apart, error=error.max())
 
 
 def _dvm(
-    runs: pd.DataFrame, unseeded: pd.DataFrame, waves: pd.DataFrame, limits: Mapping[float, float]
+    runs: pd.DataFrame, unseeded: pd.DataFrame, waves: pd.DataFrame, limits: pd.Series
 ) -> Iterator[Finding]:
     """Which runs of DVM are ruined above DD's limit, and how a displacement wave grows."""
     waves, runs = waves[waves["run"] == "DVM"], runs[runs["run"].str.startswith("DVM")]
@@ -249,7 +241,7 @@ def _dvm(
         below=share(runs, above=False).max(),
         first=runs.loc[_ruined(runs), "factor"].min() if _ruined(runs).any() else 0.0,
         miss=(waves["measured"] - waves["predicted"]).abs().max(),
-        limit=pd.Series(limits).rename_axis("beta"),
+        limit=limits,
         trace=_SEED,
     )
     least = runs.sort_values("dt").groupby("run")["remeshed"].first()
@@ -265,9 +257,12 @@ def _bounded(grid: dict[str, float], spacings: list[float]) -> Finding:
     """The last particle's velocity at the start, over the exact x / (alpha t), against h."""
     cases = [Case(scheme="DVM", **grid, spacing=h, dt=1.0) for h in spacings]
     h = np.array([case.particle_spacing for case in cases])
-    strengths = [case.particle_spacing * initial_strengths(case)[0] for case in cases]
-    pairs = zip(cases, strengths, strict=True)
-    last = np.array([float(_velocity(case)(case.x, strength)[-1]) for case, strength in pairs])
+
+    def velocity(case: Case) -> float:
+        strength = case.particle_spacing * initial_strengths(case)[0]
+        return float(_velocity(case)(case.x, strength)[-1])
+
+    last = np.array([velocity(case) for case in cases])
     # With h halved from level to level, a power of h keeps its exponent in the differences.
     gain = np.diff(last)
     return measured(
@@ -282,23 +277,18 @@ def _weak(cases: list[Case]) -> Iterator[Finding]:
     """How strong the weakest particles are, and where the velocity is more than the exact x / (alpha t)."""
     least, ratios, stopped = {}, {}, 0
     for case in cases:
-        name = f"beta = {case.beta:g}"
-        u0 = initial_strengths(case)[0]
+        name, u0 = f"beta = {case.beta:g}", initial_strengths(case)[0]
         least[name] = u0.min() / u0.max()
         states: list[Any] = []
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", StabilityWarning)
+        with _no_warning():
             try:
                 advect(case, u0, lambda *state, kept=states: kept.append(state))
             except NonFiniteSolution:
                 stopped += 1
         ratios[name] = np.max([_speeds(case, *s) for s in [*states[::_EVERY], states[-1]]], axis=0)
-    yield measured(
-        "L-C11.DVM_divergence",
-        excess={name: strong - 1.0 for name, (strong, _) in ratios.items()},
-        weak={name: weak for name, (_, weak) in ratios.items()},
-        stopped=stopped,
-    )
+    excess = {name: strong - 1.0 for name, (strong, _) in ratios.items()}
+    weak = {name: weak for name, (_, weak) in ratios.items()}
+    yield measured("L-C11.DVM_divergence", excess=excess, weak=weak, stopped=stopped)
     yield measured("L-C11.small_strengths", least=least)
 
 

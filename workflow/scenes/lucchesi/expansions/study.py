@@ -1,9 +1,8 @@
 """Figs A.10-A.12: how far the series (A.1) and the asymptotic expansion (A.2) of the Green's function reach."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from math import log, pi
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 import pandas as pd
@@ -12,8 +11,7 @@ from scipy.special import gammaln
 from fracparticles.special import green_asymptotic, green_series, reduced_green
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import Panels
 
 _TOLERANCES = (1e-3, 1e-6)
 _X = np.geomspace(1e-2, 1e7, 9001)
@@ -34,27 +32,24 @@ def study(
     A sum of so many `terms` holds where its relative error is below the tolerance, from the origin on for (A.1), to
     infinity for (A.2). `series_terms` and `asymptotic_terms` are those of the figure.
     """
-    exact = np.asarray(reduced_green(_X, alpha))
-    rows = []
+    exact, rows = np.asarray(reduced_green(_X, alpha)), []
     for count in terms:
         series, expansion = (_off(name, alpha, count, exact) for name in _FUNCTIONS)
         row: dict[str, float] = {"terms": count}
         for tolerance in _TOLERANCES:
-            row[f"series to x ({tolerance:g})"] = _holds_up_to(_X, series < tolerance)
-            row[f"expansion from x ({tolerance:g})"] = _holds_up_to(
-                _X[::-1], (expansion < tolerance)[::-1]
-            )
+            near, far = series < tolerance, expansion < tolerance
+            row[f"series to x ({tolerance:g})"] = _holds_up_to(_X, near)
+            row[f"expansion from x ({tolerance:g})"] = _holds_up_to(_X[::-1], far[::-1])
         rows.append(row)
     table = pd.DataFrame(rows)
-    curves = [("exact", 0, np.asarray(reduced_green(_SHOWN_X, alpha)))]
+    panels = Panels()
+    panels.add(series="exact", terms=0, x=_SHOWN_X, y=reduced_green(_SHOWN_X, alpha))
     for name, counts in (("series", series_terms), ("asymptotic", asymptotic_terms)):
-        curves += [(name, count, _sum(name, _SHOWN_X, alpha, count)) for count in counts]
-    shown = [
-        pd.DataFrame({"series": name, "terms": count, "x": _SHOWN_X, "y": y})
-        for name, count, y in curves
-    ]
-    findings = _findings(inputs.items[0], alpha, table) if inputs.items else []
-    return Result(table, findings, pd.concat(shown, ignore_index=True))
+        for count in counts:
+            y = _sum(name, _SHOWN_X, alpha, count)
+            panels.add(series=name, terms=count, x=_SHOWN_X, y=y)
+    findings = [*_findings(inputs.items[0], alpha, table)] if inputs.items else []
+    return Result(table, findings, panels.frame)
 
 
 def _sum(name: str, x: np.ndarray, alpha: float, terms: int) -> np.ndarray:
@@ -75,7 +70,7 @@ def _holds_up_to(x: np.ndarray, good: np.ndarray) -> float:
     return np.nan if bad.size and last < 0 else float(x[last])
 
 
-def _findings(item: str, alpha: float, table: pd.DataFrame) -> list[Finding]:
+def _findings(item: str, alpha: float, table: pd.DataFrame) -> Iterator[Finding]:
     """How far the sums reach. A reach is followed as terms are added until it no longer grows.
 
     The series gains until its largest terms, rounded, are as large as the tolerance of the sum; the expansion gains
@@ -83,37 +78,21 @@ def _findings(item: str, alpha: float, table: pd.DataFrame) -> list[Finding]:
     """
     loose, strict = (_Reach.of(table, f"{tolerance:g}") for tolerance in _TOLERANCES)
     x = np.array([0.25, 0.5])
-    exact = np.asarray(reduced_green(x, alpha))
-    right, left = (
-        np.array([_literal_series(value, alpha) for value in sign * x]) for sign in (1.0, -1.0)
+    right, left = (_literal_series(sign * x, alpha) for sign in (1.0, -1.0))
+    even = np.abs(left / right - 1.0).max()
+    printed = np.abs(right / np.asarray(reduced_green(x, alpha)) - 1.0).max()
+    far, near, terms = loose.far, loose.near, table["terms"]
+    yield measured(
+        f"{item}.series",
+        gain=_gains(loose.series),
+        reach=_chain(terms, loose.series),
+        cancellation=_largest_term(far, alpha) / float(reduced_green(far, alpha)),
     )
-    return [
-        measured(
-            f"{item}.series",
-            gain=_gains(loose.series),
-            reach=_chain(table["terms"], loose.series),
-            cancellation=_largest_term(loose.far, alpha) / float(reduced_green(loose.far, alpha)),
-        ),
-        measured(
-            f"{item}.even",
-            even=np.abs(left / right - 1.0).max(),
-            printed=np.abs(right / exact - 1.0).max(),
-        ),
-        measured(
-            f"{item}.asymptotic",
-            gain=_gains(1.0 / loose.expansion),
-            start=_chain(table["terms"], loose.expansion),
-        ),
-        measured(
-            f"{item}.overlap",
-            ratio=loose.far / loose.near,
-            far=loose.far,
-            near=loose.near,
-            others={
-                f"sums that are right to {_TOLERANCES[1]:g}": {"ratio": strict.far / strict.near}
-            },
-        ),
-    ]
+    yield measured(f"{item}.even", even=even, printed=printed)
+    start = _chain(terms, loose.expansion)
+    yield measured(f"{item}.asymptotic", gain=_gains(1.0 / loose.expansion), start=start)
+    others = {f"sums that are right to {_TOLERANCES[1]:g}": {"ratio": strict.far / strict.near}}
+    yield measured(f"{item}.overlap", ratio=far / near, far=far, near=near, others=others)
 
 
 class _Reach(NamedTuple):
@@ -123,12 +102,10 @@ class _Reach(NamedTuple):
     expansion: pd.Series
 
     @classmethod
-    def of(cls, table: pd.DataFrame, tolerance: str) -> _Reach:
+    def of(cls, table: pd.DataFrame, tolerance: str) -> Self:
         reach, start = table[f"series to x ({tolerance})"], table[f"expansion from x ({tolerance})"]
-        return cls(
-            reach.iloc[: max(int(reach.idxmax()), 1) + 1],
-            start.iloc[: max(int(start.idxmin()), 1) + 1],
-        )
+        last, first = (max(int(k), 1) + 1 for k in (reach.idxmax(), start.idxmin()))
+        return cls(reach.iloc[:last], start.iloc[:first])
 
     @property
     def far(self) -> float:
@@ -144,11 +121,11 @@ def _gains(reach: pd.Series) -> float:
     return float((reach.iloc[1:].to_numpy() / reach.iloc[:-1].to_numpy()).min())
 
 
-def _literal_series(x: float, alpha: float, terms: int = 200) -> float:
+def _literal_series(x: np.ndarray, alpha: float, terms: int = 200) -> np.ndarray:
     """(A.1) as printed: 1/(x pi) sum (-x)^m Gamma(1 + m/alpha) / m! sin(-m pi / 2)."""
     m = np.arange(1.0, terms + 1.0)
     size = np.exp(gammaln(1.0 + m / alpha) - gammaln(m + 1.0))
-    return float(((-x) ** m * size * np.sin(-0.5 * pi * m)).sum() / (x * pi))
+    return ((-x[:, None]) ** m * size * np.sin(-0.5 * pi * m)).sum(axis=1) / (x * pi)
 
 
 def _largest_term(x: float, alpha: float) -> float:

@@ -1,18 +1,14 @@
 """The Fickian limit of the single expression (35)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, entry, legend_below, log_log, name_ticks, note, slope_triangle
-
-__all__ = ["figure"]
+from fracstudy.style import Figure, axes_row, draw, entry, legend_below, log_log, name_ticks, note
 
 _LINES = {2: ("-", "order II"), 4: ("--", "order IV")}
 
@@ -22,20 +18,18 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     figure, (kernels, errors, moments) = axes_row(3, height=3.4, width=3.1)
     *below, limit = sorted(series["alpha"].unique())
     shades = mpl.colormaps["viridis"](np.linspace(0.88, 0.25, len(below)))
+    looks = zip(shades, "os^Dv" * len(below), strict=False)
     styles: dict[float, dict[str, Any]] = {
         alpha: {"color": shade, "marker": marker}
-        for alpha, shade, marker in zip(below, shades, "os^Dv" * len(below), strict=False)
+        for alpha, (shade, marker) in zip(below, looks, strict=False)
     }
     styles[limit] = {"color": "black", "marker": "*"}
-    for alpha, style in styles.items():
+    for alpha, look in styles.items():
         here = pick(series, alpha=alpha)
-        points = pick(here, panel="kernel")
-        kernels.plot(points["x"], points["y"], color=style["color"])
-        points = pick(here, panel="moment")
-        moments.plot(points["x"], points["y"], markersize=3.5, **style)
+        draw(kernels, pick(here, panel="kernel"), color=look["color"])
+        draw(moments, pick(here, panel="moment"), markersize=3.5, **look)
         for order, (line, _) in _LINES.items():
-            points = pick(here, panel="error", series=order)
-            errors.plot(points["x"], points["y"], line, markersize=3.5, **style)
+            draw(errors, pick(here, panel="error", series=order), line, markersize=3.5, **look)
     log_log(kernels, xlabel="distance $r$", xlim=(0.1, 100.0), ylim=(1e-10, 5.0))
     kernels.set_ylabel(r"kernel $K(r)$, and $\Phi(r)$ at $\alpha = 2$")
     moments.set(xscale="log", xlabel="distance $r$", ylabel=r"second moment up to $r$")
@@ -46,9 +40,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         points = pick(shown, alpha=limit, series=order).sort_values("x")[["x", "y"]].to_numpy()
         if len(points) > 1:
             x, y = points[-2]
-            slope_triangle(errors, 1.2 * x, 0.4 * y, order)
+            style.slope_triangle(errors, 1.2 * x, 0.4 * y, order)
             note(errors, label, tuple(points[1]), (0, 7), ha="right", color="0.25")
     name_ticks(errors, sorted(shown["x"].unique()))
     errors.minorticks_off()
-    legend_below(figure, [entry(rf"$\alpha = {a:g}$", **style) for a, style in styles.items()])
+    legend_below(figure, [entry(rf"$\alpha = {a:g}$", **look) for a, look in styles.items()])
     return figure

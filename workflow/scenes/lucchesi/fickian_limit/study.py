@@ -1,8 +1,8 @@
 """The Fickian limit: the single expression (35), K -> Phi as alpha -> 2, and the moments of both."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from math import gamma, pi, sqrt
 
 import numpy as np
@@ -14,12 +14,10 @@ from fracparticles.schemes import Setting, dpse
 from fracparticles.schemes.base import one_pass_operator
 from fracparticles.schemes.transform import lattice_transform
 from fracparticles.special import mean_radius
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import Panels
-
-__all__ = ["decade_moments", "fickian_error", "heat_kernel", "kernel_distance", "study"]
 
 NEEDS = {"scheme": ["KPSE"], "order": [2, 4]}
 
@@ -117,57 +115,46 @@ def _row(alpha: float, errors: pd.DataFrame, second: dict[float, float]) -> dict
     return row | {column: second[exponent] for exponent, column in _SECOND.items()}
 
 
-def _findings(table: pd.DataFrame, files: list[str]) -> list[Finding]:
+def _findings(table: pd.DataFrame, files: list[str]) -> Iterator[Finding]:
     by_alpha = table.set_index("alpha")
-    orders = by_alpha[[f"order {name}" for name in ORDERS.values()]].set_axis([*ORDERS], axis=1)
-    orders.columns.name = "order"
+    orders = by_alpha[[f"order {name}" for name in ORDERS.values()]]
+    orders = orders.set_axis(pd.Index(ORDERS, name="order"), axis=1)
     column = next(name for name in table if name.startswith("error II,"))
-    below = pd.Index([*_FARTHER, *table["alpha"][:-1]], name="alpha")
+    below = [*_FARTHER, *table["alpha"][:-1]]
     # A moment is finite where the decades' shares fall by a constant factor, and infinite where they do not.
     growth = {
-        power: pd.Series([_growth("K", a, power) for a in below], below) for power in range(4)
+        name: each(partial(_growth, power=power), alpha=below)
+        for power, name in enumerate(("mass", "first", "second", "third"))
     }
     far, near = (by_alpha[_SECOND[exponent]] for exponent in (6, 3))
     distance = by_alpha[_DISTANCE].iloc[:-1]
-    return [
-        measured(
-            "L-C17.single_expression",
-            runs=files,
-            difference=(orders - [*ORDERS]).abs().stack(),
-            last=by_alpha[column].iloc[-2:],
-        ),
-        measured(
-            "L-C17.phi_moments",
-            beyond={
-                f"moment {power}": max(
-                    decade_moments("Phi", _ANY, power, order)[-4:].sum()
-                    / decade_moments("Phi", _ANY, power, order).sum()
-                    for order in ORDERS
-                )
-                for power in range(9)
-            },
-            exact={f"moment {power}": _phi_off(power) for power in range(9)},
-        ),
-        measured(
-            "L-C17.K_moments",
-            mass=growth[0],
-            first=growth[1],
-            second=growth[2],
-            third=growth[3],
-        ),
-        measured(
-            "L-C17.singular_limit",
-            growth=(far / near - 1.0).iloc[:-1],
-            at_two=far.iloc[-1] / near.iloc[-1] - 1.0,
-            order=np.diff(np.log(distance)) / np.diff(np.log(2.0 - distance.index.to_numpy())),
-            distance=distance.iloc[-1],
-        ),
-    ]
+    difference, last = (orders - [*ORDERS]).abs().stack(), by_alpha[column].iloc[-2:]
+    yield measured("L-C17.single_expression", runs=files, difference=difference, last=last)
+
+    def beyond(power: int) -> float:
+        """The share of a moment of Phi that lies in the last four decades."""
+        moments = (decade_moments("Phi", _ANY, power, order) for order in ORDERS)
+        return max(m[-4:].sum() / m.sum() for m in moments)
+
+    powers = {f"moment {power}": power for power in range(9)}
+    yield measured(
+        "L-C17.phi_moments",
+        beyond={name: beyond(power) for name, power in powers.items()},
+        exact={name: _phi_off(power) for name, power in powers.items()},
+    )
+    yield measured("L-C17.K_moments", **growth)
+    yield measured(
+        "L-C17.singular_limit",
+        growth=(far / near - 1.0).iloc[:-1],
+        at_two=far.iloc[-1] / near.iloc[-1] - 1.0,
+        order=np.diff(np.log(distance)) / np.diff(np.log(2.0 - distance.index.to_numpy())),
+        distance=distance.iloc[-1],
+    )
 
 
-def _growth(name: str, alpha: float, power: int) -> float:
-    """The moment in the last decade of r over that in the one before."""
-    before, last = decade_moments(name, alpha, power)[-2:]
+def _growth(alpha: float, power: int) -> float:
+    """The moment of K in the last decade of r over that in the one before."""
+    before, last = decade_moments("K", alpha, power)[-2:]
     return float(last / before)
 
 

@@ -1,7 +1,6 @@
 """Order of self-convergence (49) in two dimensions, Sec. 5, in every reading of the printed numbers."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
@@ -11,9 +10,8 @@ from fracparticles.lattice.field import smoothed_field
 from fracparticles.run.orders import self_convergence_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import pick
 from scenes.plane import DISK, particles_per_side, stored_field
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["DD", "FPSE"]}
 
@@ -42,23 +40,22 @@ def study(inputs: Inputs, *, particles: dict[str, int]) -> Result:
         printed = float(inputs.printed.get(f"L-2D-ORD.{scheme}.h{h}", "nan"))
         for what, region in product(("field (7)", "strengths"), _REGIONS):
             ours, coarse, fine = (_order(levels, count, k, what, region) for k in (1, 0, 2))
-            rows.append(
-                {
-                    "scheme": scheme,
-                    "h": levels[count][0],
-                    "N": count,
-                    "compared": what,
-                    "summed over": region,
-                    "printed": printed,
-                    _OURS: ours,
-                    "deviation": ours - printed,
-                    "h as coarse level": coarse,
-                    "h as fine level": fine,
-                    "with kernel tables": _order(by_table, count, 1, what, region),
-                }
-            )
+            row = {
+                "scheme": scheme,
+                "h": levels[count][0],
+                "N": count,
+                "compared": what,
+                "summed over": region,
+                "printed": printed,
+                _OURS: ours,
+                "deviation": ours - printed,
+                "h as coarse level": coarse,
+                "h as fine level": fine,
+                "with kernel tables": _order(by_table, count, 1, what, region),
+            }
+            rows.append(row)
     table = pd.DataFrame(rows)
-    findings = _findings(table, particles, list(runs["run"])) if rows else []
+    findings = _findings(table, particles, list(runs["run"])) if rows else ()
     return Result(table, inputs.judged(findings))
 
 
@@ -83,43 +80,33 @@ def _order(levels: _Levels, count: int, place: int, what: str, region: str) -> f
     return self_convergence_order([u[inside] for u in common])
 
 
-def _findings(table: pd.DataFrame, particles: dict[str, int], files: list[str]) -> list[Finding]:
-    findings = []
+def _findings(
+    table: pd.DataFrame, particles: dict[str, int], files: list[str]
+) -> Iterator[Finding]:
     for h, count in particles.items():
-        here = table[table["N"] == count]
+        here = pick(table, N=count)
         for scheme, part in here.groupby("scheme", sort=False):
             readings = part.set_index(["compared", "summed over"])
-            nearest = readings["deviation"].abs().fillna(np.inf).idxmin()
-            findings.append(
-                measured(
-                    f"L-2D-ORD.{scheme}.h{h}",
-                    runs=files,
-                    ours=part[_OURS].iloc[0],
-                    nearest=", ".join(nearest),
-                    readings={" over ".join(key): order for key, order in readings[_OURS].items()},
-                )
+            yield measured(
+                f"L-2D-ORD.{scheme}.h{h}",
+                runs=files,
+                ours=part[_OURS].iloc[0],
+                nearest=", ".join(readings["deviation"].abs().fillna(np.inf).idxmin()),
+                readings={" over ".join(key): order for key, order in readings[_OURS].items()},
             )
-        findings += [
-            measured(f"L-2D-ORD.spacing.h{h}", ours=spacing, particles=count)
-            for spacing in here["h"].head(1)
-        ]
-    finest = table[table["N"] == table["N"].max()]
-    finest = finest.set_index(["compared", "summed over", "scheme"])[_OURS].sort_index()
-    difference = (finest - 2.0).abs()
-    return [
-        *findings,
-        measured(
-            "L-2D-ORD.second_order",
-            runs=files,
-            difference=difference["field (7)", "r <= 5"],
-            order=finest["field (7)", "r <= 5"],
-            others={
-                "the strengths for the field (7)": {
-                    "difference": difference["strengths", "r <= 5"]
-                },
-                "all particles for the disk": {
-                    "difference": difference["field (7)", "all particles"]
-                },
-            },
-        ),
-    ]
+        for spacing in here["h"].head(1):
+            yield measured(f"L-2D-ORD.spacing.h{h}", ours=spacing, particles=count)
+    order = pick(table, N=table["N"].max()).set_index(["compared", "summed over", "scheme"])[_OURS]
+    order = order.sort_index()
+    readings = (("field (7)", "r <= 5"), ("strengths", "r <= 5"), ("field (7)", "all particles"))
+    ours, strengths, everywhere = ((order[reading] - 2.0).abs() for reading in readings)
+    yield measured(
+        "L-2D-ORD.second_order",
+        runs=files,
+        difference=ours,
+        order=order["field (7)", "r <= 5"],
+        others={
+            "the strengths for the field (7)": {"difference": strengths},
+            "all particles for the disk": {"difference": everywhere},
+        },
+    )

@@ -1,7 +1,6 @@
 """Kernels interpolated in tables, the remark of Sec. 5: what the step of the table does to DD and FPSE."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -15,8 +14,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from scenes.plane import particles_per_side
-
-__all__ = ["spurious_rate", "study"]
 
 _KERNELS = {"DD": "G", "FPSE": "F"}
 NEEDS: dict[str, list[Any]] = {"scheme": list(_KERNELS), "kernel_table": [None]}
@@ -74,33 +71,24 @@ def _spurious_decay(run: Any) -> float:
     return float(-np.expm1(-spurious_rate(case, run.step) * (run.t_final - run.t_initial)))
 
 
-def _findings(runs: pd.DataFrame, files: list[str]) -> list[Finding]:
+def _findings(runs: pd.DataFrame, files: list[str]) -> Iterator[Finding]:
     """For each scheme and table: the error over that with exact kernels, and how much lower the last order is."""
     parts = {key: part.set_index("N") for key, part in runs.groupby(["scheme", "step"])}
-    findings = []
     for (scheme, step), tabled in parts.items():
         if step == 0.0 or scheme not in _KERNELS or (scheme, 0.0) not in parts:
             continue
         exact = parts[scheme, 0.0]
-        ratio = tabled["y"] / exact["y"]
-        decay = (
-            {}
-            if scheme == "FPSE"
-            else {"the solution for its error": {"change": tabled["spurious"]}}
+        ratio, usual = tabled["y"] / exact["y"], exact["order"].iloc[-1]
+        decay = {"the solution for its error": {"change": tabled["spurious"]}}
+        yield measured(
+            f"L-2D-TAB.{_KERNELS[scheme]}.step{step:g}",
+            runs=files,
+            others=decay if scheme == "DD" else {},
+            ratio=ratio,
+            last=ratio.iloc[-1],
+            change=(ratio - 1.0).abs(),
+            drop=usual - tabled["order"].iloc[-1],
+            order=tabled["order"].iloc[-1],
+            usual=usual,
+            difference=(tabled["y"] - exact["y"]).iloc[1:],
         )
-        order, usual = tabled["order"].iloc[-1], exact["order"].iloc[-1]
-        findings.append(
-            measured(
-                f"L-2D-TAB.{_KERNELS[scheme]}.step{step:g}",
-                runs=files,
-                others=decay,
-                ratio=ratio,
-                last=ratio.iloc[-1],
-                change=(ratio - 1.0).abs(),
-                drop=usual - order,
-                order=order,
-                usual=usual,
-                difference=(tabled["y"] - exact["y"]).iloc[1:],
-            )
-        )
-    return findings

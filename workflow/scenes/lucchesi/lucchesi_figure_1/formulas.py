@@ -1,28 +1,22 @@
-"""The formulas of Sections 2, 3 and Appendix B, each held against quadrature of what it stands for.
+"""The formulas of Sections 2, 3 and Appendix B, each held against quadrature of what it stands for."""
 
-The integrals are int |y|^power exp(-a |y|^2) exp(i x.y) dV over R^n, in t = a |y|^2 by Gauss and Laguerre: the cosine
-or Bessel function that the angles leave is smooth in t, so that the rule is exact to round-off for the x that are
-used. Kernels as the paper prints them come from scipy's 1F1.
-"""
-
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from math import factorial, gamma, pi, sqrt
+from itertools import product
+from math import gamma, pi, sqrt
 
 import numpy as np
 import pandas as pd
 from scipy.integrate import quad
-from scipy.special import hyp1f1, j0, j1, roots_genlaguerre
+from scipy.special import hyp1f1
 
 from fracparticles.kernels.families import kernel
 from fracparticles.special.stable import green
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
+from fracstudy.inputs import ORDERS
+from scenes.lucchesi.lucchesi_figure_1 import integrals
+from scenes.lucchesi.lucchesi_figure_1.integrals import from_transform, moment, printed_kernel
 
-__all__ = ["formulas", "from_transform", "gaussian_integral", "printed_kernel"]
-
-_NODES = 60
 _RADII = np.linspace(0.1, 3.0, 30)
 _DIMS = (1, 2, 3)
 _KERNELS = {"kappa": "(B.11)", "F": "(B.12)", "G": "(B.13)"}  # with the equation of their transform
@@ -33,145 +27,77 @@ _STEP = 1e-2  # of the differences of sixth order, exact to 1e-12 for functions 
 _SIXTH = {1: 45.0 / 60.0, 2: -9.0 / 60.0, 3: 1.0 / 60.0}
 
 
-def _sphere(n: int) -> float:
-    """The surface of the unit sphere in R^n."""
-    return 2.0 * pi ** (0.5 * n) / gamma(0.5 * n)
-
-
-def _angles(z: np.ndarray, n: int) -> np.ndarray:
-    """The mean of exp(i x.y) over the directions of y, z = |x| |y|."""
-    return (np.cos(z), j0(z), np.sinc(z / pi))[n - 1]
-
-
-def _angles_slope(z: np.ndarray, n: int) -> np.ndarray:
-    """Its derivative in z > 0."""
-    return (-np.sin(z), -j1(z), (np.cos(z) - np.sinc(z / pi)) / z)[n - 1]
-
-
-def gaussian_integral(
-    power: float, x: np.ndarray, n: int, a: float, slope: bool = False
-) -> np.ndarray:
-    """Return int |y|^power exp(-a |y|^2 + i x.y) dV(y) over R^n at |x| > 0, or its derivative in |x|; power > -n."""
-    exponent = 0.5 * (power + n) - 1.0
-    t, weight = roots_genlaguerre(_NODES, exponent)
-    y = np.sqrt(t / a)
-    z = np.multiply.outer(np.asarray(x, dtype=float), y)
-    integrand = y * _angles_slope(z, n) if slope else _angles(z, n)
-    return 0.5 * _sphere(n) * a ** -(exponent + 1.0) * (integrand @ weight)
-
-
-def from_transform(
-    name: str, x: np.ndarray, alpha: float, n: int, order: int = 2, epsilon: float = 1.0
-) -> np.ndarray:
-    """Return the inverse transform of the right side of (B.11), (B.12) or (B.13), the vector's component along x."""
-    power = alpha if name == "G" else alpha - 2.0
-    sign = -1.0 if name == "G" else 1.0
-
-    def one(width: float) -> np.ndarray:
-        return gaussian_integral(power, x, n, 0.25 * width**2, slope=name == "F")
-
-    value = one(epsilon) if order == 2 else 2.0 * one(epsilon) - one(sqrt(2.0) * epsilon)
-    return sign * value / (2.0 * pi) ** n
-
-
-def printed_kernel(
-    name: str, r: np.ndarray, alpha: float, n: int, wide: float | None = None
-) -> np.ndarray:
-    """Return (14), (20), (11); with `wide` those of order IV by the rule 2 1F1(x) - 2^-a 1F1(wide x) of (B.18)."""
-    power, b, sign = {"kappa": (alpha - 2.0, 0, 1.0), "F": (alpha, 2, -r), "G": (alpha, 0, -1.0)}[
-        name
-    ]
-    a, c = 0.5 * (power + n), 0.5 * (n + b)
-    value = hyp1f1(a, c, -r * r)
-    if wide is not None:
-        value = 2.0 * value - 2.0**-a * hyp1f1(a, c, -wide * r * r)
-    constant = 2.0**power * gamma(a) / (pi ** (0.5 * n) * gamma(c) * factorial(b))  # (B.14)
-    return sign * constant * value
-
-
 def _off(ours: np.ndarray, theirs: np.ndarray) -> float:
     """The largest difference, over the largest value."""
     return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
 
 
+def _slope(f: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """df/dr at the radii."""
+    pairs = (c * (f(_RADII + k * _STEP) - f(_RADII - k * _STEP)) for k, c in _SIXTH.items())
+    return sum(pairs) / _STEP
+
+
 def formulas(betas: Sequence[float]) -> list[Finding]:
     """Measure how far each formula is from what it stands for, by dimension and beta."""
-    cases = pd.MultiIndex.from_product([_DIMS, betas], names=["n", "beta"])
 
     def by_case(quantity: Callable[[int, float], float]) -> pd.Series:
-        return pd.Series([quantity(n, 1.0 + b) for n, b in cases], cases)
+        return each(lambda n, beta: quantity(n, 1.0 + beta), n=_DIMS, beta=betas)
 
+    gradients = {
+        f"order {name}, n = {n}": max(_gradient(n, 1.0 + b, order) for b in betas)
+        for (order, name), n in product(ORDERS.items(), _DIMS)
+    }
     return [
         measured("L-FORMULAS.4", from_4=by_case(_laplacian), from_2=by_case(_divergence)),
         measured("L-FORMULAS.5", difference=by_case(_laplacian_of_potential)),
         measured("L-FORMULAS.28", integral=by_case(_integral_of_g)),
+        measured("L-FORMULAS.37", difference=each(_semigroup, beta=betas)),
         measured(
-            "L-FORMULAS.37",
-            difference=pd.Series(
-                [_semigroup(1.0 + b) for b in betas], pd.Index(betas, name="beta")
-            ),
+            "L-FORMULAS.33",
+            printed=by_case(_limit_of_k),
+            with_power=by_case(lambda n, alpha: _SMALL**-alpha * _limit_of_k(n, alpha)),
         ),
-        measured("L-FORMULAS.33", **_limit_of_k(by_case)),
         measured("L-KERNELS.c", difference=by_case(_constant)),
-        measured("L-KERNELS.gradient", difference=_of_orders(_gradient, betas)),
-        measured("L-KERNELS.stretched", **_stretched(by_case)),
+        measured("L-KERNELS.gradient", difference=gradients),
+        measured(
+            "L-KERNELS.stretched",
+            printed=by_case(lambda n, alpha: _kappa_exponent(n, alpha) + alpha - 1.0),
+            intended=by_case(lambda n, alpha: _kappa_exponent(n, alpha) + n + alpha - 2.0),
+        ),
         *_gaussians(),
-        *_appendix(betas),
+        *_appendix([1.0 + b for b in betas]),
     ]
-
-
-def _of_orders(quantity: Callable[[int, float, int], float], betas: Sequence[float]) -> pd.Series:
-    """The worst over beta, by order and dimension."""
-    return pd.Series(
-        {
-            f"order {name}, n = {n}": max(quantity(n, 1.0 + b, order) for b in betas)
-            for order, name in ((2, "II"), (4, "IV"))
-            for n in _DIMS
-        }
-    )
 
 
 def _riesz_constant(alpha: float, n: int) -> float:
     """The factor of the integral of (2); that of (4) is alpha times it."""
-    return (
-        2.0 ** (alpha - 1.0)
-        * gamma(0.5 * (n + alpha))
-        / (pi ** (0.5 * n) * gamma(1.0 - 0.5 * alpha))
-    )
+    half = 0.5 * n
+    return 2.0 ** (alpha - 1.0) * gamma(0.5 * (n + alpha)) / (pi**half * gamma(1.0 - 0.5 * alpha))
 
 
 def _of_transform(alpha: float, n: int) -> float:
     """The fractional Laplacian (B.1) of exp(-|x|^2) at the origin."""
-    return (
-        -(pi ** (0.5 * n))
-        / (2.0 * pi) ** n
-        * float(gaussian_integral(alpha, np.zeros(1), n, 0.25)[0])
-    )
+    return -(pi ** (0.5 * n)) / (2.0 * pi) ** n * moment(alpha, n, 0.25)
 
 
 def _radial_integral(integrand: Callable[[float], float]) -> float:
-    return sum(
-        quad(integrand, *ends, epsabs=0.0, epsrel=1e-12)[0] for ends in ((0.0, 1.0), (1.0, np.inf))
-    )
+    halves = ((0.0, 1.0), (1.0, np.inf))
+    return sum(quad(integrand, *ends, epsabs=0.0, epsrel=1e-12)[0] for ends in halves)
 
 
 def _laplacian(n: int, alpha: float) -> float:
     """(4) of exp(-|x|^2) at the origin against that of the transform (B.1)."""
     integral = _radial_integral(lambda r: np.expm1(-r * r) * r ** (-1.0 - alpha))
-    ours = alpha * _riesz_constant(alpha, n) * _sphere(n) * integral
+    ours = alpha * _riesz_constant(alpha, n) * integrals.sphere(n) * integral
     return abs(ours / _of_transform(alpha, n) - 1.0)
 
 
 def _divergence(n: int, alpha: float) -> float:
     """-div Q of (2) with D = 1, the derivatives taken of u under the integral, against that of the transform (B.1)."""
     integral = _radial_integral(lambda r: -2.0 * r ** (1.0 - alpha) * np.exp(-r * r))
-    return abs(_riesz_constant(alpha, n) * _sphere(n) * integral / _of_transform(alpha, n) - 1.0)
-
-
-def _slope(f: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """df/dr at the radii."""
-    return (
-        sum(c * (f(_RADII + k * _STEP) - f(_RADII - k * _STEP)) for k, c in _SIXTH.items()) / _STEP
+    return abs(
+        _riesz_constant(alpha, n) * integrals.sphere(n) * integral / _of_transform(alpha, n) - 1.0
     )
 
 
@@ -192,16 +118,14 @@ def _integral_of_g(n: int, alpha: float) -> float:
     """int G dV over the ball of radius 1e5, over int |G| dV: G = div F, and G changes sign once, where F is least."""
     r = np.linspace(0.3, 2.0, 1001)
     outflow = r ** (n - 1) * np.asarray(kernel("F", r, alpha, n))
-    far = _FAR ** (n - 1) * float(kernel("F", _FAR, alpha, n))
-    return far / (2.0 * outflow.min())
+    return _FAR ** (n - 1) * float(kernel("F", _FAR, alpha, n)) / (2.0 * outflow.min())
 
 
-def _semigroup(alpha: float) -> float:
+def _semigroup(beta: float) -> float:
     """The convolution of (37) at x = 0 against the solution there, t = 0.5 and Delta t = 1."""
-    integral = _radial_integral(
-        lambda y: 2.0 * float(green(y, 0.5, alpha)) * float(green(y, 1.0, alpha))
-    )
-    return abs(integral / float(green(0.0, 1.5, alpha)) - 1.0)
+    u = partial(green, alpha=1.0 + beta)
+    integral = _radial_integral(lambda y: 2.0 * float(u(y, 0.5)) * float(u(y, 1.0)))
+    return abs(integral / float(u(0.0, 1.5)) - 1.0)
 
 
 def _constant(n: int, alpha: float) -> float:
@@ -210,41 +134,19 @@ def _constant(n: int, alpha: float) -> float:
     return abs(_riesz_constant(alpha, n) / tail - 1.0)
 
 
-def _limit_of_k(
-    by_case: Callable[[Callable[[int, float], float]], pd.Series],
-) -> dict[str, pd.Series]:
+def _limit_of_k(n: int, alpha: float) -> float:
     """The left side of (33) over the right one at |y - x| = 1 and a small epsilon."""
-
-    def left(n: int, alpha: float) -> float:
-        k = alpha * _SMALL**-n * float(kernel("K", 1.0 / _SMALL, alpha, n))
-        return k / (alpha * _riesz_constant(alpha, n))
-
-    return {
-        "printed": by_case(left),
-        "with_power": by_case(lambda n, alpha: _SMALL**-alpha * left(n, alpha)),
-    }
+    k = alpha * _SMALL**-n * float(kernel("K", 1.0 / _SMALL, alpha, n))
+    return k / (alpha * _riesz_constant(alpha, n))
 
 
-def _stretched(
-    by_case: Callable[[Callable[[int, float], float]], pd.Series],
-) -> dict[str, pd.Series]:
-    """The exponent of the tail of kappa, less that of |r|^-beta, and less 1 - n - beta."""
-
-    def exponent(n: int, alpha: float) -> float:
-        near, far = np.asarray(kernel("kappa", np.array([_FAR, 10.0 * _FAR]), alpha, n))
-        return float(np.log10(far / near))
-
-    return {
-        "printed": by_case(lambda n, alpha: exponent(n, alpha) + alpha - 1.0),
-        "intended": by_case(lambda n, alpha: exponent(n, alpha) + n + alpha - 2.0),
-    }
+def _kappa_exponent(n: int, alpha: float) -> float:
+    """The exponent of the tail of kappa; as printed it is that of |r|^-beta, as meant 1 - n - beta."""
+    near, far = np.asarray(kernel("kappa", np.array([_FAR, 10.0 * _FAR]), alpha, n))
+    return float(np.log10(far / near))
 
 
 # --- the Gaussians, and Appendix B ----------------------------------------------------------------
-
-
-def _moment(power: float, n: int, a: float) -> float:
-    return float(gaussian_integral(power, np.zeros(1), n, a)[0])
 
 
 def _at_origin(name: str, n: int, epsilon: float) -> float:
@@ -254,133 +156,101 @@ def _at_origin(name: str, n: int, epsilon: float) -> float:
     (24), or of (24) with n + 4 for 5, in the integral of (22).
     """
     a, unit = 1.0 + epsilon**2, pi ** (-0.5 * n)
-    narrow = unit * _moment(0.0, n, a)
+    narrow = unit * moment(0.0, n, a)
     if name == "(8)":
         return narrow
     if name == "(9)":
-        return 2.0 * narrow - (2.0 * pi) ** (-0.5 * n) * _moment(0.0, n, a - 0.5)
-    second = unit * _moment(2.0, n, a)
+        return 2.0 * narrow - (2.0 * pi) ** (-0.5 * n) * moment(0.0, n, a - 0.5)
+    second = unit * moment(2.0, n, a)
     if name == "(23)":
         return 2.0 * second / n
     constant = 5.0 if name == "(24)" else n + 4.0
-    return (constant * second - 2.0 * unit * _moment(4.0, n, a)) / n
+    return (constant * second - 2.0 * unit * moment(4.0, n, a)) / n
 
 
 def _observed(name: str, order: float) -> pd.Series:
     """How far the order of `_at_origin` in epsilon is from that of the paper, by dimension."""
 
-    def error(n: int, epsilon: float) -> float:
-        return abs(_at_origin(name, n, epsilon) - 1.0)
+    def away(n: int) -> float:
+        coarse, fine = (abs(_at_origin(name, n, epsilon) - 1.0) for epsilon in (0.1, 0.05))
+        return abs(np.log2(coarse / fine) - order)
 
-    orders = [abs(np.log2(error(n, 0.1) / error(n, 0.05)) - order) for n in _DIMS]
-    return pd.Series(orders, pd.Index(_DIMS, name="n"))
+    return each(away, n=_DIMS)
 
 
-def _gaussians() -> list[Finding]:
+def _gaussians() -> Iterator[Finding]:
     """Mass and order of eta, the order of eta^1, and Phi."""
-    mass = {
-        f"{name}, n = {n}": abs(_at_origin(name, n, 0.0) - 1.0)
-        for name in ("(8)", "(9)")
-        for n in _DIMS
-    }
 
     def eta(r: np.ndarray, n: int) -> np.ndarray:
         return np.exp(-r * r) / pi ** (0.5 * n)
 
-    phi = {n: _off(-_slope(partial(eta, n=n)) / _RADII, 2.0 * eta(_RADII, n)) for n in _DIMS}
-    difference = {
-        n: _off(
-            2.0 * eta(_RADII, n) - 2.0 ** (-0.5 * n) * eta(_RADII / sqrt(2.0), n),
-            np.asarray(kernel("eta", _RADII, 1.5, n, 4)),
-        )
-        for n in _DIMS
-    }
-    return [
-        measured("L-KERNELS.unit_mass", difference=mass),
-        measured("L-KERNELS.eta_second_order", difference=_observed("(8)", 2.0)),
-        measured("L-KERNELS.eta_fourth_order", difference=_observed("(9)", 4.0)),
-        measured("L-FORMULAS.23", difference=_observed("(23)", 2.0)),
-        measured(
-            "L-FORMULAS.24", difference=_observed("(24)", 4.0), intended=_observed("n + 4", 4.0)
-        ),
-        measured("L-FORMULAS.17", difference=_by_dim(phi)),
-        measured("L-FORMULAS.9", difference=_by_dim(difference)),
-    ]
+    def phi(n: int) -> float:
+        return _off(-_slope(partial(eta, n=n)) / _RADII, 2.0 * eta(_RADII, n))
+
+    def of_order_iv(n: int) -> float:
+        ours = 2.0 * eta(_RADII, n) - 2.0 ** (-0.5 * n) * eta(_RADII / sqrt(2.0), n)
+        return _off(ours, np.asarray(kernel("eta", _RADII, 1.5, n, 4)))
+
+    pairs = product(("(8)", "(9)"), _DIMS)
+    mass = {f"{name}, n = {n}": abs(_at_origin(name, n, 0.0) - 1.0) for name, n in pairs}
+    yield measured("L-KERNELS.unit_mass", difference=mass)
+    yield measured("L-KERNELS.eta_second_order", difference=_observed("(8)", 2.0))
+    yield measured("L-KERNELS.eta_fourth_order", difference=_observed("(9)", 4.0))
+    yield measured("L-FORMULAS.23", difference=_observed("(23)", 2.0))
+    fourth = {"difference": _observed("(24)", 4.0), "intended": _observed("n + 4", 4.0)}
+    yield measured("L-FORMULAS.24", **fourth)
+    yield measured("L-FORMULAS.17", difference=each(phi, n=_DIMS))
+    yield measured("L-FORMULAS.9", difference=each(of_order_iv, n=_DIMS))
 
 
-def _by_dim(values: Mapping[int, float]) -> pd.Series:
-    return pd.Series(values).rename_axis("n")
-
-
-def _appendix(betas: Sequence[float]) -> list[Finding]:
+def _appendix(alphas: Sequence[float]) -> Iterator[Finding]:
     """(B.5), (B.6), the kernels against their transforms, and the powers of epsilon that go with them."""
-    alphas = [1.0 + b for b in betas]
 
     def off(name: str, order: int, wide: float | None = None) -> float:
         """Of a printed kernel from the inverse transform, the worst over n and beta."""
         return max(
-            _off(
-                printed_kernel(name, _RADII, alpha, n, wide),
-                from_transform(name, _RADII, alpha, n, order),
-            )
-            for alpha in alphas
-            for n in _DIMS
+            _off(printed_kernel(name, _RADII, *of, wide), from_transform(name, _RADII, *of, order))
+            for of in product(alphas, _DIMS)
         )
 
-    middle = alphas[len(alphas) // 2]
     two = {"(14)": "kappa", "(20)": "F", "(11)": "G"}
     four = {"15": "kappa", "21": "F", "12": "G"}
-    return [
-        *(
-            measured(f"L-FORMULAS.{name}", difference=_by_dim(_general(slope)))
-            for name, slope in (("B5", False), ("B6", True))
-        ),
-        measured(
-            "L-FORMULAS.inverse", difference={name: off(kind, 2) for name, kind in two.items()}
-        ),
-        *(
-            measured(f"L-FORMULAS.{name}", difference=off(kind, 4, 0.5))
-            for name, kind in four.items()
-        ),
-        measured(
-            "L-FORMULAS.B18",
-            difference={f"({name})": off(kind, 4, sqrt(0.5)) for name, kind in four.items()},
-            intended={f"({name})": off(kind, 4, 0.5) for name, kind in four.items()},
-        ),
-        _powers("L-FORMULAS.B11_B13", _KERNELS, middle),
-        _powers("L-FORMULAS.B15_B17", _CONVOLUTIONS, middle),
-    ]
+    yield measured("L-FORMULAS.B5", difference=each(partial(_general, slope=False), n=_DIMS))
+    yield measured("L-FORMULAS.B6", difference=each(partial(_general, slope=True), n=_DIMS))
+    inverse = {name: off(kind, 2) for name, kind in two.items()}
+    yield measured("L-FORMULAS.inverse", difference=inverse)
+    meant = {name: off(kind, 4, 0.5) for name, kind in four.items()}
+    for name, difference in meant.items():
+        yield measured(f"L-FORMULAS.{name}", difference=difference)
+    yield measured(
+        "L-FORMULAS.B18",
+        difference={f"({name})": off(kind, 4, sqrt(0.5)) for name, kind in four.items()},
+        intended={f"({name})": difference for name, difference in meant.items()},
+    )
+    middle = alphas[len(alphas) // 2]
+    yield _powers("L-FORMULAS.B11_B13", _KERNELS, middle)
+    yield _powers("L-FORMULAS.B15_B17", _CONVOLUTIONS, middle)
 
 
-def _general(slope: bool) -> dict[int, float]:
-    """The right sides of (B.5) and (B.6) against quadrature of the left ones, by dimension."""
+def _general(n: int, slope: bool) -> float:
+    """The right side of (B.5), or of (B.6), against quadrature of the left one."""
     mu, a, b = 0.5, 0.7, 1.3
-    found = {}
-    for n in _DIMS:
-        top, below = 0.5 * (mu + n) + slope, 0.5 * n + slope
-        factor = 0.5 * b * _RADII if slope else 1.0  # 2! is a factor below
-        value = (
-            pi ** (0.5 * n)
-            * a**-top
-            * gamma(top)
-            / gamma(below)
-            * hyp1f1(top, below, -((b * _RADII) ** 2) / (4.0 * a))
-        )
-        # int y |y|^mu exp(-a |y|^2 + i b x.y) dV = -i times the gradient of the integral without y.
-        left = gaussian_integral(mu, b * _RADII, n, a, slope)
-        found[n] = _off(-factor * value if slope else value, left)
-    return found
+    top, below = 0.5 * (mu + n) + slope, 0.5 * n + slope
+    value = pi ** (0.5 * n) * a**-top * gamma(top) / gamma(below)
+    value = value * hyp1f1(top, below, -((b * _RADII) ** 2) / (4.0 * a))
+    # int y |y|^mu exp(-a |y|^2 + i b x.y) dV = -i times the gradient of the integral without y; 2! is a factor below.
+    value = -0.5 * b * _RADII * value if slope else value
+    return _off(value, integrals.gaussian_integral(mu, b * _RADII, n, a, slope))
 
 
 def _powers(claim: str, equations: Mapping[str, str], alpha: float) -> Finding:
     """The kernel of width epsilon times epsilon^-n, over what it stands for; its difference with the right power."""
     right = {"kappa": 2.0 - alpha, "F": 1.0 - alpha, "G": -alpha}
     printed, intended = {}, {}
-    for name, equation in equations.items():
-        for n in _DIMS:
-            x, case = np.array([_EPSILON]), f"{equation}, n = {n}"
-            exact = from_transform(name, x, alpha, n, epsilon=_EPSILON)
-            scaled = _EPSILON**-n * printed_kernel(name, x / _EPSILON, alpha, n)
-            printed[case] = float((_EPSILON**-n * scaled / exact)[0])
-            intended[case] = _off(_EPSILON ** right[name] * scaled, exact)
+    for (name, equation), n in product(equations.items(), _DIMS):
+        x, case = np.array([_EPSILON]), f"{equation}, n = {n}"
+        exact = from_transform(name, x, alpha, n, epsilon=_EPSILON)
+        scaled = _EPSILON**-n * printed_kernel(name, x / _EPSILON, alpha, n)
+        printed[case] = float((_EPSILON**-n * scaled / exact)[0])
+        intended[case] = _off(_EPSILON ** right[name] * scaled, exact)
     return measured(claim, printed=printed, intended=intended)

@@ -1,18 +1,17 @@
 """Fig. 1: the kernels of the schemes, and what the paper says of their shape."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from fracparticles.kernels.families import kernel
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
+from fracstudy.panels import Panels
 from scenes.lucchesi.lucchesi_figure_1.formulas import formulas
-
-__all__ = ["study", "tail_exponent"]
 
 _NEAREST, _FARTHEST = 1e-4, 1e6
 _TAIL = (1e5, 1e6)  # the exponent is taken between these; what it lacks there is of order 1e-10
@@ -39,25 +38,15 @@ def study(inputs: Inputs, *, beta: list[float], points: int) -> Result:
     """
     r = np.concatenate([[0.0], np.geomspace(_NEAREST, _FARTHEST, points)])
     table = pd.DataFrame(_row(name, order, b, r) for name, order in _SHOWN for b in beta)
-    curves = [
-        {
-            "panel": panel,
-            "kernel": name,
-            "order": order,
-            "beta": b,
-            "x": x,
-            "y": _values(name, x, b, order),
-        }
-        for panel, x in _PANELS.items()
-        for name, order in _SHOWN
-        for b in beta
-    ]
+    panels = Panels()
+    for (panel, x), (name, order), b in product(_PANELS.items(), _SHOWN, beta):
+        where = {"panel": panel, "kernel": name, "order": order, "beta": b}
+        panels.add(**where, x=x, y=_values(name, x, b, order))
     findings = [*_figure(table, r, beta), *_of_f(beta), *_of_g(beta), *formulas(beta)]
-    series = pd.concat(map(pd.DataFrame, curves), ignore_index=True)
-    return Result(table, inputs.judged(findings), series)
+    return Result(table, inputs.judged(findings), panels.frame)
 
 
-def _values(name: str, r: np.ndarray, beta: float, order: int = 2, dim: int = 1) -> np.ndarray:
+def _values(name: str, r: ArrayLike, beta: float, order: int = 2, dim: int = 1) -> np.ndarray:
     return np.asarray(kernel(name, r, 1.0 + beta, dim, order))
 
 
@@ -80,96 +69,74 @@ def _row(name: str, order: int, beta: float, r: np.ndarray) -> dict[str, object]
     }
 
 
-def _figure(table: pd.DataFrame, r: np.ndarray, betas: Sequence[float]) -> list[Finding]:
+def _figure(table: pd.DataFrame, r: np.ndarray, betas: list[float]) -> Iterator[Finding]:
     """What the paper says of the kernels of Fig. 1; n = 1."""
     by = {key: part.set_index("beta") for key, part in table.groupby(["kernel", "order"])}
-    kappa, green, k_two, k_four = (
-        by[key] for key in (("κ", "II"), ("L", "II"), ("K", "II"), ("K", "IV"))
-    )
-    off = {key: part["tail exponent"] - part["expected exponent"] for key, part in by.items()}
+    green, k_two, k_four = by["L", "II"], by["K", "II"], by["K", "IV"]
 
     def rise(name: str, order: int = 2) -> pd.Series:
         """The largest step from a radius to the next, over the value before it: below zero if it only falls."""
-        steps = [(v[1:] / v[:-1] - 1.0).max() for v in (_values(name, r, b, order) for b in betas)]
-        return pd.Series(steps, kappa.index)
+        values = each(lambda b: _values(name, r, b, order), beta=betas)
+        return values.map(lambda v: (v[1:] / v[:-1] - 1.0).max())
 
-    at_zero = kappa["at r = 0"]
-    slopes = [
-        pd.Series([abs(_values("kappa", x, b) / at_zero[b] - 1.0) / x for b in betas], kappa.index)
-        for x in _SMALL
-    ]
-    return [
-        measured(
-            "L-F1.kappa_monotone",
-            rise=rise("kappa"),
-            others={_MEANT: {"rise": rise("kappa", 4)}},
-        ),
-        measured("L-F1.kappa_flat", slope=slopes[1], ratio=slopes[1] / slopes[0]),
-        measured(
-            "L-F1.kappa_decay",
-            difference=off["κ", "II"],
-            others={_MEANT: {"difference": off["κ", "IV"]}},
-        ),
-        measured("L-F1.green_positive", least=green["least value"]),
-        measured("L-F1.green_monotone", rise=rise("E"), exponent=green["tail exponent"]),
-        measured("L-F1.K_positive.II", least=k_two["least value"]),
-        measured("L-F1.K_positive.IV", least=k_four["least value"], place=k_four["at r"]),
-        measured(
-            "L-F1.K_decay",
-            difference=off["K", "II"],
-            others={_MEANT: {"difference": off["K", "IV"]}},
-        ),
-    ]
+    def slope(x: float) -> pd.Series:
+        """That of kappa from 0 to x, over kappa(0)."""
+        at_zero = by["κ", "II"]["at r = 0"]
+        return each(lambda b: abs(_values("kappa", x, b) / at_zero[b] - 1.0) / x, beta=betas)
+
+    def decay(claim: str, name: str) -> Finding:
+        off = (by[name, order] for order in ORDERS.values())
+        two, four = (part["tail exponent"] - part["expected exponent"] for part in off)
+        return measured(claim, difference=two, others={_MEANT: {"difference": four}})
+
+    rises = {_MEANT: {"rise": rise("kappa", 4)}}
+    yield measured("L-F1.kappa_monotone", rise=rise("kappa"), others=rises)
+    coarse, fine = map(slope, _SMALL)
+    yield measured("L-F1.kappa_flat", slope=fine, ratio=fine / coarse)
+    yield decay("L-F1.kappa_decay", "κ")
+    yield measured("L-F1.green_positive", least=green["least value"])
+    yield measured("L-F1.green_monotone", rise=rise("E"), exponent=green["tail exponent"])
+    yield measured("L-F1.K_positive.II", least=k_two["least value"])
+    yield measured("L-F1.K_positive.IV", least=k_four["least value"], place=k_four["at r"])
+    yield decay("L-F1.K_decay", "K")
 
 
-def _of_f(betas: Sequence[float]) -> list[Finding]:
+def _of_f(betas: list[float]) -> Iterator[Finding]:
     """What Sec. 3.2.2 says of F, n = 1: odd, a single minimum, the tail."""
-    index = pd.Index(betas, name="beta")
+
+    def odd(b: float) -> float:
+        f = _values("F", _NEAR, b)
+        return np.abs(_values("F", -_NEAR, b) + f).max() / np.abs(f).max()
 
     def extrema(order: int) -> pd.Series:
-        turns = [np.diff(np.sign(np.diff(_values("F", _NEAR, b, order)))) for b in betas]
-        return pd.Series([np.count_nonzero(t) for t in turns], index)
+        values = each(lambda b: _values("F", _NEAR, b, order), beta=betas)
+        return values.map(lambda f: np.count_nonzero(np.diff(np.sign(np.diff(f)))))
 
-    values = [_values("F", _NEAR, b) for b in betas]
-    odd = [
-        np.abs(_values("F", -_NEAR, b) + f).max() / np.abs(f).max()
-        for b, f in zip(betas, values, strict=True)
-    ]
-    place = pd.Series([_NEAR[f.argmin()] for f in values], index)
-    off = pd.Series([tail_exponent("F", 1.0 + b, 2) + b + 1.0 for b in betas], index)
-    return [
-        measured("L-KERNELS.F_odd", odd=pd.Series(odd, index)),
-        measured(
-            "L-KERNELS.F_single_minimum",
-            extrema=extrema(2),
-            place=place,
-            others={_MEANT: {"extrema": extrema(4)}},
-        ),
-        measured("L-KERNELS.F_decay", difference=off),
-    ]
+    yield measured("L-KERNELS.F_odd", odd=each(odd, beta=betas))
+    yield measured(
+        "L-KERNELS.F_single_minimum",
+        extrema=extrema(2),
+        place=each(lambda b: _NEAR[_values("F", _NEAR, b).argmin()], beta=betas),
+        others={_MEANT: {"extrema": extrema(4)}},
+    )
+    off = each(lambda b: tail_exponent("F", 1.0 + b, 2) + b + 1.0, beta=betas)
+    yield measured("L-KERNELS.F_decay", difference=off)
 
 
-def _of_g(betas: Sequence[float]) -> list[Finding]:
+def _of_g(betas: list[float]) -> Iterator[Finding]:
     """What Sec. 3.1 says of G, in one to three dimensions."""
-    index = pd.MultiIndex.from_product([_DIMS, betas], names=["n", "beta"])
 
-    def both(order: int) -> tuple[pd.Series, pd.Series, pd.Series]:
-        values = [_values("G", _NEAR, b, order, n) for n, b in index]
-        places = [_NEAR[g.argmax()] for g in values]
-        return tuple(
-            pd.Series(part, index)
-            for part in ([g[0] for g in values], places, [g.max() for g in values])
-        )
+    def values(order: int) -> pd.Series:
+        return each(lambda n, b: _values("G", _NEAR, b, order, n), n=_DIMS, beta=betas)
 
-    (origin, place, top), four = both(2), both(4)
-    off = [tail_exponent("G", 1.0 + b, 2, n) + n + 1.0 + b for n, b in index]
-    return [
-        measured("L-KERNELS.G_origin", origin=origin, others={_MEANT: {"origin": four[0]}}),
-        measured(
-            "L-KERNELS.G_maximum",
-            place=place,
-            top=top,
-            others={_MEANT: {"place": four[1], "top": four[2]}},
-        ),
-        measured("L-KERNELS.G_decay", difference=pd.Series(off, index)),
-    ]
+    def maximum(values: pd.Series) -> dict[str, pd.Series]:
+        return {"place": values.map(lambda g: _NEAR[g.argmax()]), "top": values.map(np.max)}
+
+    def origin(values: pd.Series) -> dict[str, pd.Series]:
+        return {"origin": values.map(lambda g: g[0])}
+
+    two, four = values(2), values(4)
+    off = each(lambda n, b: tail_exponent("G", 1.0 + b, 2, n) + n + 1.0 + b, n=_DIMS, beta=betas)
+    yield measured("L-KERNELS.G_origin", others={_MEANT: origin(four)}, **origin(two))
+    yield measured("L-KERNELS.G_maximum", others={_MEANT: maximum(four)}, **maximum(two))
+    yield measured("L-KERNELS.G_decay", difference=off)

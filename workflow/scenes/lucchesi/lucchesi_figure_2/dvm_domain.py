@@ -1,8 +1,7 @@
 """DVM in the reference case, Secs. 3.3, 4.1, 4.2 and 6: its domain, and what its lattice needs remeshing for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -12,8 +11,6 @@ from fracparticles.run.dataset import read_run
 from fracparticles.special.stable import mean_radius
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs
-
-__all__ = ["lagrangian_domain", "truncation_effect"]
 
 _FREE, _REMESHED = "without remeshing", "remeshed"
 
@@ -27,40 +24,28 @@ def lagrangian_domain(
     remeshing, DD and KPSE, whose lattices stay where they are.
     """
     moving = main.select(scheme="DVM")
-    names = [n for n in moving["remeshing"] if n != "none"]
+    first, *others = (name for name in moving["remeshing"] if name != "none")
     errors = table.set_index("scheme")["error (48)"]
-    ratio = {name: errors["DVM, none"] / errors[f"DVM, {name}"] for name in names}
-    kept, free = (_lattice(main, name) for name in (names[0], "none"))
-    runs = moving["run"]
-    yield measured(
-        "L-F2.DVM_window",
-        runs=runs,
-        reach={
-            f"x in [{low:g}, {high:g}]": kept["reach"] / low if low else kept["reach"] / high
-            for low, high in windows
-        },
-        end=kept["reach"],
-    )
-    yield measured("L-F2.DVM_distortion", runs=runs, gap=free["gap"])
-    yield measured("L-F2.DVM_overlap", runs=runs, overlap=free["overlap"])
-    yield measured(
+    ratio = {name: errors["DVM, none"] / errors[f"DVM, {name}"] for name in (first, *others)}
+    kept, free = (_lattice(main, name) for name in (first, "none"))
+    found, end = partial(measured, runs=moving["run"]), kept["reach"]
+    reach = {f"x in [{low:g}, {high:g}]": end / (low or high) for low, high in windows}
+    yield found("L-F2.DVM_window", reach=reach, end=end)
+    yield found("L-F2.DVM_distortion", gap=free["gap"])
+    yield found("L-F2.DVM_overlap", overlap=free["overlap"])
+    yield found(
         "L-F2.DVM_remeshing",
-        runs=runs,
-        others={f"remeshing by {name}": {"ratio": ratio[name]} for name in names[1:]},
-        ratio=ratio[names[0]],
+        others={f"remeshing by {name}": {"ratio": ratio[name]} for name in others},
+        ratio=ratio[first],
         free=errors["DVM, none"],
-        remeshed=errors[f"DVM, {names[0]}"],
+        remeshed=errors[f"DVM, {first}"],
     )
-    yield measured(
-        "L-C1.redistribution_resolution", runs=runs, overlap=kept["overlap"], free=free["overlap"]
-    )
-    yield measured("L-C1.redistribution_domain", runs=runs, ratio=free["reach"] / kept["reach"])
-    yield measured(
-        "L-C1.DVM_stretching",
-        runs=runs,
-        away={_FREE: abs(free["stretch"] - 1.0), _REMESHED: abs(kept["stretch"] - 1.0)},
-        stretch={_FREE: free["stretch"], _REMESHED: kept["stretch"]},
-    )
+    overlap = kept["overlap"]
+    yield found("L-C1.redistribution_resolution", overlap=overlap, free=free["overlap"])
+    yield found("L-C1.redistribution_domain", ratio=free["reach"] / kept["reach"])
+    stretch = {_FREE: free["stretch"], _REMESHED: kept["stretch"]}
+    away = {case: abs(by - 1.0) for case, by in stretch.items()}
+    yield found("L-C1.DVM_stretching", away=away, stretch=stretch)
     yield from _truncation(inputs, main, errors)
 
 
@@ -86,18 +71,12 @@ def _truncation(inputs: Inputs, main: Inputs, errors: pd.Series) -> Iterator[Fin
     at = effect[min(effect.columns, key=lambda c: abs(c - asked))]
     remeshed = next(name for name in at.index if name.startswith("DVM") and name != "DVM, none")
     names = {_REMESHED: remeshed, _FREE: "DVM, none"}
-    yield measured(
-        "L-C1.DVM_domain",
-        runs=others["run"],
-        ratio={case: at["DD"] / at[name] for case, name in names.items()},
-        change=at,
-    )
-    yield measured(
-        "L-C1.DVM_truncation",
-        runs=[*others["run"], *main.select(scheme="DVM")["run"]],
-        share={case: at[name] / errors[name] for case, name in names.items()},
-        change={case: at[name] for case, name in names.items()},
-    )
+    ratio = {case: at["DD"] / at[name] for case, name in names.items()}
+    yield measured("L-C1.DVM_domain", runs=others["run"], ratio=ratio, change=at)
+    runs = [*others["run"], *main.select(scheme="DVM")["run"]]
+    share = {case: at[name] / errors[name] for case, name in names.items()}
+    change = {case: at[name] for case, name in names.items()}
+    yield measured("L-C1.DVM_truncation", runs=runs, share=share, change=change)
 
 
 def truncation_effect(runs: pd.DataFrame) -> pd.DataFrame:

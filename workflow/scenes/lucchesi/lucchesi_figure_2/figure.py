@@ -1,15 +1,9 @@
 """Fig. 2: exact and computed solutions of the reference case, at the peak and at the boundary."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, legend_below
-
-__all__ = ["figure"]
+from fracstudy.panels import pick
+from fracstudy.style import UNDERLAID, Figure, axes_row, draw, legend_below, scheme_style
 
 _SCHEMES = {
     "DD": "DD",
@@ -20,38 +14,31 @@ _SCHEMES = {
     "DVM, M4'": "DVM, $M_4'$",
     "DVM, Lambda3": r"DVM, $\Lambda_3$",
 }
-# The window, the exterior and the title of each panel.
-_PANELS = (
-    (0, "truncated", "near the peak"),
-    (1, "truncated", "at the boundary, truncated"),
-    (1, "open", "at the boundary, open exterior"),
-)
-_EXACT: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25, "label": "exact"}
+# The window and the exterior of each panel, by its title.
+_PANELS = {
+    "near the peak": (0, "truncated"),
+    "at the boundary, truncated": (1, "truncated"),
+    "at the boundary, open exterior": (1, "open"),
+}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """The two windows of the figure, and the second one with the open exterior."""
-    figure, axes = axes_row(3, width=3.3, height=3.3)
+    figure, axes = axes_row(list(_PANELS), width=3.3, height=3.3)
     # In units of 1e-7 at the boundary, as the axis says.
     series = series.assign(y=series["y"] * series["panel"].map({0: 1.0, 1: 1e7}))
-    for letter, ax, (window, exterior, title) in zip("abc", axes, _PANELS, strict=True):
-        here = series[series["panel"] == window]
-        exact = here[here["scheme"] == "exact"]
-        ax.plot(exact["x"], exact["y"], **_EXACT)
+    for ax, (window, exterior) in zip(axes, _PANELS.values(), strict=True):
+        here = pick(series, panel=window)
+        exact = pick(here, scheme="exact")
+        draw(ax, exact, label="exact", **UNDERLAID)
         for k, (scheme, label) in enumerate(_SCHEMES.items()):
-            points = here[(here["scheme"] == scheme) & (here["exterior"] == exterior)]
+            points = pick(here, scheme=scheme, exterior=exterior)
             if points.empty:
                 continue
-            name, every = scheme.split(",")[0], max(1, len(points) // 14)
-            face = "white" if scheme == "DVM, Lambda3" else COLOURS[name]
-            style: dict[str, Any] = {
-                "color": COLOURS[name],
-                "marker": MARKERS[name],
-                "markerfacecolor": face,
-            }
-            shift = (k * every // len(_SCHEMES), every)
-            ax.plot(points["x"], points["y"], markevery=shift, linewidth=0.9, label=label, **style)
-        ax.set_title(f"({letter}) {title}", loc="left")
+            every = max(1, len(points) // 14)
+            look = scheme_style(scheme.split(",")[0], 4 if scheme == "DVM, Lambda3" else 2)
+            look |= {"markevery": (k * every // len(_SCHEMES), every), "linestyle": "-"}
+            draw(ax, points, linewidth=0.9, label=label, **look)
         ax.set_xlabel(r"position $x$")
         if window == 1:
             ax.set_ylim(0.0, 3.0 * exact["y"].max())

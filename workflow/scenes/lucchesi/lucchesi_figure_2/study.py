@@ -1,25 +1,21 @@
 """The reference case, Fig. 2 and Sec. 4.1: exact and computed solutions at the peak and at the boundary."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from fracparticles.run.dataset import read_run
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import central_mass, green, mean_radius
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import Panels, pick
 from scenes.lucchesi.lucchesi_figure_2.dvm_domain import lagrangian_domain
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-__all__ = ["study"]
 
 NEEDS = {
     "scheme": ["DD", "FPSE", "KPSE", "GPSE", "FD", "DVM"],
@@ -51,29 +47,25 @@ def study(
     """
     main = replace(inputs, runs=tuple(inputs.select(spacing=shown_spacing)["run"]))
     first = main.open(scheme="KPSE", exterior="truncated")
-    alpha, time, half = (
-        1.0 + float(first["beta"]),
-        float(first["t_final"]),
-        float(first["half_width"]),
-    )
-    edge = windows[-1][0] / half
-    rows, series = [], []
+    edge = windows[-1][0] / float(first["half_width"])
+    rows, panels = [], Panels()
     for run in map(read_run, main.runs):
-        scheme, exterior = _name(run), str(run["exterior"].values)
-        rows.append({"scheme": scheme, "exterior": exterior, **_errors(run, edge)})
-        series += _windows(scheme, exterior, run["x"].values, run["u"].values, windows)
-    x = first["x"].values
-    series += _windows("exact", "", x, np.asarray(green(x, time, alpha)), windows)
+        key = {"scheme": _name(run), "exterior": str(run["exterior"].values)}
+        rows.append({**key, **_errors(run, edge)})
+        _draw(panels, windows, key, run["x"].values, run["u"].values)
+    x, exact = first["x"].values, _exact(first)
+    _draw(panels, windows, {"scheme": "exact", "exterior": ""}, x, exact)
     table = pd.DataFrame(rows)
+    start = np.asarray(green(x, float(first["t_initial"]), 1.0 + float(first["beta"])))
     findings = [
         *_errors_judged(main, table),
         *_truncation(main, edge),
-        *_initial(x, float(first["t_initial"]), alpha, main.runs),
+        *_initial(first, start, main.runs),
         *_setting(main, table, printed_particles),
-        *(_mass(beta, time) for beta in mass_beta),
+        *(_mass(beta, float(first["t_final"])) for beta in mass_beta),
         *lagrangian_domain(inputs, main, table, windows),
     ]
-    return Result(table, findings, pd.concat(series, ignore_index=True))
+    return Result(table, findings, panels.frame)
 
 
 def _name(run: xr.Dataset) -> str:
@@ -82,10 +74,13 @@ def _name(run: xr.Dataset) -> str:
     return f"DVM, {run['remeshing'].values}" if scheme == "DVM" else scheme
 
 
+def _exact(run: xr.Dataset) -> np.ndarray:
+    return np.asarray(green(run["x"].values, float(run["t_final"]), 1.0 + float(run["beta"])))
+
+
 def _errors(run: xr.Dataset, edge: float) -> dict[str, float]:
-    x, u, width = run["x"].values, run["u"].values, float(run["half_width"])
-    exact = np.asarray(green(x, float(run["t_final"]), 1.0 + float(run["beta"])))
-    error = np.abs(u - exact)
+    x, exact, width = run["x"].values, _exact(run), float(run["half_width"])
+    error = np.abs(run["u"].values - exact)
     relative, near = error / exact, np.abs(x) >= edge * width
     return {
         _PEAK: relative[x.size // 2],
@@ -100,27 +95,24 @@ def _errors(run: xr.Dataset, edge: float) -> dict[str, float]:
     }
 
 
-def _windows(scheme: str, exterior: str, x: np.ndarray, u: np.ndarray, windows: list) -> list:
-    parts = []
+def _draw(
+    panels: Panels, windows: list[list[float]], key: dict[str, str], x: np.ndarray, u: np.ndarray
+) -> None:
     for panel, (low, high) in enumerate(windows):
         inside = np.flatnonzero((x >= low) & (x <= high))
         kept = inside[:: max(1, inside.size // _POINTS)]
-        curve = {"panel": panel, "scheme": scheme, "exterior": exterior, "x": x[kept], "y": u[kept]}
-        parts.append(pd.DataFrame(curve))
-    return parts
+        panels.add(panel, **key, x=x[kept], y=u[kept])
 
 
 def _readings(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """The truncated errors by scheme, once for each remeshing that the text can be read to mean."""
-    shown = table[table["exterior"] == "truncated"]
-    moving = shown["scheme"].str.startswith("DVM")
-    names = [name for name in shown.loc[moving, "scheme"] if name != "DVM, none"]
-    return {
-        f"DVM remeshed by {name.removeprefix('DVM, ')}": pd.concat(
-            [shown[~moving], shown[shown["scheme"] == name].assign(scheme="DVM")]
-        ).set_index("scheme")
-        for name in names
-    }
+    shown = pick(table, exterior="truncated")
+    moving = shown["scheme"].str.startswith("DVM, ")
+    readings = {}
+    for name in shown.loc[moving, "scheme"].drop_duplicates():
+        both = [shown[~moving], pick(shown, scheme=name).assign(scheme="DVM")]
+        readings[name.replace("DVM, ", "DVM remeshed by ")] = pd.concat(both).set_index("scheme")
+    return {name: of for name, of in readings.items() if name != "DVM remeshed by none"}
 
 
 def _errors_judged(main: Inputs, table: pd.DataFrame) -> Iterator[Finding]:
@@ -132,23 +124,17 @@ def _errors_judged(main: Inputs, table: pd.DataFrame) -> Iterator[Finding]:
         rest = {name: numbers(errors) for name, errors in others}
         return measured(claim, runs=main.runs, others=rest, **numbers(judged))
 
-    yield by_scheme("L-F2.peak", lambda errors: {"error": errors[_PEAK]})
-    yield by_scheme("L-F2.decay", lambda errors: {"error": errors[_DECAY]})
-    yield by_scheme("L-F2.absolute_error", lambda errors: {"error": errors[_ABSOLUTE]})
-    yield by_scheme(
-        "L-F2.interior",
-        lambda errors: {"inside": errors[_INSIDE], "growth": errors[_LAST] / errors[_INSIDE]},
-    )
-    yield by_scheme(
-        "L-F2.relative_error",
-        lambda errors: {
-            "outwards": errors[boundary] / errors[_INSIDE],
-            "onwards": errors[_LAST] / errors[boundary],
-        },
-    )
+    def inside(e: pd.DataFrame) -> dict[str, Any]:
+        return {"inside": e[_INSIDE], "growth": e[_LAST] / e[_INSIDE]}
 
-    # The ends of DVM's lattice are elsewhere, where the solution is a thousand times as large.
-    here = judged.drop("DVM")
+    def outwards(e: pd.DataFrame) -> dict[str, Any]:
+        return {"outwards": e[boundary] / e[_INSIDE], "onwards": e[_LAST] / e[boundary]}
+
+    yield by_scheme("L-F2.peak", lambda e: {"error": e[_PEAK]})
+    yield by_scheme("L-F2.decay", lambda e: {"error": e[_DECAY]})
+    yield by_scheme("L-F2.absolute_error", lambda e: {"error": e[_ABSOLUTE]})
+    yield by_scheme("L-F2.interior", inside)
+    yield by_scheme("L-F2.relative_error", outwards)
 
     def over_exchange(error: pd.Series) -> pd.Series:
         return error[["DD", "FPSE"]] / error[["KPSE", "GPSE"]].max()
@@ -157,31 +143,28 @@ def _errors_judged(main: Inputs, table: pd.DataFrame) -> Iterator[Finding]:
         ratio = (error / error["FD"]).drop("FD")
         return ratio.where(ratio > 1.0, 1.0 / ratio)
 
-    for claim, ratio in (
-        ("L-C2.dd_fpse_boundary", over_exchange),
-        ("L-C2.fd_comparable", against_fd),
-    ):
-        largest = {"ratio": ratio(here[_ABSOLUTE_EDGE])}
+    # The ends of DVM's lattice are elsewhere, where the solution is a thousand times as large.
+    here, claims = judged.drop("DVM"), ("L-C2.dd_fpse_boundary", "L-C2.fd_comparable")
+    for claim, ratio in zip(claims, (over_exchange, against_fd), strict=True):
+        largest = ratio(here[_ABSOLUTE_EDGE])
         yield measured(
             claim,
             runs=main.runs,
-            others={"the largest absolute error instead of the median relative one": largest},
+            others={"the largest absolute error instead of the median relative one": {"ratio": largest}},
             ratio=ratio(here[boundary]),
             error=here[boundary],
-            largest=largest["ratio"],
-        )
+            largest=largest,
+        )  # fmt: skip
 
 
 def _truncation(main: Inputs, edge: float) -> list[Finding]:
     """What the truncation adds: the change of u from the open exterior, with everything else the same."""
-    opened = main.select(exterior="open")["scheme"]
     rows, files = {}, []
-    for scheme in opened:
+    for scheme in main.select(exterior="open")["scheme"]:
         cut, free = (main.open(scheme=scheme, exterior=e) for e in ("truncated", "open"))
-        x, t, width = cut["x"].values, float(cut["t_final"]), float(cut["half_width"])
-        exact = np.asarray(green(x, t, 1.0 + float(cut["beta"])))
+        x, exact, width = np.abs(cut["x"].values), _exact(cut), float(cut["half_width"])
         change = np.abs(cut["u"].values - free["u"].values)
-        near, inside = np.abs(x) >= edge * width, np.abs(x) < 0.5 * width
+        near, inside = x >= edge * width, x < 0.5 * width
         rows[scheme] = {
             "edge": np.median((change / exact)[near]),
             "inside": (change / exact)[inside].max(),
@@ -190,52 +173,42 @@ def _truncation(main: Inputs, edge: float) -> list[Finding]:
             "left": np.median(np.abs(free["u"].values / exact - 1.0)[near]),
         }
         files += list(main.select(scheme=scheme)["run"])
-    found = pd.DataFrame(rows).T
-    ratio = found["edge"] / found["inside"]
+    found, of = pd.DataFrame(rows).T, partial(measured, runs=files)
+    ratio, largest = found["edge"] / found["inside"], found["largest"]
     absolute = {"the absolute change": {"ratio": found["absolute"]}}
     explicit = main.select(exterior="truncated").set_index("scheme").loc[["DD", "FPSE", "KPSE"]]
     limit = [stability_limit(s, beta) for s, beta in explicit["beta"].items()]
     step = explicit["dt"] / explicit["particle_spacing"] ** (1.0 + explicit["beta"]) / limit
     return [
-        measured("L-C2.not_instability", runs=files, step=step, gain=found["edge"] / found["left"]),
-        measured("L-C2.truncation_at_edge", runs=files, others=absolute, ratio=ratio),
-        measured(
-            "L-F2.substantial", runs=files, largest=found["largest"].max(), each=found["largest"]
-        ),
-        measured("L-F2.mostly_boundaries", runs=files, others=absolute, ratio=ratio),
+        of("L-C2.not_instability", step=step, gain=found["edge"] / found["left"]),
+        of("L-C2.truncation_at_edge", others=absolute, ratio=ratio),
+        of("L-F2.substantial", largest=largest.max(), each=largest),
+        of("L-F2.mostly_boundaries", others=absolute, ratio=ratio),
     ]
 
 
-def _initial(x: np.ndarray, start: float, alpha: float, runs: Sequence[str]) -> list[Finding]:
+def _initial(run: xr.Dataset, u: np.ndarray, runs: Sequence[str]) -> Iterator[Finding]:
     """The initial condition, the fundamental solution at t = 0.5, on the lattice and between D/2 and D."""
-    u = np.asarray(green(x, start, alpha))
-    far = np.asarray(green(x[-1] * np.array([0.5, 1.0]), start, alpha))
-    return [
-        measured(
-            "L-F2.initial_shape",
-            runs=runs,
-            asymmetry=np.abs(u - u[::-1]).max() / u.max(),
-            step=np.diff(u[x >= 0.0]).max(),
-        ),
-        measured("L-F2.initial_decay", runs=runs, exponent=np.log2(far[1] / far[0])),
-    ]
+    x, start, alpha = run["x"].values, float(run["t_initial"]), 1.0 + float(run["beta"])
+    near, far = np.asarray(green(x[-1] * np.array([0.5, 1.0]), start, alpha))
+    asymmetry, step = np.abs(u - u[::-1]).max() / u.max(), np.diff(u[x >= 0.0]).max()
+    yield measured("L-F2.initial_shape", runs=runs, asymmetry=asymmetry, step=step)
+    yield measured("L-F2.initial_decay", runs=runs, exponent=np.log2(far / near))
 
 
 def _setting(main: Inputs, table: pd.DataFrame, printed: int) -> list[Finding]:
     """The lattice and the step of GPSE: D, h, N and epsilon as Sec. 4.1 prints them."""
-    run = main.select(scheme="KPSE", exterior="truncated").iloc[0]
-    gpse = main.select(scheme="GPSE", exterior="truncated").iloc[0]
+    run, gpse = (main.select(scheme=s, exterior="truncated").iloc[0] for s in ("KPSE", "GPSE"))
     half, alpha = float(run["half_width"]), 1.0 + float(run["beta"])
-    odd = printed + 1 - printed % 2
-    spacing = 2.0 * half / (odd - 1)
+    spacing = 2.0 * half / (printed - printed % 2)  # of the next odd number of particles
     peak, beside = np.asarray(green(np.array([0.0, 0.5 * spacing]), float(run["t_final"]), alpha))
     error = table.set_index(["scheme", "exterior"])[_PEAK]
+    of = partial(measured, runs=[run["run"]])
     return [
-        measured("L-C1.D", runs=[run["run"]], ours=half),
-        measured("L-C1.h", runs=[run["run"]], ours=2.0 * half / (printed - 1)),
-        measured(
+        of("L-C1.D", ours=half),
+        of("L-C1.h", ours=2.0 * half / (printed - 1)),
+        of(
             "L-C1.odd_number",
-            runs=[run["run"]],
             printed=printed,
             spacing=abs(spacing * (printed - 1) / (2.0 * half) - 1.0),
             ours=2 * round(half / run["particle_spacing"]) + 1,
@@ -256,6 +229,5 @@ def _mass(beta: float, time: float) -> Finding:
     """The share of the mass within 5 R_alpha, and how far it is from the printed 97 %."""
     alpha = 1.0 + beta
     mass = 100.0 * float(central_mass(5.0 * mean_radius(alpha), time, alpha))
-    return measured(
-        f"L-C1.mass.beta{beta:g}", away=abs(mass / 97.0 - 1.0), mass=mass, outside=100.0 - mass
-    )
+    away, outside = abs(mass / 97.0 - 1.0), 100.0 - mass
+    return measured(f"L-C1.mass.beta{beta:g}", away=away, mass=mass, outside=outside)

@@ -1,25 +1,21 @@
 """Phi_2 over Phi_2(0) beside Phi_1, near and far, and three other ways to compute it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, log_log, note
-
-__all__ = ["figure"]
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, Figure, axes_row, log_log, note
 
 _FLOOR = 2.0**-53  # where smaller deviations are drawn
 # By dimension: colour, name, and the power of the tail, with the side of the curve that it is named on.
 _DENSITIES = {
-    2: ("#0072B2", r"$n = 2$: $\Phi_{2,\alpha}$", r"$r^{-2-\alpha}$", (-5, -4), "right", "top"),
-    1: ("#D55E00", r"$n = 1$: $L_\alpha^0$", r"$r^{-1-\alpha}$", (5, 4), "left", "bottom"),
+    2: (BLUE, r"$n = 2$: $\Phi_{2,\alpha}$", r"$r^{-2-\alpha}$", (-5, -4), "right", "top"),
+    1: (RED, r"$n = 1$: $L_\alpha^0$", r"$r^{-1-\alpha}$", (5, 4), "left", "bottom"),
 }
+_RATIO = r"$\Phi_{n,\alpha}(r)\, /\, \Phi_{n,\alpha}(0)$"
 _WAYS = {
-    "integral (58), deviation": ("#009E73", "-", "integral (58)"),
-    "series, deviation": ("#CC79A7", "--", "series in $r^2$"),
-    "asymptotics, deviation": ("#E69F00", "-.", r"series in $r^{-\alpha}$"),
+    "integral (58), deviation": (GREEN, "-", "integral (58)"),
+    "series, deviation": (PINK, "--", "series in $r^2$"),
+    "asymptotics, deviation": (ORANGE, "-.", r"series in $r^{-\alpha}$"),
 }
 
 
@@ -48,6 +44,6 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: float, reach: lis
     deviation.legend(loc="upper left", fontsize=7.5)
     for ax in (near, far, deviation):
         ax.set_xlabel("distance $r$")
-    for ax in (near, far):
-        ax.set_ylabel(r"$\Phi_{n,\alpha}(r)\, /\, \Phi_{n,\alpha}(0)$")
+    near.set_ylabel(_RATIO)
+    far.set_ylabel(_RATIO)
     return figure

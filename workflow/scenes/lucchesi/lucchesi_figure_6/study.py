@@ -1,7 +1,5 @@
 """The fundamental solution in two dimensions, (57), (58), Fig. 6."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import pi
 
@@ -13,8 +11,6 @@ from fracparticles.special.plane import planar_asymptotic, planar_integral, plan
 from fracparticles.special.stable import reduced_green, tail_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["fractional_laplacian", "study"]
 
 _STEP = 1e-2  # in time, of differences of sixth order
 # Of the quadrature of (4): radii around a point, and numbers of radii and angles.
@@ -47,26 +43,24 @@ def _compare(r: np.ndarray, alpha: float, terms: dict[str, float]) -> pd.DataFra
 
     near, middle = (r <= terms[name] for name in ("series_up_to", "integral_up_to"))
     far = r >= terms["asymptotic_from"]
-    return pd.DataFrame(
-        {
-            "r": r,
-            "Phi_2(r)": phi,
-            "integral (58), deviation": deviation(middle, planar_integral),
-            "series, deviation": deviation(near, planar_series, terms["series"]),
-            "asymptotics, deviation": deviation(far, planar_asymptotic, terms["asymptotic"]),
-            "Phi_2(r) / Phi_2(0)": phi / reduced_green(0.0, alpha, 2),
-            "Phi_1(r) / Phi_1(0)": line / reduced_green(0.0, alpha, 1),
-            "mass outside, n = 2": np.asarray(tail_mass(r, 1.0, alpha, 2)),
-            "mass outside, n = 1": np.asarray(tail_mass(r, 1.0, alpha, 1)),
-        }
-    )
+    columns = {
+        "r": r,
+        "Phi_2(r)": phi,
+        "integral (58), deviation": deviation(middle, planar_integral),
+        "series, deviation": deviation(near, planar_series, terms["series"]),
+        "asymptotics, deviation": deviation(far, planar_asymptotic, terms["asymptotic"]),
+        "Phi_2(r) / Phi_2(0)": phi / reduced_green(0.0, alpha, 2),
+        "Phi_1(r) / Phi_1(0)": line / reduced_green(0.0, alpha, 1),
+        "mass outside, n = 2": np.asarray(tail_mass(r, 1.0, alpha, 2)),
+        "mass outside, n = 1": np.asarray(tail_mass(r, 1.0, alpha, 1)),
+    }
+    return pd.DataFrame(columns)
 
 
 def _fundamental(alpha: float) -> Finding:
     """Whether (57) with (58) solves (3) with the integral (4), taken in the plane, from a unit mass at the origin."""
     r = np.linspace(0.0, 40.0, 401)
-    top = float(reduced_green(0.0, alpha, 2))
-    integral = np.abs(planar_integral(r, alpha) - reduced_green(r, alpha, 2)).max() / top
+    gap = np.abs(planar_integral(r, alpha) - reduced_green(r, alpha, 2)).max()
     near = np.array([0.0, 0.5, 1.0, 2.0, 4.0])
     rate = _rate(near, alpha)
     laplacian = np.array([fractional_laplacian(radius, alpha) for radius in near])
@@ -77,7 +71,7 @@ def _fundamental(alpha: float) -> Finding:
         "L-F6.fundamental",
         equation=np.abs(rate - laplacian).max() / np.abs(rate).max(),
         mass=abs(inside + float(tail_mass(20.0, 1.0, alpha, 2)) - 1.0),
-        integral=integral,
+        integral=gap / float(reduced_green(0.0, alpha, 2)),
         rate=rate[0],
         laplacian=laplacian[0],
     )
@@ -89,10 +83,9 @@ def _rate(r: np.ndarray, alpha: float) -> np.ndarray:
     def density(t: float) -> np.ndarray:
         return t ** (-2.0 / alpha) * planar_integral(r * t ** (-1.0 / alpha), alpha)
 
-    factors = {1: 45.0, 2: -9.0, 3: 1.0}
     return sum(
         c / 60.0 * (density(1.0 + k * _STEP) - density(1.0 - k * _STEP)) / _STEP
-        for k, c in factors.items()
+        for k, c in ((1, 45.0), (2, -9.0), (3, 1.0))
     )
 
 
@@ -106,15 +99,13 @@ def fractional_laplacian(r: float, alpha: float) -> float:
     low, high = np.log(_NEAREST), np.log(_FARTHEST)
     rho = np.exp(low + 0.5 * (high - low) * (node + 1.0))
     angle = 2.0 * pi * np.arange(_ANGLES) / _ANGLES
-    distance = np.hypot(
-        r + np.multiply.outer(rho, np.cos(angle)), np.multiply.outer(rho, np.sin(angle))
-    )
+    x, y = (np.multiply.outer(rho, of(angle)) for of in (np.cos, np.sin))
+    distance = np.hypot(r + x, y)
     value = float(reduced_green(r, alpha, 2))
     excess = np.asarray(reduced_green(distance, alpha, 2)).mean(axis=1) - value
     inside = 0.5 * (high - low) * float(weight @ (excess * rho**-alpha))
     nearest = excess[0] * rho[0] ** -2.0 * _NEAREST ** (2.0 - alpha) / (2.0 - alpha)
     farthest = -value * _FARTHEST**-alpha / alpha
-    constant = (
-        alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + 0.5 * alpha) / (pi * gamma(1.0 - 0.5 * alpha))
-    )
+    half = 0.5 * alpha
+    constant = alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + half) / (pi * gamma(1.0 - half))
     return 2.0 * pi * constant * (inside + nearest + farthest)

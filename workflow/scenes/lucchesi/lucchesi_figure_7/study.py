@@ -1,8 +1,6 @@
 """Radial flux and diffusion rate of the initial condition in two dimensions, Fig. 7."""
 
-from __future__ import annotations
-
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
@@ -15,16 +13,11 @@ from fracparticles.special.stable import green, green_flux, green_rate
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
+from fracstudy.panels import Panels
 from scenes.plane import DISK
 
-__all__ = ["flux_along_axis", "study"]
-
 _ERROR, _ORDER = "largest error / largest value, r <= 5", "observed order"
-_QUANTITIES = {
-    "flux": "flux (19), FPSE",
-    "DD": "diffusion rate, DD",
-    "FPSE": "diffusion rate, FPSE",
-}
+_QUANTITIES = {"flux": "flux (19), FPSE"} | {s: f"diffusion rate, {s}" for s in ("DD", "FPSE")}
 
 
 def flux_along_axis(case: Case, u: np.ndarray) -> np.ndarray:
@@ -55,21 +48,18 @@ def study(
     common = {"beta": beta, "dim": 2, "truncation": truncation, "integrator": "exponential"}
     # The half-width does not depend on the spacing asked for.
     width = 2.0 * Case(scheme="DD", spacing=1.0, **common).reach
-    parts = []
+    panels = Panels()
     for count in (*particles, *finer):
-        cases = [
-            Case(scheme=scheme, spacing=width / (count - 1), **common) for scheme in ("DD", "FPSE")
-        ]
+        cases = [Case(scheme=s, spacing=width / (count - 1), **common) for s in ("DD", "FPSE")]
         case, kept = cases[1], cases[1].x >= 0.0
         u, r = np.asarray(green(case.radius, time, alpha, 2)), case.x[kept]
         flux, rate = green_flux(r, time, alpha, 2), green_rate(r, time, alpha, 2)
         found = {"flux": (flux_along_axis(case, u), flux)}
         found |= {one.scheme: (_rate_along_axis(one, u), rate) for one in cases}
-        where: dict[str, Any] = {"N": count, "h": case.particle_spacing, "r": r}
         for name, (profile, exact) in found.items():
-            curve = {"quantity": name, **where, "y": profile[kept], "exact": exact}
-            parts.append(pd.DataFrame(curve))
-    series = pd.concat(parts, ignore_index=True)
+            where = {"quantity": name, "N": count, "h": case.particle_spacing}
+            panels.add(**where, x=r, y=profile[kept], exact=exact)
+    series = panels.frame.rename(columns={"x": "r"})
     table = _table(series)
     shown = (series["r"] <= DISK) & (series["N"] <= max(particles))
     drawn = series[shown | (series["N"] == series["N"].max())]
@@ -87,43 +77,31 @@ def _table(series: pd.DataFrame) -> pd.DataFrame:
         for count, part in series[series["quantity"] == name].groupby("N"):
             inside = part["r"] <= DISK
             error = (part["y"] - part["exact"]).abs() / part["exact"].abs().max()
-            rows.append(
-                {
-                    "quantity": words,
-                    "N": count,
-                    "h": part["h"].iloc[0],
-                    _ERROR: error[inside].max(),
-                    "at r": part.loc[error[inside].idxmax(), "r"],
-                    "ratio for 3 < r < 5": error[inside & (part["r"] > 3.0)].max(),
-                    "ratio for r > 5": error[~inside].max(),
-                }
-            )
+            row = {
+                "quantity": words,
+                "N": count,
+                "h": part["h"].iloc[0],
+                _ERROR: error[inside].max(),
+                "at r": part.loc[error[inside].idxmax(), "r"],
+                "ratio for 3 < r < 5": error[inside & (part["r"] > 3.0)].max(),
+                "ratio for r > 5": error[~inside].max(),
+            }
+            rows.append(row)
     table = pd.DataFrame(rows)
     return table.assign(**{_ORDER: orders_by(table, "quantity", _ERROR)})
 
 
-def _findings(table: pd.DataFrame, printed: list[int]) -> list[Finding]:
-    names = dict(zip(_QUANTITIES.values(), ("flux", "DD", "FPSE"), strict=True))
-    by_count = table.assign(quantity=table["quantity"].map(names)).pivot(
-        index="N", columns="quantity"
-    )
+def _findings(table: pd.DataFrame, printed: list[int]) -> Iterator[Finding]:
+    names = {words: name for name, words in _QUANTITIES.items()}
+    table = table.assign(quantity=table["quantity"].map(names))
+    by_count = table.pivot(index="N", columns="quantity")
     error, order = by_count[_ERROR].loc[printed], by_count[_ORDER]
     # The error over that of the lattice before, by quantity and N.
     fall = (error / error.shift()).iloc[1:].unstack()
-    beyond = order[order.index > printed[-1]].iloc[0]
+    last, beyond = order.loc[printed[-1]], order[order.index > printed[-1]].iloc[0]
     errors = {f"N = {n}": error["flux"][n] for n in printed}
-    return [
-        measured("L-F7.flux_converges", ratio=fall["flux"], error=errors),
-        measured(
-            "L-F7.rate_converges",
-            ratio=fall[["DD", "FPSE"]],
-            error=error.loc[printed[-1]].drop("flux"),
-        ),
-        measured(
-            "L-F7.second_order",
-            difference=(order.loc[printed[-1]] - 2.0).abs(),
-            beyond=(beyond - 2.0).abs(),
-            order=order.loc[printed[-1]],
-            finer=beyond,
-        ),
-    ]
+    yield measured("L-F7.flux_converges", ratio=fall["flux"], error=errors)
+    of_rates = error.loc[printed[-1]].drop("flux")
+    yield measured("L-F7.rate_converges", ratio=fall[["DD", "FPSE"]], error=of_rates)
+    away = {"difference": (last - 2.0).abs(), "beyond": (beyond - 2.0).abs()}
+    yield measured("L-F7.second_order", **away, order=last, finer=beyond)

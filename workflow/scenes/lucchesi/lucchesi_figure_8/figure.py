@@ -1,26 +1,13 @@
 """The solution along two lines, and its error, truncated and open."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import entry, legend_below, note, panel_title, scheme_style
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import UNDERLAID, Axes, Figure, Look, entry, legend_below, note, scheme_style
 from scenes.plane import DISK
 
-__all__ = ["figure"]
-
-_EXACT: dict[str, Any] = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
-_NOTE = {
-    "xycoords": ("data", "axes fraction"),
-    "ha": "right",
-    "va": "top",
-    "color": "0.4",
-    "fontsize": 7.5,
-}
+_NOTE: Look = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
 _OPEN = {"linestyle": "--", "marker": ""}
 
 
@@ -30,11 +17,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     rows = figure.subplots(2, 2, sharex="col", height_ratios=(1.0, 1.0))
     lowest, highest = 0.25 * series["exact"].min(), 3.0 * series["exact"].max()
     for letter, column, line in zip("ab", rows.T, ("y = 0", "y = x"), strict=True):
-        here = series[series["line"] == line]
+        here = pick(series, line=line)
         edge = here["r"].max()
-        _profiles(column[0], here[here["exterior"] == "truncated"], lowest)
+        _profiles(column[0], pick(here, exterior="truncated"), lowest)
         _errors(column[1], here)
-        panel_title(column[0], letter, f"along ${line}$")
+        style.panel_title(column[0], letter, f"along ${line}$")
         for ax in column:
             ax.axvline(edge, color="0.6", linewidth=0.8)
             ax.axvline(DISK, color="0.6", linewidth=0.8, linestyle=":")
@@ -43,11 +30,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         column[1].set(yscale="log", ylim=(1e-5, 60.0), xlabel="distance $r$ from the origin")
     rows[0, 0].set_ylabel(r"strength $u(r, t_f)$")
     rows[1, 0].set_ylabel(r"relative error $|u\,/\,G - 1|$")
-    edge = series.loc[series["line"] == "y = 0", "r"].max()
+    edge = pick(series, line="y = 0")["r"].max()
     for text, r in (("edge of\nthe square", edge), ("disk of (59)", DISK)):
-        note(rows[0, 0], text, (r, 1.0), (-4, -4), **_NOTE)
+        note(rows[0, 0], text, (r, 1.0), (-4, -4), color="0.4", fontsize=7.5, **_NOTE)
     schemes = list(dict.fromkeys(series["scheme"]))
-    entries = [entry("exact", **_EXACT)]
+    entries = [entry("exact", **UNDERLAID)]
     entries += [entry(f"{name}, truncated", **scheme_style(name)) for name in schemes]
     entries += [entry(f"{name}, open", **scheme_style(name, **_OPEN)) for name in schemes]
     legend_below(figure, entries)
@@ -55,20 +42,17 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 
 
 def _profiles(ax: Axes, here: pd.DataFrame, lowest: float) -> None:
-    exact = here[here["scheme"] == here["scheme"].iloc[0]]
-    ax.plot(exact["r"], exact["exact"], **_EXACT)
+    exact = pick(here, scheme=here["scheme"].iloc[0])
+    ax.plot(exact["r"], exact["exact"], **UNDERLAID)
     for k, (scheme, part) in enumerate(here.groupby("scheme", sort=False)):
         every = max(1, len(part) // 12)
-        style = scheme_style(scheme, markevery=(k * every // 3, every), linewidth=0.9)
-        ax.plot(part["r"], part["u"].where(part["u"] > lowest), **style)
+        look = scheme_style(scheme, markevery=(k * every // 3, every), linewidth=0.9)
+        ax.plot(part["r"], part["u"].where(part["u"] > lowest), **look)
 
 
 def _errors(ax: Axes, here: pd.DataFrame) -> None:
     for (scheme, exterior), part in here.groupby(["scheme", "exterior"], sort=False):
-        opened = {**_OPEN, "linewidth": 0.9}
-        more = (
-            opened
-            if exterior == "open"
-            else {"linewidth": 1.2, "markevery": max(1, len(part) // 9)}
-        )
+        more: Look = {"linewidth": 1.2, "markevery": max(1, len(part) // 9)}
+        if exterior == "open":
+            more = {**_OPEN, "linewidth": 0.9}
         ax.plot(part["r"], part["error"].abs(), **scheme_style(scheme, **more))

@@ -1,8 +1,7 @@
 """Profiles along y = 0 and y = x in two dimensions, Fig. 8, and what the truncation does to them."""
 
-from __future__ import annotations
-
-from typing import Any
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -10,9 +9,8 @@ import pandas as pd
 from fracparticles.special.stable import green
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import pick
 from scenes.plane import DISK
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["DD", "FPSE"], "exterior": ["truncated", "open"]}
 
@@ -29,8 +27,8 @@ def study(inputs: Inputs) -> Result:
     """Errors along the two lines near and far from the origin, truncated and open."""
     parts, rows = [], []
     for run in inputs.scalars.to_dict("records"):
-        key = {"scheme": run["scheme"], "exterior": run["exterior"]}
-        stored = inputs.open(**key)
+        where = {"scheme": run["scheme"], "exterior": run["exterior"]}
+        stored = inputs.open(**where)
         x, n = stored["x"].values, stored["x"].size // 2
         for line, (name, stretch) in _LINES.items():
             if "u" in stored:  # a run that another scene shares may hold the whole field
@@ -40,14 +38,13 @@ def study(inputs: Inputs) -> Result:
                 u = stored[name].values
             r = x[n:] * stretch
             exact = np.asarray(green(r, run["t_final"], 1.0 + run["beta"], 2))
-            part = pd.DataFrame({**key, "line": line, "r": r, "u": u[n:], "exact": exact})
+            part = pd.DataFrame({**where, "line": line, "r": r, "u": u[n:], "exact": exact})
             part["error"] = part["u"] / part["exact"] - 1.0
             parts.append(part)
-            rows.append({**key, "line": line, **_row(part, x[-1] * (1.0 + 1e-12))})
+            rows.append({**where, "line": line, **_row(part, x[-1] * (1.0 + 1e-12))})
     series = pd.concat(parts, ignore_index=True)
-    table = pd.DataFrame(rows).sort_values(
-        ["exterior", "scheme", "line"], ascending=[False, True, True], ignore_index=True
-    )
+    key, down = ["exterior", "scheme", "line"], [False, True, True]
+    table = pd.DataFrame(rows).sort_values(key, ascending=down, ignore_index=True)
     findings = _findings(series, table, list(inputs.scalars["run"]))
     return Result(table, inputs.judged(findings), series)
 
@@ -66,72 +63,55 @@ def _row(part: pd.DataFrame, half: float) -> dict[str, float]:
     }
 
 
-def _findings(series: pd.DataFrame, table: pd.DataFrame, files: list[str]) -> list[Finding]:
+def _findings(series: pd.DataFrame, table: pd.DataFrame, files: list[str]) -> Iterator[Finding]:
     """What the paper says of DD and FPSE, truncated: near the origin, in the two directions, at the boundary."""
     paper = NEEDS["scheme"]
     rows = table[table["scheme"].isin(paper)].set_index(["exterior", "scheme", "line"])
     here, opened = rows.loc["truncated"], rows.loc["open"]
-    truncated = series[(series["exterior"] == "truncated") & series["scheme"].isin(paper)]
+    truncated = pick(series, exterior="truncated")
+    truncated = truncated[truncated["scheme"].isin(paper)]
     curves: _Curves = dict(iter(truncated.groupby(["scheme", "line"])))
+
+    def by_curve(quantity: Callable[[pd.DataFrame], float]) -> pd.Series:
+        return pd.Series({key: quantity(part) for key, part in curves.items()})
+
     slope = pd.Series({scheme: _slope(curves[scheme, "y = 0"], "u") for scheme in paper})
     exact_slope = _slope(curves["DD", "y = 0"], "exact")
-    decades = pd.Series(
-        {
-            key: float(np.log10(part["exact"].max() / part["exact"].min()))
-            for key, part in curves.items()
-        }
-    )
+    decades = by_curve(lambda part: np.log10(part["exact"].max() / part["exact"].min()))
     directions = {scheme: _directions(curves, scheme) for scheme in paper}
-    open_mean = opened[_MEAN].xs("y = 0", level="line") / opened[_MEAN].xs("y = x", level="line")
-    median = here[_MEDIAN]
-    ratio = pd.concat({key: 1.0 + part["error"] for key, part in curves.items()}).groupby(
-        level=[0, 1]
+    means = (opened[_MEAN].xs(line, level="line") for line in ("y = 0", "y = x"))
+    median, below, ratio = here[_MEDIAN], here[_BELOW], 1.0 + truncated["error"]
+    ratio = ratio.groupby([truncated["scheme"], truncated["line"]])
+    logarithms = np.log10(1.0 + median).abs() / decades
+    found = partial(measured, runs=files)
+    far = by_curve(_plotted) / decades
+    yield found("L-F8.follow", near=here[_NEAR], far=far, reach=here[_REACH])
+    yield found(
+        "L-F8.radial",
+        anisotropy={scheme: _anisotropy(curves, scheme) for scheme in paper},
+        decay=(slope / exact_slope - 1.0).abs(),
+        slope=slope,
+        exact=exact_slope,
     )
-
-    def found(claim: str, **numbers: Any) -> Finding:
-        return measured(claim, runs=files, **numbers)
-
-    return [
-        found(
-            "L-F8.follow",
-            near=here[_NEAR],
-            far=pd.Series({key: _plotted(part) for key, part in curves.items()}) / decades,
-            reach=here[_REACH],
-        ),
-        found(
-            "L-F8.radial",
-            anisotropy={scheme: _anisotropy(curves, scheme) for scheme in paper},
-            decay=(slope / exact_slope - 1.0).abs(),
-            slope=slope,
-            exact=exact_slope,
-        ),
-        found(
-            "L-C19.diagonal",
-            ratio={scheme: ratio for scheme, (ratio, _) in directions.items()},
-            always={scheme: r for scheme, (_, r) in directions.items()},
-            half=curves["DD", "y = 0"]["r"].max(),
-        ),
-        found("L-C19.extent", difference=(open_mean - 1.0).abs()),
-        found("L-C19.dd_below", median=median[["DD"]], share=100.0 * here[_BELOW][["DD"]]),
-        found(
-            "L-C19.fpse_above",
-            median=median[["FPSE"]],
-            share=100.0 * (1.0 - here[_BELOW][["FPSE"]]),
-            layer=max(_particles_from_the_edge(curves["FPSE", line]) for line in _LINES),
-        ),
-        found(
-            "L-C19.slightly",
-            deviation=median.abs(),
-            least=ratio.min(),
-            greatest=ratio.max(),
-            others={
-                "the decades that are plotted for the value": {
-                    "deviation": np.log10(1.0 + median).abs() / decades
-                }
-            },
-        ),
-        found("L-C19.truncation", gain=(median / opened[_MEDIAN]).abs()),
-    ]
+    yield found(
+        "L-C19.diagonal",
+        ratio={scheme: ratio for scheme, (ratio, _) in directions.items()},
+        always={scheme: r for scheme, (_, r) in directions.items()},
+        half=curves["DD", "y = 0"]["r"].max(),
+    )
+    yield found("L-C19.extent", difference=(next(means) / next(means) - 1.0).abs())
+    yield found("L-C19.dd_below", median=median[["DD"]], share=100.0 * below[["DD"]])
+    layer = max(_particles_from_the_edge(curves["FPSE", line]) for line in _LINES)
+    share = 100.0 * (1.0 - below[["FPSE"]])
+    yield found("L-C19.fpse_above", median=median[["FPSE"]], share=share, layer=layer)
+    yield found(
+        "L-C19.slightly",
+        deviation=median.abs(),
+        least=ratio.min(),
+        greatest=ratio.max(),
+        others={"the decades that are plotted for the value": {"deviation": logarithms}},
+    )
+    yield found("L-C19.truncation", gain=(median / opened[_MEDIAN]).abs())
 
 
 def _plotted(part: pd.DataFrame) -> float:

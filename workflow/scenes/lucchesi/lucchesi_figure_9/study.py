@@ -1,7 +1,6 @@
 """Error (59) in two dimensions against the particle spacing, Fig. 9, and what the truncation adds to it."""
 
-from __future__ import annotations
-
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,8 @@ from fracparticles.special.stable import central_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
+from fracstudy.panels import pick
 from scenes.plane import DISK, particles_per_side, stored_field
-
-__all__ = ["study"]
 
 _PAPER = ["DD", "FPSE"]
 NEEDS: dict[str, list[Any]] = {"scheme": _PAPER, "dim": [1, 2], "exterior": ["truncated", "open"]}
@@ -86,9 +84,8 @@ def _shift(runs: pd.DataFrame) -> pd.DataFrame:
             (_, r, truncated), (_, _, opened) = (field for field in fields if field)
             run = pair.iloc[0]
             inside = r <= DISK * (1.0 + 1e-12)
-            change = (
-                run["particle_spacing"] ** run["dim"] * np.abs(truncated - opened)[inside].sum()
-            )
+            volume = run["particle_spacing"] ** run["dim"]
+            change = volume * np.abs(truncated - opened)[inside].sum()
             mass = central_mass(DISK, run["t_final"], 1.0 + run["beta"], run["dim"])
             shift.loc[key] = change / mass
     return shift
@@ -97,7 +94,7 @@ def _shift(runs: pd.DataFrame) -> pd.DataFrame:
 def _findings(
     errors: pd.DataFrame, shift: pd.DataFrame, printed: list[int], files: list[str]
 ) -> list[Finding]:
-    second = errors[(errors["exterior"] == "truncated") & (errors["order"] == "II")]
+    second = pick(errors, exterior="truncated", order="II")
     usual = second["C"] == errors["C"].min()
     paper = second[usual & second["scheme"].isin(_PAPER) & second["N"].isin(printed)]
     if not set(printed) <= set(paper["N"]):
@@ -109,39 +106,24 @@ def _findings(
     wide = second[second["h"].round(9).isin(second.loc[~usual, "h"].round(9))]
     by_width = wide.pivot(index="C", columns="scheme", values=_ERROR)
     change = by_width.max() / by_width.min() - 1.0
-    tails = [_tail_exponents(dim) for dim in NEEDS["dim"]]
-
-    def found(claim: str, **numbers: Any) -> Finding:
-        return measured(claim, runs=files, **numbers)
-
+    weaker = shift[1] / shift[2]
+    line, plane = (_tail_exponents(dim) for dim in NEEDS["dim"])
+    found = partial(measured, runs=files)
+    fall = (error / error.shift())[1:].unstack()
+    of_field = {"the field (7) for the strengths": {"difference": (field - 2.0).abs()}}
+    off = (order - 2.0).abs()
     return [
-        found(
-            "L-F9.decreases",
-            ratio=(error / error.shift())[1:].unstack(),
-            largest=error.iloc[0],
-            least=error.iloc[-1],
-        ),
-        found(
-            "L-F9.second_order",
-            difference=(order - 2.0).abs(),
-            order=order,
-            field=field,
-            others={"the field (7) for the strengths": {"difference": (field - 2.0).abs()}},
-        ),
+        found("L-F9.decreases", ratio=fall, largest=error.iloc[0], least=error.iloc[-1]),
+        found("L-F9.second_order", difference=off, order=order, field=field, others=of_field),
         found("L-F9.fpse_larger", ratio=error["FPSE"] / error["DD"]),
         found("L-F9.truncation", change=change[_PAPER], other=change.drop(_PAPER)),
-        found(
-            "L-F9.weaker",
-            ratio=(shift[1] / shift[2])[_PAPER],
-            other=(shift[1] / shift[2]).drop(_PAPER),
-        ),
-        found("L-F9.decay", change=tails[1] - tails[0]),
+        found("L-F9.weaker", ratio=weaker[_PAPER], other=weaker.drop(_PAPER)),
+        found("L-F9.decay", change=plane - line),
     ]
 
 
 def _tail_exponents(dim: int) -> pd.Series:
     """d log K / d log r far out, of the kernels of DD and of FPSE's flux."""
     r = np.array([1e5, 1e6])
-    return pd.Series(
-        {name: np.log10(np.abs(kernel(name, r, 1.5, dim))) @ [-1.0, 1.0] for name in ("G", "F")}
-    )
+    tails = {name: np.log10(np.abs(kernel(name, r, 1.5, dim))) for name in ("G", "F")}
+    return pd.Series({name: tail @ [-1.0, 1.0] for name, tail in tails.items()})

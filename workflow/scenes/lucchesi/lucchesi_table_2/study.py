@@ -1,7 +1,5 @@
 """Order of self-convergence in space, Eq. (49), Table 2."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from typing import Any
 
@@ -13,9 +11,8 @@ from fracparticles.run.orders import observed_order, self_convergence_order
 from fracparticles.run.strengths import lattice_strengths
 from fracparticles.special.stable import green, mean_radius
 from fracstudy.findings import Finding, measured
-from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result
-
-__all__ = ["self_convergence_order", "study"]
+from fracstudy.inputs import NUMERALS, Inputs, Result
+from fracstudy.orders import orders_of
 
 # The print does not say which of the three levels its h is, nor over which particles (49) sums.
 _READINGS = {"middle": 1, "coarse": 0, "fine": 2}
@@ -33,14 +30,16 @@ def study(inputs: Inputs, *, judged_remeshing: str, printed_spacing: dict[float,
     runs = inputs.scalars.assign(remeshing=inputs.scalars.get("remeshing"))  # of DVM only
     # DVM comes last, and of its rows the judged ones first.
     runs = runs.assign(moving=runs["scheme"] == "DVM", other=runs["remeshing"] != judged_remeshing)
-    key = ["moving", "beta", "scheme", "order", "other", "remeshing"]
+    runs["claim"] = [
+        f"L-T2.{run.scheme}.{NUMERALS[run.order]}.beta{run.beta:g}" for run in runs.itertuples()
+    ]
+    key = ["moving", "beta", "scheme", "order", "other", "remeshing", "claim"]
     rows: list[dict[str, Any]] = []
     rates: dict[tuple[str, str], dict[float, float]] = defaultdict(dict)
     readings: dict[str, dict[str, float]] = defaultdict(dict)
-    for (moving, beta, scheme, order, _, remeshing), part in runs.groupby(key, dropna=False):
+    for (moving, beta, scheme, order, _, remeshing, claim), part in runs.groupby(key, dropna=False):
         levels = _strengths(part, remeshed=moving)
         target, half = printed_spacing.get(beta, np.nan), 5.0 * mean_radius(1.0 + beta)
-        claim = f"L-T2.{scheme}.{NUMERALS[order]}.beta{beta:g}"
         ours = _readings(levels, target, half)
         printed = float(inputs.printed.get(claim, np.nan))
         row = {
@@ -69,22 +68,18 @@ def study(inputs: Inputs, *, judged_remeshing: str, printed_spacing: dict[float,
     table = table.drop(columns="claim")
     if not inputs.items:
         return Result(table)
-    findings = []
-    for (_, beta, scheme, order), part in runs.groupby(key[:4]):
-        claim = f"L-T2.{scheme}.{NUMERALS[order]}.beta{beta:g}"
-        findings.append(_finding(claim, judged.loc[claim], readings[claim], part["run"]))
+    files = {claim: part["run"] for claim, part in runs.groupby("claim", sort=False)}
+    findings = [_finding(c, row, readings[c], files[c]) for c, row in judged.iterrows()]
     findings.append(_expected(judged, runs["run"]))
     if rates:
-        files = runs.loc[runs["moving"], "run"]
-        findings.append(_dvm_rate(rates, judged_remeshing, files))
+        findings.append(_dvm_rate(rates, judged_remeshing, runs.loc[runs["moving"], "run"]))
     return Result(table, findings)
 
 
 def _finding(claim: str, row: pd.Series, readings: dict[str, float], files: pd.Series) -> Finding:
     """Our order for a printed one, and which reading comes nearest."""
-    away, nearest = min(
-        (abs(p - row["printed"]), name) for name, p in readings.items() if not np.isnan(p)
-    )
+    known = {name: p for name, p in readings.items() if not np.isnan(p)}
+    away, nearest = min((abs(p - row["printed"]), name) for name, p in known.items())
     return measured(claim, runs=files, ours=row["ours"], nearest=nearest, away=away)
 
 
@@ -92,13 +87,13 @@ def _expected(judged: pd.DataFrame, files: pd.Series) -> Finding:
     """How far our orders are from those of the kernels, and the printed ones."""
     orders = judged.assign(scheme=judged["scheme"].str.partition(",")[0])
     orders = orders.set_index(["scheme", "order", "beta"])
-    power = orders.index.get_level_values("order").map({name: p for p, name in ORDERS.items()})
-    away, *rest = (
-        (orders[name] - power).abs().dropna() for name in ("ours", "printed", "all particles")
-    )
-    readings = ("the printed orders", "sums over all particles")
-    others = {reading: {"away": of} for reading, of in zip(readings, rest, strict=True)}
-    return measured("L-T2.expected", runs=files, others=others, away=away)
+
+    def away(column: str) -> dict[str, pd.Series]:
+        return {"away": (orders[column] - orders_of(orders.index)).abs().dropna()}
+
+    others = {"the printed orders": away("printed")}
+    others["sums over all particles"] = away("all particles")
+    return measured("L-T2.expected", runs=files, others=others, **away("ours"))
 
 
 def _dvm_rate(

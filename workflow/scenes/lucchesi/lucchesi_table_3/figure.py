@@ -1,20 +1,15 @@
 """The stability limit against beta and the symbols behind it (Table 3)."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, entry, legend_below, note
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import COLOURS, MARKERS, Figure, Look, axes_row, draw, entry, legend_below
 
-__all__ = ["figure"]
-
-_LINES: dict[str, Any] = {"II": "-", "IV": "--"}
+_LINES: Look = {"II": "-", "IV": "--"}
 _ABOVE = {"FPSE": 0.45, "DD": 0.2, "KPSE": 0.2}  # where the name of a scheme stands over its curve
-_PRINTED: dict[str, Any] = {"linestyle": "", "markerfacecolor": "white"}
+_PRINTED: Look = {"linestyle": "", "markerfacecolor": "white"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> Figure:
@@ -23,51 +18,38 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> F
     panels = dict(list(series.groupby("panel")))
     curves, symbols = panels["limit"], panels["symbol"]
     for (scheme, order), curve in curves.groupby(["scheme", "order"]):
-        left.plot(curve["x"], curve["y"], _LINES[order], color=COLOURS[scheme])
+        draw(left, curve, _LINES[order], color=COLOURS[scheme])
     for scheme, points in panels.get("printed", series[:0]).groupby("scheme"):
-        style: dict[str, Any] = {
-            "marker": MARKERS[scheme],
-            "color": COLOURS[scheme],
-            "markersize": 6,
-            **_PRINTED,
-        }
-        left.plot(points["x"], points["y"], **style)
+        draw(left, points, **style.scheme_style(scheme, markersize=6, **_PRINTED))
     for scheme, above in _ABOVE.items():
-        curve = curves[(curves["scheme"] == scheme) & (curves["order"] == "II")]
+        curve = pick(curves, scheme=scheme, order="II")
         y = float(np.interp(0.3, curve["x"], curve["y"]))
         left.text(0.3, y + above, scheme, color=COLOURS[scheme], ha="center", va="bottom")
-    left.set(
-        xlim=(0.0, 1.0),
-        ylim=(0.0, None),
-        xlabel=r"fractional order of the flux $\beta = \alpha - 1$",
-        ylabel=r"stability limit $a = \mathcal{D}\,\Delta t / h^\alpha$",
-    )
+    left.set(xlim=(0.0, 1.0), ylim=(0.0, None))
+    left.set_xlabel(r"fractional order of the flux $\beta = \alpha - 1$")
+    left.set_ylabel(r"stability limit $a = \mathcal{D}\,\Delta t / h^\alpha$")
 
-    exact = symbols[symbols["scheme"] == "exact"]
+    exact = pick(symbols, scheme="exact")
     symbols = symbols[symbols["scheme"] != "exact"]
     top = 1.25 * symbols["y"].max()
-    right.plot(exact["x"], exact["y"], color=COLOURS["exact"], linewidth=1.0)
+    draw(right, exact, color=COLOURS["exact"], linewidth=1.0)
     for (scheme, order), curve in symbols.groupby(["scheme", "order"]):
-        right.plot(curve["x"], curve["y"], _LINES[order], color=COLOURS[scheme])
-        highest, style = curve.loc[curve["y"].idxmax()], {"color": COLOURS[scheme]}
-        right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, **style)
+        draw(right, curve, _LINES[order], color=COLOURS[scheme])
+        highest, colour = curve.loc[curve["y"].idxmax()], COLOURS[scheme]
+        right.plot(highest["x"], highest["y"], MARKERS[scheme], clip_on=False, color=colour)
     edge = exact[exact["y"] <= top].iloc[-1]
     place = (edge["x"], edge["y"])
-    note(right, r"exact, $\theta^\alpha$", place, (5, -4), va="top", color=None, fontsize=None)
-    right.set(
-        xlim=(0.0, np.pi),
-        ylim=(0.0, top),
-        xlabel=r"wavenumber $\theta = k h$",
-        ylabel=r"symbol $-A(\theta)\, h^\alpha / \mathcal{D}$",
+    style.note(
+        right, r"exact, $\theta^\alpha$", place, (5, -4), va="top", color=None, fontsize=None
     )
+    right.set(xlim=(0.0, np.pi), ylim=(0.0, top), xlabel=r"wavenumber $\theta = k h$")
+    right.set_ylabel(r"symbol $-A(\theta)\, h^\alpha / \mathcal{D}$")
     right.set_xticks(np.pi * np.linspace(0.0, 1.0, 5), ["0", "π/4", "π/2", "3π/4", "π"])
     middle = sorted(beta)[len(beta) // 2]
     right.set_title(rf"(b)  $\beta = {middle:g}$; markers: the maximum, $2 / a$", loc="left")
 
     handles = [entry(s, color=COLOURS[s]) for s in sorted(_ABOVE)]
-    handles += [
-        entry(f"order {order}", color="0.3", linestyle=line) for order, line in _LINES.items()
-    ]
+    handles += [entry(f"order {p}", color="0.3", linestyle=line) for p, line in _LINES.items()]
     handles.append(entry("printed, Table 3", color="0.3", marker="o", **_PRINTED))
     legend_below(figure, handles)
     return figure

@@ -1,8 +1,7 @@
 """Table 3: the stability limit, the spectrum behind it, and whether (54) is the criterion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,13 +15,12 @@ from fracparticles.schemes.spectrum import dense_matrix, power_iteration
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.criteria import judge_value
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import Panels
 
 _SCHEMES = ("DD", "FPSE", "KPSE")
-_STEPS = ("euler", "rk2")
+_STEPS = {"euler": "RK1", "rk2": "RK2"}
 _OVERLAP = 2.0
 _ROUND_OFF = 1e-12  # relative to |lambda_min|: N roundings of the matrix's entries
 _BELOW, _ABOVE = 0.99, 1.01  # steps on either side of the limit (54)
@@ -92,24 +90,18 @@ def study(
         for b, h in zip(beta, spacing, strict=True)
         for scheme in _SCHEMES
     }
-    rows = [
-        _row(*key, of_key[-1], iterated.get(key[:2]), inputs.printed)
-        for key, of_key in spectra.items()
-    ]
-    limits = {(s, b): stability_limit(s, b) for s in _SCHEMES for b in beta}
+    rows = [_row(*of, s[-1], iterated.get(of[:2]), inputs.printed) for of, s in spectra.items()]
+    limits = each(stability_limit, scheme=_SCHEMES, beta=beta)
     growths = {
         (s, b): _growths(_matrix(s, 1.0 + b, 2, size), spectra[s, b, 2][-2].lowest)
-        for s in _SCHEMES
-        for b in beta
+        for s, b in limits.index
     }
     findings = [
         *(
-            measured(
-                f"L-T3.{s}.beta{b:g}", ours=a, power=iterated[s, b][0], iterations=iterated[s, b][1]
-            )
+            measured(f"L-T3.{s}.beta{b:g}", ours=a, **iterated[s, b]._asdict())
             for (s, b), a in limits.items()
         ),
-        *_limits(limits, beta, spacing[0]),
+        *_limits(limits, spacing[0]),
         *_matrices(spectra, beta),
         *_criterion(growths, size),
         *_trends(beta),
@@ -117,15 +109,17 @@ def study(
     return Result(pd.DataFrame(rows), findings, _series(beta, inputs.printed))
 
 
-def _iterate(
-    scheme: str, beta: float, h: float, truncation: float, tolerance: float
-) -> tuple[float, int]:
-    """a by power iteration, and the number of iterations."""
+class _Iterated(NamedTuple):
+    power: float  # a by power iteration
+    iterations: int
+
+
+def _iterate(scheme: str, beta: float, h: float, truncation: float, tolerance: float) -> _Iterated:
     given = {"scheme": scheme, "beta": beta, "truncation": truncation, "spacing": h}
     setting = Case(**given, integrator="exponential").setting
     operator = SCHEMES[scheme].operator(setting)
     eigenvalue, iterations = power_iteration(operator, tolerance=tolerance)
-    return -2.0 * setting.rate / eigenvalue, iterations
+    return _Iterated(-2.0 * setting.rate / eigenvalue, iterations)
 
 
 def _row(
@@ -133,7 +127,7 @@ def _row(
     beta: float,
     order: int,
     dense: Spectrum,
-    iterated: tuple[float, int] | None,
+    iterated: _Iterated | None,
     printed: Mapping[str, str],
 ) -> dict[str, object]:
     limit = stability_limit(scheme, beta, order)
@@ -149,7 +143,7 @@ def _row(
         "printed": theirs,
         "symbol": limit,
         "closed form": SCHEMES[scheme].closed_form_limit(beta, _OVERLAP) if paper else np.nan,
-        "power iteration": paper[0] if paper else np.nan,
+        "power iteration": paper.power if paper else np.nan,
         f"eigenvalues, N = {dense.particles}": -2.0 / dense.lowest,
         "deviation": limit / theirs - 1.0,
         "status": f"{status.sign} {status}" if status else "",
@@ -159,69 +153,54 @@ def _row(
     }
 
 
-def _limits(
-    limits: Mapping[tuple[str, float], float], betas: Sequence[float], h: float
-) -> list[Finding]:
+def _limits(limits: pd.Series, h: float) -> Iterator[Finding]:
     """What Secs. 4.4 and 6 say of the limits, by scheme and by beta; of the steps themselves at one h."""
-    beta = pd.Index(betas, name="beta")
-    dd, fpse, kpse = (pd.Series([limits[s, b] for b in betas], beta) for s in _SCHEMES)
-    ratios = {"KPSE": (fpse / kpse).min(), "DD": (fpse / dd).min()}
-    of_scheme = dict(zip(_SCHEMES, (dd, fpse, kpse), strict=True))
-    spread = {s: np.ptp(a) / a.min() for s, a in of_scheme.items()}
-    steps = {s: a * h ** (1.0 + beta.to_numpy()) for s, a in of_scheme.items()}
-    of_steps = {s: np.ptp(dt) / dt.min() for s, dt in steps.items()}
-    return [
-        measured("L-T3.ordering", dd_over_kpse=dd / kpse, fpse_over_dd=fpse / dd),
-        measured("L-T3.several_times", ratio=ratios),
-        measured("L-T3.weak_in_beta", spread=spread),
-        measured("L-T3.comparable", ratio=fpse / kpse),
-        measured("L-T3.conclusion_comparable", ratio=fpse / kpse),
-        measured(
-            "L-T3.conclusion_weak",
-            others={f"the step itself at h = {h:.3g}": {"spread": of_steps}},
-            spread=spread,
-            steps=of_steps,
-        ),
-    ]
+    dd, fpse, kpse = (limits[s] for s in _SCHEMES)
+
+    def spread(a: pd.Series) -> dict[str, float]:
+        return {s: np.ptp(a[s]) / a[s].min() for s in _SCHEMES}
+
+    over_kpse = fpse / kpse
+    ratios = {"KPSE": over_kpse.min(), "DD": (fpse / dd).min()}
+    steps = spread(limits * h ** (1.0 + limits.index.get_level_values("beta")))
+    yield measured("L-T3.ordering", dd_over_kpse=dd / kpse, fpse_over_dd=fpse / dd)
+    yield measured("L-T3.several_times", ratio=ratios)
+    yield measured("L-T3.weak_in_beta", spread=spread(limits))
+    yield measured("L-T3.comparable", ratio=over_kpse)
+    yield measured("L-T3.conclusion_comparable", ratio=over_kpse)
+    others = {f"the step itself at h = {h:.3g}": {"spread": steps}}
+    yield measured("L-T3.conclusion_weak", others=others, spread=spread(limits), steps=steps)
 
 
 def _matrices(
     spectra: Mapping[tuple[str, float, int], Sequence[Spectrum]], betas: Sequence[float]
-) -> list[Finding]:
+) -> Iterator[Finding]:
     """What Sec. 4.4 says of A, order II, the worst over beta."""
 
     def worst(scheme: str, quantity: Callable[[Spectrum], float], k: int = -1) -> float:
         return max(quantity(spectra[scheme, b, 2][k]) for b in betas)
 
     sizes = [s.particles for s in spectra["DD", betas[0], 2]]
-    found = [
-        measured(
+    for scheme in _SCHEMES:
+        by_size = [worst(scheme, lambda s: s.asymmetry, k) for k in range(len(sizes))]
+        yield measured(
             f"L-C12.symmetric.{scheme}",
-            asymmetry=worst(scheme, lambda s: s.asymmetry),
-            by_size={
-                f"N = {n}": worst(scheme, lambda s: s.asymmetry, k) for k, n in enumerate(sizes)
-            },
+            asymmetry=by_size[-1],
+            by_size={f"N = {n}": m for n, m in zip(sizes, by_size, strict=True)},
             departure=worst(scheme, lambda s: s.departure),
         )
-        for scheme in _SCHEMES
-    ]
-    imaginary = worst("FPSE", lambda s: s.imaginary / abs(s.lowest))
-    highest = {s: worst(s, lambda s: s.highest / abs(s.lowest)) for s in _SCHEMES}
+    largest = {key: of[-1].highest / abs(of[-1].lowest) for key, of in spectra.items()}
     every = {
-        f"{s} {ORDERS[order]}": max(
-            of_key[-1].highest / abs(of_key[-1].lowest) for of_key in of_beta
-        )
-        for s in _SCHEMES
-        for order in ORDERS
-        if (of_beta := [spectra[s, b, order] for b in betas if (s, b, order) in spectra])
+        f"{s} {name}": max(m for (t, _, p), m in largest.items() if (t, p) == (s, order))
+        for s, (order, name) in product(_SCHEMES, ORDERS.items())
     }
-    return [
-        *found,
-        measured("L-C12.nonpositive", highest=every, particles=sizes[-1]),
-        *(measured(f"L-C12.max_zero.{s}", highest=abs(highest[s])) for s in ("FPSE", "KPSE")),
-        measured("L-C12.real.FPSE", imaginary=imaginary, particles=sizes[-1]),
-        measured("L-C12.max_negative.DD", highest=highest["DD"], particles=sizes[-1]),
-    ]
+    highest = {s: every[f"{s} II"] for s in _SCHEMES}
+    imaginary = worst("FPSE", lambda s: s.imaginary / abs(s.lowest))
+    yield measured("L-C12.nonpositive", highest=every, particles=sizes[-1])
+    for scheme in ("FPSE", "KPSE"):
+        yield measured(f"L-C12.max_zero.{scheme}", highest=abs(highest[scheme]))
+    yield measured("L-C12.real.FPSE", imaginary=imaginary, particles=sizes[-1])
+    yield measured("L-C12.max_negative.DD", highest=highest["DD"], particles=sizes[-1])
 
 
 def _criterion(
@@ -237,20 +216,18 @@ def _criterion(
             "above": min(g.above for g in parts),
         }
 
+    above = {}
     for scheme in _SCHEMES:
         parts = [g for (s, _), one in growths.items() if s == scheme for g in one.values()]
         yield measured(f"L-C12.criterion.{scheme}", particles=size, **numbers(parts))
-    above = {
-        s: min(g.above for b in growths if b[0] == s for g in growths[b].values()) for s in _SCHEMES
-    }
+        above[scheme] = min(g.above for g in parts)
     yield measured("L-C12.constraint", above=above, particles=size)
-    by_integrator = {i: numbers([one[i] for one in growths.values()]) for i in _STEPS}
-    names = dict(zip(_STEPS, ("RK1", "RK2"), strict=True))
+    by_name = {name: [one[i] for one in growths.values()] for i, name in _STEPS.items()}
     yield measured(
         "L-T3.rk1_rk2",
         particles=size,
-        growth={names[i]: by_integrator[i]["growth"] for i in _STEPS},
-        above={names[i]: by_integrator[i]["above"] for i in _STEPS},
+        growth={name: numbers(parts)["growth"] for name, parts in by_name.items()},
+        above={name: numbers(parts)["above"] for name, parts in by_name.items()},
     )
 
 
@@ -259,30 +236,25 @@ def _trends(betas: Sequence[float]) -> Iterator[Finding]:
     fine = [beta for beta in _BETAS if betas[0] <= beta <= betas[-1]]
     for scheme, claim, sign in (("DD", "rises", 1), ("FPSE", "rises", 1), ("KPSE", "falls", -1)):
         a = np.array([stability_limit(scheme, beta) for beta in fine])
-        yield measured(
-            f"L-C13.{scheme}_{claim}",
-            step=(sign * np.diff(a)).min(),
-            first=a[0],
-            last=a[-1],
-            count=len(fine),
-        )
+        ends = {"first": a[0], "last": a[-1]}
+        least = (sign * np.diff(a)).min()
+        yield measured(f"L-C13.{scheme}_{claim}", step=least, **ends, count=len(fine))
 
 
 def _series(betas: list[float], printed: Mapping[str, str]) -> pd.DataFrame:
     """Panel "limit": a against beta; panel "symbol": -A(theta) h^alpha / D at the middle beta."""
-    middle = betas[len(betas) // 2]
+    middle, panels = betas[len(betas) // 2], Panels()
     theta = np.linspace(0.0, np.pi, 181)
-    curves: list[tuple] = []
     for scheme in _SCHEMES:
         for order, name in ORDERS.items():
             setting = Setting(alpha=1.0 + middle, order=order, overlap=_OVERLAP)
             limit = [stability_limit(scheme, beta, order) for beta in _BETAS]
-            curves.append(("limit", scheme, name, _BETAS, limit))
-            curves.append(("symbol", scheme, name, theta, -SCHEMES[scheme].symbol(theta, setting)))
+            panels.add("limit", scheme=scheme, order=name, x=_BETAS, y=limit)
+            symbol = -SCHEMES[scheme].symbol(theta, setting)
+            panels.add("symbol", scheme=scheme, order=name, x=theta, y=symbol)
         texts = {b: printed.get(f"L-T3.{scheme}.beta{b:g}") for b in betas}
-        known = {b: float(text) for b, text in texts.items() if text}
-        curves.append(("printed", scheme, "II", list(known), list(known.values())))
-    curves.append(("symbol", "exact", "", theta, theta ** (1.0 + middle)))
-    names = ("panel", "scheme", "order", "x", "y")
-    frames = [pd.DataFrame(dict(zip(names, curve, strict=True))) for curve in curves]
-    return pd.concat([frame for frame in frames if len(frame)], ignore_index=True)
+        for b, text in texts.items():
+            if text:
+                panels.add("printed", scheme=scheme, order="II", x=b, y=float(text))
+    panels.add("symbol", scheme="exact", order="", x=theta, y=theta ** (1.0 + middle))
+    return panels.frame

@@ -1,8 +1,6 @@
 """Table A.4: the mean radius R_alpha in closed form, and by the paper's sums (A.5), (A.7), (A.8)."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable
+from functools import partial
 from math import log, pi
 from typing import NamedTuple
 
@@ -12,10 +10,8 @@ from scipy.optimize import brentq
 from scipy.special import gammaln, roots_legendre
 
 from fracparticles.special import mean_radius, reduced_green
-from fracstudy.findings import measured
+from fracstudy.findings import each, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["SplitRadius", "inner_moment", "outer_moment", "split_radius", "study"]
 
 _ROUNDING = 2.0**-53
 _TERM_ROUNDING = 100.0 * _ROUNDING  # of a term whose logarithm is a sum of some hundreds
@@ -88,35 +84,27 @@ def split_radius(alpha: float) -> SplitRadius:
 
 def study(inputs: Inputs, *, alpha: list[float]) -> Result:
     """Give R_alpha in closed form and by the sums, and measure which moments of L_alpha^0 are finite."""
-    claims = [f"L-TA4.alpha{a:g}" for a in alpha]
-    rows = [_row(a, inputs.printed.get(claim)) for a, claim in zip(alpha, claims, strict=True)]
-    table = pd.DataFrame(rows)
-    index = pd.Index(alpha, name="alpha")
+    claims = {f"L-TA4.alpha{a:g}": a for a in alpha}
+    table = pd.DataFrame([_row(a, inputs.printed.get(claim)) for claim, a in claims.items()])
+    by_alpha = table.set_index("alpha")
+    splits = by_alpha["split M"]
+    halves = {a: _quadrature(m, a) for a, m in splits.items()}
 
-    def by_alpha(values: Iterable[float]) -> pd.Series:
-        return pd.Series(list(values), index)
+    def inner_off(a: float) -> float:
+        return abs(inner_moment(splits[a], a)[0] - halves[a])
 
-    inside = [(a, m, _quadrature(m, a)) for a, m in zip(alpha, table["split M"], strict=True)]
-    shares = {power: by_alpha(_tail_share(a, power) for a in alpha) for power in (1, 2)}
+    def outer_off(a: float) -> float:
+        return abs(outer_moment(splits[a], a)[0] - 0.5 * mean_radius(a) + halves[a])
+
+    first, second = (each(partial(_tail_share, power=p), alpha=alpha) for p in (1, 2))
+    inner, outer = each(inner_off, alpha=alpha), each(outer_off, alpha=alpha)
+    ours = zip(claims, table["closed form"], strict=True)
     findings = [
-        *(
-            measured(claim, ours=ours)
-            for claim, ours in zip(claims, table["closed form"], strict=True)
-        ),
-        measured(
-            "L-TA4.series",
-            difference=by_alpha(table["sums off by less than"]),
-            split=by_alpha(table["split M"]),
-        ),
-        measured(
-            "L-TA4.moments",
-            inner=by_alpha(abs(inner_moment(m, a)[0] - h) for a, m, h in inside),
-            outer=by_alpha(
-                abs(outer_moment(m, a)[0] - 0.5 * mean_radius(a) + h) for a, m, h in inside
-            ),
-        ),
-        measured("L-TA4.second_moment", second=shares[2], first=shares[1]),
-        measured("L-TA4.unit_mass", difference=by_alpha(_mass_error(a) for a in alpha)),
+        *(measured(claim, ours=value) for claim, value in ours),
+        measured("L-TA4.series", difference=by_alpha["sums off by less than"], split=splits),
+        measured("L-TA4.moments", inner=inner, outer=outer),
+        measured("L-TA4.second_moment", second=second, first=first),
+        measured("L-TA4.unit_mass", difference=each(_mass_error, alpha=alpha)),
     ]
     return Result(table, inputs.judged(findings))
 
@@ -142,10 +130,8 @@ def _mass_error(alpha: float) -> float:
     node, weight = roots_legendre(1000)
     x = 10.0 ** (low + 0.5 * (high - low) * (node + 1.0))
     inside = 0.5 * (high - low) * log(10.0) * float((x * reduced_green(x, alpha)) @ weight)
-    ends = 10.0**low * float(reduced_green(0.0, alpha)) + 10.0**high / alpha * float(
-        reduced_green(10.0**high, alpha)
-    )
-    return abs(2.0 * (inside + ends) - 1.0)
+    near, far = (float(reduced_green(x, alpha)) for x in (0.0, 10.0**high))
+    return abs(2.0 * (inside + (10.0**low * near + 10.0**high / alpha * far)) - 1.0)
 
 
 def _row(alpha: float, printed: str | None) -> dict[str, float]:

@@ -1,18 +1,12 @@
 """Effect of the smoothing length: error (48) against epsilon / h at fixed h, Sec. 4.3 (not shown there)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
-from fracparticles.run.case import Case
 from fracparticles.run.orders import observed_order
-from fracparticles.run.solution import relative_l1_error
-from fracparticles.run.solver import compute
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result
-
-__all__ = ["study"]
+from scenes.lucchesi.levels import order_of_runs
 
 NEEDS = {"exterior": ["truncated", "open"]}
 
@@ -41,17 +35,16 @@ def study(inputs: Inputs, *, shown_beta: float, claimed_from: float) -> Result:
         error = part.set_index("s")["relative_l1_error"].sort_index()
         above, smooth = error[error.index > claimed_from], error[error.index >= _SMOOTH]
         ends = smooth.iloc[[-1, 0]]
-        rows.append(
-            {
-                "beta": beta,
-                "exterior": exterior,
-                "scheme": scheme,
-                "order": "-" if scheme == "GPSE" else NUMERALS[order],
-                **{f"error, ε = {s:g} h": error.get(s, np.nan) for s in shown},
-                ratio: above.max() / above.min(),
-                power: np.nan if scheme == "GPSE" else observed_order(ends.index, ends)[0],
-            }
-        )
+        row = {
+            "beta": beta,
+            "exterior": exterior,
+            "scheme": scheme,
+            "order": "-" if scheme == "GPSE" else NUMERALS[order],
+            **{f"error, ε = {s:g} h": error.get(s, np.nan) for s in shown},
+            ratio: above.max() / above.min(),
+            power: np.nan if scheme == "GPSE" else observed_order(ends.index, ends)[0],
+        }
+        rows.append(row)
     table = pd.DataFrame(rows).sort_values(_SORTED, ascending=[False, True, True, True])
     series = runs.rename(columns={"relative_l1_error": "y"}).assign(x=runs["overlap"])
     here = table[table["beta"] == shown_beta].set_index(_SORTED[:1] + _SORTED[2:]).sort_index()
@@ -70,23 +63,12 @@ def _finding(
 ) -> Finding:
     """The change of the error over all overlaps; in another reading that of the order, which needs a coarser h."""
     grid = {"scheme": scheme, "beta": float(runs["beta"].iloc[0])}
+    grid |= {"truncation": 20.0, "integrator": "exponential", "exterior": "open"}
     h = float(runs["particle_spacing"].min()) * np.array([4.0, 2.0])
     change = {
-        name: np.ptp([_order(grid, p, h, s) for s in overlaps]) / p for p, name in ORDERS.items()
+        name: np.ptp([order_of_runs(h, order=p, overlap=s, **grid) for s in overlaps]) / p
+        for p, name in ORDERS.items()
     }
-    return measured(
-        f"L-C9.{scheme}",
-        runs=runs["run"],
-        others={"the order of convergence in h instead of the error": {"change": change}},
-        change=ratio - 1.0,
-        power=power,
-        order=change,
-    )
-
-
-def _order(grid: dict[str, object], order: int, spacing: np.ndarray, overlap: float) -> float:
-    """The observed order between two spacings, open exterior, exact in time."""
-    more = {"truncation": 20.0, "integrator": "exponential", "exterior": "open"}
-    cases = [Case(**grid, **more, order=order, overlap=overlap, spacing=h) for h in spacing]
-    errors = [relative_l1_error(case, compute(case).u) for case in cases]
-    return float(observed_order(np.array([case.particle_spacing for case in cases]), errors)[0])
+    of_order = {"the order of convergence in h instead of the error": {"change": change}}
+    numbers = {"change": ratio - 1.0, "power": power, "order": change}
+    return measured(f"L-C9.{scheme}", runs=runs["run"], others=of_order, **numbers)

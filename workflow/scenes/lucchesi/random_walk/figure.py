@@ -1,76 +1,63 @@
 """The random walk beside the particle schemes."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import COLOURS, MARKERS, axes_row, log_log, note, slope_triangle
-
-__all__ = ["figure"]
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import BLUE, COLOURS, ERROR, ORANGE, Axes, Figure, Look, draw, log_log, note
 
 _GREEN = COLOURS["KPSE"]
-_WALKERS = (("#E69F00", 3.0, -2), ("#0072B2", 2.0, -26))  # colour, size of a dot, drop of the note
+_WALKERS = ((ORANGE, 3.0, -2), (BLUE, 2.0, -26))  # colour, size of a dot, drop of the note
 # From the longest dt on.
-_STEPS: tuple[dict[str, Any], ...] = (
-    {"color": "#0072B2", "marker": "o", "markersize": 4.0, "markerfacecolor": "#0072B2"},
-    {"color": "#56B4E9", "marker": "s", "markersize": 6.5, "markerfacecolor": "none"},
-    {"color": "#CC79A7", "marker": "D", "markersize": 6.5, "markerfacecolor": "none"},
+_STEPS: tuple[Look, ...] = (
+    {"color": BLUE, "marker": "o", "markersize": 4.0, "markerfacecolor": BLUE},
+    {"color": style.SKY, "marker": "s", "markersize": 6.5, "markerfacecolor": "none"},
+    {"color": style.PINK, "marker": "D", "markersize": 6.5, "markerfacecolor": "none"},
 )
-_SOLUTION: dict[str, Any] = {"color": _GREEN, "linestyle": "", "markerfacecolor": "white"}
+_SOLUTION: Look = {"color": _GREEN, "linestyle": "", "markerfacecolor": "white"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[int]) -> Figure:
     """Draw (a) the density of walkers and the exact one, (b) the error against the number of walkers."""
-    drawn, (density, error) = axes_row(2, height=4.0, width=4.4)
-    _density(density, series[series["panel"] == "density"], sorted(shown))
+    drawn, (density, error) = style.axes_row(2, height=4.0, width=4.4)
+    _density(density, pick(series, panel="density"), sorted(shown))
     density.set_ylabel(rf"density $u(x, t = {table['t'].max():g})$")
-    _error(error, series[series["panel"] == "error"])
+    _error(error, pick(series, panel="error"))
     for ax in (density, error):
         ax.legend(loc="upper left", bbox_to_anchor=(0.0, -0.16), ncols=2)
     return drawn
 
 
 def _density(ax: Axes, series: pd.DataFrame, shown: list[int]) -> None:
-    walks, exact, scheme = (series[series["series"] == name] for name in ("walk", "exact", "KPSE"))
+    walks, exact, scheme = (pick(series, series=name) for name in ("walk", "exact", "KPSE"))
     least = 0.3 * walks.loc[walks["y"] > 0.0, "y"].min()
-    dots: dict[str, Any] = {"marker": "o", "markeredgewidth": 0.0, "linestyle": ""}
+    dots: Look = {"marker": "o", "markeredgewidth": 0.0, "linestyle": ""}
     for n, (colour, size, drop) in zip(shown, _WALKERS, strict=True):
-        part = walks[walks["walkers"] == n]
+        part = pick(walks, walkers=n)
         label, y = f"{_scientific(n)} walkers", part["y"].where(part["y"] > 0.0)
         ax.plot(part["x"], y, color=colour, markersize=size, label=label, **dots)
         few = part["few_beyond"].iloc[0]
         ax.axvline(few, color=colour, linewidth=0.9, linestyle=":")
         look = {"xycoords": ("data", "axes fraction"), "va": "top", "fontsize": 7.5}
         note(ax, "fewer than\n10 a cell →", (few, 1.0), (3, drop), color=colour, **look)
-    ax.plot(exact["x"], exact["y"], color=COLOURS["exact"], linewidth=1.0, label="exact, (36)")
-    markers: dict[str, Any] = {
-        "marker": MARKERS["KPSE"],
-        "markersize": 5,
-        "label": "KPSE IV",
-        **_SOLUTION,
-    }
-    ax.plot(scheme["x"], scheme["y"], **markers)
+    draw(ax, exact, color=COLOURS["exact"], linewidth=1.0, label="exact, (36)")
+    draw(ax, scheme, label="KPSE IV", **style.scheme_style("KPSE", markersize=5, **_SOLUTION))
     log_log(ax, xlabel="distance $x$", ylim=(least, 4.0 * exact["y"].max()))
 
 
 def _error(ax: Axes, series: pd.DataFrame) -> None:
-    law = series[series["series"] == "expected"].sort_values("x")
-    walks = series[series["series"] == "walk"]
+    law, walks = pick(series, series="expected").sort_values("x"), pick(series, series="walk")
     levels = series[series["series"].str.startswith("KPSE IV")].set_index("series")
     meet, opened = levels.loc["KPSE IV, truncated"], levels.loc["KPSE IV, open"]
     first, last = law.iloc[0], law.iloc[-1]
     end = 200.0 * meet["x"]
     x, y = [first["x"], end], [first["y"], last["y"] * np.sqrt(last["x"] / end)]
-    dashed: dict[str, Any] = {"color": "0.5", "linewidth": 0.9, "linestyle": "--"}
+    dashed: Look = {"color": "0.5", "linewidth": 0.9, "linestyle": "--"}
     ax.plot(x, y, label=r"statistical, $\propto n^{-1/2}$", **dashed)
     for (dt, part), look in zip(sorted(walks.groupby("dt"), reverse=True), _STEPS, strict=False):
         label = rf"walk, $\Delta t = {dt:g}$"
-        ax.plot(part["x"], part["y"], linestyle="", label=label, **look)
+        draw(ax, part, linestyle="", label=label, **look)
     ax.axhline(meet["y"], color=_GREEN, linewidth=1.3)
     ax.plot(meet["x"], meet["y"], marker="*", markersize=11, **_SOLUTION)
     star, edge = (meet["x"], meet["y"]), (first["x"], meet["y"])
@@ -80,9 +67,9 @@ def _error(ax: Axes, series: pd.DataFrame) -> None:
         f"equalled by {_scientific(opened['x'])} walkers)"
     )
     note(ax, text, edge, (0, -4), va="top", color=_GREEN, fontsize=7.5)
-    slope_triangle(ax, 3.0 * last["x"], 1.1 * last["y"], -0.5)
+    style.slope_triangle(ax, 3.0 * last["x"], 1.1 * last["y"], -0.5)
     log_log(ax, xlabel="number of walkers $n$")
-    ax.set_ylabel(r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)")
+    ax.set_ylabel(ERROR)
 
 
 def _scientific(value: float) -> str:

@@ -1,9 +1,7 @@
 """The random walk beside the particle schemes, Sec. 4.1 (asserted there after Ref. [14], not shown)."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import Any
@@ -12,19 +10,13 @@ import numpy as np
 import pandas as pd
 from scipy.special import kolmogorov
 
-from fracparticles.moving.random_walk import (
-    cell_counts,
-    cell_masses,
-    expected_deviation,
-    kolmogorov_smirnov,
-    walk,
-)
+from fracparticles.moving import random_walk
+from fracparticles.moving.random_walk import cell_counts, cell_masses, expected_deviation, walk
 from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
 from fracparticles.special.stable import green, mean_radius, tail_mass
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import Panels, pick
 
 NEEDS = {"scheme": ["KPSE"], "order": [4], "exterior": ["truncated", "open"]}
 
@@ -84,12 +76,17 @@ def study(
     alpha, start, final = 1.0 + run["beta"], run["t_initial"], run["t_final"]
     times, unit = [*earlier, final], mean_radius(alpha)
     at = {t: _Cells(cells, 5.0 * unit, t, alpha) for t in times}
+    legs = np.diff([start, *times])
+
+    def walked(count: int, dt: float, *seeds: int) -> dict[float, np.ndarray]:
+        steps = [max(1, round(leg / dt)) for leg in legs]
+        return _walk(alpha, count, [start, *times], steps, np.random.default_rng(seeds))
+
     walks = []
     for number, dt in enumerate(walk_steps):
-        steps = [max(1, round(leg / dt)) for leg in np.diff([start, *times])]
-        affordable = [n for n in walkers if number == 0 or n * sum(steps) <= increments]
-        generator = np.random.default_rng([seed, number])
-        walks.append(_walk(alpha, max(affordable), [start, *times], steps, generator))
+        steps = sum(max(1, round(leg / dt)) for leg in legs)
+        affordable = [n for n in walkers if number == 0 or n * steps <= increments]
+        walks.append(walked(max(affordable), dt, seed, number))
     rows = [
         _row(at[t], tail, dt, x, n)
         for dt, positions in zip(walk_steps, walks, strict=True)
@@ -103,9 +100,7 @@ def study(
     findings: list[Finding] = []
     if inputs.items:
         wide = _Cells(round(cells * zones[-1] / 5.0), zones[-1] * unit, final, alpha)
-        first = [start, *times]
-        steps = [max(1, round(leg / walk_steps[0])) for leg in np.diff(first)]
-        other = _walk(alpha, max(shown), first, steps, np.random.default_rng([seed + 1, 0]))
+        other = walked(max(shown), walk_steps[0], seed + 1, 0)
         again = pd.DataFrame(_row(at[t], tail, walk_steps[0], y, y.size) for t, y in other.items())
         another = f"another seed, {max(shown):.0e} walkers"
         findings = [
@@ -114,8 +109,10 @@ def study(
             _tails(wide, x, max(shown), zones, {another: other[final]}),
         ]
     far = _Cells(2 * round(cells * reach / 10.0), reach * unit, final, alpha)
-    series = [*_densities(inputs, far, x, shown), *_errors(last, rivals)]
-    return Result(table, findings, pd.concat(series, ignore_index=True))
+    panels = Panels()
+    _densities(panels, inputs, far, x, shown)
+    _errors(panels, last, rivals)
+    return Result(table, findings, panels.frame)
 
 
 def _walk(
@@ -135,7 +132,7 @@ def _row(cells: _Cells, tail: float, dt: float, x: np.ndarray, n: int) -> dict[s
     beyond, width = tail * mean_radius(alpha), 2.0 * cells.half / cells.number
     probability = math.nan
     if n <= _TESTED:
-        probability = kolmogorov(math.sqrt(n) * kolmogorov_smirnov(x[:n], t, alpha))
+        probability = kolmogorov(math.sqrt(n) * random_walk.kolmogorov_smirnov(x[:n], t, alpha))
     return {
         "method": "random walk",
         "t": t,
@@ -157,17 +154,16 @@ def _rivals(inputs: Inputs, cells: _Cells) -> pd.DataFrame:
     for run in inputs.select(scheme="KPSE", t_final=cells.t).to_dict("records"):
         number, error = round(2.0 * cells.half / run["particle_spacing"]), run["relative_l1_error"]
         fine = _Cells(max(1, number), cells.half, cells.t, cells.alpha)
-        rows.append(
-            {
-                "method": f"{run['scheme']} {ORDERS[run['order']]}, {run['exterior']}",
-                "t": cells.t,
-                "dt": run["dt"],
-                "relative error": error,
-                "walkers to equal it": walkers_to_equal(cells.masses, error),
-                "walkers, cells of width h": walkers_to_equal(fine.masses, error),
-                "run": run["run"],
-            }
-        )
+        row = {
+            "method": f"{run['scheme']} {ORDERS[run['order']]}, {run['exterior']}",
+            "t": cells.t,
+            "dt": run["dt"],
+            "relative error": error,
+            "walkers to equal it": walkers_to_equal(cells.masses, error),
+            "walkers, cells of width h": walkers_to_equal(fine.masses, error),
+            "run": run["run"],
+        }
+        rows.append(row)
     return pd.DataFrame(rows)
 
 
@@ -253,34 +249,28 @@ def _deviations(
 
 
 def _densities(
-    inputs: Inputs, cells: _Cells, x: np.ndarray, shown: list[int]
-) -> Iterator[pd.DataFrame]:
+    panels: Panels, inputs: Inputs, cells: _Cells, x: np.ndarray, shown: list[int]
+) -> None:
     """Panel "density": exact, walk of n walkers, KPSE. Only x > 0 is shown, as in Fig. 2."""
     t, alpha, half, width = cells.t, cells.alpha, cells.half, 2.0 * cells.half / cells.number
     fine = np.geomspace(0.5 * width, half, 241)
-    yield _part("density", "exact", fine, green(fine, t, alpha))
+    panels.add("density", "exact", fine, green(fine, t, alpha))
     right = cells.number // 2
     centre = (np.arange(right) + 0.5) * width
     for n in shown:
         few = few_walkers_beyond(n, width, t, alpha)
         density = cells.shares(x[:n], n)[0, right:] / width
-        yield _part("density", "walk", centre, density, walkers=n, few_beyond=few)
+        panels.add("density", "walk", centre, density, walkers=n, few_beyond=few)
     run = inputs.open(scheme="KPSE", order=4, exterior="truncated", t_final=t)
     at = np.geomspace(0.5 * width, 0.9 * min(half, float(run["x"][-1])), 13)
     u = run["u"].sel(x=at, method="nearest")
-    yield _part("density", "KPSE", u["x"].to_numpy(), u.to_numpy())
+    panels.add("density", "KPSE", u["x"].to_numpy(), u.to_numpy())
 
 
-def _errors(last: pd.DataFrame, rivals: pd.DataFrame) -> Iterator[pd.DataFrame]:
+def _errors(panels: Panels, last: pd.DataFrame, rivals: pd.DataFrame) -> None:
     """Panel "error": walk at each dt, expected, KPSE."""
     for dt, part in last.groupby("dt"):
-        yield _part("error", "walk", part["walkers"], part["relative error"], dt=dt)
-    law = last[last["dt"] == last["dt"].max()]
-    yield _part("error", "expected", law["walkers"], law["expected"])
-    for name, row in rivals.set_index("method").iterrows():
-        yield _part("error", str(name), [row["walkers to equal it"]], [row["relative error"]])
-
-
-def _part(panel: str, series: str, x: Any, y: Any, **more: Any) -> pd.DataFrame:
-    points = {"x": np.asarray(x), "y": np.asarray(y)}
-    return pd.DataFrame({"panel": panel, "series": series, **points, **more})
+        panels.add("error", "walk", part["walkers"], part["relative error"], dt=dt)
+    law = pick(last, dt=last["dt"].max())
+    panels.add("error", "expected", law["walkers"], law["expected"])
+    panels.add("error", rivals["method"], rivals["walkers to equal it"], rivals["relative error"])

@@ -1,8 +1,6 @@
 """The scheme of Eq. (29), which the paper rejects for its instability: eigenvalues above zero, runs that grow."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -17,11 +15,9 @@ from fracparticles.run.solver import compute, initial_strengths
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special.stable import green
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["PSE29", "DD"]}
 
@@ -41,26 +37,25 @@ def study(inputs: Inputs, *, shown_beta: float, dense: int, history: dict[str, A
     `dense` is the number of particles of the spectrum; `history` are the half-width and the spacings of the runs whose
     growth is followed, and by how many powers of e.
     """
-    runs = inputs.scalars
-    betas = sorted(runs["beta"].unique())
-    kernels = {b: np.asarray(kernel("G", _NODES, 1.0 + b)) for b in betas}
-    greatest = {b: float(_spectrum("PSE29", b, dense)[-1]) for b in betas}
-    panels, growth = Panels(), _spectrum("PSE29", shown_beta, dense)[-1]
-    near = _NODES <= 4.0
+    runs, near = inputs.scalars, _NODES <= 4.0
+    betas, panels = sorted(runs["beta"].unique()), Panels()
+    kernels = each(lambda b: np.asarray(kernel("G", _NODES, 1.0 + b)), beta=betas)
+    greatest = each(lambda b: float(_spectrum("PSE29", b, dense)[-1]), beta=betas)
     for beta, G in kernels.items():
         panels.add("kernel", f"{beta:g}", _NODES[near], G[near])
-    for name in ("PSE29", "DD"):
-        rank = np.arange(1, dense + 1) / dense
-        panels.add("spectrum", name, rank, _spectrum(name, shown_beta, dense))
+    spectra = {name: _spectrum(name, shown_beta, dense) for name in ("PSE29", "DD")}
+    for name, values in spectra.items():
+        panels.add("spectrum", name, np.arange(1, dense + 1) / dense, values)
     table = _table(runs, greatest)
+    deviation = _follow(panels, shown_beta, spectra["PSE29"][-1], history)
     predicted, message = _blow_up(shown_beta)
     findings = [
         _kernel(kernels),
         _errors(table, list(runs["run"])),
         measured(
             "L-C15.instability",
-            eigenvalue=pd.Series(greatest).rename_axis("beta"),
-            deviation=_follow(panels, shown_beta, growth, history),
+            eigenvalue=greatest,
+            deviation=deviation,
             predicted=predicted,
             message=message,
         ),
@@ -121,7 +116,7 @@ def _blow_up(beta: float) -> tuple[float, str]:
     return float(steps.min()), message
 
 
-def _table(runs: pd.DataFrame, greatest: Mapping[float, float]) -> pd.DataFrame:
+def _table(runs: pd.DataFrame, greatest: pd.Series) -> pd.DataFrame:
     rows = []
     for (beta, h), pair in runs.groupby(["beta", "particle_spacing"]):
         pair = pair.set_index("scheme")
@@ -130,44 +125,34 @@ def _table(runs: pd.DataFrame, greatest: Mapping[float, float]) -> pd.DataFrame:
         rate = greatest[beta] * run["diffusivity"] / h ** (1.0 + beta)
         time = run["t_final"] - run["t_initial"]
         ours, dd = pair["relative_l1_error"][["PSE29", "DD"]]
-        rows.append(
-            {
-                "beta": beta,
-                "h": h,
-                "greatest eigenvalue, λ h^α / D": greatest[beta],
-                "λ": rate,
-                "log10 of the growth exp(λ T)": rate * time / np.log(10.0),
-                _EDGE: abs(read_run(run["run"])["u"].values[-1]) / exact,
-                "error (48) of (29)": ours,
-                "error (48) of DD": dd,
-                "ratio": ours / dd,
-            }
-        )
+        row = {
+            "beta": beta,
+            "h": h,
+            "greatest eigenvalue, λ h^α / D": greatest[beta],
+            "λ": rate,
+            "log10 of the growth exp(λ T)": rate * time / np.log(10.0),
+            _EDGE: abs(read_run(run["run"])["u"].values[-1]) / exact,
+            "error (48) of (29)": ours,
+            "error (48) of DD": dd,
+            "ratio": ours / dd,
+        }
+        rows.append(row)
     return pd.DataFrame(rows).sort_values(["beta", "h"], ascending=[True, False])
 
 
-def _kernel(kernels: Mapping[float, np.ndarray]) -> Finding:
+def _kernel(kernels: pd.Series) -> Finding:
     """G(0), the greatest value, where it lies, and how often G turns."""
-
-    def by_beta(quantity: Callable[[np.ndarray], Any]) -> pd.Series:
-        return pd.Series({b: quantity(G) for b, G in kernels.items()}).rename_axis("beta")
-
     return measured(
         "L-C15.kernel",
-        origin=by_beta(lambda G: G[0]),
-        greatest=by_beta(np.max),
-        turns=by_beta(lambda G: np.count_nonzero(np.diff(np.sign(np.diff(G))))),
-        place=by_beta(lambda G: _NODES[G.argmax()]),
+        origin=kernels.map(lambda G: G[0]),
+        greatest=kernels.map(np.max),
+        turns=kernels.map(lambda G: np.count_nonzero(np.diff(np.sign(np.diff(G))))),
+        place=kernels.map(lambda G: _NODES[G.argmax()]),
     )
 
 
 def _errors(table: pd.DataFrame, files: list[str]) -> Finding:
     coarsest, finest = (table.groupby("beta").agg(which) for which in ("first", "last"))
-    return measured(
-        "L-C15.errors",
-        runs=files,
-        ratio=finest["ratio"],
-        edge=finest[_EDGE],
-        coarse=coarsest["ratio"],
-        h=finest["h"],
-    )
+    numbers = {"ratio": finest["ratio"], "edge": finest[_EDGE]}
+    numbers |= {"coarse": coarsest["ratio"], "h": finest["h"]}
+    return measured("L-C15.errors", runs=files, **numbers)

@@ -1,7 +1,5 @@
 """DPSE, which the paper rejects without showing why: a potential that ends at the lattice's edge."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,6 @@ from fracparticles.special.stable import central_mass, green, green_flux
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["DPSE", "FPSE", "KPSE"]}
 

@@ -1,6 +1,6 @@
 """The cut-off Riesz potential, which the paper rejects without showing why, and the flux from it."""
 
-from __future__ import annotations
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -13,8 +13,6 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 NEEDS = {"scheme": ["RIESZ", "KPSE"]}
 
@@ -41,33 +39,30 @@ def study(
     |x| <= 5 R_alpha.
     """
     panels, rows = Panels(), []
-    for order in alpha:
-        for h in sum_spacing:
-            fluxes = _fluxes(order, h, round(sum_half_width / h), sum_overlap, time)
-            exact, size = fluxes["exact"], fluxes["exact"].abs().sum()
-            error = {name: (fluxes[s] - exact).abs().sum() / size for name, s in _SERIES.items()}
-            rows.append({"of": "flux", "alpha": order, "h": h, **error})
-            for name, series in _SERIES.items():
-                panels.add("flux", series, h, error[name], alpha=order)
-            if order == max(alpha) and h == min(sum_spacing):
-                shown = fluxes[(fluxes["x"] >= 0.0) & (fluxes["x"] <= 6.0)]
-                shown = shown[:: max(1, len(shown) // 200)]
-                for series in ("exact", *_SERIES.values()):
-                    panels.add("profile", series, shown["x"], shown[series], alpha=order)
+    for order, h in product(alpha, sum_spacing):
+        fluxes = _fluxes(order, h, round(sum_half_width / h), sum_overlap, time)
+        exact, size = fluxes["exact"], fluxes["exact"].abs().sum()
+        error = {name: (fluxes[s] - exact).abs().sum() / size for name, s in _SERIES.items()}
+        rows.append({"of": "flux", "alpha": order, "h": h, **error})
+        for name, series in _SERIES.items():
+            panels.add("flux", series, h, error[name], alpha=order)
+        if order == max(alpha) and h == min(sum_spacing):
+            shown = fluxes[(fluxes["x"] >= 0.0) & (fluxes["x"] <= 6.0)]
+            shown = shown[:: max(1, len(shown) // 200)]
+            for series in ("exact", *_SERIES.values()):
+                panels.add("profile", series, shown["x"], shown[series], alpha=order)
     flux = pd.DataFrame(rows)
     runs = inputs.scalars.assign(alpha=1.0 + inputs.scalars["beta"])
     runs = runs.rename(columns={"particle_spacing": "h", "relative_l1_error": "y"})
     panels.add("solution", runs["scheme"], runs["h"], runs["y"], alpha=runs["alpha"])
     solution = runs.pivot(index=["alpha", "h"], columns="scheme", values="y").reset_index()
     solution = solution.rename(columns={series: name for name, series in _SERIES.items()})
-    table = pd.concat([flux, solution.assign(of="solution (48)")])
-    table = table.sort_values(
-        ["of", "alpha", "h"], ascending=[True, True, False], ignore_index=True
-    )
+    table, key = pd.concat([flux, solution.assign(of="solution (48)")]), ["of", "alpha", "h"]
+    table = table.sort_values(key, ascending=[True, True, False], ignore_index=True)
     table["2 - α"] = 2.0 - table["alpha"]
     table[_ORDER] = orders_by(table, ["of", "alpha"], _CUT_OFF)
     findings = inputs.judged(_findings(table[table["of"] == "flux"]))
-    columns = ["of", "alpha", "h", _CUT_OFF, _ORDER, "2 - α", _MOLLIFIED]
+    columns = [*key, _CUT_OFF, _ORDER, "2 - α", _MOLLIFIED]
     return Result(table[columns], findings, panels.frame)
 
 
@@ -91,14 +86,8 @@ def _findings(flux: pd.DataFrame) -> list[Finding]:
     by_lattice = flux.pivot(index="h", columns="alpha", values=_CUT_OFF)
     # The least over the lattices, by the larger of two neighbouring alpha.
     rise = (by_lattice / by_lattice.shift(axis="columns")).iloc[:, 1:].min()
-    error = finest[_CUT_OFF]
-    return [
-        measured(
-            "L-C16.poor",
-            ratio=(by_alpha[_CUT_OFF] / by_alpha[_MOLLIFIED]).groupby("alpha").min(),
-            error=error,
-            order=finest[_ORDER],
-            h=flux["h"].min(),
-        ),
-        measured("L-C16.worst_large_alpha", rise=rise, error=error),
-    ]
+    error, ratio = finest[_CUT_OFF], by_alpha[_CUT_OFF] / by_alpha[_MOLLIFIED]
+    poor = {"ratio": ratio.groupby("alpha").min(), "error": error}
+    poor |= {"order": finest[_ORDER], "h": flux["h"].min()}
+    worst = measured("L-C16.worst_large_alpha", rise=rise, error=error)
+    return [measured("L-C16.poor", **poor), worst]

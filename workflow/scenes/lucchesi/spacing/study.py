@@ -1,17 +1,13 @@
 """Effect of the particle spacing: error (48) against h, Figs. 3b, 4b, 5b."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
-import numpy as np
 import pandas as pd
 
-from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import NUMERALS, ORDERS, Inputs, Result
-
-__all__ = ["settled", "study"]
+from fracstudy.orders import orders_by
+from fracstudy.panels import pick
 
 NEEDS: dict[str, list] = {
     "exterior": ["truncated", "open"],
@@ -36,22 +32,17 @@ def study(inputs: Inputs) -> Result:
     errors = runs[~exact].set_index([*key, "exterior"])["relative_l1_error"].unstack()
     errors["exponential"] = runs[exact].set_index(key)["relative_l1_error"]
     errors = errors.reset_index().sort_values(key, ascending=[True, True, True, False])
-    for exterior in NEEDS["exterior"]:
-        for _, part in errors.groupby(key[:-1]):
-            orders = [np.nan, *observed_order(part["h"], part[exterior])]
-            errors.loc[part.index, f"observed order, {exterior}"] = orders
-    table = pd.DataFrame(
-        {
-            **errors[["beta", "scheme"]],
-            "order": errors["order"].map(NUMERALS),
-            "h": errors["h"],
-            "error, truncated": errors["truncated"],
-            "observed order, truncated": errors["observed order, truncated"],
-            "error, open exterior": errors["open"],
-            "observed order, open": errors["observed order, open"],
-            "error, truncated, exact in time": errors["exponential"],
-        }
-    )
+    columns = {
+        **errors[["beta", "scheme"]],
+        "order": errors["order"].map(NUMERALS),
+        "h": errors["h"],
+        "error, truncated": errors["truncated"],
+        "observed order, truncated": orders_by(errors, key[:-1], "truncated"),
+        "error, open exterior": errors["open"],
+        "observed order, open": orders_by(errors, key[:-1], "open"),
+        "error, truncated, exact in time": errors["exponential"],
+    }
+    table = pd.DataFrame(columns)
     series = runs.rename(columns={"h": "x", "relative_l1_error": "y"})
     series = series[["scheme", "order", "exterior", "integrator", "x", "y"]]
     findings = _findings(inputs.items[0], table, runs["run"]) if inputs.items else ()
@@ -60,18 +51,15 @@ def study(inputs: Inputs) -> Result:
 
 def _findings(item: str, table: pd.DataFrame, runs: pd.Series) -> Iterator[Finding]:
     for order, name in ORDERS.items():
-        parts = table[table["order"] == name].groupby("scheme")
+        parts = pick(table, order=name).groupby("scheme")
         observed = pd.Series({scheme: settled(part, "truncated") for scheme, part in parts})
-        yield measured(
-            f"{item}.O_h{order}", runs=runs, away=(observed - order).abs(), observed=observed
-        )
+        away = (observed - order).abs()
+        yield measured(f"{item}.O_h{order}", runs=runs, away=away, observed=observed)
     plotted = {"the error as plotted, truncated": {"ratio": _fpse_over_others(table, "truncated")}}
     largest = _fpse_over_others(table, "open exterior")
     yield measured(f"{item}.fpse_largest", runs=runs, others=plotted, ratio=largest)
-    kpse = table[table["scheme"] == "KPSE"].sort_values("h", ascending=False)
-    change = kpse.groupby("order")["error, truncated"].agg(
-        lambda e: abs(e.iloc[-2] / e.iloc[-1] - 1.0)
-    )
+    kpse = pick(table, scheme="KPSE").sort_values("h").groupby("order")["error, truncated"]
+    change = kpse.agg(lambda e: abs(e.iloc[1] / e.iloc[0] - 1.0))
     yield measured(f"{item}.kpse_levels_off", runs=runs, change=change)
 
 

@@ -1,25 +1,19 @@
 """What Sec. 4.3 concludes from Figs. 3b, 4b and 5b, all beta together, and Sec. 6 of the domain that this takes."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
-from typing import Any
+from functools import partial
 
 import numpy as np
 import pandas as pd
 
 from fracparticles.errors import AccuracyWarning
 from fracparticles.kernels.families import kernel
-from fracparticles.run.case import Case
-from fracparticles.run.orders import observed_order
-from fracparticles.run.solution import relative_l1_error
-from fracparticles.run.solver import compute
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
+from fracstudy.orders import orders_of
+from scenes.lucchesi.levels import order_of_runs
 from scenes.lucchesi.spacing.study import settled
-
-__all__ = ["study"]
 
 _FAR = 6.0  # epsilon: what is farther away is not nearby
 
@@ -56,21 +50,18 @@ def _findings(
     summary: pd.DataFrame, short: float, spacing: list[float], beta: float
 ) -> Iterator[Finding]:
     by_order = summary.set_index(["order", "scheme", "beta"]).sort_index()
-    power = by_order.index.get_level_values("order").map({name: p for p, name in ORDERS.items()})
     observed = by_order["observed order, open"]
-    away = (observed - power).abs()
+    away = (observed - orders_of(by_order.index)).abs()
     for order, name in ORDERS.items():
         yield measured(f"L-C7.O_h{order}", away=away[name], observed=observed[name])
     yield measured("L-C7.rate", away=away.groupby(["scheme", "order"]).max())
     orders = {s: _order_on(s, short, spacing, beta) for s in ("DD", "FPSE", "KPSE")}
-    yield measured(
-        "L-C7.large_domain",
-        short={s: abs(p - 4.0) for s, p in orders.items()},
-        large=away["IV"].xs(beta, level="beta"),
-        orders=orders,
-        C=short,
-    )
-    yield measured("L-C7.passes", **_far_shares(sorted(observed.index.unique("beta"))))
+    off, large = {s: abs(p - 4.0) for s, p in orders.items()}, away["IV"].xs(beta, level="beta")
+    yield measured("L-C7.large_domain", short=off, large=large, orders=orders, C=short)
+    betas = sorted(observed.index.unique("beta"))
+    # F and eta^1 are the gradients of kappa and eta, which fall without a turn.
+    flux, divergence = (each(partial(_far_share, name), beta=betas) for name in ("kappa", "eta"))
+    yield measured("L-C7.passes", flux=flux, divergence=divergence)
     kpse = by_order.loc["IV", "KPSE"]
     yield measured(
         "L-C8.cause",
@@ -79,28 +70,15 @@ def _findings(
     )
 
 
-def _far_shares(betas: list[float]) -> dict[str, Any]:
-    """The share of the kernels of FPSE's two sums, F and eta^1, that lies beyond 6 epsilon, order II.
-
-    They are the gradients of kappa and eta, which fall without a turn, so that these give the integrals.
-    """
-
-    def share(name: str, beta: float) -> float:
-        near, far = np.asarray(kernel(name, np.array([0.0, _FAR]), 1.0 + beta))
-        return float(far / near)
-
-    kernels = {"flux": "kappa", "divergence": "eta"}
-    return {
-        of: {f"beta = {beta:g}": share(name, beta) for beta in betas}
-        for of, name in kernels.items()
-    }
+def _far_share(name: str, beta: float) -> float:
+    """The share of the gradient of a kernel that falls, order II, beyond 6 epsilon."""
+    near, far = np.asarray(kernel(name, np.array([0.0, _FAR]), 1.0 + beta))
+    return float(far / near)
 
 
 def _order_on(scheme: str, truncation: float, spacing: list[float], beta: float) -> float:
     """The observed order of the error (48) at order IV, exact in time, on a truncated lattice."""
     grid = {"scheme": scheme, "order": 4, "beta": beta, "truncation": truncation}
-    cases = [Case(**grid, spacing=h, integrator="exponential") for h in spacing]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # of the short domain, which is the point
-        errors = [relative_l1_error(case, compute(case).u) for case in cases]
-    return float(observed_order(np.array([case.particle_spacing for case in cases]), errors)[0])
+        return order_of_runs(spacing, integrator="exponential", **grid)

@@ -1,24 +1,13 @@
 """Error in time against the time step."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import (
-    axes_row,
-    entry,
-    legend_below,
-    log_log,
-    panel_title,
-    scheme_style,
-    slope_triangle,
-)
-
-__all__ = ["figure"]
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import Figure, Look, axes_row, draw, entry, legend_below, log_log, scheme_style
 
 _SIZES = (8.0, 5.5, 3.5)
 _INTEGRATORS: dict[str, tuple[str, Any, int]] = {
@@ -31,26 +20,24 @@ _INTEGRATORS: dict[str, tuple[str, Any, int]] = {
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """One panel a beta. The schemes lie on each other: hollow markers of three sizes."""
     betas, schemes = sorted(series["beta"].unique()), sorted(series["scheme"].unique())
-    looks: dict[str, dict[str, Any]] = {
+    looks: dict[str, Look] = {
         scheme: scheme_style(scheme, markersize=size, markerfacecolor="none")
         for scheme, size in zip(schemes, _SIZES, strict=False)
     }
-    width = 4.6 if len(betas) == 1 else 3.3
-    figure, axes = axes_row(len(betas), width=width, height=3.6, sharey=True)
-    for letter, ax, beta in zip("abcdefgh", axes, betas, strict=False):
-        here = series[series["beta"] == beta].sort_values("x")
+    titles, width = [rf"$\beta = {beta:g}$" for beta in betas], 4.6 if len(betas) == 1 else 3.3
+    figure, axes = axes_row(titles, width=width, height=3.6, sharey=True)
+    for ax, beta in zip(axes, betas, strict=True):
+        here = pick(series, beta=beta).sort_values("x")
         for (scheme, integrator), points in here.groupby(["scheme", "integrator"]):
-            style: dict[str, Any] = {**looks[scheme], "linestyle": _INTEGRATORS[integrator][1]}
-            ax.plot(points["x"], points["y"], **style)
+            draw(ax, points, **looks[scheme] | {"linestyle": _INTEGRATORS[integrator][1]})
         log_log(ax, xlabel=r"time step $\Delta t$")
-        panel_title(ax, letter, rf"$\beta = {beta:g}$")
         steps = np.sort(here["x"].unique())[::2]
         ax.set_xticks(steps, [f"1/{round(1.0 / dt)}" for dt in steps])
         ax.minorticks_off()
         for integrator, part in here.groupby("integrator"):
             lowest, order = part.groupby("x")["y"].min(), _INTEGRATORS[integrator][2]
             middle = len(lowest) // 2
-            slope_triangle(ax, lowest.index[middle], 0.3 * lowest.iloc[middle], float(order))
+            style.slope_triangle(ax, lowest.index[middle], 0.3 * lowest.iloc[middle], float(order))
     axes[0].set_ylabel("relative error in time,\nagainst the exponential")
     handles = [entry(s, **{**look, "linestyle": "none"}) for s, look in looks.items()]
     handles += [entry(name, color="0.3", linestyle=line) for name, line, _ in _INTEGRATORS.values()]

@@ -1,7 +1,5 @@
 """Order of self-convergence in time, Eq. (49), Sec. 4.3 (not shown there)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
@@ -9,8 +7,7 @@ from fracparticles.run.dataset import read_run
 from fracparticles.run.orders import observed_order, self_convergence_order
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import Panels
 
 NEEDS = {"integrator": ["exponential"]}
 
@@ -28,7 +25,7 @@ def study(inputs: Inputs) -> Result:
     Norms run over |x| <= 5 R_alpha. The last order whose differences lie above round-off counts.
     """
     rows: list[dict[str, object]] = []
-    series = []
+    panels = Panels()
     for (beta, scheme), part in inputs.scalars.groupby(["beta", "scheme"]):
         fields = part["run"].map(lambda run: read_run(run)["u"].values)
         exact = fields[part["integrator"] == "exponential"].iloc[0]
@@ -43,20 +40,18 @@ def study(inputs: Inputs) -> Result:
             settled = np.flatnonzero(change[1:] > _NOISE)
             last = int(settled[-1]) if settled.size else 0
             clear = error > _NOISE
-            rows.append(
-                {
-                    **key,
-                    "order (49), largest dt": orders[0],
-                    _SETTLED: orders[last],
-                    "at dt": dt[last],
-                    "order against exact in time": observed_order(dt[clear], error[clear])[-1],
-                    "error at the largest dt": error[0],
-                    "error at the smallest dt": error[-1],
-                    "runs": levels["run"],
-                }
-            )
-            curve = {"beta": beta, "scheme": scheme, "integrator": integrator, "x": dt, "y": error}
-            series.append(pd.DataFrame(curve))
+            row = {
+                **key,
+                "order (49), largest dt": orders[0],
+                _SETTLED: orders[last],
+                "at dt": dt[last],
+                "order against exact in time": observed_order(dt[clear], error[clear])[-1],
+                "error at the largest dt": error[0],
+                "error at the smallest dt": error[-1],
+                "runs": levels["run"],
+            }
+            rows.append(row)
+            panels.add(beta=beta, scheme=scheme, integrator=integrator, x=dt, y=error)
     table = pd.DataFrame(rows)
     judged = table[table["integrator"].isin(["RK1", "RK2"])] if inputs.items else table[:0]
     findings = []
@@ -65,4 +60,4 @@ def study(inputs: Inputs) -> Result:
         away = (order - part["expected order"].iloc[0]).abs()
         files = pd.concat(list(part["runs"]))
         findings.append(measured(f"L-C10.{scheme}.{name}", runs=files, away=away, order=order))
-    return Result(table.drop(columns="runs"), findings, pd.concat(series, ignore_index=True))
+    return Result(table.drop(columns="runs"), findings, panels.frame)

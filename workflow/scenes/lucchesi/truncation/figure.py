@@ -1,14 +1,9 @@
 """Figs. 3a, 4a, 5a: error (48) against the truncation factor C."""
 
-from __future__ import annotations
-
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import guide, name_ticks, scheme_legend
+from fracstudy.style import Figure, guide, name_ticks, scheme_legend
 from scenes.lucchesi.exteriors import exterior_panels
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

@@ -1,7 +1,5 @@
 """Effect of the domain truncation: error (48) against C, Figs. 3a, 4a, 5a."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -10,8 +8,7 @@ import pandas as pd
 from fracparticles.special.tails import exchange_truncation_error
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import NUMERALS, Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import pick
 
 NEEDS = {"exterior": ["truncated", "open"]}
 
@@ -30,37 +27,29 @@ def _table(runs: pd.DataFrame) -> pd.DataFrame:
     beta = float(runs["beta"].iloc[0])
     key = ["scheme", "order", "C"]
     errors = runs.set_index([*key, "exterior"])["relative_l1_error"].unstack().reset_index()
-    widths, spacings = (
-        runs.groupby("C")[name].first() for name in ("half_width", "particle_spacing")
-    )
+    widths, spacings = (runs.groupby("C")[s].first() for s in ("half_width", "particle_spacing"))
     time = float((runs["t_final"] - runs["t_initial"]).iloc[0])
     predicted = exchange_truncation_error(errors["C"].map(widths), 1.0 + beta, time)
     exchange = errors["scheme"].isin(["KPSE", "GPSE"])
-    return pd.DataFrame(
-        {
-            "beta": beta,
-            "scheme": errors["scheme"],
-            "order": errors["order"].map(NUMERALS),
-            "C": errors["C"],
-            "h": float(spacings.iloc[-1]),
-            "error, truncated": errors["truncated"],
-            "truncation error, predicted": np.where(exchange, predicted, np.nan),
-            "error, open exterior": errors["open"],
-        }
-    )
+    columns = {
+        "beta": beta,
+        "scheme": errors["scheme"],
+        "order": errors["order"].map(NUMERALS),
+        "C": errors["C"],
+        "h": float(spacings.iloc[-1]),
+        "error, truncated": errors["truncated"],
+        "truncation error, predicted": np.where(exchange, predicted, np.nan),
+        "error, open exterior": errors["open"],
+    }
+    return pd.DataFrame(columns)
 
 
 def _findings(item: str, runs: pd.DataFrame, table: pd.DataFrame) -> Iterator[Finding]:
     largest = table["C"].max()
-    widest = table[table["C"] == largest].set_index(["scheme", "order"])
+    widest = pick(table, C=largest).set_index(["scheme", "order"])
     change = (widest["error, truncated"] - widest["error, open exterior"]).abs()
-    yield measured(
-        f"{item}.negligible",
-        runs=runs.loc[runs["C"] == largest, "run"],
-        share=change / widest["error, truncated"],
-        change=change,
-        C=largest,
-    )
-    for _, gpse in runs[runs["scheme"] == "GPSE"].head(1).iterrows():
+    numbers = {"share": change / widest["error, truncated"], "change": change, "C": largest}
+    yield measured(f"{item}.negligible", runs=pick(runs, C=largest)["run"], **numbers)
+    for _, gpse in pick(runs, scheme="GPSE").head(1).iterrows():
         step = (2.0 * gpse["spacing"]) ** (1.0 + gpse["beta"])
         yield measured(f"{item}.gpse_dt", runs=[gpse["run"]], ours=step, overlap=gpse["overlap"])

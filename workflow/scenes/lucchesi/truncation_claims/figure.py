@@ -1,56 +1,38 @@
 """Sec. 4.2: the truncation errors of KPSE and GPSE on the closed form."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import (
-    COLOURS,
-    axes_row,
-    entry,
-    legend_below,
-    log_log,
-    name_ticks,
-    panel_title,
-    scheme_style,
-)
-from scenes.lucchesi.exteriors import ERROR
-
-__all__ = ["figure"]
+from fracstudy import style
+from fracstudy.style import COLOURS, ERROR, Figure, Look, axes_row, entry, scheme_style
 
 _SHOWN = {"KPSE II": ("KPSE", "II"), "KPSE IV": ("KPSE", "IV"), "GPSE": ("GPSE", "II")}
-_PREDICTED: dict[str, Any] = {"color": "0.6", "linewidth": 4}
-_EITHER: dict[str, Any] = {"color": "0.3", "marker": "o", "linestyle": "none"}
+_PREDICTED: Look = {"color": "0.6", "linewidth": 4}
+_EITHER: Look = {"color": "0.3", "marker": "o", "linestyle": "none"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw one panel a beta: filled markers for the truncated lattice, open ones for the open exterior."""
     betas = sorted(series["beta"].unique())
-    figure, axes = axes_row(len(betas), width=3.2, height=3.2, sharey=True)
+    titles = [rf"$\beta = {beta:g}$" for beta in betas]
+    figure, axes = axes_row(titles, width=3.2, height=3.2, sharey=True)
     key = ["beta", "variable", "scheme", "order"]
     curves = series.sort_values("C").set_index(key)[["C", "value"]].sort_index(kind="stable")
-    for letter, ax, beta in zip("abcdefgh", axes, betas, strict=False):
+    for ax, beta in zip(axes, betas, strict=True):
         here = curves.loc[beta]
         ax.plot(*here.loc["predicted", "GPSE"].T.to_numpy(), solid_capstyle="round", **_PREDICTED)
         for scheme, order in _SHOWN.values():
             for variable, face in (("truncated", COLOURS[scheme]), ("open", "none")):
                 points = here.loc[variable, scheme, order].T.to_numpy()
                 ax.plot(*points, **scheme_style(scheme, order, markerfacecolor=face))
-        log_log(ax, xlabel="truncation factor $C$")
-        panel_title(ax, letter, rf"$\beta = {beta:g}$")
-        name_ticks(ax, sorted(here["C"].unique())[::2])
+        style.log_log(ax, xlabel="truncation factor $C$")
+        style.name_ticks(ax, sorted(here["C"].unique())[::2])
     axes[0].set_ylabel(ERROR)
-    handles = [
-        entry(name, **scheme_style(*pair, markerfacecolor=COLOURS[pair[0]]))
-        for name, pair in _SHOWN.items()
-    ]
+    filled = {name: {"markerfacecolor": COLOURS[scheme]} for name, (scheme, _) in _SHOWN.items()}
+    handles = [entry(name, **scheme_style(*of, **filled[name])) for name, of in _SHOWN.items()]
     handles += [
         entry("truncated", **_EITHER),
         entry("open exterior", markerfacecolor="none", **_EITHER),
         entry(r"predicted, $\propto C^{-\alpha}$", **_PREDICTED),
     ]
-    legend_below(figure, handles)
+    style.legend_below(figure, handles)
     return figure

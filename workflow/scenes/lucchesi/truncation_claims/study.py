@@ -1,7 +1,5 @@
 """What Sec. 4.2 concludes from Figs. 3a, 4a and 5a, all beta together."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -10,9 +8,8 @@ import pandas as pd
 from fracparticles.run.orders import observed_order
 from fracparticles.special.stable import mean_radius
 from fracstudy.findings import Finding, measured
-from fracstudy.inputs import ORDERS, Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import orders_of
 
 _KEY = ["scheme", "order", "beta"]
 _NAMES = {
@@ -25,9 +22,8 @@ _NAMES = {
 def study(inputs: Inputs) -> Result:
     """Give slopes in C, plateaus and variations of the tables of the three figures, and what Sec. 4.2 says of them."""
     errors = pd.concat(inputs.tables.values(), ignore_index=True).rename(columns=_NAMES)
-    summary = pd.DataFrame(
-        _summary(part.sort_values("C"), *key) for key, part in errors.groupby(_KEY)
-    )
+    parts = errors.sort_values("C").groupby(_KEY)
+    summary = pd.DataFrame(_summary(part, *key) for key, part in parts)
     key = ["beta", "scheme", "order", "C"]
     series = errors.melt(id_vars=key, value_vars=list(_NAMES.values())).dropna()
     errors = errors.sort_values("C").set_index(_KEY)
@@ -79,10 +75,8 @@ def _direct(errors: pd.DataFrame) -> Iterator[Finding]:
     share = ((wide["truncated"] - wide["open"]).abs() / wide["open"]).groupby(level=_KEY).max()
     yield measured("L-C4.dominated", share=share)
     last = direct[direct["C"] == direct["C"].max()]
-    power = last.index.get_level_values("order").map({name: p for p, name in ORDERS.items()})
-    at_equal_h = {
-        "at equal h, error / h^p": {"ratio": _by_beta(last["truncated"] / last["h"] ** power)}
-    }
+    scaled = last["truncated"] / last["h"] ** orders_of(last.index)
+    at_equal_h = {"at equal h, error / h^p": {"ratio": _by_beta(scaled)}}
     yield measured("L-C4.grows", others=at_equal_h, ratio=_by_beta(last["truncated"]))
 
     def fpse_over_dd(kind: str) -> pd.Series:
@@ -98,9 +92,8 @@ def _exchange(errors: pd.DataFrame, summary: pd.DataFrame) -> Iterator[Finding]:
     first, plateau = summary["first slope in C"], summary["C of the plateau"]
     before_last = errors["truncated"].groupby(level=_KEY).nth(-2)
     change = before_last / errors["truncated"].groupby(level=_KEY).last() - 1.0
-    caused = errors.assign(by_it=(errors["truncated"] - errors["open"]).abs()).set_index(
-        "C", append=True
-    )
+    caused = errors.assign(by_it=(errors["truncated"] - errors["open"]).abs())
+    caused = caused.set_index("C", append=True)
     kpse, gpse = caused.loc["KPSE"], caused.loc["GPSE"].loc["II"]
     yield measured("L-C5.falls", slope=first["KPSE"])
     yield measured("L-C5.levels_off", change=change["KPSE"])
@@ -114,14 +107,12 @@ def _exchange(errors: pd.DataFrame, summary: pd.DataFrame) -> Iterator[Finding]:
     for scheme in ("KPSE", "GPSE"):
         yield measured(f"L-C5.power.{scheme}", away=away[scheme], slope=first[scheme])
     four = kpse.loc["IV"]
-    tail = {
-        name: (of["truncated"] / of["predicted"] - 1.0).abs().max()
-        for name, of in (("KPSE IV", four), ("GPSE", gpse))
-    }
+    off = {"KPSE IV": four["truncated"] / four["predicted"]}
+    off["GPSE"] = gpse["truncated"] / gpse["predicted"]
+    tail = {name: (ratio - 1.0).abs().max() for name, ratio in off.items()}
     twins = (gpse["truncated"] / four["truncated"] - 1.0).abs()
-    yield measured(
-        "L-C5.origin", tail=tail, step=twins.max(), gain=(four["truncated"] / four["open"]).min()
-    )
+    gain = (four["truncated"] / four["open"]).min()
+    yield measured("L-C5.origin", tail=tail, step=twins.max(), gain=gain)
     by_c = _by_beta(gpse["truncated"])
     c = by_c.index.get_level_values("C")
     yield measured("L-C6.small_domains", ratio=by_c[c <= 30.0].groupby(level=1).min())

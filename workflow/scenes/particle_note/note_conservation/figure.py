@@ -1,24 +1,16 @@
 """Particle strength exchange on particles anywhere."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, entry, legend_below, log_log, name_ticks, note, slope_triangle
+from fracstudy import style
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, entry, legend_below, log_log, note
 
-__all__ = ["figure"]
-
-_BLUE = "#0072B2"
-_LOOKS: dict[str, dict[str, Any]] = {
-    "lattice": {"color": "#009E73", "marker": "s"},
-    "mapped": {"color": "#CC79A7", "marker": "D"},
-    "jittered": {"color": "#D55E00", "marker": "^"},
-    "random": {"color": _BLUE, "marker": "o"},
+_LOOKS: dict[str, Look] = {
+    "lattice": {"color": style.GREEN, "marker": "s"},
+    "mapped": {"color": style.PINK, "marker": "D"},
+    "jittered": {"color": style.RED, "marker": "^"},
+    "random": {"color": style.BLUE, "marker": "o"},
 }
 _HOLLOW = {"markerfacecolor": "none"}
 _KERNELS = {"Gaussian (20)": {"linestyle": "-"}, "skewed (20)": {"linestyle": "--", **_HOLLOW}}
@@ -34,24 +26,18 @@ def figure(
     _solution(axes[0], panels["solution"], panels["exact"], 2.0 * half_width / particles)
     _mass(axes[1], panels["mass"])
     _accuracy(axes[2], panels["operator"])
-    handles: list[Any] = [
-        *axes[2].get_legend_handles_labels()[0],
-        entry("random", **_LOOKS["random"]),
-    ]
-    legend_below(drawn, handles)
+    handles = axes[2].get_legend_handles_labels()[0]
+    legend_below(drawn, [*handles, entry("random", **_LOOKS["random"])])
     return drawn
 
 
 def _solution(ax: Axes, part: pd.DataFrame, exact: pd.DataFrame, width: float) -> None:
     part = part[part["x"].abs() < 5.0]
-    ax.plot(exact["x"], exact["y"], color="black", linewidth=1.0, label="exact")
-    areas: dict[str, Any] = {
-        "s": 9.0 * part["volume"] / width,
-        "linewidth": 0,
-        "label": "random particles",
-    }
-    ax.scatter(part["x"], part["y"], color=_BLUE, alpha=0.7, **areas)
-    ax.plot(part["x"], np.full(len(part), -0.012), "|", color=_BLUE, markersize=5)
+    draw(ax, exact, color="black", linewidth=1.0, label="exact")
+    areas: Look = {"s": 9.0 * part["volume"] / width, "linewidth": 0}
+    areas["label"] = "random particles"
+    ax.scatter(part["x"], part["y"], color=style.BLUE, alpha=0.7, **areas)
+    ax.plot(part["x"], np.full(len(part), -0.012), "|", color=style.BLUE, markersize=5)
     ax.set(xlabel="$x$", ylabel="$Q_i / V_i$ at the end", ylim=(-0.025, 0.43))
     ax.legend(loc="upper left", fontsize=7, ncols=2)
 
@@ -71,13 +57,12 @@ def _mass(ax: Axes, part: pd.DataFrame) -> None:
 def _accuracy(ax: Axes, part: pd.DataFrame) -> None:
     large = {"lattice": {"markersize": 8, **_HOLLOW}}
     for (kind, power), curve in part.groupby(["kind", "power"], sort=False):
-        curve = curve.sort_values("x")
         label = kind if power == 1.0 else rf"{kind}, $\epsilon \propto h^{{1/2}}$"
         look = {"linestyle": "-" if power == 1.0 else ":", "markersize": 4.5, **_LOOKS[kind]}
-        ax.plot(curve["x"], curve["y"], label=label, **{**look, **large.get(kind, {})})
+        draw(ax, curve.sort_values("x"), label=label, **look | large.get(kind, {}))
     log_log(ax, xlabel="particle spacing $h$")
     ax.set_ylabel("relative error of $f''$ by (26)")
-    name_ticks(ax, sorted(part["x"].unique()))
+    style.name_ticks(ax, sorted(part["x"].unique()))
     ax.minorticks_off()
     finest = part.loc[part.loc[part["kind"] == "lattice", "x"].idxmin()]
-    slope_triangle(ax, 1.3 * finest["x"], 0.6 * finest["y"], 2.0)
+    style.slope_triangle(ax, 1.3 * finest["x"], 0.6 * finest["y"], 2.0)

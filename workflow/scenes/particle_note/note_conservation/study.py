@@ -1,36 +1,22 @@
 """Particle strength exchange (26) on particles anywhere (Sec. 3): what it conserves, and what irregularity costs."""
 
-from __future__ import annotations
-
+from functools import partial
 from itertools import product
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    Kernel,
-    StrengthExchange,
-    construct,
-    construct_laplacian,
-    moment,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, construct, moment
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.run.orders import observed_order
 from fracparticles.time import STEP_POLYNOMIALS, step
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-from scenes.particle_note.waves import (
-    SEED,
-    Skewed,
-    arranged,
-    heat,
-    heat_second,
-    second_derivative_error,
-)
-
-__all__ = ["study"]
+from fracstudy.panels import Panels
+from scenes.particle_note import waves
+from scenes.particle_note.waves import SEED, Skewed, arranged, heat
 
 _EPS = float(np.finfo(float).eps)
 _START = 0.5
@@ -41,6 +27,7 @@ _MORE = 4  # times as many seeds
 _RK4 = STEP_POLYNOMIALS["rk4"]
 _LOST = "ΣQ(T) / ΣQ(0) - 1"
 _BOUND = "round-off, bound"
+_KINDS = ("lattice", "mapped", "jittered", "random")
 # Arrangement and power of h in eps; the last has eps = overlap h on the coarsest level and widens it from there.
 _RULES = (("lattice", 1.0), ("mapped", 1.0), ("jittered", 1.0), ("jittered", 0.5))
 
@@ -70,21 +57,20 @@ def study(
         "skewed (20)": Skewed(),
     }
     rows: list[dict[str, Any]] = []
-    parts = []
-    for kind in ("lattice", "mapped", "jittered", "random"):
+    panels = Panels()
+    for kind in _KINDS:
         x, v = arranged(kind, n, *domain)
         for name, kernel in kernels.items():
             exchange = StrengthExchange(x, v, epsilon, kernel)
             row, history, q = _run(exchange, v * heat(x, _START), time)
             row["error of f(x, T)"] = _solution_error(x, v, q, time)
             rows.append({"particles": kind, "kernel": name, **row})
-            parts.append(history.assign(panel="mass", kind=kind, series=name))
+            panels.add(**history, panel="mass", kind=kind, series=name)
             if name == "Gaussian (20)" and kind == "random":
-                parts.append(pd.DataFrame({"panel": "solution", "x": x, "y": q / v, "volume": v}))
+                panels.add("solution", x=x, y=q / v, volume=v)
     x = np.linspace(-5.0, 5.0, 301)
-    parts.append(pd.DataFrame({"panel": "exact", "x": x, "y": heat(x, _START + time)}))
-    others = [_any_volumes(n, half_width, epsilon), _two_dimensions(n)]
-    for (kind, name), exchange, q in others:
+    panels.add("exact", x=x, y=heat(x, _START + time))
+    for (kind, name), exchange, q in (_any_volumes(n, half_width, epsilon), _two_dimensions(n)):
         rows.append({"particles": kind, "kernel": name, **_run(exchange, q, time)[0]})
     table = pd.DataFrame(rows)
     accuracy = _accuracy(domain, overlap, time, numbers, seeds)
@@ -94,12 +80,13 @@ def study(
         _high_order(numbers, half_width, overlap),
         _anywhere(accuracy, domain, overlap, numbers, seeds),
     ]
-    return Result(table, inputs.judged(findings), pd.concat([*parts, accuracy], ignore_index=True))
+    panels.add(**accuracy)
+    return Result(table, inputs.judged(findings), panels.frame)
 
 
 def _run(
     exchange: StrengthExchange, q: np.ndarray, time: float
-) -> tuple[dict[str, Any], pd.DataFrame, np.ndarray]:
+) -> tuple[dict[str, Any], dict[str, np.ndarray], np.ndarray]:
     """Integrate to the time T by RK4 in ten parts; the change of the total strength after each."""
     parts = 10
     steps = int(np.ceil(exchange.rate * time / parts / (0.8 * _RK4.stability_interval)))
@@ -116,7 +103,7 @@ def _run(
         _BOUND: 4.0 * _EPS * np.log2(exchange.size) * exchange.rate * time,
     }
     times = np.linspace(0.0, time, parts + 1)
-    return row, pd.DataFrame({"x": times, "y": np.abs(change)}), q
+    return row, {"x": times, "y": np.abs(change)}, q
 
 
 def _solution_error(x: np.ndarray, v: np.ndarray, q: np.ndarray, time: float) -> float:
@@ -141,7 +128,7 @@ def _two_dimensions(n: int) -> _Case:
     """Uniform random particles in a square of side 4, equal volumes, the Laplacian of order 2."""
     x = np.random.default_rng(SEED).uniform(-2.0, 2.0, (n, 2))
     volume = 16.0 / n
-    exchange = StrengthExchange(x, volume, 2.0 * np.sqrt(volume), construct_laplacian(2, 2))
+    exchange = StrengthExchange(x, volume, 2.0 * np.sqrt(volume), pse.construct_laplacian(2, 2))
     strength = volume * np.exp(-((x - 0.5) ** 2).sum(axis=1))
     return ("random, 2-D", "Laplacian, r = 2"), exchange, strength
 
@@ -161,10 +148,9 @@ def _accuracy(
             steps = int(np.ceil(exchange.rate * time / (0.8 * _RK4.stability_interval)))
             q = step(exchange, _RK4, time / steps, steps, v * heat(x, _START))
             errors.append((operator, _solution_error(x, v, q, time)))
-        for panel, error in zip(
-            ("operator", "solution error"), zip(*errors, strict=True), strict=True
-        ):
-            rows.append({"panel": panel, "kind": kind, "power": power, "x": h, "y": np.mean(error)})
+        where = {"kind": kind, "power": power, "x": h}
+        for panel, error in zip(("operator", "solution error"), np.transpose(errors), strict=True):
+            rows.append({"panel": panel, **where, "y": np.mean(error)})
     return pd.DataFrame(rows)
 
 
@@ -173,11 +159,8 @@ def _tried(
 ) -> tuple[np.ndarray, np.ndarray, StrengthExchange, float]:
     """Particles, their volumes, the exchange with (20), and its root mean square error of f'' for |x| < 4."""
     x, v = arranged(kind, n, *domain, seed)
-    inside = np.abs(x) < _CENTRE
     exchange = StrengthExchange(x, v, epsilon, GAUSSIAN_20)
-    exact = heat_second(x, _START)[inside]
-    off = (exchange.apply(v * heat(x, _START)) / v)[inside] - exact
-    return x, v, exchange, np.sqrt((off**2).mean() / (exact**2).mean())
+    return x, v, exchange, waves.rms_error(exchange, x, v, _START, _CENTRE)
 
 
 def _conserved(table: pd.DataFrame) -> Finding:
@@ -201,7 +184,7 @@ def _conserved(table: pd.DataFrame) -> Finding:
 def _same_as_21(n: int, domain: tuple[float, float], epsilon: float) -> Finding:
     """(26) against V_i D times (21) with f = Q / V, on irregular particles."""
     deviation = {}
-    for kind in ("lattice", "mapped", "jittered", "random"):
+    for kind in _KINDS:
         x, v = arranged(kind, n, *domain)
         f = heat(x, _START)
         direct = v * derivative_by_sum(x, f, x, f, v, epsilon, GAUSSIAN_20, 2)
@@ -215,7 +198,7 @@ def _high_order(numbers: list[int], half_width: float, overlap: float) -> Findin
     spacing = 2.0 * half_width / np.array(sorted(numbers)[:2])
     power = {}
     for r in _ACCURACIES:
-        error = [second_derivative_error(construct(2, r), h, overlap) for h in spacing]
+        error = [waves.second_derivative_error(construct(2, r), h, overlap) for h in spacing]
         power[f"r = {r}"] = abs(float(observed_order(spacing, error)[-1]) - r)
     return measured("P-C3.high_order", deviation=power)
 
@@ -232,14 +215,9 @@ def _anywhere(
     With eps as h^p the quadrature's part (h/eps)^(5/2) / eps falls as eps^2 or faster for p up to 5/11; p is 2/5 here.
     """
     fixed, wide = f"ε = {overlap:g} h", "ε ∝ h^(2/5)"
-    power = {
-        f"{name}, {fixed}": _order(accuracy, "operator", kind)
-        for kind, name in (
-            ("lattice", "lattice"),
-            ("mapped", "smooth map"),
-            ("jittered", "jittered"),
-        )
-    }
+    names = {"lattice": "lattice", "mapped": "smooth map", "jittered": "jittered"}
+    order = partial(_order, accuracy)
+    power = {f"{name}, {fixed}": order("operator", kind) for kind, name in names.items()}
     coarsest = 2.0 * domain[0] / min(numbers)
     # Errors on random particles with wide kernels differ the most from seed to seed.
     for kind, rule, tries in (("random", fixed, 1), ("jittered", wide, 1), ("random", wide, _MORE)):
@@ -251,12 +229,9 @@ def _anywhere(
             for n, e in zip(numbers, radii, strict=True)
         ]
         power[f"{kind}, {rule}"] = float(np.polyfit(np.log(radii), np.log(error), 1)[0])
-    return measured(
-        "P-C3.arbitrary_positions",
-        short={case: 2.0 - p for case, p in power.items()},
-        power=power,
-        solution=_order(accuracy, "solution error", "jittered"),
-    )
+    short = {case: 2.0 - p for case, p in power.items()}
+    solution = order("solution error", "jittered")
+    return measured("P-C3.arbitrary_positions", short=short, power=power, solution=solution)
 
 
 def _order(accuracy: pd.DataFrame, panel: str, kind: str, power: float = 1.0) -> float:

@@ -1,36 +1,29 @@
 """The error law of the note, its two terms apart and together."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, entry, log_log, name_ticks, note, slope_triangle
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import BLUE, GREEN, ORANGE, RED, Axes, Figure, Look, draw, log_log, note
 from scenes.particle_note.waves import LINES
 
-__all__ = ["figure"]
-
 _DERIVATIVES = {0: "*", 1: "s", 2: "o", 3: "^", 4: "D"}
-_BY_SPACING = ("#0072B2", "#009E73", "#E69F00", "#D55E00")
+_BY_SPACING = (BLUE, GREEN, ORANGE, RED)
 _TICKS = {0.125: "1/8", 0.25: "1/4", 0.5: "1/2", 1.0: "1"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """(a) regularisation over its constant, (b) quadrature with its bound, (c) both against the radius."""
-    drawn, axes = axes_row(3, height=3.7, width=3.2)
-    panels = dict(tuple(series.groupby("panel")))
-    _regularisation(axes[0], panels["regularisation"])
-    _quadrature(axes[1], panels["quadrature"], panels["bound"])
-    _total(axes[2], panels["total"])
+    drawn, axes = style.axes_row(3, height=3.7, width=3.2)
+    _regularisation(axes[0], pick(series, panel="regularisation"))
+    _quadrature(axes[1], pick(series, panel="quadrature"), pick(series, panel="bound"))
+    _total(axes[2], pick(series, panel="total"))
     return drawn
 
 
 def _regularisation(ax: Axes, part: pd.DataFrame) -> None:
-    hollow: dict[str, Any] = {"markerfacecolor": "none", "linestyle": ""}
+    hollow: Look = {"markerfacecolor": "none", "linestyle": ""}
     for (r, beta), curve in part.sort_values("x").groupby(["r", "beta"]):
         look = {**hollow, "color": LINES[r]["color"], "marker": _DERIVATIVES[beta]}
         aside = 1.06 ** (beta - 2)  # they would lie on one another
@@ -42,24 +35,22 @@ def _regularisation(ax: Axes, part: pd.DataFrame) -> None:
         note(ax, rf"$\epsilon^{int(r)}$", at, (-22, 0), color=LINES[r]["color"], **beside)
     log_log(ax, xlabel=r"kernel radius $\epsilon$")
     ax.set_xlim(0.55 * radii[0], 1.25 * radii[-1])
-    name_ticks(ax, radii)
+    style.name_ticks(ax, radii)
     ax.minorticks_off()
     ax.set_ylabel(r"regularisation error $/\ (C_1\, \|f^{(\beta+r)}\|)$")
     marks = [
-        entry(rf"$\beta$ = {int(b)}", color="0.3", marker=_DERIVATIVES[b], **hollow)
+        style.entry(rf"$\beta$ = {int(b)}", color="0.3", marker=_DERIVATIVES[b], **hollow)
         for b in sorted(part["beta"].unique())
     ]
     ax.legend(handles=marks, loc="lower right", fontsize=7)
 
 
 def _quadrature(ax: Axes, waves: pd.DataFrame, bounds: pd.DataFrame) -> None:
-    for (name, curve), line in zip(
-        waves.groupby("series", sort=False), LINES.values(), strict=False
-    ):
-        colour = line["color"]
-        ax.plot(curve["x"], curve["y"], color=colour)
-        bound = bounds[bounds["series"] == name]
-        ax.plot(bound["x"], bound["y"], "--", color=colour, linewidth=0.8)
+    colours = [line["color"] for line in LINES.values()]
+    for (name, curve), colour in zip(waves.groupby("series", sort=False), colours, strict=False):
+        draw(ax, curve, color=colour)
+        bound = pick(bounds, series=name)
+        draw(ax, bound, "--", color=colour, linewidth=0.8)
         if len(bound):
             (x, y), (right, top) = bound[["x", "y"]].to_numpy()[[-1, 0]]
             m = np.log(top / y) / np.log(right / x)
@@ -84,8 +75,8 @@ def _total(ax: Axes, part: pd.DataFrame) -> None:
         ax.plot(x, y, color=colour, label=f"$h$ = {h:g}")
         at = np.exp(np.interp(np.log(h), np.log(x), np.log(y)))
         ax.plot(h, at, "o", color=colour, markersize=5)
-    ax.plot(lattice["x"], lattice["y"], "k*", markersize=7, label="moments met\non the lattice")
+    draw(ax, lattice, "k*", markersize=7, label="moments met\non the lattice")
     log_log(ax, xlabel=r"kernel radius $\epsilon$  (dot: $\epsilon = h$)")
     ax.set(ylabel="error of $f''$, sum (21)", ylim=(1e-5, 4.0))
-    slope_triangle(ax, 0.35, 0.2 * 0.125 * 0.35**2, 2.0)
+    style.slope_triangle(ax, 0.35, 0.2 * 0.125 * 0.35**2, 2.0)
     ax.legend(loc="lower right", fontsize=7)

@@ -1,34 +1,22 @@
 """The error law of the lecture note, C_1 eps^r + C_2 (h/eps)^m (Sec. 2.2), its two terms measured one by one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
+from functools import partial
 from itertools import product
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    Kernel,
-    SplineKernel,
-    construct,
-    lattice,
-    lattice_moment,
-    moment,
-    reconstruct,
-    regularised,
-    required_moments,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, Kernel, SplineKernel, construct, lattice, regularised
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.pse.construction import taylor_constant
 from fracparticles.run.orders import observed_order
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import Panels
 from scenes.particle_note.waves import wave
-
-__all__ = ["study"]
 
 
 def study(
@@ -58,23 +46,20 @@ def study(
     together for the `radii` (first, last, number) and each `spacing`. `coarse` is an eps / h without overlap, and
     `ratio` holds those h / eps at which h and eps are refined together.
     """
-    first, lines = _regularisation(derivative, accuracy, epsilon)
-    second, waves = _quadrature(degree, radius, np.linspace(1.0, overlap[0], int(overlap[1])))
+    panels = Panels()
+    first = _regularisation(panels, derivative, accuracy, epsilon)
+    overlaps = np.linspace(1.0, overlap[0], int(overlap[1]))
+    second = _quadrature(panels, degree, radius, overlaps)
     third = _prefactor([beta for beta in derivative if beta > 0], epsilon, coarse)
-    total = _total(np.geomspace(radii[0], radii[1], int(radii[2])), spacing, coarse)
+    _total(panels, np.geomspace(radii[0], radii[1], int(radii[2])), spacing, coarse)
     table = pd.concat([first, second, third], ignore_index=True)
-    series = pd.concat([*lines, *waves, *total], ignore_index=True)
     findings = [
         *_of_regularisation(first),
         *_of_quadrature(second, radius),
         _of_law(third, coarse),
         _of_overlap(0.125 * np.array(epsilon), ratio, coarse),
     ]
-    return Result(table, inputs.judged(findings), series)
-
-
-def _line(panel: str, x: Any, y: Any, **more: Any) -> pd.DataFrame:
-    return pd.DataFrame({"panel": panel, **more, "x": x, "y": y})
+    return Result(table, inputs.judged(findings), panels.frame)
 
 
 def _power(x: Any, error: Any) -> float:
@@ -86,31 +71,30 @@ def _power(x: Any, error: Any) -> float:
 
 
 def _regularisation(
-    derivative: list[int], accuracy: list[int], radii: list[float]
-) -> tuple[pd.DataFrame, list[pd.DataFrame]]:
+    panels: Panels, derivative: list[int], accuracy: list[int], radii: list[float]
+) -> pd.DataFrame:
     """Rows and lines of the error of the integral (18), for each beta and r."""
-    rows, lines = [], []
+    rows = []
     for beta, r in product(derivative, accuracy):
         kernel = construct(beta, r)
         constant = abs(float(taylor_constant(kernel, beta, r)))
         error = np.array([_integral_error(kernel, epsilon, beta) for epsilon in radii])
         doubled = _integral_error(kernel, radii[-1], beta, kappa=2.0)
-        rows.append(
-            {
-                "term": "regularisation",
-                "derivative": beta,
-                "kernel": f"Gaussian, r = {r}",
-                "power of": "ε",
-                "predicted power": float(r),
-                "power": _power(radii, error),
-                "predicted constant": constant,
-                "constant": error[-1] / radii[-1] ** r,
-                "power of κ, printed": float(r),
-                "power of κ": float(np.log2(doubled / error[-1])),
-            }
-        )
-        lines.append(_line("regularisation", radii, error / constant, beta=beta, r=r))
-    return pd.DataFrame(rows), lines
+        row = {
+            "term": "regularisation",
+            "derivative": beta,
+            "kernel": f"Gaussian, r = {r}",
+            "power of": "ε",
+            "predicted power": float(r),
+            "power": _power(radii, error),
+            "predicted constant": constant,
+            "constant": error[-1] / radii[-1] ** r,
+            "power of κ, printed": float(r),
+            "power of κ": float(np.log2(doubled / error[-1])),
+        }
+        rows.append(row)
+        panels.add("regularisation", beta=beta, r=r, x=radii, y=error / constant)
+    return pd.DataFrame(rows)
 
 
 def _integral_error(kernel: Kernel, epsilon: float, beta: int, kappa: float = 1.0) -> float:
@@ -127,40 +111,29 @@ def _off(rows: pd.DataFrame) -> tuple[pd.Series, pd.Series]:
 
 
 def _of_regularisation(rows: pd.DataFrame) -> Iterator[Finding]:
-    rows = rows.set_index(rows["predicted power"].astype(int).rename("r"))
-    rows = rows.set_index(rows["derivative"].rename("beta"), append=True).swaplevel()
+    rows = rows.assign(beta=rows["derivative"], r=rows["predicted power"].astype(int))
+    rows = rows.set_index(["beta", "r"])
     power, constant = _off(rows)
     yield measured("P-C1.regularisation", power=power, constant=constant)
-    derivatives = rows[rows["derivative"] > 0]
-    printed = (derivatives["power of κ"] - derivatives["power of κ, printed"]).abs()
-    meant = (printed - derivatives["derivative"]).abs()
-    function = rows[rows["derivative"] == 0]
-    yield measured(
-        "P-C1.regularisation_norm",
-        printed=printed,
-        meant=meant,
-        function=(function["power of κ"] - function["power of κ, printed"]).abs().max(),
-    )
+    off, beta = (rows["power of κ"] - rows["power of κ, printed"]).abs(), rows["derivative"]
+    numbers = {"printed": off[beta > 0], "meant": (off - beta).abs()[beta > 0]}
+    yield measured("P-C1.regularisation_norm", **numbers, function=off[beta == 0].max())
 
 
 # --- C_2 (h/eps)^m --------------------------------------------------------------------------------
 
 
 def _quadrature(
-    degree: list[int], epsilon: float, overlap: np.ndarray
-) -> tuple[pd.DataFrame, list[pd.DataFrame]]:
+    panels: Panels, degree: list[int], epsilon: float, overlap: np.ndarray
+) -> pd.DataFrame:
     """Rows and lines of the error of the sum (21) against the integral (18), for f'' at a fixed radius."""
     kernels: dict[str, Kernel] = {f"spline, degree {q}": SplineKernel(q) for q in degree}
-    rows, lines = [], []
+    rows = []
     for name, kernel in [*kernels.items(), ("Gaussian (20)", GAUSSIAN_20)]:
         error = np.array([_sum_error(kernel, epsilon, epsilon / s, 2) for s in overlap])
-        relative = np.abs(lattice_moment(kernel, 2, overlap) - 2.0) / 2.0
-        row: dict[str, Any] = {
-            "term": "quadrature",
-            "derivative": 2,
-            "kernel": name,
-            "power of": "h/ε",
-        }
+        relative = np.abs(pse.lattice_moment(kernel, 2, overlap) - 2.0) / 2.0
+        row: dict[str, Any] = {"term": "quadrature", "derivative": 2, "kernel": name}
+        row["power of"] = "h/ε"
         row["power of κ"] = _kappa_power(kernel, epsilon, 2)
         if isinstance(kernel, SplineKernel):
             m = kernel.degree + 1.0
@@ -168,15 +141,14 @@ def _quadrature(
             row["power"] = -_power_of_maxima(overlap, error)
             row["predicted constant"] = float((overlap**m * relative).max())
             row["constant"] = float((overlap**m * error).max())
-            bound = row["constant"] * overlap**-m
-            lines.append(_line("bound", 1.0 / overlap, bound, series=name))
+            panels.add("bound", name, 1.0 / overlap, row["constant"] * overlap**-m)
         else:
             # Any power: what is left of the error from one overlap to the next is no power.
             finer = _sum_error(kernel, epsilon, epsilon / 2.0, 2)
             row["power"] = float(np.log2(error[0] / finer))
         rows.append(row)
-        lines.append(_line("quadrature", 1.0 / overlap, error, series=name))
-    return pd.DataFrame(rows), lines
+        panels.add("quadrature", name, 1.0 / overlap, error)
+    return pd.DataFrame(rows)
 
 
 def _sum(
@@ -200,9 +172,7 @@ def _sum_error(kernel: Kernel, epsilon: float, h: float, beta: int, kappa: float
 
 
 def _kappa_power(kernel: Kernel, epsilon: float, beta: int, overlap: float = 1.5) -> float:
-    single, double = (
-        _sum_error(kernel, epsilon, epsilon / overlap, beta, kappa) for kappa in (0.5, 1.0)
-    )
+    single, double = (_sum_error(kernel, epsilon, epsilon / overlap, beta, k) for k in (0.5, 1.0))
     return float(np.log2(double / single))
 
 
@@ -222,24 +192,17 @@ def _of_quadrature(rows: pd.DataFrame, epsilon: float) -> Iterator[Finding]:
     splines = rows.dropna(subset="predicted power")
     splines = splines.set_index(splines["predicted power"].rename("m"))
     power, constant = _off(splines)
-    gauss = rows.loc[rows["predicted power"].isna(), "power"].iloc[0]
-    found = splines["power"]
-    yield measured(
-        "P-C1.quadrature", off=power, power=found, constant=constant, gauss=round(float(gauss))
-    )
-    # The largest error for a power of x below the m-th, whose m-th derivative is zero.
-    residual = {
-        f"m = {m:g}": max(
-            _error_of_power(SplineKernel(int(m) - 1), epsilon, k) for k in range(1, int(m))
-        )
-        for m in splines.index
-    }
-    yield measured(
-        "P-C1.quadrature_norm",
-        residual=residual,
-        kappa=splines["power of κ"],
-        one=_error_of_one(epsilon),
-    )
+    gauss = round(float(rows.loc[rows["predicted power"].isna(), "power"].iloc[0]))
+    numbers = {"power": splines["power"], "constant": constant, "gauss": gauss}
+    yield measured("P-C1.quadrature", off=power, **numbers)
+
+    def residual(m: float) -> float:
+        """The largest error for a power of x below the m-th, whose m-th derivative is zero."""
+        kernel = SplineKernel(int(m) - 1)
+        return max(_error_of_power(kernel, epsilon, k) for k in range(1, int(m)))
+
+    norms = {"kappa": splines["power of κ"], "one": _error_of_one(epsilon)}
+    yield measured("P-C1.quadrature_norm", residual=each(residual, m=splines.index), **norms)
 
 
 def _error_of_power(kernel: Kernel, epsilon: float, k: int) -> float:
@@ -257,8 +220,8 @@ def _error_of_one(epsilon: float) -> float:
     h, kernel = epsilon / 1.5, SplineKernel(1)
     particles = lattice(-2.0 * epsilon, 2.0 * epsilon + h, h)
     x = np.linspace(0.0, h, 21)
-    mass = moment(kernel, 0)
-    found = reconstruct(x, particles, np.ones_like(particles), h, epsilon, kernel) / mass
+    mass = pse.moment(kernel, 0)
+    found = pse.reconstruct(x, particles, np.ones_like(particles), h, epsilon, kernel) / mass
     return float(np.abs(found - 1.0).max())
 
 
@@ -273,17 +236,16 @@ def _prefactor(derivative: list[int], radii: list[float], overlap: float) -> pd.
         error = [_sum_error(kernel, e, e / overlap, beta) for e in radii]
         # The lowest moment of the parity of the kernel that f(y) - f(x) leaves.
         lowest = 2 - beta % 2
-        rows.append(
-            {
-                "term": f"quadrature, h = {1.0 / overlap:.3g} ε",
-                "derivative": beta,
-                "kernel": "Gaussian, r = 2",
-                "power of": "ε",
-                "predicted power": float(lowest - beta),
-                "power": _power(radii, error),
-                "power of κ": _kappa_power(kernel, radii[-1], beta, overlap),
-            }
-        )
+        row = {
+            "term": f"quadrature, h = {1.0 / overlap:.3g} ε",
+            "derivative": beta,
+            "kernel": "Gaussian, r = 2",
+            "power of": "ε",
+            "predicted power": float(lowest - beta),
+            "power": _power(radii, error),
+            "power of κ": _kappa_power(kernel, radii[-1], beta, overlap),
+        }
+        rows.append(row)
     return pd.DataFrame(rows)
 
 
@@ -292,15 +254,14 @@ def _of_law(rows: pd.DataFrame, coarse: float) -> Finding:
     return measured("P-C1.law", off=power.abs(), power=power, ratio=1.0 / coarse)
 
 
-def _total(radii: np.ndarray, spacing: list[float], coarse: float) -> list[pd.DataFrame]:
+def _total(panels: Panels, radii: np.ndarray, spacing: list[float], coarse: float) -> None:
     """The error of (21) with (20), and with the moments met on the lattice, for several h."""
-    lines = []
     for h in spacing:
         error = [_sum_against_derivative(GAUSSIAN_20, epsilon, h) for epsilon in radii]
-        lines.append(_line("total", radii, error, series=str(h)))
+        panels.add("total", str(h), radii, error)
     corrected = construct(2, 2, coarse)
     error = [_sum_against_derivative(corrected, coarse * h, h) for h in spacing]
-    return [*lines, _line("total", coarse * np.array(spacing), error, series="lattice")]
+    panels.add("total", "lattice", coarse * np.array(spacing), error)
 
 
 def _sum_against_derivative(kernel: Kernel, epsilon: float, h: float) -> float:
@@ -310,21 +271,21 @@ def _sum_against_derivative(kernel: Kernel, epsilon: float, h: float) -> float:
 
 def _of_overlap(radii: np.ndarray, ratios: list[float], coarse: float) -> Finding:
     """Errors of (21) with (20) at a fixed h / eps on ever finer lattices, until the error of quadrature is left."""
-    errors = {
-        ratio: [_sum_against_derivative(GAUSSIAN_20, e, ratio * e) for e in radii]
-        for ratio in ratios
-    }
-    power = pd.Series({ratio: _power(radii, error) for ratio, error in errors.items()})
-    power.index.name = "h/eps"
+
+    def of_ratio(ratio: float) -> list[float]:
+        return [_sum_against_derivative(GAUSSIAN_20, e, ratio * e) for e in radii]
+
+    errors = each(of_ratio, **{"h/eps": ratios})
+    power = errors.map(partial(_power, radii))
     corrected = construct(2, 2, coarse)
-    wanted = required_moments(2, 2)[2]
+    wanted = pse.required_moments(2, 2)[2]
     return measured(
         "P-C1.overlap",
         apart=power[power.index >= 1.0],
         close=(power[power.index <= 0.5] - 2.0).abs(),
         power=power,
-        last={f"h/eps = {ratio:g}": error[-1] for ratio, error in errors.items()},
-        floor=abs(float(lattice_moment(GAUSSIAN_20, 2)) - wanted) / wanted,
+        last=errors.str[-1],
+        floor=abs(float(pse.lattice_moment(GAUSSIAN_20, 2)) - wanted) / wanted,
         ratio=1.0 / coarse,
         corrected=_power(radii, [_sum_against_derivative(corrected, e, e / coarse) for e in radii]),
     )

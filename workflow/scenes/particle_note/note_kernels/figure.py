@@ -1,26 +1,22 @@
 """Kernels from moment conditions."""
 
-from __future__ import annotations
-
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, legend_below, panel_title
+from fracstudy.panels import pick
+from fracstudy.style import Figure, axes_row, legend_below
 from scenes.particle_note.waves import LINES
-
-__all__ = ["figure"]
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[int]) -> Figure:
     """The kernels of some derivatives, with each accuracy, over their largest value."""
-    drawn, axes = axes_row(len(shown), height=2.8, width=9.6 / len(shown), sharey=True)
-    for letter, ax, beta in zip("abcdefgh", axes, shown, strict=False):
-        for r, curve in series[series["beta"] == beta].groupby("r"):
+    parity = ("symmetric", "antisymmetric")
+    titles = [rf"$\beta$ = {beta}, {parity[beta % 2]}" for beta in shown]
+    drawn, axes = axes_row(titles, height=2.8, width=9.6 / len(shown), sharey=True)
+    for ax, beta in zip(axes, shown, strict=True):
+        for r, curve in pick(series, beta=beta).groupby("r"):
             scaled = curve["y"] / curve["y"].abs().max()
             ax.plot(curve["x"], scaled, label=f"$r$ = {r}", **LINES[r])
         ax.axhline(0.0, color="0.6", linewidth=0.6)
-        shape = "symmetric" if beta % 2 == 0 else "antisymmetric"
-        panel_title(ax, letter, rf"$\beta$ = {beta}, {shape}")
         ax.set(xlabel="$z$", xlim=(-4.0, 4.0))
     axes[0].set_ylabel(r"kernel $\eta(z)\, /\, \max|\eta|$")
     legend_below(drawn, axes[0])

@@ -1,7 +1,5 @@
 """Kernels from moment conditions (Sec. 2.2, 2.3 of the lecture note)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from math import factorial
@@ -10,24 +8,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    GaussianKernel,
-    construct,
-    construct_laplacian,
-    gaussian_moment,
-    moment,
-    regularised,
-    required_moments,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, GaussianKernel, construct, moment, required_moments
 from fracparticles.pse.construction import taylor_constant
 from fracparticles.pse.moments import absolute_moment
 from fracparticles.run.orders import observed_order
-from fracstudy.findings import Finding, measured
+from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.panels import Panels
 from scenes.particle_note.waves import Skewed, second_derivative_error
-
-__all__ = ["study"]
 
 _HIGHEST = 12  # the moments that "for all k > 3" is checked up to
 _DEGREE = 8  # of the polynomials that (15) is tried on
@@ -47,35 +36,31 @@ def study(
     Moments are by quadrature; their errors are in parts of int |z^k eta| dz. The error of (21) is that on lattices of
     the spacings, the overlap large enough to make the quadrature exact.
     """
-    rows, series = [], []
-    z = np.linspace(-4.0, 4.0, 401)
+    rows, panels, z = [], Panels(), np.linspace(-4.0, 4.0, 401)
     for beta, r in product(derivative, accuracy):
         kernel = construct(beta, r)
-        series.append(pd.DataFrame({"beta": beta, "r": r, "x": z, "y": kernel(z)}))
-        errors = _moment_errors(kernel, beta, r)
+        panels.add(beta=beta, r=r, x=z, y=kernel(z))
         row = {"derivative": f"order {beta}", "r": r, **_solved(kernel)}
         row["largest error of a moment"] = max(
-            error / absolute_moment(kernel, k) for k, error in errors.items()
+            abs(moment(kernel, k) - wanted) / absolute_moment(kernel, k)
+            for k, wanted in required_moments(beta, r).items()
         )
         row["C₁ = |M_(β+r)| / (β+r)!"] = abs(float(taylor_constant(kernel, beta, r)))
         rows.append(row)
     line = pd.DataFrame(rows)
     for dim, r in product((2, 3), accuracy):
         name = f"Laplacian, {dim}-D"
-        rows.append({"derivative": name, "r": r, **_solved(construct_laplacian(r, dim))})
+        rows.append({"derivative": name, "r": r, **_solved(pse.construct_laplacian(r, dim))})
+    decay = GAUSSIAN_20(_REACH) / GAUSSIAN_20(0.0)
     findings = [
         _gaussian(),
         _order(spacing, overlap),
         *_construction(line, derivative, accuracy),
         _taylor(),
         _exact(derivative, accuracy),
-        measured(
-            "P-C2.support",
-            far=float(GAUSSIAN_20(_FAR)),
-            decay=float(GAUSSIAN_20(_REACH) / GAUSSIAN_20(0.0)),
-        ),
+        measured("P-C2.support", far=GAUSSIAN_20(_FAR), decay=decay),
     ]
-    return Result(pd.DataFrame(rows), inputs.judged(findings), pd.concat(series, ignore_index=True))
+    return Result(pd.DataFrame(rows), inputs.judged(findings), panels.frame)
 
 
 def _solved(kernel: GaussianKernel) -> dict[str, Any]:
@@ -84,11 +69,6 @@ def _solved(kernel: GaussianKernel) -> dict[str, Any]:
         "conditions solved": len(kernel.coefficients),
         "condition number": kernel.condition,
     }
-
-
-def _moment_errors(kernel: GaussianKernel, beta: int, accuracy: int) -> dict[int, float]:
-    required = required_moments(beta, accuracy)
-    return {k: abs(moment(kernel, k) - wanted) for k, wanted in required.items()}
 
 
 def _polynomial(kernel: GaussianKernel) -> str:
@@ -103,16 +83,13 @@ def _polynomial(kernel: GaussianKernel) -> str:
 def _gaussian() -> Finding:
     """The moments of (20), the higher ones against 4 (1/2) (3/2) ... (k/2 - 1/2)."""
     required = required_moments(2, 2)
-    higher = range(4, _HIGHEST + 1)
+    higher = {k: moment(GAUSSIAN_20, k) for k in range(4, _HIGHEST + 1)}
+    off = {k: abs(m - 4.0 * float(pse.gaussian_moment(k))) for k, m in higher.items()}
     return measured(
         "P-C2.moments",
         error={f"M_{k}": abs(moment(GAUSSIAN_20, k) - wanted) for k, wanted in required.items()},
-        higher=max(
-            abs(moment(GAUSSIAN_20, k) - 4.0 * float(gaussian_moment(k)))
-            / absolute_moment(GAUSSIAN_20, k)
-            for k in higher
-        ),
-        greatest=max(moment(GAUSSIAN_20, k) for k in higher),
+        higher=max(gap / absolute_moment(GAUSSIAN_20, k) for k, gap in off.items()),
+        greatest=max(higher.values()),
         highest=_HIGHEST,
     )
 
@@ -122,9 +99,8 @@ def _order(spacing: list[float], overlap: float) -> Finding:
     power = observed_order(spacing, error)[-1]
     expected = float(taylor_constant(GAUSSIAN_20, 2, 2))
     constant = error[-1] / (overlap * spacing[-1]) ** 2 / expected
-    return measured(
-        "P-C2.order", off=abs(power - 2.0), power=power, constant=constant, expected=expected
-    )
+    numbers = {"power": power, "constant": constant, "expected": expected}
+    return measured("P-C2.order", off=abs(power - 2.0), **numbers)
 
 
 def _construction(
@@ -141,14 +117,9 @@ def _construction(
         condition=hardest["condition number"],
         hardest=f"{hardest['derivative']}, r = {hardest['r']}",
     )
-    pairs = pd.MultiIndex.from_product([derivative, accuracy], names=["beta", "r"])
-    every = np.array([len(required_moments(*pair)) for pair in pairs])
+    every = each(lambda beta, r: len(required_moments(beta, r)), beta=derivative, r=accuracy)
     left = line["conditions solved"].to_numpy()
-    yield measured(
-        "P-C2.symmetry",
-        work=pd.Series((every / left) ** 3, pairs),
-        every=every.sum() / left.sum(),
-    )
+    yield measured("P-C2.symmetry", work=(every / left) ** 3, every=every.sum() / left.sum())
 
 
 def _taylor() -> Finding:
@@ -157,7 +128,7 @@ def _taylor() -> Finding:
     gaps = []
     for n in range(1, _DEGREE + 1):
         f = np.polynomial.Polynomial.basis(n)
-        integral = epsilon * regularised(f, x, epsilon, kernel, 1)[0]
+        integral = epsilon * pse.regularised(f, x, epsilon, kernel, 1)[0]
         factors = {k: f.deriv(k)(x[0]) / factorial(k) * (-epsilon) ** k for k in range(1, n + 1)}
         total = sum(c * moment(kernel, k) for k, c in factors.items())
         size = sum(abs(c) * absolute_moment(kernel, k) for k, c in factors.items())
@@ -176,7 +147,7 @@ def _exact(derivative: list[int], accuracy: list[int]) -> Finding:
         kernel = construct(beta, r)
         for k in range(1, beta + r + 1):
             f = np.polynomial.Polynomial.basis(k)
-            off = abs(regularised(f, x, epsilon, kernel, beta)[0] - f.deriv(beta)(0.0))
+            off = abs(pse.regularised(f, x, epsilon, kernel, beta)[0] - f.deriv(beta)(0.0))
             off /= absolute_moment(kernel, k) * epsilon ** (k - beta)
             (met if k < beta + r else unmet).append(off)
     return measured("P-C2.exact", met=max(met), unmet=min(unmet))

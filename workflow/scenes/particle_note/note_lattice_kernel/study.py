@@ -1,44 +1,24 @@
 """The lattice kernel (27) of the lecture note (Sec. 3.1), and the finite differences that discrete moments give."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 import numpy as np
 import pandas as pd
 
-from fracparticles.pse import (
-    GAUSSIAN_20,
-    TENT_27,
-    Kernel,
-    SplineKernel,
-    Stencil,
-    StrengthExchange,
-    construct_stencil,
-    derivative,
-    lattice_moment,
-    moment,
-    required_moments,
-)
+from fracparticles import pse
+from fracparticles.pse import GAUSSIAN_20, TENT_27, Kernel, lattice_moment, moment, required_moments
 from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-from scenes.particle_note.waves import (
-    SEED,
-    arranged,
-    heat,
-    heat_second,
-    second_derivative_error,
-)
-
-__all__ = ["SCHEMES", "study"]
+from fracstudy.panels import Panels
+from scenes.particle_note.waves import SEED, arranged, rms_error, second_derivative_error
 
 _EPS = float(np.finfo(float).eps)
 _WANTED = required_moments(2, 2)[2]
 _KERNELS: dict[str, Kernel] = {
     "(27)": TENT_27,
-    "tent, M₂ = 2": SplineKernel(1),
+    "tent, M₂ = 2": pse.SplineKernel(1),
     "Gaussian (20)": GAUSSIAN_20,
 }
 
@@ -59,10 +39,7 @@ SCHEMES: Mapping[str, tuple[int, Mapping[int, Fraction | int | float]]] = {
     "f'', centred, 2nd order": (2, _both(1)),
     "f'', centred, 4th order": (2, _both(Fraction(4, 3), Fraction(-1, 12))),
     "f'', centred, 6th order": (2, _both(Fraction(3, 2), Fraction(-3, 20), Fraction(1, 90))),
-    "f'', centred, 8th order": (
-        2,
-        _both(Fraction(8, 5), Fraction(-1, 5), Fraction(8, 315), Fraction(-1, 560)),
-    ),
+    "f'', centred, 8th order": (2, _both(*map(Fraction, ("8/5", "-1/5", "8/315", "-1/560")))),
     "f'', one-sided, 2nd order": (2, {0: 2, 1: -5, 2: 4, 3: -1}),
     "f', upwind": (1, {-1: -1, 0: 1}),
     "f', centred, 2nd order": (1, {-1: Fraction(-1, 2), 1: Fraction(1, 2)}),
@@ -88,18 +65,17 @@ def study(
     widest = max(overlap)
     fine = np.linspace(0.5, widest, 20 * int(widest) + 1)
     z, i = np.linspace(-3.0, 3.0, 241), np.arange(-3.0, 4.0)
-    columns, parts = {"ε/h": np.array(overlap)}, []
+    columns, panels = {"ε/h": np.array(overlap)}, Panels()
     for name, kernel in _KERNELS.items():
         columns[f"M̂₂/2, {name}"] = lattice_moment(kernel, 2, overlap) / _WANTED
-        curves = {"shape": (z, kernel(z)), "points": (i, kernel(i))}
-        curves["moment"] = (fine, lattice_moment(kernel, 2, fine) / _WANTED)
-        for panel, (x, y) in curves.items():
-            parts.append(pd.DataFrame({"panel": panel, "series": name, "x": x, "y": y}))
+        panels.add("shape", name, z, kernel(z))
+        panels.add("points", name, i, kernel(i))
+        panels.add("moment", name, fine, lattice_moment(kernel, 2, fine) / _WANTED)
     orders = {}
     for r in accuracy:
-        error = [second_derivative_error(construct_stencil(2, r), h, 1.0) for h in spacing]
+        error = [second_derivative_error(pse.construct_stencil(2, r), h, 1.0) for h in spacing]
         orders[r] = float(observed_order(spacing, error)[-1])
-        parts.append(pd.DataFrame({"panel": "error", "series": str(r), "x": spacing, "y": error}))
+        panels.add("error", str(r), spacing, error)
     findings = [
         *_moments(claimed_moment[0] / claimed_moment[1]),
         *_elsewhere(spacing[-2:]),
@@ -107,9 +83,7 @@ def study(
         *_schemes(orders),
         *_economy(accuracy),
     ]
-    return Result(
-        pd.DataFrame(columns), inputs.judged(findings), pd.concat(parts, ignore_index=True)
-    )
+    return Result(pd.DataFrame(columns), inputs.judged(findings), panels.frame)
 
 
 def _moments(claimed: float) -> Iterator[Finding]:
@@ -124,16 +98,10 @@ def _moments(claimed: float) -> Iterator[Finding]:
         mass=moment(TENT_27, 0),
     )
     second, required = moment(TENT_27, 2), required_moments(2, 2)
-    yield measured(
-        "P-C4.second_moment",
-        off=abs(second / claimed - 1.0),
-        missed=abs(second / _WANTED - 1.0),
-        second=second,
-    )
-    yield measured(
-        "P-C4.discrete_moment",
-        off={f"M̂_{k}": abs(float(lattice_moment(TENT_27, k)) - m) for k, m in required.items()},
-    )
+    off, missed = abs(second / claimed - 1.0), abs(second / _WANTED - 1.0)
+    yield measured("P-C4.second_moment", off=off, missed=missed, second=second)
+    discrete = {f"M̂_{k}": abs(float(lattice_moment(TENT_27, k)) - m) for k, m in required.items()}
+    yield measured("P-C4.discrete_moment", off=discrete)
 
 
 def _elsewhere(spacing: list[float]) -> Iterator[Finding]:
@@ -149,11 +117,8 @@ def _elsewhere(spacing: list[float]) -> Iterator[Finding]:
     errors = []
     for n in _NUMBERS:
         x, v = arranged("jittered", n, _HALF_WIDTH, _JITTER)
-        inside = np.abs(x) < _CENTRE
-        exchange = StrengthExchange(x, v, 2.0 * _HALF_WIDTH / n, TENT_27)
-        exact = heat_second(x, _START)[inside]
-        off = (exchange.apply(v * heat(x, _START)) / v)[inside] - exact
-        errors.append(np.sqrt((off**2).mean() / (exact**2).mean()))
+        exchange = pse.StrengthExchange(x, v, 2.0 * _HALF_WIDTH / n, TENT_27)
+        errors.append(rms_error(exchange, x, v, _START, _CENTRE))
     power = observed_order(1.0 / np.array(_NUMBERS), errors)[-1]
     yield measured("P-C4.regular_only", error=errors[-1], power=power, jitter=_JITTER)
 
@@ -161,16 +126,12 @@ def _elsewhere(spacing: list[float]) -> Iterator[Finding]:
 def _centred(spacing: list[float]) -> Finding:
     """The rows of (26) with (27) inside the lattice, times h^2, against (1, -2, 1)."""
     h, n = 0.125, 41  # distances without round-off
-    matrix = StrengthExchange(h * np.arange(n), h, h, TENT_27).matrix.toarray()[1:-1] * h * h
+    matrix = pse.StrengthExchange(h * np.arange(n), h, h, TENT_27).matrix.toarray()[1:-1] * h * h
     centred = sum(c * np.eye(n - 2, n, j) for j, c in enumerate((1.0, -2.0, 1.0)))
     error = [second_derivative_error(TENT_27, h, 1.0) for h in spacing]
-    power = float(observed_order(spacing, error)[0])
-    return measured(
-        "P-C4.centred_differences",
-        difference=np.abs(matrix - centred).max(),
-        off=abs(power - 2.0),
-        power=power,
-    )
+    power, difference = float(observed_order(spacing, error)[0]), np.abs(matrix - centred).max()
+    off = abs(power - 2.0)
+    return measured("P-C4.centred_differences", difference=difference, off=off, power=power)
 
 
 def _compact() -> dict[int, float]:
@@ -190,8 +151,8 @@ def _schemes(orders: dict[int, float]) -> Iterator[Finding]:
     for name, (beta, weights) in {**SCHEMES, "f'', compact, 4th order": (2, _compact())}.items():
         reach = max(map(abs, weights))
         # (18) has eta at x_i - x_p: the weight of f(x_i + j h) is eta(-j).
-        kernel = Stencil(tuple(Fraction(weights.get(-j, 0)) for j in range(-reach, reach + 1)))
-        ours = derivative(particles[inside], f[inside], particles, f, h, h, kernel, beta)
+        kernel = pse.Stencil(tuple(Fraction(weights.get(-j, 0)) for j in range(-reach, reach + 1)))
+        ours = pse.derivative(particles[inside], f[inside], particles, f, h, h, kernel, beta)
         scheme = np.zeros(n)
         for j, weight in weights.items():
             scheme += float(weight) * np.roll(f, -j) / h**beta
@@ -199,14 +160,11 @@ def _schemes(orders: dict[int, float]) -> Iterator[Finding]:
     yield measured("P-C4.any_stencil", difference=difference)
     coefficient = {}
     for r in orders:
-        found = enumerate(construct_stencil(2, r).values, start=-r // 2)
+        found = enumerate(pse.construct_stencil(2, r).values, start=-r // 2)
         weights = SCHEMES[_CENTRED[r]][1]
         coefficient[f"r = {r}"] = max(abs(float(eta - weights[j])) for j, eta in found if j)
-    yield measured(
-        "P-C4.from_moments",
-        coefficient=coefficient,
-        off={f"r = {r}": abs(power - r) for r, power in orders.items()},
-    )
+    off = {f"r = {r}": abs(power - r) for r, power in orders.items()}
+    yield measured("P-C4.from_moments", coefficient=coefficient, off=off)
 
 
 def _economy(accuracy: list[int]) -> Iterator[Finding]:

@@ -1,53 +1,46 @@
 """Fig. 1 of the note: a function by point particles and by smooth ones."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, panel_title
+from fracstudy.panels import pick
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, SKY, Figure, Look, axes_row, draw
 
-__all__ = ["figure"]
-
-_POINTS, _SUM = "#0072B2", "#D55E00"
-_ONE: dict[str, Any] = {"color": "#56B4E9", "linewidth": 0.8}
-_BY_OVERLAP = ("#E69F00", "#009E73", "#D55E00", "#CC79A7")
+_ONE: Look = {"color": SKY, "linewidth": 0.8}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, spacing: float, shown: float) -> Figure:
     """(a) point particles, (b) the Gaussians of the particles and their sum, (c) by overlap."""
-    drawn, axes = axes_row(3, height=3.1, width=3.2, sharey=True)
+    titles = [
+        "point particles (8)",
+        f"smooth particles, {_radius(shown)}",
+        "radii too small and too large",
+    ]
+    drawn, axes = axes_row(titles, height=3.1, width=3.2, sharey=True)
     left, middle, right = axes
-    points, exact, smooth = (
-        series[series["panel"] == name] for name in ("points", "exact", "smooth")
-    )
+    points, exact, smooth = (pick(series, panel=name) for name in ("points", "exact", "smooth"))
     x = exact["x"].to_numpy()
     points = points[points["x"].between(x[0], x[-1])]
     for ax in axes:
         ax.plot(x, exact["y"], color="black", linewidth=1.0, label="$f(x)$")
         ax.set(xlabel="$x$", xlim=(x[0], x[-1]))
-    left.vlines(points["x"], 0.0, points["y"], color=_POINTS, linewidth=1.0)
-    left.plot(points["x"], points["y"], "o", color=_POINTS, markersize=4, label="$f(x_p)$")
+    left.vlines(points["x"], 0.0, points["y"], color=BLUE, linewidth=1.0)
+    draw(left, points, "o", color=BLUE, markersize=4, label="$f(x_p)$")
     left.set(ylabel="$f$ and its approximations", ylim=(-0.05, 1.95))
-    panel_title(left, "a", "point particles (8)")
 
     epsilon = shown * spacing
     for place, f in zip(points["x"], points["y"], strict=True):
         own = spacing * f * np.exp(-((x - place) ** 2) / (2.0 * epsilon**2))
         middle.plot(x, own / (np.sqrt(2.0 * np.pi) * epsilon), **_ONE)
-    total = smooth.loc[smooth["overlap"] == shown, "y"]
-    middle.plot(x, total, color=_SUM, linewidth=1.8, label=r"sum (9)")
+    total = pick(smooth, overlap=shown)["y"]
+    middle.plot(x, total, color=RED, linewidth=1.8, label=r"sum (9)")
     printed = np.sqrt(epsilon) * total
-    middle.plot(x, printed, "--", color=_SUM, linewidth=1.2, label="(10) as printed")
+    middle.plot(x, printed, "--", color=RED, linewidth=1.2, label="(10) as printed")
     middle.plot([], [], label="one particle each", **_ONE)
-    panel_title(middle, "b", f"smooth particles, {_radius(shown)}")
 
-    for (overlap, curve), colour in zip(smooth.groupby("overlap"), _BY_OVERLAP, strict=False):
+    colours = (ORANGE, GREEN, RED, PINK)
+    for (overlap, curve), colour in zip(smooth.groupby("overlap"), colours, strict=False):
         right.plot(x, curve["y"], color=colour, linewidth=1.1, label=_radius(float(overlap)))
-    panel_title(right, "c", "radii too small and too large")
     for ax in axes:
         ax.legend(loc="upper left", fontsize=7, ncols=2, columnspacing=1.0)
     return drawn

@@ -1,7 +1,5 @@
 """Fig. 1 of the lecture note "Particle Approximations": point and smooth particles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from fractions import Fraction
 
@@ -12,8 +10,7 @@ from fracparticles.pse import GaussianKernel, cell_volumes, lattice, reconstruct
 from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
+from fracstudy.panels import Panels
 
 _SMALL = 1e-4  # a radius that stands for zero
 _UNIT = GaussianKernel((Fraction(1),))  # exp(-z^2), of unit mass
@@ -32,24 +29,23 @@ def study(inputs: Inputs, *, spacing: float, half_width: float, overlap: list[fl
     """
     particles = lattice(-half_width, half_width, spacing)
     x = np.linspace(-0.6 * half_width, 0.6 * half_width, 601)
-    points = {"panel": "points", "x": particles, "y": two_bumps(particles)}
-    exact = {"panel": "exact", "x": x, "y": two_bumps(x)}
-    rows, series = [], [pd.DataFrame(points), pd.DataFrame(exact)]
+    rows, panels = [], Panels()
+    panels.add("points", x=particles, y=two_bumps(particles))
+    panels.add("exact", x=x, y=two_bumps(x))
     for ratio in overlap:
         epsilon = ratio * spacing
         # (10) is exp(-x^2 / (2 eps^2)): the Gaussian exp(-z^2) of radius sqrt(2) eps.
         radius = np.sqrt(2.0) * epsilon
         smooth = reconstruct(x, particles, two_bumps(particles), spacing, radius, _UNIT)
-        rows.append(
-            {
-                "ε/h": ratio,
-                "ε": epsilon,
-                "mass of (10) as printed": _mass_as_printed(epsilon),
-                "largest error, unit mass": np.abs(smooth - two_bumps(x)).max(),
-                "largest error, as printed": np.abs(np.sqrt(epsilon) * smooth - two_bumps(x)).max(),
-            }
-        )
-        series.append(pd.DataFrame({"panel": "smooth", "overlap": ratio, "x": x, "y": smooth}))
+        row = {
+            "ε/h": ratio,
+            "ε": epsilon,
+            "mass of (10) as printed": _mass_as_printed(epsilon),
+            "largest error, unit mass": np.abs(smooth - two_bumps(x)).max(),
+            "largest error, as printed": np.abs(np.sqrt(epsilon) * smooth - two_bumps(x)).max(),
+        }
+        rows.append(row)
+        panels.add("smooth", overlap=ratio, x=x, y=smooth)
     table = pd.DataFrame(rows)
     findings = [
         *_delta(),
@@ -58,7 +54,7 @@ def study(inputs: Inputs, *, spacing: float, half_width: float, overlap: list[fl
         _kernel(table),
         measured("P-F1.volumes", deviation=np.abs(cell_volumes(particles) / spacing - 1.0).max()),
     ]
-    return Result(table, inputs.judged(findings), pd.concat(series, ignore_index=True))
+    return Result(table, inputs.judged(findings), panels.frame)
 
 
 def _delta() -> Iterator[Finding]:
@@ -72,11 +68,8 @@ def _delta() -> Iterator[Finding]:
         meant=np.abs(meant).max(),
         mirrored=np.abs(printed + two_bumps(y[:, 0]) - two_bumps(-y[:, 0])).max(),
     )
-    yield measured(
-        "P-F1.delta",
-        mass=abs(w.sum() - 1.0),
-        moments={f"m = {m}": abs(float(x**m @ w)) for m in range(1, 7)},
-    )
+    moments = {f"m = {m}": abs(float(x**m @ w)) for m in range(1, 7)}
+    yield measured("P-F1.delta", mass=abs(w.sum() - 1.0), moments=moments)
 
 
 def _points(h: float, particles: np.ndarray) -> Finding:
@@ -99,8 +92,7 @@ def _points(h: float, particles: np.ndarray) -> Finding:
 
 def _superposed(spacing: float, half_width: float) -> Finding:
     """The largest error of the sum (9) with the Gaussian of Fig. 1 and eps = h, on three lattices."""
-    errors = []
-    spacings = spacing / 2.0 ** np.arange(3.0)
+    errors, spacings = [], spacing / 2.0 ** np.arange(3.0)
     x = np.linspace(-0.6 * half_width, 0.6 * half_width, 601)
     for h in spacings:
         particles = lattice(-half_width, half_width, h)
@@ -112,12 +104,11 @@ def _superposed(spacing: float, half_width: float) -> Finding:
 
 def _kernel(table: pd.DataFrame) -> Finding:
     """The mass of (10) as printed, and with the radius outside the root; the radii are those of the table."""
-    radii = table["ε"]
     last = table.iloc[-1]
     return measured(
         "P-F1.kernel",
         printed=np.abs(table["mass of (10) as printed"] - 1.0).max(),
-        meant=max(abs(_mass_as_printed(e) / np.sqrt(e) - 1.0) for e in radii),
+        meant=max(abs(_mass_as_printed(e) / np.sqrt(e) - 1.0) for e in table["ε"]),
         epsilon=last["ε"],
         mass=last["mass of (10) as printed"],
         off=last["largest error, as printed"],

@@ -1,8 +1,6 @@
 """An interval: eigenvalues, closed forms and invariants; and what the paper's truncated schemes solve there."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -18,20 +16,13 @@ from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.variable.closed_forms import Cauchy
+from fracstudy.errors import off, three_digits
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
-__all__ = ["WAYS", "study"]
-
-# Name -> degree of the map, near neighbours with a weight, order.
-WAYS: dict[str, tuple[float, int, Callable[[float], float]]] = {
-    "equal volumes, q = 3": (1.0, 3, lambda alpha: 1.0),
-    "p = 4, q = 3": (4.0, 3, lambda alpha: 4.0),
-    "p = 8, q = 0": (8.0, 0, lambda alpha: 2.0 - alpha),
-    "p = 8, q = 1": (8.0, 1, lambda alpha: 4.0 - alpha),
-    "p = 8, q = 2": (8.0, 2, lambda alpha: 6.0 - alpha),
-    "p = 8, q = 3": (8.0, 3, lambda alpha: 8.0 - alpha),
-}
+# Name -> degree p of the map, near neighbours q with a weight.
+_MAPS = {"equal volumes, q = 3": (1.0, 3), "p = 4, q = 3": (4.0, 3)}
+_MAPS |= {f"p = 8, q = {q}": (8.0, q) for q in range(4)}
 _ROUNDING = 1e-13  # errors below are written as that
 _LATE = 12.0  # when what is left is the last state
 _BUMP = 0.3
@@ -55,28 +46,22 @@ def study(
         *_truncated(drawn, halves, overlap, panels),
     ]
     _profiles(drawn, particles, panels)
-    columns = [
-        "ends",
-        "quantity",
-        "alpha",
-        "particles",
-        "exact",
-        "ours",
-        "error",
-        "order",
-        "of theory",
-    ]
-    return Result(pd.DataFrame(rows, columns=columns), (), panels.frame)
+    known = ["exact", "ours", "error", "order", "of theory"]
+    table = pd.DataFrame(rows, columns=["ends", "quantity", "alpha", "particles", *known])
+    return Result(table, (), panels.frame)
 
 
-def _error(value: float) -> float:
-    return float(f"{max(abs(value), _ROUNDING):.3g}")
+def _row(
+    ends: str, quantity: str, alpha: float, particles: int, error: float, **more: Any
+) -> dict[str, Any]:
+    row = {"ends": ends, "quantity": quantity, "alpha": alpha, "particles": particles}
+    return {**row, "error": three_digits(error), **more}
 
 
 def _eigenvalues(alpha: float, counts: list[int], panels: Panels) -> Iterator[dict[str, Any]]:
     """The first eigenvalue on each map, against Jacobi polynomials."""
     exact = jacobi_eigenvalues(alpha)[0]
-    for name, (degree, near, order) in WAYS.items():
+    for name, (degree, near) in _MAPS.items():
         ours = [
             Interval(alpha=alpha, particles=n, degree=degree, near=near).eigenvalues()[0]
             for n in counts
@@ -86,17 +71,14 @@ def _eigenvalues(alpha: float, counts: list[int], panels: Panels) -> Iterator[di
         # The order of the last refinement above round-off.
         last = int(np.flatnonzero(errors > 100.0 * _ROUNDING)[-1])
         between = observed_order([1.0 / n for n in counts], errors)
-        yield {
-            "ends": "absorbing",
-            "quantity": f"first eigenvalue, {name}",
-            "alpha": alpha,
-            "particles": counts[last],
-            "exact": exact,
-            "ours": ours[last],
-            "error": _error(errors[last]),
+        orders = {
             "order": float(between[last - 1]),
-            "of theory": order(alpha),
+            "of theory": min(degree, 2.0 * near + 2.0 - alpha),
         }
+        yield _row(
+            "absorbing", f"first eigenvalue, {name}", alpha, counts[last], errors[last],
+            exact=exact, ours=ours[last], **orders,
+        )  # fmt: skip
 
 
 def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
@@ -108,8 +90,7 @@ def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
     x = absorbing.x
 
     def row(ends: str, quantity: str, error: float, **more: Any) -> dict[str, Any]:
-        common = {"ends": ends, "quantity": quantity, "alpha": alpha, "particles": particles}
-        return {**common, "error": _error(error), **more}
+        return _row(ends, quantity, alpha, particles, error, **more)
 
     exact, ours = jacobi_eigenvalues(alpha)[0], absorbing.eigenvalues()[0]
     yield row("absorbing", "first eigenvalue", ours / exact - 1.0, exact=exact, ours=ours)
@@ -120,19 +101,19 @@ def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
     rate = float(gamma(1.0 + alpha))
     steady = absorbing.stationary(rate)
     getoor = np.clip(1.0 - x * x, 0.0, None) ** (0.5 * alpha)
-    yield row("absorbing", "stationary, f = 1 (Getoor)", np.abs(steady - getoor).max())
+    yield row("absorbing", "stationary, f = 1 (Getoor)", off(steady, getoor, 1.0))
 
     def reaction(x: np.ndarray, t: float, u: np.ndarray) -> np.ndarray:
         exact = np.cos(t) * getoor
         return np.asarray(np.cos(t) * rate - np.sin(t) * getoor + exact**2 - u**2)
 
     u = absorbing.react(getoor, 1.0, reaction)
-    yield row("absorbing", "f = g(x, t) - u^2 at t = 1", np.abs(u - np.cos(1.0) * getoor).max())
+    yield row("absorbing", "f = g(x, t) - u^2 at t = 1", off(u, np.cos(1.0) * getoor, 1.0))
     start = np.exp(-20.0 * (x - _BUMP) ** 2)
     mass = reflecting.total(start)
     after = reflecting.evolve(start, 0.1)
     yield row("reflecting", "mass at t = 0.1", reflecting.total(after) / mass - 1.0)
-    yield row("reflecting", "a constant at t = 0.1", np.abs(reflecting.evolve(1.0, 0.1) - 1).max())
+    yield row("reflecting", "a constant at t = 0.1", off(reflecting.evolve(1.0, 0.1), 1.0))
     bell, source = Cauchy.value([x]), Cauchy.riesz([x], alpha)
     u = given.evolve(
         bell,
@@ -140,9 +121,9 @@ def _closed_forms(alpha: float, particles: int) -> Iterator[dict[str, Any]]:
         source=lambda x, t: np.cos(t) * source - np.sin(t) * bell,
         outside=lambda y, t: np.cos(t) * Cauchy.value([y]),
     )
-    yield row("given", "cos(t) / (1 + x^2) at t = 1", np.abs(u - np.cos(1.0) * bell).max())
+    yield row("given", "cos(t) / (1 + x^2) at t = 1", off(u, np.cos(1.0) * bell, 1.0))
     held = given.evolve(1.0, 0.1, outside=1.0)
-    yield row("given", "a constant at t = 0.1", np.abs(held - 1.0).max())
+    yield row("given", "a constant at t = 0.1", off(held, 1.0))
 
 
 def _truncated(
@@ -166,16 +147,11 @@ def _truncated(
             ours.append(measured(dense_matrix(scheme(name).operator(setting)), h))
         errors = np.abs(np.array(ours) / exact - 1.0)
         panels.add("truncated", name, spacings, errors, ends=ends)
-        yield {
-            "ends": ends,
-            "quantity": f"{name}, {quantity}",
-            "alpha": alpha,
-            "particles": 2 * halves[-1] + 1,
-            "exact": exact,
-            "ours": ours[-1],
-            "error": _error(errors[-1]),
-            "order": float(observed_order(spacings, errors)[-1]),
-        }
+        order = float(observed_order(spacings, errors)[-1])
+        yield _row(
+            ends, f"{name}, {quantity}", alpha, 2 * halves[-1] + 1, errors[-1],
+            exact=exact, ours=ours[-1], order=order,
+        )  # fmt: skip
 
 
 def _last_level(matrix: np.ndarray, h: float) -> float:

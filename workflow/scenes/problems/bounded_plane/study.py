@@ -1,7 +1,5 @@
 """A disc against closed forms and a spectral method, a square by refinement, and the box of truncated schemes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import gamma
 from typing import Any
@@ -12,13 +10,13 @@ import pandas as pd
 from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.disc_polynomials import AbsorbingDisc
 from fracparticles.bounded.square import Square
-from fracparticles.run.orders import observed_order
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.setting import Setting
+from fracparticles.schemes.spectrum import dense_matrix
+from fracstudy.errors import power_of_ten
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import observed
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 
 def study(
@@ -48,12 +46,12 @@ def _levels(
     part: str, case: str, alpha: float, counts: Sequence[int], ours: Sequence[float], exact: Any
 ) -> list[dict[str, Any]]:
     errors = np.abs(np.asarray(ours) - exact)
-    slopes = [np.nan, *observed_order([1.0 / n for n in counts], errors)]
+    orders = observed([1.0 / n for n in counts], errors.tolist())
+    same = {"part": part, "case": case, "alpha": alpha}
     return [
-        {"part": part, "case": case, "alpha": alpha, "count": n, "ours": o, "exact": exact,
-         "error": e, "observed order": s}
-        for n, o, e, s in zip(counts, ours, errors, slopes, strict=True)
-    ]  # fmt: skip
+        {**same, "count": n, "ours": o, "exact": exact, "error": e, "observed order": s}
+        for n, o, e, s in zip(counts, ours, errors, orders, strict=True)
+    ]
 
 
 def _disc(alpha: float, rings: list[int], panels: Panels) -> list[dict[str, Any]]:
@@ -96,16 +94,9 @@ def _totals(alpha: float) -> list[dict[str, Any]]:
     ):
         u = np.exp(-8.0 * ((one.x - 0.5) ** 2 + one.y**2))
         drift = abs(one.total(one.evolve(u, 1.0)) / one.total(u) - 1.0)
-        rows.append(
-            {"part": "drift of the total, reflecting", "case": case, "alpha": alpha, "exact": 0.0,
-             "error": _power_of_ten(drift)}
-        )  # fmt: skip
+        row = {"part": "drift of the total, reflecting", "case": case, "alpha": alpha}
+        rows.append({**row, "exact": 0.0, "error": power_of_ten(drift)})
     return rows
-
-
-def _power_of_ten(value: float) -> float:
-    """The next power of ten: of round-off only the size is reproducible."""
-    return float(10.0 ** np.ceil(np.log10(max(value, 2.0**-53))))
 
 
 def _decay(alpha: float, rings: int, times: list[float], panels: Panels) -> list[dict[str, Any]]:
@@ -116,11 +107,11 @@ def _decay(alpha: float, rings: int, times: list[float], panels: Panels) -> list
     ours = [float(one.evolve(start, t)[0, 0]) for t in times]
     exact = [float(spectral.evolve(np.ones_like, t, r)[0]) for t in times]
     panels.add("decay", "rings of particles", times, ours, exact=exact)
+    same = {"part": "decay", "case": "disc", "alpha": alpha, "count": rings}
     return [
-        {"part": "decay", "case": "disc", "alpha": alpha, "count": rings, "at": t, "ours": a,
-         "exact": b, "error": abs(a - b)}
+        {**same, "at": t, "ours": a, "exact": b, "error": abs(a - b)}
         for t, a, b in zip(times, ours, exact, strict=True)
-    ]  # fmt: skip
+    ]
 
 
 def _truncated(alpha: float, box: list[int], finest: int, panels: Panels) -> list[dict[str, Any]]:
@@ -139,18 +130,12 @@ def _truncated(alpha: float, box: list[int], finest: int, panels: Panels) -> lis
     for name, exterior in (("DD", "absorbing"), ("KPSE", "reflecting")):
         found = []
         for n in box:
-            setting = Setting(
-                alpha=alpha, dim=2, n=n, spacing=2.0 / (2 * n + 1), exterior="truncated"
-            )
-            operator = SCHEMES[name].operator(setting)
-            size = (2 * n + 1) ** 2
-            matrix = np.array([operator.apply(e) for e in np.eye(size)])
+            setting = Setting(alpha=alpha, dim=2, n=n, spacing=2.0 / (2 * n + 1))
+            matrix = dense_matrix(SCHEMES[name].operator(setting)).T
             kept = float(np.abs(matrix.sum(axis=0)).max())
             found.append(_longest(-matrix, n, even=exterior == "absorbing"))
-            rows.append(
-                {"part": "greatest rate of a constant", "case": name, "alpha": alpha, "count": n,
-                 "ours": _power_of_ten(kept) if kept < 1e-9 else kept}
-            )  # fmt: skip
+            row = {"part": "greatest rate of a constant", "case": name, "alpha": alpha, "count": n}
+            rows.append({**row, "ours": power_of_ten(kept) if kept < 1e-9 else kept})
         rows += _levels("decay of the longest wave", name, alpha, box, found, exact[exterior])
         panels.add("truncated", name, [1.0 / n for n in box], found, exact=exact[exterior])
     return rows

@@ -1,54 +1,44 @@
 """Errors on the interval and in the plane, and a bump that is carried."""
 
-from __future__ import annotations
-
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, log_log, name_ticks, panel_title, slope_triangle
+from fracstudy.style import (
+    BLUE,
+    RED,
+    axes_row,
+    curves,
+    draw,
+    log_log,
+    name_ticks,
+    slope_triangle,
+    small_legend,
+)
 
-__all__ = ["figure"]
-
-_COLOURS = ("#0072B2", "#D55E00", "#009E73")
-_MARKERS = "osD"
+_TITLES = ("interval", "disc and square", "carried by $a = 4(1 - x^2)$")
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float) -> Figure:
     """Draw (a) interval, (b) disc and square, (c) profiles."""
-    figure, axes = axes_row(3, height=3.7, width=4.0)
-    line = pick(series, panel="interval", alpha=drawn)
-    _errors(axes[0], line, "-")
-    first = pick(line, series="D(x, t)").sort_values("x").iloc[0]
-    slope_triangle(axes[0], 1.1 * first["x"], 2e-3 * first["y"], drawn - 8.0)
-    log_log(axes[0], xlabel="particles $N$", ylabel=r"mean error at $t = 1$, relative")
-    name_ticks(axes[0], sorted(line["x"].astype(int).unique()))
-    axes[0].legend(loc="upper right", fontsize=7)
-    panel_title(axes[0], "a", "interval")
+    figure, (line, plane, profile) = axes_row(_TITLES, height=3.7, width=4.0)
+    errors = pick(series, alpha=drawn)
+    curves(line, pick(errors, panel="interval"))
+    first = pick(errors, panel="interval", series="D(x, t)").sort_values("x").iloc[0]
+    slope_triangle(line, 1.1 * first["x"], 2e-3 * first["y"], drawn - 8.0)
     for domain, style in (("disc", "-"), ("square", "--")):
-        _errors(axes[1], pick(series, panel=domain, alpha=drawn), style, f"{domain}: ")
-    log_log(axes[1], xlabel="rings, particles along a side $N$")
-    every = series[series["panel"].isin(["disc", "square"])]
-    name_ticks(axes[1], sorted(every["x"].astype(int).unique()))
-    axes[1].legend(loc="lower left", fontsize=7)
-    panel_title(axes[1], "b", "disc and square")
+        curves(plane, pick(errors, panel=domain), name=f"{domain}: {{}}", linestyle=style)
+    log_log(line, xlabel="particles $N$", ylabel="mean error at $t = 1$, relative")
+    log_log(plane, xlabel="rings, particles along a side $N$")
+    small_legend(line, "upper right")
+    small_legend(plane, "lower left")
+    for ax, domains in ((line, ["interval"]), (plane, ["disc", "square"])):
+        counts = series.loc[series["panel"].isin(domains), "x"]
+        name_ticks(ax, sorted(counts.astype(int).unique()))
     for (exterior, d), points in pick(series, panel="profile").groupby(["series", "alpha"]):
-        colour = _COLOURS[exterior == "reflecting"]
-        style = "-" if d == 1.0 else "--"
-        label = f"{exterior}, $D$ = {d:g}"
-        axes[2].plot(
-            points["x"], points["y"], color=colour, linestyle=style, marker="", label=label
-        )
-    axes[2].set(xlabel="position $x$", ylabel="$u$")
-    axes[2].legend(loc="upper left", fontsize=7)
-    panel_title(axes[2], "c", r"carried by $a = 4(1 - x^2)$")
+        colour = RED if exterior == "reflecting" else BLUE
+        look = {"color": colour, "linestyle": "-" if d == 1.0 else "--", "marker": ""}
+        draw(profile, points, label=f"{exterior}, $D$ = {d:g}", **look)
+    profile.set(xlabel="position $x$", ylabel="$u$")
+    small_legend(profile, "upper left")
     return figure
-
-
-def _errors(ax: Axes, part: pd.DataFrame, line: str, prefix: str = "") -> None:
-    groups = part.groupby("series", sort=False)
-    for (name, points), colour, marker in zip(groups, _COLOURS, _MARKERS, strict=False):
-        ax.plot(
-            points["x"], points["y"], color=colour, marker=marker, linestyle=line, label=f"{prefix}{name}"
-        )  # fmt: skip

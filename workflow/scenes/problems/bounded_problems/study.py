@@ -11,18 +11,13 @@ import pandas as pd
 
 from fracparticles.bounded.closed_forms import power_in_ball, riesz_of_power
 from fracparticles.problems import Problem, solve_problem
-from fracparticles.run.orders import observed_order
 from fracparticles.variable.closed_forms import Cauchy
+from fracstudy.errors import off, power_of_ten, three_digits
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import observed
 from fracstudy.panels import Panels
 
-__all__ = ["study"]
-
-_COLUMNS = [
-    "domain", "problem", "exterior", "alpha", "particles", "error", "mean error", "observed order", "of theory",
-    "drift of the total",
-]  # fmt: skip
-_ROUNDING = 1e-13  # what is below is written as that
+_ROUNDING = 1e-13  # a drift below is written as that
 _PLANE_POWER = 5.0  # of the bump on the square, zero near its edges
 _TURN = 3  # angles of the disc that the solution is turned by
 
@@ -43,11 +38,19 @@ def study(
         rows += _kept(alpha, counts)
         rows.append(_turned(alpha, counts["disc"][-1]))
     _profiles(drawn, counts["interval"][-1], panels)
-    return Result(pd.DataFrame(rows, columns=_COLUMNS), (), panels.frame)
+    return Result(pd.DataFrame(rows), (), panels.frame)
 
 
-def _rounded(value: float) -> float:
-    return float(f"{max(abs(value), _ROUNDING):.3g}")
+def _row(
+    domain: str, problem: str, exterior: str, alpha: float, n: int, found: dict[str, float]
+) -> dict[str, Any]:
+    row = {"domain": domain, "problem": problem, "exterior": exterior, "alpha": alpha}
+    return {**row, "particles": n, **found}
+
+
+def _on(domain: str, alpha: float, particles: int, **fields: Any) -> Problem:
+    at = {"domain": domain, "alpha": alpha, "half_width": 1.0, "particles": particles}
+    return Problem(**{"t_final": 1.0, **at, **fields})
 
 
 def _problems(alpha: float) -> dict[str, dict[str, Known]]:
@@ -149,34 +152,22 @@ def _levels(
 ) -> Iterator[dict[str, Any]]:
     """Errors at t = 1 by the number of particles."""
     fields, start, end = known
+    # On the line the time is as exact as need be for the last digits.
+    rtol = 1e-10 if domain == "interval" else 1e-6
     greatest, means = [], []
     for count in counts:
-        # On the line the time is as exact as need be for the last digits.
-        rtol = 1e-10 if domain == "interval" else 1e-6
-        problem = Problem(
-            alpha=alpha,
-            domain=domain,
-            half_width=1.0,
-            particles=count,
-            t_final=1.0,
-            rtol=rtol,
-            **fields,
-        )
+        problem = _on(domain, alpha, count, rtol=rtol, **fields)
         run = solve_problem(problem, start)
-        exact = end(*problem.bounded_domain.points)
-        off = np.abs(run.u.values - exact)
-        greatest.append(float(off.max() / np.abs(exact).max()))
-        means.append(
-            problem.bounded_domain.total(off) / problem.bounded_domain.total(np.abs(exact))
-        )
+        exact, total = end(*problem.bounded_domain.points), problem.bounded_domain.total
+        greatest.append(off(run.u.values, exact))
+        means.append(total(np.abs(run.u.values - exact)) / total(np.abs(exact)))
     panels.add(domain, name, counts, means, alpha=alpha)
-    slopes = [np.nan, *observed_order([1.0 / n for n in counts], means)]
+    orders = observed([1.0 / n for n in counts], means)
     theory = {"interval": 8.0 - alpha, "disc": 4.0 - alpha}.get(domain, np.nan)
-    for count, most, mean, slope in zip(counts, greatest, means, slopes, strict=True):
-        yield {
-            "domain": domain, "problem": name, "exterior": fields["exterior"], "alpha": alpha, "particles": count,
-            "error": _rounded(most), "mean error": _rounded(mean), "observed order": slope, "of theory": theory,
-        }  # fmt: skip
+    for count, most, mean, order in zip(counts, greatest, means, orders, strict=True):
+        errors = {"error": three_digits(most), "mean error": three_digits(mean)}
+        found = {**errors, "observed order": order, "of theory": theory}
+        yield _row(domain, name, fields["exterior"], alpha, count, found)
 
 
 def _bell(*place: Any) -> Any:
@@ -192,46 +183,30 @@ def _kept(alpha: float, counts: dict[str, list[int]]) -> Iterator[dict[str, Any]
     }
     for domain, velocity in along.items():
         count = counts[domain][1]
-        problem = Problem(
-            alpha=alpha, domain=domain, half_width=1.0, particles=count, t_final=1.0, exterior="reflecting",
-            form="exchange", diffusivity="1 + 0.5*x*cos(t)", velocity=velocity,
-        )  # fmt: skip
-        run = solve_problem(problem, _bell)
-        yield {
-            "domain": domain, "problem": "D(x, t), a", "exterior": "reflecting", "alpha": alpha, "particles": count,
-            "drift of the total": _power_of_ten(float(run.mass_final / run.mass_initial) - 1.0),
-        }  # fmt: skip
-
-
-def _power_of_ten(value: float) -> float:
-    """The next power of ten: of round-off only the size is reproducible."""
-    return float(10.0 ** np.ceil(np.log10(max(abs(value), _ROUNDING))))
+        acts = {"diffusivity": "1 + 0.5*x*cos(t)", "velocity": velocity}
+        kept = {"exterior": "reflecting", "form": "exchange"}
+        run = solve_problem(_on(domain, alpha, count, **kept, **acts), _bell)
+        drift = power_of_ten(float(run.mass_final / run.mass_initial) - 1.0, _ROUNDING)
+        found = {"drift of the total": drift}
+        yield _row(domain, "D(x, t), a", "reflecting", alpha, count, found)
 
 
 def _turned(alpha: float, rings: int) -> dict[str, Any]:
     """A rotation against what does not turn, turned after."""
-    fields: dict[str, Any] = {
-        "alpha": alpha, "domain": "disc", "exterior": "absorbing", "half_width": 1.0, "particles": rings,
-        "t_final": 0.5, "rtol": 1e-8,
-    }  # fmt: skip
-    still = solve_problem(Problem(**fields), _bell)
+    fields = {"exterior": "absorbing", "t_final": 0.5, "rtol": 1e-8}
+    still = solve_problem(_on("disc", alpha, rings, **fields), _bell)
     speed = 2.0 * np.pi * _TURN / still.sizes["angle"] / 0.5
-    turned = solve_problem(Problem(**fields, velocity=(f"-{speed}*y", f"{speed}*x")), _bell)
-    exact = np.roll(still.u.values, _TURN, axis=1)
-    off = float(np.abs(turned.u.values - exact).max() / np.abs(exact).max())
-    return {
-        "domain": "disc", "problem": "rotation", "exterior": "absorbing", "alpha": alpha, "particles": rings,
-        "error": _rounded(off),
-    }  # fmt: skip
+    fields["velocity"] = (f"-{speed}*y", f"{speed}*x")
+    turned = solve_problem(_on("disc", alpha, rings, **fields), _bell)
+    error = three_digits(off(turned.u.values, np.roll(still.u.values, _TURN, axis=1)))
+    return _row("disc", "rotation", "absorbing", alpha, rings, {"error": error})
 
 
 def _profiles(alpha: float, particles: int, panels: Panels) -> None:
     """A bump that a = 4 (1 - x^2) carries to the right, with D = 1 and D = 0.2, at t = 0.2."""
     for exterior in ("absorbing", "reflecting"):
         for d in (1.0, 0.2):
-            problem = Problem(
-                alpha=alpha, half_width=1.0, particles=particles, exterior=exterior, diffusivity=d,
-                velocity="4*(1 - x**2)", t_final=0.2,
-            )  # fmt: skip
+            carried = {"diffusivity": d, "velocity": "4*(1 - x**2)", "t_final": 0.2}
+            problem = _on("interval", alpha, particles, exterior=exterior, **carried)
             run = solve_problem(problem, lambda x: _bell(x + 0.6))
             panels.add("profile", exterior, run.x.values, run.u.values, alpha=d)

@@ -1,22 +1,17 @@
 """The error of DVM in the plane and on the line at the same h, with remeshing and without."""
 
-from __future__ import annotations
-
-import warnings
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from fracparticles.errors import AccuracyWarning
 from fracparticles.moving import dvm
 from fracparticles.moving.dvm_plane import run_in_plane
-from fracparticles.run.orders import observed_order
 from fracparticles.special.stable import green
+from fracstudy.errors import off, power_of_ten, quiet
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import observed
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _STEP = 0.5  # D dt / h^alpha
 _WAYS = (
@@ -39,41 +34,45 @@ def study(
     orders: list[int],
 ) -> Result:
     """A row for each run: the greatest error for |x| <= 2, of the peak, and the drift of the total."""
-    panels, rows = Panels(), []
+    panels = Panels()
+    rows: list[dict[str, Any]] = []
     for remeshing, exterior in _WAYS:
+        way = {"remeshing": remeshing, "exterior": exterior}
         for order in orders:
-            found: list[dict[str, Any]] = []
-            for h in spacings:
-                lattice = h * np.arange(-round(half_width / h), round(half_width / h) + 1.0)
-                steps = int(np.ceil(time / (_STEP * h**alpha)))
-                common: dict[str, Any] = {
-                    "spacing": h, "alpha": alpha, "dt": time / steps, "steps": steps,
-                    "order": order, "remeshing": remeshing, "exterior": exterior,
-                }  # fmt: skip
-                r = np.hypot(lattice[:, None], lattice)
-                with warnings.catch_warnings():
-                    warnings.simplefilter("ignore", AccuracyWarning)  # coarse ones are to be seen
-                    plane = run_in_plane(np.asarray(green(r, start, alpha, 2)), **common)
-                    line = dvm.run(lattice, np.asarray(green(lattice, start, alpha)), **common)
-                z = np.linspace(-2.0, 2.0, 41)
-                fields = plane.field(z, 0.0 * z), line.field(z)
-                drift = plane.total_final + plane.lost - plane.total_initial
-                for dim, field in zip((2, 1), fields, strict=True):
-                    exact = np.asarray(green(np.abs(z), start + time, alpha, dim))
-                    error = float(np.abs(field - exact).max() / exact.max())
-                    found.append({"dim": dim, "order": order, "remeshing": remeshing, "h": h,
-                                  "exterior": exterior, "error": error,
-                                  "drift below": _power_of_ten(abs(drift)) if dim == 2 else np.nan})  # fmt: skip
-            for dim in (2, 1):
-                part = [row for row in found if row["dim"] == dim]
-                errors = [row["error"] for row in part]
-                slopes = [np.nan, *observed_order(spacings, errors)]
+            found = [
+                _run(dim, alpha, start, time, half_width, h, order=order, **way)
+                for dim in (2, 1)
+                for h in spacings
+            ]
+            for part in (found[: len(spacings)], found[len(spacings) :]):
+                errors, dim = [row["error"] for row in part], part[0]["dim"]
                 name = f"{'plane' if dim == 2 else 'line'}, order {order}"
                 panels.add(f"{remeshing}, {exterior}", name, spacings, errors, dim=dim, order=order)
+                slopes = observed(spacings, errors)
                 rows += [{**row, "observed order": s} for row, s in zip(part, slopes, strict=True)]
     return Result(pd.DataFrame(rows), (), panels.frame)
 
 
-def _power_of_ten(drift: float) -> float:
-    """The next power of ten: of round-off only the size is reproducible."""
-    return float(10.0 ** np.ceil(np.log10(max(drift, 2.0**-53))))
+def _run(
+    dim: int, alpha: float, start: float, time: float, half_width: float, h: float, **way: Any
+) -> dict[str, Any]:
+    lattice = h * np.arange(-round(half_width / h), round(half_width / h) + 1.0)
+    steps = int(np.ceil(time / (_STEP * h**alpha)))
+    common = {"spacing": h, "alpha": alpha, "dt": time / steps, "steps": steps, **way}
+    z = np.linspace(-2.0, 2.0, 41)
+    exact = np.asarray(green(np.abs(z), start + time, alpha, dim))
+    with quiet():  # coarse ones are to be seen
+        if dim == 1:
+            error = off(
+                dvm.run(lattice, np.asarray(green(lattice, start, alpha)), **common).field(z), exact
+            )
+            drift = np.nan
+        else:
+            r = np.hypot(lattice[:, None], lattice)
+            plane = run_in_plane(np.asarray(green(r, start, alpha, 2)), **common)
+            error = off(plane.field(z, 0.0 * z), exact)
+            drift = power_of_ten(plane.total_final + plane.lost - plane.total_initial)
+    return {
+        "dim": dim, "order": way["order"], "remeshing": way["remeshing"], "h": h,
+        "exterior": way["exterior"], "error": error, "drift below": drift,
+    }  # fmt: skip

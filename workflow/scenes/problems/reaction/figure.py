@@ -1,7 +1,5 @@
 """A front with a tail of a power of x, its rate, and what a digit costs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,53 +8,48 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, guide, log_log, name_ticks, note, panel_title
+from fracstudy.style import (
+    BLUE,
+    axes_row,
+    curves,
+    draw,
+    guide,
+    log_log,
+    name_ticks,
+    note,
+    small_legend,
+)
 
-__all__ = ["figure"]
-
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
-_MARKERS = "osD^v"
 _STEPS = {"dop853": "order 8 (DOP853)", "rkc2": "stabilised (RKC2)"}
+_TITLES = (
+    r"front, $\alpha = 1.5$",
+    r"rate of the front, and $1 / (n + \alpha)$",
+    "decay: error and work",
+    "rate of the front, by particles",
+)
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the front, (b) its rate, (c) errors against evaluations, (d) how close particles come to the rate."""
-    drawn, axes = axes_row(4, height=3.6, width=3.4)
+    drawn, axes = axes_row(_TITLES, height=3.6, width=3.4)
     _front(axes[0], pick(series, panel="front"))
     _rates(axes[1], pick(series, panel="rate"))
-    for (name, label), colour, marker in zip(_STEPS.items(), _COLOURS, _MARKERS, strict=False):
-        part = pick(series, panel="tolerance", series=name)
-        axes[2].plot(part["x"], part["y"], color=colour, marker=marker, label=label)
-    log_log(
-        axes[2],
-        xlabel="evaluations of the right-hand side",
-        ylabel="error relative to the greatest $u$",
-    )
+    curves(axes[2], pick(series, panel="tolerance").replace({"series": _STEPS}))
+    work, error = "evaluations of the right-hand side", "error relative to the greatest $u$"
+    log_log(axes[2], xlabel=work, ylabel=error)
     name_ticks(axes[2], (100, 300, 1000, 3000))
     axes[2].legend(loc="upper right")
-    panel_title(axes[2], "c", "decay: error and work")
-    followed = pick(series, panel="followed").groupby("series", sort=False)
-    for (name, points), colour, marker in zip(followed, _COLOURS, _MARKERS, strict=False):
-        axes[3].plot(points["x"], points["y"], color=colour, marker=marker, label=name)
+    curves(axes[3], pick(series, panel="followed"))
     axes[3].set(xlabel="time $t$", ylabel="relative distance from $1/(1+\\alpha)$", yscale="log")
-    axes[3].legend(loc="lower left", fontsize=7)
-    panel_title(axes[3], "d", "rate of the front, by particles")
+    small_legend(axes[3], "lower left")
     return drawn
 
 
 def _front(ax: Axes, part: pd.DataFrame) -> None:
     names = list(part["series"].unique())
-    shades = np.linspace(0.35, 1.0, len(names))
-    for name, shade in zip(names, shades, strict=True):
-        points = pick(part, series=name)
-        ax.plot(
-            points["x"],
-            points["y"],
-            color=_COLOURS[0],
-            alpha=shade,
-            marker="",
-            label=f"t = {float(name):g}",
-        )
+    for name, shade in zip(names, np.linspace(0.35, 1.0, len(names)), strict=True):
+        label = f"t = {float(name):g}"
+        draw(ax, pick(part, series=name), color=BLUE, alpha=shade, marker="", label=label)
     last = pick(part, series=names[-1])
     far = last.iloc[(last["x"] - 0.5 * last["x"].max()).abs().argmin()]
     ends: list[Any] = [0.1 * last["x"].max(), last["x"].max()]
@@ -64,16 +57,12 @@ def _front(ax: Axes, part: pd.DataFrame) -> None:
     top = 3.0 * far["y"] * (far["x"] / ends[0]) ** 2.5
     note(ax, "$x^{-1-\\alpha}$", (ends[0], top), (5, -2))
     log_log(ax, xlabel="position $x$", ylabel="$u(x, t)$")
-    ax.legend(loc="lower left", fontsize=7)
-    panel_title(ax, "a", r"front, $\alpha = 1.5$")
+    small_legend(ax, "lower left")
 
 
 def _rates(ax: Axes, part: pd.DataFrame) -> None:
-    for name, colour, marker in zip(part["series"].unique(), _COLOURS, _MARKERS, strict=False):
-        points = pick(part, series=name)
-        style: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 3.5}
-        ax.plot(points["x"], points["y"], label=name, **style)
-        ax.axhline(points["exact"].iloc[0], color=colour, linestyle=":", linewidth=0.9)
+    for k, (name, points) in enumerate(part.groupby("series", sort=False)):
+        draw(ax, points, color=f"C{k}", marker="osD^"[k], markersize=3.5, label=name)
+        ax.axhline(points["exact"].iloc[0], color=f"C{k}", linestyle=":", linewidth=0.9)
     ax.set(xlabel="time $t$", ylabel=r"rate $\Delta \ln x_{1/2} / \Delta t$")
-    ax.legend(loc="lower right", fontsize=7)
-    panel_title(ax, "b", r"rate of the front, and $1 / (n + \alpha)$")
+    small_legend(ax, "lower right")

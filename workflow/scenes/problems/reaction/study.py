@@ -1,8 +1,5 @@
 """Reactions and sources: the fractional Fisher-KPP front, decay, a manufactured source, blow-up."""
 
-from __future__ import annotations
-
-import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,19 +8,18 @@ import pandas as pd
 from scipy.optimize import brentq
 
 from fracparticles.adaptive.follow import follow
-from fracparticles.errors import AccuracyWarning, NonFiniteSolution
+from fracparticles.errors import NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.orders import observed_order
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import Gaussian
+from fracstudy.errors import off, quiet
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
-__all__ = ["front", "study"]
-
 _LEVEL = 0.5  # of the front
 _DRAWN = 1.5  # the order whose front is drawn
-_LINE = {"alpha": 1.5, "half_width": 50.0, "far_terms": 3}
+_LINE: dict[str, Any] = {"alpha": 1.5, "half_width": 50.0, "far_terms": 3}
 
 
 def study(
@@ -45,25 +41,30 @@ def study(
     """A row for each number that is known: the rate of the front, a factor, an order, a time."""
     panels = Panels()
     rows: list[dict[str, Any]] = []
-    with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", AccuracyWarning
-        )  # of narrow lattices; what lies beyond is in the table
+    with quiet():  # of narrow lattices; what lies beyond is in the table
         for alpha, last in zip(alphas, until, strict=True):
             one = {"alpha": alpha, "half_width": half_width, "spacing": spacing}
             rows.append(_front_row(one, last, panels))
         for alpha, last in zip(alphas, followed_until, strict=True):
             rows.append(_followed_row(alpha, last, followed_reach, panels))
-        plane = {
-            "alpha": 1.5, "dim": 2, "form": "exchange", "half_width": plane_half_width, "spacing": plane_spacing,
-        }  # fmt: skip
-        rows.append(_front_row(plane, plane_until, panels))
+        plane = {"alpha": 1.5, "half_width": plane_half_width, "spacing": plane_spacing}
+        rows.append(_front_row({**plane, "dim": 2, "form": "exchange"}, plane_until, panels))
         rows += _decay(decay, tolerances, panels)
         rows += _manufactured(source_spacings)
         rows.append(_blow_up())
     table = pd.DataFrame(rows)
     table.insert(4, "deviation", (table["ours"] - table["exact"]).abs() / table["exact"].abs())
     return Result(table, (), panels.frame)
+
+
+def _row(
+    problem: str, quantity: str, exact: float, ours: float, run: Any = None, **more: Any
+) -> dict[str, Any]:
+    row = {"problem": problem, "quantity": quantity, "exact": exact, "ours": ours, **more}
+    if run is not None:
+        row["integrator"] = str(run["integrator"].values)
+        row["evaluations"] = int(run["evaluations"])
+    return row
 
 
 def front(x: np.ndarray, u: np.ndarray, level: float = _LEVEL) -> float:
@@ -78,12 +79,8 @@ def _front_row(fields: dict[str, Any], last: int, panels: Panels) -> dict[str, A
     dim, alpha = fields.get("dim", 1), fields["alpha"]
     times = tuple(float(t) for t in range(2, last + 1))
     problem = Problem(**fields, source="u*(1 - u)", times=times, order=4, rtol=1e-6)
-    if dim == 1:
-        run = solve_problem(problem, lambda x: np.exp(-x * x / 8.0))
-        along = run["u"]
-    else:
-        run = solve_problem(problem, lambda x, y: np.exp(-(x * x + y * y) / 8.0))
-        along = run["u"].sel(y=0.0)
+    run = solve_problem(problem, _hill)
+    along = run["u"] if dim == 1 else run["u"].sel(y=0.0)
     right = along.sel(x=slice(0.5 * problem.case.spacing, None))
     x = right["x"].values
     places = np.array([front(x, u) for u in right.values])
@@ -94,23 +91,22 @@ def _front_row(fields: dict[str, Any], last: int, panels: Panels) -> dict[str, A
         some = np.unique(np.geomspace(1, x.size, 150).astype(int)) - 1
         for time, u in list(zip(times, right.values, strict=True))[1::4]:
             panels.add("front", f"{time:g}", x[some], u[some])
-    return {
-        "problem": "Fisher-KPP, " + ("line" if dim == 1 else "plane"),
-        "quantity": f"rate of the front, α = {alpha:g}, up to t = {last}",
-        "exact": 1.0 / (dim + alpha),
-        "ours": float(rates[-1]),
-        "integrator": str(run["integrator"].values),
-        "evaluations": int(run["evaluations"]),
-        "beyond the lattice": float(run["outside_share"][-1]),
-        "particles": int(run["u"].isel(t=-1).size),
-    }
+    quantity = f"rate of the front, α = {alpha:g}, up to t = {last}"
+    where = "line" if dim == 1 else "plane"
+    row = _row(f"Fisher-KPP, {where}", quantity, 1.0 / (dim + alpha), float(rates[-1]), run)
+    row["beyond the lattice"] = float(run["outside_share"][-1])
+    return {**row, "particles": int(run["u"].isel(t=-1).size)}
+
+
+def _hill(*at: np.ndarray) -> np.ndarray:
+    return np.asarray(np.exp(-sum(x * x for x in at) / 8.0))
 
 
 def _followed_row(alpha: float, last: int, reach: float, panels: Panels) -> dict[str, Any]:
     """The same front on the line by particles that follow it, as far as they are told to reach."""
     times = [float(t) for t in range(2, last + 1)]
     states = follow(
-        lambda x: np.exp(-x * x / 8.0), times, alpha=alpha, window=(-15.0, 15.0), step=0.2, reach=reach,
+        _hill, times, alpha=alpha, window=(-15.0, 15.0), step=0.2, reach=reach,
         source=lambda x, t, u: u * (1.0 - u), tolerance=1e-7,
     )  # fmt: skip
     places = []
@@ -122,13 +118,9 @@ def _followed_row(alpha: float, last: int, reach: float, panels: Panels) -> dict
         places.append(brentq(lambda x, s=state: s.at(x) - _LEVEL, beyond, ahead))
     rates = np.diff(np.log(places))
     panels.add("followed", f"α = {alpha:g}", times[1:], np.abs(1.0 - (1.0 + alpha) * rates))
-    return {
-        "problem": "Fisher-KPP, line, particles",
-        "quantity": f"rate of the front, α = {alpha:g}, up to t = {last}",
-        "exact": 1.0 / (1.0 + alpha),
-        "ours": float(rates[-1]),
-        "particles": max(state.u.size for state in states),
-    }
+    quantity = f"rate of the front, α = {alpha:g}, up to t = {last}"
+    row = _row("Fisher-KPP, line, particles", quantity, 1.0 / (1.0 + alpha), float(rates[-1]))
+    return {**row, "particles": max(state.u.size for state in states)}
 
 
 def _decay(c: float, tolerances: list[float], panels: Panels) -> Iterator[dict[str, Any]]:
@@ -137,23 +129,15 @@ def _decay(c: float, tolerances: list[float], panels: Panels) -> Iterator[dict[s
     for integrator in ("dop853", "rkc2"):
         errors, counts = [], []
         for rtol in tolerances:
-            run = solve_problem(
-                Problem(**fields, source=f"-{c}*u", rtol=rtol, integrator=integrator)
-            )
+            ways = {"rtol": rtol, "integrator": integrator}
+            run = solve_problem(Problem(**fields, source=f"-{c}*u", **ways))
             exact = np.exp(-c) * green(run["x"].values, 2.0, 1.5)
-            errors.append(float(np.abs(run["u"].values - exact).max() / exact.max()))
+            errors.append(off(run["u"].values, exact))
             counts.append(int(run["evaluations"]))
         panels.add("tolerance", integrator, counts, errors)
         middle = float(run["u"].sel(x=0.0) / green(0.0, 2.0, 1.5))
-        yield {
-            "problem": "decay",
-            "quantity": f"factor, tolerance {tolerances[-1]:.0e}",
-            "exact": float(np.exp(-c)),
-            "ours": middle,
-            "error": errors[-1],
-            "integrator": integrator,
-            "evaluations": counts[-1],
-        }
+        quantity = f"factor, tolerance {tolerances[-1]:.0e}"
+        yield _row("decay", quantity, float(np.exp(-c)), middle, run, error=errors[-1])
 
 
 def _manufactured(spacings: list[float]) -> Iterator[dict[str, Any]]:
@@ -166,26 +150,15 @@ def _manufactured(spacings: list[float]) -> Iterator[dict[str, Any]]:
     for order in (4, 6):
         errors = []
         for h in spacings:
-            problem = Problem(
-                **{**_LINE, "half_width": 25.0},
-                spacing=h,
-                order=order,
-                source=source,
-                t_final=1.0,
-                rtol=1e-11,
-            )
+            lattice = {**_LINE, "half_width": 25.0, "spacing": h, "order": order}
+            problem = Problem(**lattice, source=source, t_final=1.0, rtol=1e-11)
             run = solve_problem(problem, lambda x: np.exp(-x * x))
             exact = np.cos(1.0) * np.exp(-(run["x"].values ** 2))
-            errors.append(float(np.abs(run["u"].values - exact).max() / exact.max()))
-        yield {
-            "problem": "manufactured source",
-            "quantity": f"order in h, kernel of order {order}, h = {spacings[-2]:g} and {spacings[-1]:g}",
-            "exact": float(order),
-            "ours": float(observed_order(spacings, errors)[-1]),
-            "error": errors[-1],
-            "integrator": str(run["integrator"].values),
-            "evaluations": int(run["evaluations"]),
-        }
+            errors.append(off(run["u"].values, exact))
+        levels = f"h = {spacings[-2]:g} and {spacings[-1]:g}"
+        quantity = f"order in h, kernel of order {order}, {levels}"
+        ours = float(observed_order(spacings, errors)[-1])
+        yield _row("manufactured source", quantity, float(order), ours, run, error=errors[-1])
 
 
 def _blow_up() -> dict[str, Any]:
@@ -198,4 +171,4 @@ def _blow_up() -> dict[str, Any]:
         solve_problem(problem, np.full(problem.case.shape, 0.5))
     except NonFiniteSolution as error:
         said = float(str(error).split("t = ")[1].split(":")[0])
-    return {"problem": "blow-up", "quantity": "time", "exact": 2.0, "ours": said}
+    return _row("blow-up", "time", 2.0, said)

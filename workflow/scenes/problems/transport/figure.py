@@ -1,7 +1,5 @@
 """A solution that stays stable, errors of two ways of transport, and a blob that turns."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,33 +8,44 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below, log_log, name_ticks, panel_title
+from fracstudy.style import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PINK,
+    RED,
+    SKY,
+    axes_row,
+    draw,
+    legend_below,
+    log_log,
+    name_ticks,
+    small_legend,
+)
 
-__all__ = ["figure"]
-
-_TIMES = ("#56B4E9", "#009E73", "#E69F00", "#D55E00")
+_TIMES = (SKY, GREEN, ORANGE, RED)
 _WAYS: dict[str, dict[str, Any]] = {
-    "lattice, order 4": {"color": "#56B4E9", "marker": "^"},
-    "lattice, order 8": {"color": "#009E73", "marker": "D"},
-    "lattice, order 12": {"color": "#0072B2", "marker": "o"},
-    "particles, Lambda3": {"color": "#D55E00", "marker": "s", "linestyle": "--"},
-    "particles, Lambda6,4": {"color": "#E69F00", "marker": "P", "linestyle": "--"},
-    "particles, M4'": {"color": "#CC79A7", "marker": "v", "linestyle": "--"},
+    "lattice, order 4": {"color": SKY, "marker": "^"},
+    "lattice, order 8": {"color": GREEN, "marker": "D"},
+    "lattice, order 12": {"color": BLUE, "marker": "o"},
+    "particles, Lambda3": {"color": RED, "marker": "s", "linestyle": "--"},
+    "particles, Lambda6,4": {"color": ORANGE, "marker": "P", "linestyle": "--"},
+    "particles, M4'": {"color": PINK, "marker": "v", "linestyle": "--"},
 }
+_TITLES = ("linear field $a = -x$", "uniform field, error", "linear field, error", "rotation")
 _LEVELS = (0.03, 0.05)
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the linear field, (b), (c) errors against the spacing, (d) contours of the blob."""
-    drawn, axes = axes_row(4, height=3.7, width=3.3)
+    drawn, axes = axes_row(_TITLES, height=3.7, width=3.3)
     _linear(axes[0], pick(series, panel="linear field"))
-    for ax, letter, field in zip(axes[1:3], "bc", ("uniform", "linear"), strict=True):
+    for ax, field in zip(axes[1:3], ("uniform", "linear"), strict=True):
         part = pick(series, panel=f"error, {field}")
         for way, points in part.groupby("series", sort=False):
-            ax.plot(points["x"], points["y"], label=way, **_WAYS[str(way)])
+            draw(ax, points, label=way, **_WAYS[str(way)])
         log_log(ax, xlabel="particle spacing $h$", ylim=(3e-11, 1.0))
         name_ticks(ax, sorted(part["x"].unique()))
-        panel_title(ax, letter, f"{field} field, error")
     axes[1].set_ylabel("error / largest $u$")
     _rotation(axes[3], pick(series, panel="rotation"))
     legend_below(drawn, axes[1], columns=5)
@@ -44,17 +53,15 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 
 
 def _linear(ax: Axes, part: pd.DataFrame) -> None:
-    start = pick(part, series="start")
-    ax.plot(start["x"], start["y"], color="0.5", linestyle=":", marker="")
+    draw(ax, pick(part, series="start"), color="0.5", linestyle=":", marker="")
     names = [name for name in part["series"].unique() if name.startswith("exact")]
     for name, colour in zip(names, _TIMES, strict=False):
         exact, ours = pick(part, series=name), pick(part, series=name.replace("exact", "ours"))
-        ax.plot(exact["x"], exact["y"], color=colour, marker="", label=name.removeprefix("exact, "))
+        draw(ax, exact, color=colour, marker="", label=name.removeprefix("exact, "))
         some = ours.iloc[:: max(1, len(ours) // 24)]
-        ax.plot(some["x"], some["y"], color=colour, linestyle="", marker="o", markersize=3.0)
+        draw(ax, some, "o", color=colour, markersize=3.0)
     ax.set(xlabel="position $x$", ylabel="$u(x, t)$", xlim=(-6.0, 6.0), ylim=(0.0, None))
-    ax.legend(loc="upper right", fontsize=7)
-    panel_title(ax, "a", "linear field $a = -x$")
+    small_legend(ax, "upper right")
 
 
 def _rotation(ax: Axes, part: pd.DataFrame) -> None:
@@ -66,4 +73,3 @@ def _rotation(ax: Axes, part: pd.DataFrame) -> None:
     ax.plot(1.5 * np.cos(angle), 1.5 * np.sin(angle), color="0.6", linestyle=":", marker="")
     ax.set(xlabel="$x$", ylabel="$y$", xlim=(-2.2, 3.4), ylim=(-1.6, 4.0), aspect="equal")
     ax.grid(visible=False)
-    panel_title(ax, "d", "rotation")

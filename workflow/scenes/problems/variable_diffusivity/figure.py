@@ -1,9 +1,5 @@
 """Errors of the forms on the line and in the plane, and the two equations."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -14,59 +10,46 @@ from fracstudy.style import (
     COLOURS,
     MARKERS,
     axes_row,
+    draw,
     entry,
     guide,
     legend_below,
     log_log,
     name_ticks,
     note,
-    panel_title,
+    scheme_style,
     slope_triangle,
 )
 
-__all__ = ["figure"]
-
+_TITLES = ("error, line", "error, plane", "the two equations", "distance between the two")
+_MEAN = r"$(D\,Lu + L(Du) - u\,LD)/2$, limit of the exchange"
+_FORMS = (
+    entry(r"$\mathrm{div}(D\,\mathrm{grad}^\beta u)$", color="0.2", marker=""),
+    entry(_MEAN, color="0.2", marker="", linestyle=":"),
+)
 _SCHEMES = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a), (b) errors on the line and in the plane, (c) right-hand sides, (d) the distance of the equations."""
-    drawn, axes = axes_row(4, height=3.9, width=3.4)
-    for ax, letter, panel in zip(axes, "ab", ("line", "plane"), strict=False):
+    drawn, axes = axes_row(_TITLES, height=3.9, width=3.4)
+    for ax, panel in zip(axes, ("line", "plane"), strict=False):
         _errors(ax, pick(series, panel=panel))
-        panel_title(ax, letter, f"error, {panel}")
     axes[0].set_ylabel("error of $du/dt$ / its largest value")
     _right_hand_sides(axes[2], pick(series, panel="right-hand side"))
     _gap(axes[3], pick(series, panel="gap"))
-    flux, mean = _FORMS
-    legend_below(
-        drawn,
-        [entry(name, color=COLOURS[s], marker=MARKERS[s]) for name, s in _SCHEMES.items()]
-        + [flux, mean],
-        columns=5,
-    )
+    schemes = [entry(name, color=COLOURS[s], marker=MARKERS[s]) for name, s in _SCHEMES.items()]
+    legend_below(drawn, [*schemes, *_FORMS], columns=5)
     return drawn
 
 
-_FORMS = (
-    entry(r"$\mathrm{div}(D\,\mathrm{grad}^\beta u)$", color="0.2", marker=""),
-    entry(
-        r"$(D\,Lu + L(Du) - u\,LD)/2$, limit of the exchange",
-        color="0.2",
-        marker="",
-        linestyle=":",
-    ),
-)
-
-
 def _errors(ax: Axes, part: pd.DataFrame) -> None:
-    for (form, equation, order), points in part.groupby(
-        ["series", "equation", "order"], sort=False
-    ):
+    kinds = part.groupby(["series", "equation", "order"], sort=False)
+    for (form, equation, order), points in kinds:
         scheme = _SCHEMES[str(form)]
-        style: dict[str, Any] = {"color": COLOURS[scheme], "marker": MARKERS[scheme]}
         dotted = form == "exchange" and not str(equation).startswith("div")
-        ax.plot(points["x"], points["y"], linestyle=":" if dotted else "-", markersize=4.0, **style)
+        look = {"color": COLOURS[scheme], "marker": MARKERS[scheme], "markersize": 4.0}
+        draw(ax, points, linestyle=":" if dotted else "-", **look)
         if form == "FPSE":
             _slope(ax, points.sort_values("x"), float(order))
     ticks = sorted(part["x"].unique())
@@ -85,22 +68,18 @@ def _slope(ax: Axes, points: pd.DataFrame, order: float) -> None:
 
 
 def _right_hand_sides(ax: Axes, part: pd.DataFrame) -> None:
-    for (name, points), line in zip(
-        part.groupby("series", sort=False), ("-", ":", ""), strict=True
-    ):
-        exchange = name == "exchange"
-        colour = COLOURS["KPSE"] if exchange else "0.2"
-        marker = MARKERS["KPSE"] if exchange else ""
-        ax.plot(
-            points["x"], points["y"], linestyle=line, color=colour, marker=marker, markersize=3.5
-        )
+    looks = (
+        {"linestyle": "-"},
+        {"linestyle": ":"},
+        scheme_style("KPSE", linestyle="", markersize=3.5),
+    )
+    for (_, points), look in zip(part.groupby("series", sort=False), looks, strict=True):
+        draw(ax, points, **{"color": "0.2", "marker": "", **look})
     ax.set(xlabel="position $x$", ylabel="$du/dt$", xlim=(-4.0, 4.0))
-    panel_title(ax, "c", r"the two equations")
 
 
 def _gap(ax: Axes, part: pd.DataFrame) -> None:
-    ax.plot(part["x"], part["y"], color="0.2")
+    draw(ax, part, color="0.2")
     end = part.iloc[-1]
     guide(ax, list(part["x"]), (end["x"], 0.5 * end["y"]), 1.0)
     log_log(ax, xlabel=r"$2 - \alpha$", ylabel="largest relative distance")
-    panel_title(ax, "d", "distance between the two")

@@ -5,8 +5,6 @@ D = 1 + c u. The error is the greatest over the particles, over the greatest val
 tested is the operator alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -15,14 +13,13 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.problems import Problem, solve_problem
-from fracparticles.run.orders import observed_order
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import VariableDiffusivity
 from fracparticles.variable.closed_forms import Cauchy, Gaussian, KnownField, exchange_limit
+from fracstudy.errors import off
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import observed
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _FLUX, _MEAN = "div(D grad^beta u)", "(D L u + L(D u) - u L D) / 2"
 _RUN = "u_t = div(D grad^beta u) + f"
@@ -89,26 +86,20 @@ def _levels(
         u, exact = _given(setting, equation, c)
         d = 1.0 + c * _field(setting).value(operator.points)
         rate = operator.apply(u, d)
-        errors.append(float(np.abs(rate - exact).max() / np.abs(exact).max()))
+        errors.append(off(rate, exact))
         norms.append(operator.spectral_radius(d) * setting.spacing**setting.alpha)
         drifts.append(_drift(form, setting, c))
-    observed = [np.nan, *observed_order(spacings, errors)]
     dim, order = settings[0].dim, settings[0].order
-    panels.add(
-        "line" if dim == 1 else "plane", form, spacings, errors, order=order, equation=equation
-    )
-    for h, error, slope, drift, norm in zip(spacings, errors, observed, drifts, norms, strict=True):
-        yield {
-            "dim": dim,
-            "way": form,
-            "equation": equation,
-            "order": order,
-            "h": h,
-            "error": error,
-            "observed order": slope,
-            "drift of the total": drift,
-            "bound of |lambda| h^alpha": norm,
-        }
+    where = "line" if dim == 1 else "plane"
+    panels.add(where, form, spacings, errors, order=order, equation=equation)
+    levels = zip(spacings, errors, observed(spacings, errors), drifts, norms, strict=True)
+    for h, error, slope, drift, norm in levels:
+        more = {"drift of the total": drift, "bound of |lambda| h^alpha": norm}
+        yield {**_row(dim, form, equation, order, h, error), "observed order": slope, **more}
+
+
+def _row(dim: int, way: str, equation: str, order: int, h: float, error: float) -> dict[str, Any]:
+    return {"dim": dim, "way": way, "equation": equation, "order": order, "h": h, "error": error}
 
 
 def _field(setting: Setting) -> type[KnownField]:
@@ -127,9 +118,8 @@ def _given(setting: Setting, equation: str, c: float) -> tuple[np.ndarray, np.nd
 
 def _drift(form: str, setting: Setting, c: float) -> float:
     """The rate of the total strength over the sum of |du/dt|, on a truncated lattice: zero if conservative."""
-    truncated = replace(
-        setting, n=round(_SHORT / setting.spacing), exterior="truncated", far_terms=1
-    )
+    n = round(_SHORT / setting.spacing)
+    truncated = replace(setting, n=n, exterior="truncated", far_terms=1)
     operator = VariableDiffusivity(form, truncated)
     field = _field(truncated)
     u, d = field.value(_particles(truncated)), 1.0 + c * field.value(operator.points)
@@ -158,23 +148,14 @@ def _run(alpha: float, form: str, dim: int, order: int, h: float) -> dict[str, A
         return np.asarray(-np.exp(-t) * (Gaussian.value(points) + spread))
 
     problem = Problem(
-        diffusivity=diffusivity,
-        source=source,
-        alpha=alpha,
-        dim=dim,
-        form=form,
-        order=order,
-        spacing=h,
-        half_width=_FAR,
-        t_final=1.0,
-        rtol=1e-8,
-    )
+        diffusivity=diffusivity, source=source, alpha=alpha, dim=dim, form=form, order=order, spacing=h,
+        half_width=_FAR, t_final=1.0, rtol=1e-8,
+    )  # fmt: skip
     at = _particles(problem.case.setting)
     start = Gaussian.value(at)
     run = solve_problem(problem, start)
-    exact = np.exp(-1.0) * start
-    error = float(np.abs(run["u"].values - exact).max() / exact.max())
-    return {"dim": dim, "way": form, "equation": _RUN, "order": order, "h": h, "error": error}
+    error = off(run["u"].values, np.exp(-1.0) * start)
+    return _row(dim, form, _RUN, order, h, error)
 
 
 def _two_equations(alpha: float, c: float, alphas: Sequence[float], panels: Panels) -> None:
@@ -193,5 +174,5 @@ def _two_equations(alpha: float, c: float, alphas: Sequence[float], panels: Pane
     for one in alphas:
         setting = Setting(alpha=one, n=400, spacing=_SHOWN / 400.0)
         first, second = (_given(setting, equation, c)[1] for equation in (_FLUX, _MEAN))
-        gaps.append(float(np.abs(first - second).max() / np.abs(first).max()))
+        gaps.append(off(second, first))
     panels.add("gap", "gap", [2.0 - one for one in alphas], gaps)

@@ -1,7 +1,6 @@
 """Errors against the spacing, the interpolation in the order, the tails of either end, and the exterior."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,50 +10,50 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, log_log, name_ticks, panel_title, slope_triangle
+from fracstudy.style import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PINK,
+    RED,
+    axes_row,
+    draw,
+    log_log,
+    name_ticks,
+    slope_triangle,
+    small_legend,
+)
 
-__all__ = ["figure"]
-
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
-_MARKERS = "osD^v"
+_COLOURS, _MARKERS = (BLUE, RED, GREEN, PINK, ORANGE), "osD^v"
 _TAILS = {"own": "of each end", "one for both": "one for both", "none": "none: truncated"}
+_TITLES = ("error", r"interpolation in $\alpha$", "tails of a run", "tail beyond the lattice")
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) errors, (b) interpolation, (c) tails, (d) what is beyond a narrow lattice."""
-    drawn, axes = axes_row(4, height=3.7, width=3.4)
+    drawn, axes = axes_row(_TITLES, height=3.7, width=3.4)
     _errors(axes[0], pick(series, panel="error"))
     _interpolation(axes[1], pick(series, panel="interpolation"))
     _tails(axes[2], pick(series, panel="tail"))
-    for points, style in _styled(pick(series, panel="exterior")):
-        name = points["series"].iloc[0]
-        axes[3].plot(points["x"], points["y"], label=_TAILS[name], **style)
+    exterior = pick(series, panel="exterior")
+    for points, name, style in _styled(exterior):
+        draw(axes[3], points, label=_TAILS[name], **style)
     log_log(axes[3], xlabel="half-width of the lattice", ylabel="error of $du/dt$, relative")
-    name_ticks(axes[3], sorted(pick(series, panel="exterior")["x"].unique()))
-    axes[3].legend(loc="lower left", fontsize=7, title="tail", title_fontsize=7)
-    panel_title(axes[3], "d", "tail beyond the lattice")
+    name_ticks(axes[3], sorted(exterior["x"].unique()))
+    small_legend(axes[3], "lower left", title="tail", title_fontsize=7)
     return drawn
 
 
-def _styled(part: pd.DataFrame) -> list[tuple[pd.DataFrame, dict[str, Any]]]:
-    groups = [points for _, points in part.groupby("series", sort=False)]
-    looks = [
-        {"color": colour, "marker": marker, "markersize": 4.0}
-        for colour, marker in zip(_COLOURS, _MARKERS, strict=True)
-    ]
-    return list(zip(groups, looks, strict=False))
+def _styled(part: pd.DataFrame) -> Iterator[tuple[pd.DataFrame, str, dict[str, Any]]]:
+    groups = part.groupby("series", sort=False)
+    for (name, points), colour, marker in zip(groups, _COLOURS, _MARKERS, strict=False):
+        yield points, str(name), {"color": colour, "marker": marker, "markersize": 4.0}
 
 
 def _errors(ax: Axes, part: pd.DataFrame) -> None:
-    for points, style in _styled(part):
+    for points, name, style in _styled(part):
         plane = points["dim"].iloc[0] == 2
-        ax.plot(
-            points["x"],
-            points["y"],
-            linestyle="--" if plane else "-",
-            label=points["series"].iloc[0],
-            **style,
-        )
+        draw(ax, points, linestyle="--" if plane else "-", label=name, **style)
         h, error = points.sort_values("x")[["x", "y"]].to_numpy().T
         slopes = np.diff(np.log(error)) / np.diff(np.log(h))
         if not plane and slopes.size and slopes.argmax() == 0:  # it does not end at round-off
@@ -63,29 +62,23 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
     log_log(ax, xlabel="particle spacing $h$", ylabel="error of $du/dt$, relative")
     ax.set_xlim(0.6 * ticks[0], 1.3 * ticks[-1])
     name_ticks(ax, ticks)
-    ax.legend(loc="lower right", fontsize=7)
-    panel_title(ax, "a", "error")
+    small_legend(ax, "lower right")
 
 
 def _interpolation(ax: Axes, part: pd.DataFrame) -> None:
-    for points, style in _styled(part):
-        ax.plot(points["x"], points["y"], label=points["series"].iloc[0], linestyle="", **style)
+    for points, name, style in _styled(part):
+        draw(ax, points, label=name, linestyle="", **style)
         ax.plot(points["x"], points["bound"], color=style["color"], linestyle=":", marker="")
-    ax.set(
-        yscale="log",
-        xlabel="number of orders summed, $K$",
-        ylabel="difference of rows; bound (dotted)",
-    )
+    ax.set(xlabel="number of orders summed, $K$", ylabel="difference of rows; bound (dotted)")
+    ax.set_yscale("log")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-    ax.legend(loc="upper right", fontsize=7, title=r"range of $\alpha$", title_fontsize=7)
-    panel_title(ax, "b", r"interpolation in $\alpha$")
+    small_legend(ax, "upper right", title=r"range of $\alpha$", title_fontsize=7)
 
 
 def _tails(ax: Axes, part: pd.DataFrame) -> None:
-    for points, style in _styled(part):
-        label = f"{points['series'].iloc[0]}, $\\alpha = {points['alpha'].iloc[0]:g}$"
-        ax.plot(points["x"], points["y"], label=label, linestyle="", **style)
+    for points, name, style in _styled(part):
+        label = f"{name}, $\\alpha = {points['alpha'].iloc[0]:g}$"
+        draw(ax, points, label=label, linestyle="", **style)
         ax.plot(points["x"], points["theory"], color=style["color"], linestyle=":", marker="")
     log_log(ax, xlabel="distance $|x|$", ylabel="$u(x, t)$")
-    ax.legend(loc="lower left", fontsize=7)
-    panel_title(ax, "c", "tails of a run")
+    small_legend(ax, "lower left")

@@ -4,8 +4,6 @@ alpha(x) = mean + change tanh(x) on the line, mean + change exp(-|x|^2) in the p
 particles, over the greatest value of the exact right-hand side.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -15,17 +13,16 @@ import pandas as pd
 from scipy.special import gamma
 
 from fracparticles.problems import Problem, solve_problem
-from fracparticles.run.orders import observed_order
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.base import OnePass
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import VariableOrder
 from fracparticles.variable.closed_forms import Cauchy, Gaussian
 from fracparticles.variable.order import interpolation_bound
+from fracstudy.errors import off
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import observed
 from fracstudy.panels import Panels
-
-__all__ = ["study"]
 
 _ROWS = 60  # half the particles on which rows are compared with those of their own order
 _MOMENTS = 16  # intervals of time over which the mass is integrated
@@ -70,7 +67,8 @@ def study(
         rows += _interpolation(low, high, tolerances, panels)
     rows.append(_constant(mean, overlap))
     rows += _tails(mean, change, wide, wide_spacing, time, narrow, panels)
-    return Result(pd.DataFrame(rows), (), panels.frame)
+    columns = ["part", "case", "at", "ours", "observed order", "theory"]
+    return Result(pd.DataFrame(rows, columns=columns), (), panels.frame)
 
 
 def _particles(setting: Setting) -> list[np.ndarray]:
@@ -88,14 +86,17 @@ def _levels(settings: Sequence[Setting], change: float, panels: Panels) -> Itera
         alpha = setting.alpha + change * varied
         exact = field.laplacian(at, alpha)
         rate = VariableOrder(setting, alpha, tail=setting.dim + 1.0).apply(field.value(at))
-        errors.append(float(np.abs(rate - exact).max() / np.abs(exact).max()))
+        errors.append(off(rate, exact))
     spacings = [setting.spacing for setting in settings]
     dim, order = settings[0].dim, settings[0].order
     case = f"{'line' if dim == 1 else 'plane'}, order {order}"
     panels.add("error", case, spacings, errors, order=order, dim=dim)
-    slopes = [np.nan, *observed_order(spacings, errors)]
-    for h, error, slope in zip(spacings, errors, slopes, strict=True):
-        yield {"part": "error", "case": case, "at": h, "ours": error, "observed order": slope}
+    for h, error, slope in zip(spacings, errors, observed(spacings, errors), strict=True):
+        yield {**_row("error", case, h, error), "observed order": slope}
+
+
+def _row(part: str, case: str, at: float, ours: float, theory: float = np.nan) -> dict[str, Any]:
+    return {"part": part, "case": case, "at": at, "ours": ours, "theory": theory}
 
 
 def _interpolation(
@@ -124,7 +125,7 @@ def _interpolation(
     bounds = [interpolation_bound(nodes, low, high) for nodes in found]
     panels.add("interpolation", case, list(found), list(found.values()), bound=bounds)
     for (nodes, worst), bound in zip(found.items(), bounds, strict=True):
-        yield {"part": "interpolation", "case": case, "at": nodes, "ours": worst, "theory": bound}
+        yield _row("interpolation", case, nodes, worst, bound)
 
 
 def _constant(alpha: float, overlap: float) -> dict[str, Any]:
@@ -133,8 +134,7 @@ def _constant(alpha: float, overlap: float) -> dict[str, Any]:
     u = Cauchy.value(_particles(setting))
     plain = SCHEMES["DD"].operator(setting).apply(u)
     ours = VariableOrder(setting, alpha).apply(u)
-    difference = float(np.abs(ours - plain).max() / np.abs(plain).max())
-    return {"part": "constant order", "case": "line", "ours": difference, "theory": 0.0}
+    return _row("constant order", "line", np.nan, off(ours, plain), 0.0)
 
 
 def _tails(
@@ -151,14 +151,9 @@ def _tails(
     Far away du/dt = c(alpha) M(t) / |x|^(1 + alpha) with the alpha of the place and the mass M, so that u falls like
     c(alpha) int M dt / |x|^(1 + alpha): c(alpha) = Gamma(1 + alpha) sin(pi alpha / 2) / pi.
     """
-    problem = Problem(
-        alpha=f"{mean} + {change}*tanh(x)",
-        form="DD",
-        half_width=wide,
-        spacing=h,
-        times=tuple(np.linspace(0.0, time, _MOMENTS + 1)[1:].tolist()),
-        rtol=1e-10,
-    )
+    alpha_of_x, times = f"{mean} + {change}*tanh(x)", np.linspace(0.0, time, _MOMENTS + 1)[1:]
+    lattice = {"form": "DD", "half_width": wide, "spacing": h, "rtol": 1e-10}
+    problem = Problem(alpha=alpha_of_x, times=tuple(times.tolist()), **lattice)
     run = solve_problem(problem, lambda x: np.exp(-x * x))
     x, u = run["x"].values, run["u"].values[-1]
     first = np.exp(-x * x).sum() * h
@@ -175,21 +170,9 @@ def _tails(
         panels.add("tail", side, r, values, theory=theory, alpha=alpha)
         share = values[-1] * r[-1] ** (1.0 + alpha) / expected
         power = -np.log(values[-1] / values[-2]) / np.log(r[-1] / r[-2])
-        yield {
-            "part": "tail, exponent",
-            "case": side,
-            "at": r[-1],
-            "ours": power,
-            "theory": 1.0 + alpha,
-        }
-        yield {"part": "tail, amplitude", "case": side, "at": r[-1], "ours": share, "theory": 1.0}
-    yield {
-        "part": "mass",
-        "case": "line",
-        "at": time,
-        "ours": float(masses[-1] / masses[0]),
-        "theory": np.nan,
-    }
+        yield _row("tail, exponent", side, r[-1], power, 1.0 + alpha)
+        yield _row("tail, amplitude", side, r[-1], share, 1.0)
+    yield _row("mass", "line", time, float(masses[-1] / masses[0]))
     yield from _narrowed(mean, change, x, u, h, narrow, panels)
 
 
@@ -218,7 +201,6 @@ def _narrowed(
         for half_width in narrow:
             n = round(half_width / h)
             middle = slice(x.size // 2 - n, x.size // 2 + n + 1)
-            off = np.abs(rate(n, tail) - whole[middle]).max() / np.abs(whole).max()
-            errors.append(float(off))
-            yield {"part": "exterior", "case": tail, "at": half_width, "ours": errors[-1]}
+            errors.append(off(rate(n, tail), whole[middle], np.abs(whole).max()))
+            yield _row("exterior", tail, half_width, errors[-1])
         panels.add("exterior", tail, narrow, errors)

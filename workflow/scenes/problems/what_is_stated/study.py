@@ -1,7 +1,5 @@
 """What is stated of the problems of this page, beside what their scenes measured."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -10,8 +8,6 @@ import pandas as pd
 
 from fracparticles.errors import InvalidInput
 from fracstudy.inputs import Inputs, Result
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs, *, statements: list[dict[str, Any]]) -> Result:

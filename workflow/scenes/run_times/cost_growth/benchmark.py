@@ -30,8 +30,6 @@ from fracstudy.race.clock import (
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark", "measure_sizes"]
-
 _BETA = 0.5
 _START, _END = 0.5, 1.5
 # The same whatever the size, so that the domain grows with N: a solve then takes the same number of operator

@@ -1,7 +1,5 @@
 """Run time and memory against the number of particles."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import zip_longest
 from typing import Any
@@ -13,7 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fracstudy.inputs import NUMERALS
+from fracstudy.panels import pick
 from fracstudy.style import (
+    draw,
     entry,
     legend_below,
     log_log,
@@ -22,8 +22,6 @@ from fracstudy.style import (
     scheme_style,
     slope_triangle,
 )
-
-__all__ = ["figure"]
 
 _SHAPES = {1: "lines", 2: "squares", 3: "cubes"}
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
@@ -48,9 +46,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     figure = Figure(figsize=(max(3.2 * len(dims), 4.6), 6.6), layout="constrained")
     axes = figure.subplots(2, len(dims), sharex=True, sharey="row", squeeze=False)
     for (above, below), dim in zip(axes.T, dims, strict=True):
-        here = series[series["dim"] == dim]
-        _application(above, here[here["panel"] == "application"])
-        _memory(below, here[here["panel"] == "memory"])
+        _application(above, pick(series, dim=dim, panel="application"))
+        _memory(below, pick(series, dim=dim, panel="memory"))
         above.set_title(_SHAPES[dim])
         below.set_xlabel("number of particles $N$")
     for letter, ax in zip("ab", axes[:, 0], strict=True):
@@ -66,7 +63,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 def _application(ax: Axes, points: pd.DataFrame) -> None:
     log_log(ax)
     for way, style in (("fast", "-"), ("naive", ":")):
-        some = points[points["series"] == way]
+        some = pick(points, series=way)
         if some.empty:
             continue
         _curves(ax, some, style)
@@ -82,7 +79,7 @@ def _application(ax: Axes, points: pd.DataFrame) -> None:
 
 def _memory(ax: Axes, points: pd.DataFrame) -> None:
     log_log(ax)
-    peak = points[points["series"] == "peak"]
+    peak = pick(points, series="peak")
     _curves(ax, peak, "-")
     _name_end(ax, peak, _gigabytes)
     machine = points.loc[points["series"] == "machine", "y"].max()
@@ -96,10 +93,9 @@ def _curves(ax: Axes, points: pd.DataFrame, style: str) -> None:
     """What was measured, and a dashed line to what is extrapolated."""
     for kind, curve in points.groupby("kind", sort=False):
         curve = curve.sort_values("x")
-        measured, look = curve[~curve["extrapolated"]], _look(kind, linestyle=style)
-        ax.plot(measured["x"], measured["y"], **look)
-        last = curve.iloc[-2:]
-        ax.plot(last["x"], last["y"], color=look["color"], linewidth=0.9, linestyle=_DASHES)
+        look = _look(kind, linestyle=style)
+        draw(ax, curve[~curve["extrapolated"]], **look)
+        draw(ax, curve.iloc[-2:], color=look["color"], linewidth=0.9, linestyle=_DASHES)
 
 
 def _name_end(ax: Axes, points: pd.DataFrame, text: Callable[[float, float], str]) -> None:

@@ -5,8 +5,6 @@ leave a cache on the way is too steep beyond, so that larger sizes are extrapola
 cache holds, by what the algorithm does: N log N, or N^2 for the sums over all pairs, and as many bytes a particle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import ceil, log
 from typing import Any
@@ -17,8 +15,6 @@ import pandas as pd
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
 from fracstudy.panels import Panels
-
-__all__ = ["exponent", "extrapolate", "study"]
 
 # Bytes: a smaller rise of the peak is as much the allocator's steps as the particles'.
 _LEAST_RISE = 4e6

@@ -12,8 +12,6 @@ from fracstudy.race.clock import Timing, measure, one_core, timings_dataset
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 _DATA = "x = np.linspace(-20.0, 20.0, 400, endpoint=False); u0 = 1.0 / (1.0 + x**2)\n"
 _CALLS = {
     "an empty program": "",

@@ -1,24 +1,14 @@
 """The first call of a fresh process."""
 
-from __future__ import annotations
-
-import pandas as pd
-
 from fracstudy.inputs import Inputs, Result
+from scenes.run_times.contests import columns
 
-__all__ = ["study"]
+_TIMES = {"call": "call", "process, min / s": "process_time", "median / s": "process_time_median"}
 
 
 def study(inputs: Inputs) -> Result:
     """List what a process takes from start to end, and beyond an empty one."""
-    data = inputs.benchmarks["first_call"].set_index("call")
-    empty = data["process_time"]["an empty program"]
-    table = pd.DataFrame(
-        {
-            "call": data.index,
-            "process, min / s": data["process_time"],
-            "median / s": data["process_time_median"],
-            "beyond an empty program / s": data["process_time"] - empty,
-        }
-    )
-    return Result(table)
+    data = inputs.benchmarks["first_call"]
+    empty = data.set_index("call")["process_time"]["an empty program"]
+    beyond = {"beyond an empty program / s": data["process_time"] - empty}
+    return Result(columns(data, _TIMES).assign(**beyond))

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from fracparticles.errors import AccuracyWarning
+from fracstudy.errors import quiet
 from fracstudy.race.clock import measure_warm, one_core, timings_dataset
 from scenes.run_times.problem_times.contest import Contest
 from scenes.run_times.problem_times.interval import eigenvalue, leaving
@@ -18,8 +17,6 @@ from scenes.run_times.problem_times.two_widths import two_widths
 
 if TYPE_CHECKING:
     import xarray as xr
-
-__all__ = ["CONTESTS", "benchmark"]
 
 CONTESTS: dict[str, Callable[[float], Contest]] = {
     "variable diffusivity": variable_diffusivity,
@@ -63,8 +60,7 @@ def benchmark(
     """
     one_core()
     rows = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)  # coarse trials are to be seen
+    with quiet():  # coarse trials are to be seen
         for name, entries in contests.items():
             contest = CONTESTS[name](alpha)
             for who, grids in entries.items():

@@ -6,9 +6,7 @@ particles of `adaptive.splitting` do:
     half of the source (classical Runge-Kutta), exp(-t (-Laplacian)^(alpha/2)), half of the source.
 
 Fourier: the exponential is exact for each wave. When the narrow blob has doubled its width every other point goes, as
-long as there are enough for a width of one. With a velocity the steps are as short as its waves are fast; these are
-Lawson's, the classical Runge-Kutta scheme for exp(t k^alpha) u^. The velocity is mended beyond four fifths of the
-circle, so that it has no jump where the ends meet.
+long as there are enough for a width of one. With a velocity the steps are Lawson's, as short as its waves are fast.
 
 Linear elements on a mesh given once, zero beyond it: the exponential is by the eigenvectors of stiffness and mass.
 """
@@ -25,19 +23,18 @@ from scipy.fft import irfft, next_fast_len, rfft
 from scipy.linalg import eigh
 
 from scenes.run_times.problem_times.interval_peers import stiffness
-
-__all__ = ["Answer", "Circle", "State", "on_circle", "on_elements"]
+from scenes.run_times.problem_times.waves import lawson, mended
 
 # A time, the points then, u, and what the points stand for.
 State = tuple[float, np.ndarray, np.ndarray, np.ndarray | float]
 Answer = tuple[int, list[State]]
 Source = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
 Rate = Callable[[float, np.ndarray], np.ndarray]
+Flow = Callable[[np.ndarray, float], np.ndarray]
+Advance = Callable[[np.ndarray, float, float], np.ndarray]
 
 _MOST_STEPS = 6
 _PARTS = 2  # of the Runge-Kutta scheme in each half of a step
-_STABLE = 2.5  # of the scheme's 2.8 on the imaginary axis
-_MENDED = 0.8  # of the half-width: where a velocity is still what it is
 
 
 @dataclass(frozen=True)
@@ -93,8 +90,8 @@ def on_circle(
         k = np.pi / circle.half_width * np.arange(count // 2 + 1.0)
         if t == 0.0:
             u = initial(x)
-        elif count != u.size:
-            u = _thinned(waves, count)
+        elif count != u.size:  # fewer points of the same circle
+            u = np.asarray(irfft(waves[: count // 2 + 1], count) * (count / u.size))
 
         def diffused(u: np.ndarray, dt: float, decay: np.ndarray = k**circle.alpha) -> np.ndarray:
             return np.asarray(irfft(np.exp(-dt * decay) * rfft(u), u.size))
@@ -102,7 +99,7 @@ def on_circle(
         if velocity is not None:
             u = _carried(x, k, circle, velocity, u, end - t, tolerance)
         elif source is not None:
-            u = _extrapolated(diffused, partial(source, x), u, t, end, tolerance)
+            u = _extrapolated(diffused, partial(source, x), tolerance)(u, t, end)
         else:
             u = diffused(u, end - t)
         t, waves = end, rfft(u)
@@ -121,28 +118,16 @@ def _carried(
     share: float,
 ) -> np.ndarray:
     """Lawson's scheme in steps of at most a share of the time, and as the velocity allows."""
-    far = (np.abs(x - circle.middle) / circle.half_width - _MENDED) / (1.0 - _MENDED)
-    a = velocity(x) * 0.5 * (1.0 + np.cos(np.pi * np.clip(far, 0.0, 1.0)))
+    a = mended(velocity(x), np.abs(x - circle.middle) / circle.half_width)
     slope = -1j * k
     slope[-1] = 0.0  # the wave of two points has no slope at them
     fastest = float(np.abs(a).max() * k[-1])
-    steps = max(int(np.ceil(1.0 / share)), int(np.ceil(time * fastest / _STABLE)))
-    dt = time / steps
-    half = np.exp(-0.5 * dt * k**circle.alpha)
 
     def rate(waves: np.ndarray) -> np.ndarray:
         return np.asarray(slope * rfft(a * irfft(waves, x.size)))
 
-    waves = rfft(u)
-    for _ in range(steps):
-        first = rate(waves)
-        second = rate(half * (waves + 0.5 * dt * first))
-        third = rate(half * waves + 0.5 * dt * second)
-        fourth = rate(half * (half * waves + dt * third))
-        waves = (
-            half * (half * (waves + dt / 6.0 * first) + dt / 3.0 * (second + third))
-            + dt / 6.0 * fourth
-        )
+    least = int(np.ceil(1.0 / share))
+    waves = lawson(rate, k**circle.alpha, rfft(u), time, fastest, least)
     return np.asarray(irfft(waves, x.size))
 
 
@@ -163,55 +148,39 @@ def on_elements(
     def diffused(u: np.ndarray, dt: float) -> np.ndarray:
         return np.asarray(modes @ (np.exp(-dt * rates) * (back @ u)))
 
-    u = initial(x)
+    u, advance = initial(x), _extrapolated(diffused, partial(source, x), tolerance)
     states: list[State] = []
     for start, end in pairwise([0.0, *times]):
-        u = _extrapolated(diffused, partial(source, x), u, start, end, tolerance)
+        u = advance(u, start, end)
         states.append((end, x, u, 0.5 * (h[1:] + h[:-1])))
     return x.size, states
 
 
-def _thinned(waves: np.ndarray, count: int) -> np.ndarray:
-    """u at fewer points of the same circle."""
-    old = 2 * (waves.size - 1)
-    return np.asarray(irfft(waves[: count // 2 + 1], count) * (count / old))
+def _extrapolated(diffused: Flow, source: Rate, tolerance: float) -> Advance:
+    """Return the way from one time to another, to within a share of sum |u|."""
 
+    def steps(u: np.ndarray, start: float, end: float, count: int) -> np.ndarray:
+        dt = (end - start) / count
+        for n in range(count):
+            t = start + n * dt
+            u = _runge_kutta(source, u, t, t + 0.5 * dt)
+            u = _runge_kutta(source, diffused(u, dt), t + 0.5 * dt, t + dt)
+        return u
 
-def _extrapolated(
-    diffused: Callable[[np.ndarray, float], np.ndarray],
-    source: Rate,
-    u: np.ndarray,
-    start: float,
-    end: float,
-    tolerance: float,
-) -> np.ndarray:
-    """u at the end, within a share of sum |u|; the time is halved where six steps do not do."""
-    row: list[np.ndarray] = []
-    for n in range(1, _MOST_STEPS + 1):
-        above, row = row, [_steps(diffused, source, u, start, end, n)]
-        for k, last in enumerate(above, start=1):
-            row.append(row[-1] + (row[-1] - last) / ((n / (n - k)) ** 2 - 1.0))
-        if n > 2 and np.abs(row[-1] - row[-2]).sum() <= tolerance * np.abs(row[-1]).sum() < np.inf:
-            return row[-1]
-    middle = 0.5 * (start + end)
-    u = _extrapolated(diffused, source, u, start, middle, tolerance)
-    return _extrapolated(diffused, source, u, middle, end, tolerance)
+    def advance(u: np.ndarray, start: float, end: float) -> np.ndarray:
+        row: list[np.ndarray] = []
+        for n in range(1, _MOST_STEPS + 1):
+            above, row = row, [steps(u, start, end, n)]
+            for k, last in enumerate(above, start=1):
+                row.append(row[-1] + (row[-1] - last) / ((n / (n - k)) ** 2 - 1.0))
+            size = tolerance * np.abs(row[-1]).sum()
+            if n > 2 and np.abs(row[-1] - row[-2]).sum() <= size < np.inf:
+                return row[-1]
+        # The time is halved where six steps do not do.
+        middle = 0.5 * (start + end)
+        return advance(advance(u, start, middle), middle, end)
 
-
-def _steps(
-    diffused: Callable[[np.ndarray, float], np.ndarray],
-    source: Rate,
-    u: np.ndarray,
-    start: float,
-    end: float,
-    count: int,
-) -> np.ndarray:
-    dt = (end - start) / count
-    for n in range(count):
-        t = start + n * dt
-        u = _runge_kutta(source, u, t, t + 0.5 * dt)
-        u = _runge_kutta(source, diffused(u, dt), t + 0.5 * dt, t + dt)
-    return u
+    return advance
 
 
 def _runge_kutta(rate: Rate, u: np.ndarray, start: float, end: float) -> np.ndarray:

@@ -1,39 +1,61 @@
 """What a contest is: a problem with a known answer, and those who solve it."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["OURS", "PEER", "Contender", "Contest", "greatest_error"]
+from fracparticles.problems import Problem, solve_problem
 
 OURS, PEER = "ours", "peer"
 
-
-class Contender(NamedTuple):
-    """One who solves: `solve(*grid)` returns the number of unknowns and the answer; all of it is timed."""
-
-    group: str
-    solve: Callable[..., tuple[int, Any]]
+Solve = Callable[..., tuple[int, Any]]
+"""`solve(*grid)` returns the number of unknowns and the answer; all of it is timed."""
+Points = tuple[np.ndarray, np.ndarray]
+"""An answer: points along an axis, and u."""
 
 
 class Contest(NamedTuple):
-    """The error of an answer, and the contenders by name."""
+    """The error of an answer, and who solves, by name."""
 
     error: Callable[[Any], float]
-    contenders: Mapping[str, Contender]
+    ours: Mapping[str, Solve]
+    peers: Mapping[str, Solve]
+
+    @property
+    def contenders(self) -> dict[str, tuple[str, Solve]]:
+        """All of them, each with its group."""
+        groups = ((OURS, self.ours), (PEER, self.peers))
+        return {name: (group, solve) for group, of in groups for name, solve in of.items()}
 
 
-def greatest_error(
-    exact: Callable[[np.ndarray], np.ndarray],
-) -> Callable[[tuple[np.ndarray, np.ndarray]], float]:
+def greatest_error(exact: Callable[[np.ndarray], np.ndarray]) -> Callable[[Points], float]:
     """Return the error of an answer (x, u): the greatest at its points, over the greatest of the exact values."""
 
-    def error(answer: tuple[np.ndarray, np.ndarray]) -> float:
+    def error(answer: Points) -> float:
         x, u = answer
         known = exact(x)
         return float(np.abs(u - known).max() / np.abs(known).max())
 
     return error
+
+
+def on_lattices(
+    forms: Iterable[str], start: Callable[..., np.ndarray], **fields: Any
+) -> dict[str, Solve]:
+    """Return forms of ours, each with the orders 4 and 12, that solve the problem of these fields."""
+
+    def solve(
+        form: str, order: int, half_width: float, spacing: float, rtol: float, overlap: float = 2.0
+    ) -> tuple[int, Points]:
+        grid: dict[str, Any] = {
+            "half_width": half_width,
+            "spacing": spacing,
+            "rtol": rtol,
+            "overlap": overlap,
+        }
+        run = solve_problem(Problem(form=form, order=order, **grid, **fields), start)
+        return run["u"].size, (run["x"].values, run["u"].values)
+
+    return {f"{form} {order}": partial(solve, form, order) for form in forms for order in (4, 12)}

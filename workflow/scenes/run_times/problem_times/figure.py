@@ -1,17 +1,23 @@
 """Error against run time: a panel a problem, a line a contender."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, MARKERS, entry, legend_below, log_log, note_below, panel_title
-
-__all__ = ["figure"]
+from fracstudy.style import (
+    PINK,
+    SKY,
+    axes_row,
+    entry,
+    legend_below,
+    log_log,
+    note_below,
+    plain_times,
+    scheme_style,
+)  # fmt: skip
 
 _COLUMNS = 3
 _FLOOR = 1e-14  # errors below are drawn there
@@ -30,12 +36,12 @@ _TITLES = {
 }
 # Okabe & Ito: schemes as everywhere, other methods of ours in theirs, peers hollow.
 _LOOKS: dict[str, dict[str, Any]] = {
-    "FPSE 12": {"color": COLOURS["FPSE"], "marker": MARKERS["FPSE"]},
-    "FPSE 4": {"color": COLOURS["FPSE"], "marker": MARKERS["FPSE"], "linestyle": ":"},
-    "DD 12": {"color": COLOURS["DD"], "marker": MARKERS["DD"]},
-    "DD 4": {"color": COLOURS["DD"], "marker": MARKERS["DD"], "linestyle": ":"},
-    "graded particles": {"color": "#56B4E9", "marker": "h"},
-    "adaptive particles": {"color": "#CC79A7", "marker": "P"},
+    "FPSE 12": scheme_style("FPSE"),
+    "FPSE 4": scheme_style("FPSE", linestyle=":"),
+    "DD 12": scheme_style("DD"),
+    "DD 4": scheme_style("DD", linestyle=":"),
+    "graded particles": {"color": SKY, "marker": "h"},
+    "adaptive particles": {"color": PINK, "marker": "P"},
     "evolve, one lattice": {"color": "#000000", "marker": "*"},
     "evolve, two lattices": {"color": "#000000", "marker": "X", "linestyle": ":"},
     "Fourier, circle": {"color": "#666666", "marker": "o"},
@@ -52,18 +58,16 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw the front of each contender; hollow with dashes are peers."""
     problems = list(series["problem"].unique())
     rows = -(-len(problems) // _COLUMNS)
-    drawn = Figure(figsize=(3.4 * _COLUMNS, 3.1 * rows + 1.2), layout="constrained")
-    axes = list(drawn.subplots(rows, _COLUMNS, sharey=True, squeeze=False).flat)
-    for ax, letter, problem in zip(axes, "abcdefghijkl", problems, strict=False):
+    blank = [""] * (rows * _COLUMNS - len(problems))
+    titles = [_TITLES[problem] for problem in problems] + blank
+    drawn, axes = axes_row(titles, 3.1 + 1.2 / rows, 3.4, rows, sharey=True)
+    for ax, problem in zip(axes, problems, strict=False):
         part = pick(series, problem=problem)
         for name, points in part[part["front"].astype(bool)].groupby("contender", sort=False):
             line = points.sort_values("time")
             ax.plot(1e3 * line["time"], line["error"].clip(lower=_FLOOR), **_look(points, name))
         log_log(ax, xlabel="set-up and solve / ms")
-        ax.xaxis.set_major_locator(LogLocator(numticks=8))
-        ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
-        ax.xaxis.set_minor_formatter(NullFormatter())
-        panel_title(ax, letter, _TITLES[problem])
+        plain_times(ax)
     for ax in axes[::_COLUMNS]:
         ax.set_ylabel("relative error")
     for ax in axes[len(problems) :]:
@@ -71,10 +75,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     axes[0].set_ylim(0.5 * _FLOOR, 2.0)
     axes[0].yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
     there = {name: pick(series, contender=name) for name in _LOOKS}
-    names = [
-        entry(name, **_look(points, name)) for name, points in there.items() if not points.empty
-    ]
-    legend_below(drawn, names, columns=5)
+    entries = [entry(name, **_look(own, name)) for name, own in there.items() if not own.empty]
+    legend_below(drawn, entries, columns=5)
     note_below(drawn, str(series["note"].iloc[0]))
     return drawn
 

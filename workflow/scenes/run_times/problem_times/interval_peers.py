@@ -14,8 +14,6 @@ taken, p = alpha - 1:
 Orders: Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472.
 """
 
-from __future__ import annotations
-
 from math import gamma
 
 import numpy as np
@@ -23,21 +21,10 @@ from scipy.linalg import eigh, solve, solve_toeplitz, toeplitz
 
 from fracparticles.adaptive.maps import GradedParticles
 from fracparticles.schemes.riesz import potential_constant
+from scenes.run_times.problem_times.contest import Points
 from scenes.run_times.problem_times.line_peers import centred_weights
 
-__all__ = [
-    "difference_eigenvalue",
-    "difference_solution",
-    "element_eigenvalue",
-    "element_solution",
-    "getoor",
-    "graded_mesh",
-    "stiffness",
-]
-
 _FAR = 16.0  # half-widths away, where the next term is below 1e-9
-
-Solution = tuple[np.ndarray, np.ndarray]
 
 
 def getoor(x: np.ndarray, alpha: float) -> np.ndarray:
@@ -86,7 +73,7 @@ def element_eigenvalue(alpha: float, elements: int, power: float = 1.0) -> float
     return float(1.0 / high[0])
 
 
-def element_solution(alpha: float, elements: int, power: float = 1.0) -> Solution:
+def element_solution(alpha: float, elements: int, power: float = 1.0) -> Points:
     """Return the inner nodes and u of (-Laplacian)^(alpha/2) u = 1 by linear elements."""
     mesh = graded_mesh(elements, power)
     u = solve(stiffness(mesh.distances, alpha), mesh.volumes[1:-1], assume_a="pos")
@@ -100,7 +87,7 @@ def difference_eigenvalue(alpha: float, points: int) -> float:
     return float(eigh(matrix, eigvals_only=True, subset_by_index=(0, 0))[0])
 
 
-def difference_solution(alpha: float, points: int) -> Solution:
+def difference_solution(alpha: float, points: int) -> Points:
     """Return the points inside and u of (-Laplacian)^(alpha/2) u = 1 by the same differences."""
     h = 2.0 / (points + 1)
     u = solve_toeplitz(h**-alpha * centred_weights(alpha, points), np.ones(points))

@@ -1,18 +1,16 @@
 """Contests on the line: a diffusivity that varies, and a stable process that is drawn back to the origin."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from fracparticles.problems import Problem, solve_problem
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import Gaussian
-from scenes.run_times.problem_times.contest import OURS, PEER, Contender, Contest, greatest_error
+from scenes.run_times.problem_times.contest import Contest, Points, greatest_error, on_lattices
 from scenes.run_times.problem_times.line_peers import (
+    Field,
     Rate,
     differences,
     integrated,
@@ -20,13 +18,8 @@ from scenes.run_times.problem_times.line_peers import (
     rational,
 )
 
-__all__ = ["drawn_back", "variable_diffusivity"]
-
-Answer = tuple[int, tuple[np.ndarray, np.ndarray]]
-Function = Callable[[np.ndarray], np.ndarray]
 Rates = Callable[..., tuple[np.ndarray, Rate]]
 
-_OURS = {f"{form} {order}": (form, order) for form in ("FPSE", "DD") for order in (4, 12)}
 _PEERS: dict[str, Rates] = {
     "Fourier, circle": pseudo_spectral,
     "rational functions": rational,
@@ -60,15 +53,12 @@ def variable_diffusivity(alpha: float) -> Contest:
     def diffusivity(x: np.ndarray) -> np.ndarray:
         return 1.0 + 0.5 * bell(x)
 
-    fields: dict[str, Any] = {
-        "alpha": alpha,
-        "diffusivity": diffusivity,
-        "source": lambda x, t: source(x, t),
-        "t_final": 1.0,
-    }
-    return _contest(
-        fields, bell, lambda x: np.exp(-1.0) * bell(x), (diffusivity, None), _PEERS, source
-    )
+    # A function: that is what a source is looked at as.
+    acts = {"diffusivity": diffusivity, "source": lambda x, t: source(x, t)}
+    fields: dict[str, Any] = {"alpha": alpha, "t_final": 1.0, **acts}
+    peers = _peers(_PEERS, fields, bell, (diffusivity, None), source)
+    error = greatest_error(lambda x: np.exp(-1.0) * bell(x))
+    return Contest(error, on_lattices(["FPSE", "DD"], bell, **fields), peers)
 
 
 def drawn_back(alpha: float) -> Contest:
@@ -77,49 +67,36 @@ def drawn_back(alpha: float) -> Contest:
     It keeps its shape: u = green(x, s), s(t) = 1 / alpha + (1 - 1 / alpha) exp(-alpha (t - 1)).
     """
     last = 1.0 / alpha + (1.0 - 1.0 / alpha) * np.exp(-alpha)
-    fields = {"alpha": alpha, "velocity": "-x", "far_terms": 3, "t_initial": 1.0, "t_final": 2.0}
-    peers = _PEERS | {"differences, upwind": partial(differences, upwind=True)}
-    return _contest(
-        fields,
-        lambda x: np.asarray(green(x, 1.0, alpha)),
-        lambda x: np.asarray(green(x, last, alpha)),
-        (None, np.negative),
-        peers,
-    )
+
+    def stable(age: float) -> Field:
+        return lambda x: np.asarray(green(x, age, alpha))
+
+    fields: dict[str, Any] = {
+        "alpha": alpha,
+        "velocity": "-x",
+        "far_terms": 3,
+        "t_initial": 1.0,
+        "t_final": 2.0,
+    }
+    every = _PEERS | {"differences, upwind": partial(differences, upwind=True)}
+    peers = _peers(every, fields, stable(1.0), (None, np.negative))
+    ours = on_lattices(["FPSE", "DD"], stable(1.0), **fields)
+    return Contest(greatest_error(stable(last)), ours, peers)
 
 
-def _contest(
+def _peers(
+    every: Mapping[str, Rates],
     fields: Mapping[str, Any],
-    start: Function,
-    end: Function,
-    coefficients: tuple[Function | None, Function | None],
-    peers: Mapping[str, Rates],
+    start: Field,
+    coefficients: tuple[Field | None, Field | None],
     source: Callable[[np.ndarray, float], np.ndarray] | None = None,
-) -> Contest:
-    """Set forms of ours, with the fields of the problem, against peers, which take diffusivity, velocity and source."""
+) -> dict[str, Callable[..., tuple[int, Points]]]:
+    """Who solves with these rates, of diffusivity, velocity and source."""
 
-    def ours(
-        form: str, order: int, half_width: float, spacing: float, rtol: float, overlap: float = 2.0
-    ) -> Answer:
-        problem = Problem(
-            form=form, order=order, half_width=half_width, spacing=spacing, rtol=rtol, overlap=overlap, **fields
-        )  # fmt: skip
-        run = solve_problem(problem, start)
-        return run.x.size, (run.x.values, run.u.values)
-
-    def peer(
-        rates: Rates,
-        half_width: float,
-        spacing: float,
-        rtol: float,
-    ) -> Answer:
+    def solve(rates: Rates, half_width: float, spacing: float, rtol: float) -> tuple[int, Points]:
         x, rate = rates(fields["alpha"], half_width, spacing, *coefficients)
         full = rate if source is None else lambda t, u: rate(t, u) + source(x, t)
         times = fields.get("t_initial", 0.0), fields["t_final"]
         return x.size, (x, integrated(full, start(x), times, rtol))
 
-    return Contest(
-        greatest_error(end),
-        {name: Contender(OURS, partial(ours, *which)) for name, which in _OURS.items()}
-        | {name: Contender(PEER, partial(peer, rates)) for name, rates in peers.items()},
-    )
+    return {name: partial(solve, rates) for name, rates in every.items()}

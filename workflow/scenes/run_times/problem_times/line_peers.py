@@ -21,17 +21,15 @@ The diffusion is D div grad^beta u + D' grad^beta u there: the flux itself falls
 hold badly, and its derivative worse.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import gamma
 
 import numpy as np
-from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.integrate import solve_ivp
 from scipy.special import eval_laguerre, roots_genlaguerre
 
-__all__ = ["centred_weights", "differences", "integrated", "pseudo_spectral", "rational"]
+from fracstudy.race.contenders.rational import RationalLine
 
 Field = Callable[[np.ndarray], np.ndarray]
 Rate = Callable[[float, np.ndarray], np.ndarray]
@@ -118,21 +116,12 @@ def rational(
     velocity: Field | None,
 ) -> tuple[np.ndarray, Rate]:
     """Return the points, an even number of them on the whole line, and R(t, u) without a source; `scale` is L."""
-    half = points // 2
-    theta = (np.arange(points) + 0.5) * (2.0 * np.pi / points) - np.pi
-    x = scale * np.tan(0.5 * theta)
-    pole, shift = 1.0 - 1j * x / scale, np.exp(-1j * np.arange(half) * theta[0])
-    derivative = _power_matrix(1.0, half, scale)
-    gradient = _power_matrix(alpha - 1.0, half, scale)
-    laplacian = _power_matrix(alpha, half, scale)
+    line = RationalLine(points, scale)
+    x, waves, values = line.x, line.waves, line.values
+    powers = (1.0, alpha - 1.0, alpha)
+    derivative, gradient, laplacian = (_power_matrix(p, line.count, scale) for p in powers)
     d = np.ones(points) if diffusivity is None else diffusivity(x)
     a = None if velocity is None else velocity(x)
-
-    def waves(v: np.ndarray) -> np.ndarray:
-        return np.asarray(fft(v * pole, norm="forward")[:half] * shift)
-
-    def values(c: np.ndarray) -> np.ndarray:
-        return np.asarray(2.0 * (ifft(c * shift.conj(), points, norm="forward") / pole).real)
 
     slope = values(1j * (derivative @ waves(d - d[-1])))
 

@@ -1,7 +1,5 @@
 """Problems beyond one Fourier transform: the least time of each contender to an error, and who is first."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -10,8 +8,6 @@ import pandas as pd
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
 from scenes.run_times.contests import best, front
-
-__all__ = ["FIRST", "study"]
 
 FIRST = "the first"  # the row of a problem that says who is
 

@@ -39,8 +39,6 @@ from fracstudy.race.contenders.schemes import naive_steps
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark", "transform_pairs"]
-
 Action = Callable[[], Any]
 
 _PAIRS = 40  # transform pairs between two looks at the clock

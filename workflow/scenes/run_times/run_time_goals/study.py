@@ -1,7 +1,5 @@
 """The measured run times against the goals that were set before they were measured."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,8 +8,6 @@ import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from scenes.run_times.contests import best, trials_of
-
-__all__ = ["behind", "study"]
 
 _RACES = {
     "work_precision": "line",

@@ -14,8 +14,6 @@ from fracstudy.race.clock import measure, one_core, timings_dataset
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 _BETA = 0.5
 _OVERLAP = 2.0  # smoothing length over the mean spacing
 

@@ -1,23 +1,21 @@
 """Sums over scattered particles: the times of both ways as people read them."""
 
-from __future__ import annotations
-
-import pandas as pd
-
 from fracstudy.inputs import Inputs, Result
+from scenes.run_times.contests import columns
 
-__all__ = ["study"]
+_COLUMNS = {
+    "N": "particles",
+    "non-uniform FFT / ms": "transform_time",
+    "ns a particle": "particle_time",
+    "naive / ms": "naive_time",
+    "naive / FFT": "ratio",
+    "deviation": "deviation",
+}
 
 
 def study(inputs: Inputs) -> Result:
     """List the times of field and flux of scattered particles by both ways, and their difference."""
     sums = inputs.benchmarks["scattered_sums"]
-    columns = {
-        "N": sums["particles"],
-        "non-uniform FFT / ms": 1e3 * sums["transform_time"],
-        "ns a particle": 1e9 * sums["transform_time"] / sums["particles"],
-        "naive / ms": 1e3 * sums["naive_time"],
-        "naive / FFT": sums["naive_time"] / sums["transform_time"],
-        "deviation": sums["deviation"],
-    }
-    return Result(pd.DataFrame(columns))
+    fast = sums["transform_time"]
+    made = sums.assign(particle_time=fast / sums["particles"], ratio=sums["naive_time"] / fast)
+    return Result(columns(made, _COLUMNS))

@@ -15,8 +15,6 @@ from fracstudy.race.clock import forget_tables, measure, one_core, timings_datas
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 _FARTHEST = 100.0  # in units of the scale
 _VARIABLES = {
     "table_time": ("the first evaluation, which makes the table of alpha, once", "s"),

@@ -1,22 +1,18 @@
 """The fundamental solution: the times of an evaluation as people read them."""
 
-from __future__ import annotations
-
-import pandas as pd
-
 from fracstudy.inputs import Inputs, Result
+from scenes.run_times.contests import columns
 
-__all__ = ["study"]
+_COLUMNS = {
+    "alpha": "alpha",
+    "table of alpha / ms": "table_time",
+    "ours / ns a point": "point_time",
+    "scipy / ns a point": "scipy_time",
+    "scipy / ours": "ratio",
+}
 
 
 def study(inputs: Inputs) -> Result:
     """List the time of a point, ours and scipy's, for each alpha."""
     times = inputs.benchmarks["special_functions"]
-    columns = {
-        "alpha": times["alpha"],
-        "table of alpha / ms": 1e3 * times["table_time"],
-        "ours / ns a point": 1e9 * times["point_time"],
-        "scipy / ns a point": 1e9 * times["scipy_time"],
-        "scipy / ours": times["scipy_time"] / times["point_time"],
-    }
-    return Result(pd.DataFrame(columns))
+    return Result(columns(times.assign(ratio=times["scipy_time"] / times["point_time"]), _COLUMNS))

@@ -19,8 +19,6 @@ from fracstudy.race.problems.fundamental import Fundamental
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 _STEP = 0.001
 _SMALL = 65  # points on which each method takes a step before it is timed
 _LABELS = {"method": "method", "dim": "number of dimensions"}

@@ -30,8 +30,6 @@ from fracstudy.race.clock import measure, one_core, timings_dataset
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 # Integrator, steps, operator applications, run.
 Way = tuple[str, int, int, Callable[[], np.ndarray]]
 

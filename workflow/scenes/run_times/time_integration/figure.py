@@ -1,28 +1,38 @@
 """Error of the time integration against run time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
-from fracstudy.style import axes_row, legend_below, log_log, note, note_below, slope_triangle
-
-__all__ = ["figure"]
+from fracstudy.panels import pick
+from fracstudy.style import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    RED,
+    SKY,
+    axes_row,
+    legend_below,
+    log_log,
+    note,
+    note_below,
+    plain_times,
+    slope_triangle,
+)
 
 # Colours of Okabe & Ito again: no scheme has a curve here, one panel is one operator.
 _LINES: dict[str, dict[str, Any]] = {
-    "RK1": {"color": "#56B4E9", "marker": "o"},
-    "RK2": {"color": "#0072B2", "marker": "s"},
-    "RK4": {"color": "#009E73", "marker": "^"},
-    "RKC2": {"color": "#E69F00", "marker": "D"},
+    "RK1": {"color": SKY, "marker": "o"},
+    "RK2": {"color": BLUE, "marker": "s"},
+    "RK4": {"color": GREEN, "marker": "^"},
+    "RKC2": {"color": ORANGE, "marker": "D"},
 }
 _ORDERS = {"RK1": 1.0, "RK2": 2.0, "RK4": 4.0}
 _POINTS: dict[str, dict[str, Any]] = {
-    "expm_multiply": {"color": "#D55E00", "marker": "P", "markersize": 9.0},
+    "expm_multiply": {"color": RED, "marker": "P", "markersize": 9.0},
     "Chebyshev series": {"color": "#000000", "marker": "*", "markersize": 12.0},
 }
 
@@ -31,11 +41,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """One panel an operator; a line an integrator that takes steps, a large marker one that takes none."""
     operators = list(series["operator"].unique())
     width = 3.3 if len(operators) > 1 else 5.0
-    figure, axes = axes_row(len(operators), height=4.2, width=width, sharex=True, sharey=True)
-    for letter, ax, operator in zip("abcdefgh", axes, operators, strict=False):
-        _panel(ax, series[series["operator"] == operator])
-        ax.set_title(f"({letter}) {operator}" if len(operators) > 1 else operator, loc="left")
-    _slopes(axes[0], series[series["operator"] == operators[0]])
+    figure, axes = axes_row(operators, height=4.2, width=width, sharex=True, sharey=True)
+    for ax, operator in zip(axes, operators, strict=True):
+        _panel(ax, pick(series, operator=operator))
+    _slopes(axes[0], pick(series, operator=operators[0]))
     axes[0].set_ylabel("relative error of the time integration,\n" + r"against $e^{A T} u(0)$")
     legend_below(figure, axes[0], columns=6 if len(operators) > 1 else 3)
     note_below(figure, f"timed: the solve, with the operator made; {series['note'].iloc[0]}")
@@ -44,10 +53,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
 
 def _panel(ax: Axes, runs: pd.DataFrame) -> None:
     for integrator, look in _LINES.items():
-        line = runs[runs["integrator"] == integrator].sort_values("steps")
+        line = pick(runs, integrator=integrator).sort_values("steps")
         ax.plot(1e3 * line["solve_time"], line["error"], label=integrator, **look)
     for integrator, look in _POINTS.items():
-        for run in runs[runs["integrator"] == integrator].itertuples():
+        for run in pick(runs, integrator=integrator).itertuples():
             time = 1e3 * run.solve_time
             # What of the lines lies on its left is faster.
             ax.axvline(time, color=look["color"], linewidth=0.7, linestyle=":", zorder=1)
@@ -55,9 +64,7 @@ def _panel(ax: Axes, runs: pd.DataFrame) -> None:
             text = {"va": "center", "fontsize": 7, "color": look["color"]}
             note(ax, f"{run.applications}\napplications", (time, run.error), (8, 0), **text)
     log_log(ax, xlabel="time of a solve / ms")
-    ax.xaxis.set_major_locator(LogLocator(numticks=8))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
-    ax.xaxis.set_minor_formatter(NullFormatter())
+    plain_times(ax)
     ax.yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
     ax.minorticks_off()
 
@@ -65,7 +72,7 @@ def _panel(ax: Axes, runs: pd.DataFrame) -> None:
 def _slopes(ax: Axes, runs: pd.DataFrame) -> None:
     """Above the middle of each line the slope of its order: the time is in proportion to the number of steps."""
     for integrator, order in _ORDERS.items():
-        line = runs[runs["integrator"] == integrator].sort_values("steps")
+        line = pick(runs, integrator=integrator).sort_values("steps")
         if len(line) > 1:
             middle = line.iloc[len(line) // 2]
             slope_triangle(ax, 1e3 * middle["solve_time"], 2.0 * middle["error"], -order)

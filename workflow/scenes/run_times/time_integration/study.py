@@ -1,16 +1,19 @@
 """One operator, every time integrator: what a digit costs in time and in operator applications."""
 
-from __future__ import annotations
-
-import pandas as pd
-
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
-
-__all__ = ["study"]
+from scenes.run_times.contests import columns
 
 _SERIES = "Chebyshev series"  # what the others are compared with
 
+_COLUMNS = {
+    "operator": "operator",
+    "integrator": "integrator",
+    "steps": "steps",
+    "operator applications": "applications",
+    "error of the time integration": "error",
+    "solve / ms": "solve_time",
+}
 _INTEGRATORS = {"euler": "RK1", "rk2": "RK2", "rk4": "RK4"}
 
 
@@ -22,16 +25,7 @@ def study(inputs: Inputs) -> Result:
     data = inputs.benchmarks["time_integration"]
     runs = data.assign(integrator=data["integrator"].replace(_INTEGRATORS))
     of_series = runs[runs["integrator"] == _SERIES].set_index("operator")["solve_time"]
-    table = pd.DataFrame(
-        {
-            "operator": runs["operator"],
-            "integrator": runs["integrator"],
-            "steps": runs["steps"],
-            "operator applications": runs["applications"],
-            "error of the time integration": runs["error"],
-            "solve / ms": 1e3 * runs["solve_time"],
-            "time / that of the series": runs["solve_time"] / runs["operator"].map(of_series),
-        }
-    )
+    ratio = runs["solve_time"] / runs["operator"].map(of_series)
+    table = columns(runs, _COLUMNS).assign(**{"time / that of the series": ratio})
     series = runs[["operator", "integrator", "steps", "applications", "error", "solve_time"]]
     return Result(table, (), series.assign(note=machine_note(data)))

@@ -24,8 +24,6 @@ from fracstudy.race.clock import Timing, forget_tables, measure, one_core, timin
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 # The parts of a set-up and the functions that do them; a part within a part counts for itself.
 _FUNCTIONS: dict[str, tuple[Callable[..., Any], ...]] = {
     "kernel values": (kernel,),

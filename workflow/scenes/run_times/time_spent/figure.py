@@ -1,7 +1,5 @@
 """Shares of the parts of set-up and solve."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,22 +8,31 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from fracstudy.style import legend_below, note, note_below, panel_title
+from fracstudy.panels import pick
+from fracstudy.style import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PINK,
+    RED,
+    axes_row,
+    legend_below,
+    note,
+    note_below,
+)
 from scenes.run_times.contests import duration
-
-__all__ = ["figure"]
 
 # Colours of Okabe & Ito, in which no scheme has a bar here; what is not taken apart further is grey.
 _COLOURS = {
-    "kernel values": "#0072B2",
-    "far field": "#009E73",
-    "range of the symbol": "#E69F00",
-    "time series": "#CC79A7",
+    "kernel values": BLUE,
+    "far field": GREEN,
+    "range of the symbol": ORANGE,
+    "time series": PINK,
     "plans and the rest": "#BBBBBB",
-    "lattice sums": "#D55E00",
+    "lattice sums": RED,
     "rest of the solve": "#DDDDDD",
 }
-_DARK = ("#0072B2", "#009E73", "#D55E00")  # of these, on which white is read better than black
+_DARK = (BLUE, GREEN, RED)  # of these, on which white is read better than black
 _WRITTEN = 0.08  # shares from here on are written into the bar
 _PANELS = ("set-up", "solve")
 
@@ -33,11 +40,9 @@ _PANELS = ("set-up", "solve")
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the set-up and (b) the solve, a bar of shares a case, its whole time at the end."""
     cases = series.drop_duplicates("case")
-    figure = Figure(figsize=(8.6, 1.5 + 0.42 * len(cases)), layout="constrained")
-    axes = figure.subplots(1, len(_PANELS), sharey=True)
-    for letter, ax, panel in zip("ab", axes, _PANELS, strict=True):
-        _bars(ax, series[series["panel"] == panel])
-        panel_title(ax, letter, panel)
+    figure, axes = axes_row(_PANELS, 1.5 + 0.42 * len(cases), 4.3, sharey=True)
+    for ax, panel in zip(axes, _PANELS, strict=True):
+        _bars(ax, pick(series, panel=panel))
     axes[0].set_yticks(np.arange(len(cases)), [_name(case) for case in cases.itertuples()])
     axes[0].set_ylim(len(cases) - 0.5, -0.5)  # the first on top
     drawn = series.loc[series["share"] > 0.0, "part"].unique()
@@ -55,13 +60,9 @@ def _bars(ax: Axes, parts: pd.DataFrame) -> None:
             ax.barh(place, share, left=start, height=0.62, color=colour, edgecolor="white")
             if share >= _WRITTEN:
                 text = "white" if colour in _DARK else "black"
-                style: dict[str, Any] = {
-                    "ha": "center",
-                    "va": "center",
-                    "fontsize": 7,
-                    "color": text,
-                }
-                ax.annotate(f"{100.0 * share:.0f}", (start + 0.5 * share, place), **style)
+                style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7}
+                middle = (start + 0.5 * share, place)
+                ax.annotate(f"{100.0 * share:.0f}", middle, color=text, **style)
             start += share
         note(ax, duration(bar["total"].iloc[0]), (1.0, place), (4, 0), va="center", color="black")
     ax.set(xlim=(0.0, 1.0), xlabel="share / %")

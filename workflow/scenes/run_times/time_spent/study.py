@@ -1,13 +1,10 @@
 """Where the time of a run goes: the parts of its set-up and of its solve."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
-
-__all__ = ["PARTS", "study"]
+from scenes.run_times.contests import columns
 
 # Columns of the benchmark: what is taken apart -> its parts, in the order in which they are drawn.
 PARTS = {
@@ -26,13 +23,10 @@ _NAMES = {"setup_time": "set-up", "solve_time": "solve"}
 def study(inputs: Inputs) -> Result:
     """List set-up, solve and their parts in milliseconds, a row a case; the series holds the parts' shares."""
     data = inputs.benchmarks["time_spent"]
-    table = pd.DataFrame(
-        {"case": data["run"], "N": data["particles"], "applications": data["applications"]}
-    )
+    names = {"case": "run", "N": "particles", "applications": "applications"}
     for whole, parts in PARTS.items():
-        table[f"{_NAMES[whole]} / ms"] = 1e3 * data[whole]
-        for part in parts:
-            table[f"{part} / ms"] = 1e3 * data[part]
+        names |= {f"{_NAMES.get(part, part)} / ms": part for part in (whole, *parts)}
+    table = columns(data, names)
     table["set-up / solve"] = data["setup_time"] / data["solve_time"]
     series = pd.concat([_shares(data, whole) for whole in PARTS])
     return Result(table, (), series.assign(note=machine_note(data)))

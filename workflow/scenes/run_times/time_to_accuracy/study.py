@@ -1,13 +1,9 @@
 """The least time to an error: who comes in first, second and third."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from scenes.run_times.contests import best, trials_of
-
-__all__ = ["study"]
 
 _PLACES = ("first", "second", "third")
 
@@ -17,20 +13,12 @@ def study(inputs: Inputs, *, errors: list[float]) -> Result:
 
     With the error in the tail, the unknowns and the memory of the first.
     """
-    rows = []
-    for frame in inputs.benchmarks.values():
-        trials = trials_of(frame)
-        for (problem, beta), part in trials.groupby(["problem", "beta"], sort=False):
-            for error in errors:
-                rows.append(
-                    {
-                        "dim": frame.attrs["dim"],
-                        "data": problem,
-                        "beta": beta,
-                        "error": error,
-                        **_podium(part, error),
-                    }
-                )
+    rows = [
+        {"dim": frame.attrs["dim"], "data": data, "beta": beta, "error": e, **_podium(part, e)}
+        for frame in inputs.benchmarks.values()
+        for (data, beta), part in trials_of(frame).groupby(["problem", "beta"], sort=False)
+        for e in errors
+    ]
     return Result(pd.DataFrame(rows))
 
 

@@ -1,7 +1,5 @@
 """Which method to use when: each situation, what to take, what it costs, and who is faster."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ import pandas as pd
 from fracparticles.errors import FracparticlesError
 from fracstudy.inputs import Inputs, Result
 from scenes.run_times.contests import best, duration, trials_of
-
-__all__ = ["study"]
 
 _TIE = 1.2  # two times within this ratio are told apart by nothing but noise
 _BLOCK = "block_time"

@@ -13,8 +13,6 @@ from fracstudy.race.trial import BLOCK, LABELS, VARIABLES, run_trials
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["benchmark"]
-
 
 def benchmark(
     dim: int,

@@ -1,7 +1,5 @@
 """Error against run time: the front of each contender, a row for each problem, a column for each beta."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,15 +8,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
+from fracstudy.panels import pick
 from fracstudy.race.contender import Contender
 from fracstudy.race.contenders import CONTENDERS
 from fracstudy.race.problems import PROBLEMS
 from fracstudy.style import legend_below, log_log, note_below
 from scenes.run_times.contests import TIMES, front
 
-__all__ = ["figure"]
-
 _FRONT: dict[str, Any] = {"color": "0.85", "linewidth": 7.0, "solid_capstyle": "round", "zorder": 0}
+_HOLLOW: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "--", "linewidth": 1.0}
 _FLOOR = 1e-13
 
 
@@ -33,7 +31,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, time: str, ylabel: str)
     for k, problem in enumerate(problems):
         for m, beta in enumerate(betas):
             ax = grid[k, m] if wide else grid[0, k]
-            part = series[(series["problem"] == problem) & (series["beta"] == beta)]
+            part = pick(series, problem=problem, beta=beta)
             _panel(ax, part[~part["failed"].astype(bool)], there)
             ax.set_title(PROBLEMS[problem].title, loc="left", fontsize=9)
             ax.set_title(rf"$\beta = {beta:g}$", loc="right", fontsize=9)
@@ -50,20 +48,11 @@ def _panel(ax: Axes, part: pd.DataFrame, contenders: Mapping[str, type[Contender
     whole = part[part["front"].astype(bool)].sort_values("time")
     ax.step(whole["time"], whole["error"], where="post", label="all: Pareto front", **_FRONT)
     for name, contender in contenders.items():
-        own = part[part["contender"] == name]
+        own = pick(part, contender=name)
         shown = own[front(own, "time") & (own["error"] > _FLOOR)].sort_values("time")
-        hollow = contender.group in ("peers", "papers")
-        ax.plot(
-            shown["time"],
-            shown["error"],
-            label=contender.label,
-            color=contender.colour,
-            marker=contender.marker,
-            markersize=4.0,
-            markerfacecolor="none" if hollow else contender.colour,
-            linestyle="--" if hollow else "-",
-            linewidth=1.0 if hollow else 1.4,
-        )
+        look: dict[str, Any] = {"color": contender.colour, "marker": contender.marker}
+        look |= _HOLLOW if contender.group in ("peers", "papers") else {"linewidth": 1.4}
+        ax.plot(shown["time"], shown["error"], label=contender.label, markersize=4.0, **look)
     log_log(ax, ylim=(_FLOOR, 2.0), xlabel="")
     ax.xaxis.set_major_locator(LogLocator(numticks=20))
     ax.grid(visible=True, which="major", color="0.92", linewidth=0.6)

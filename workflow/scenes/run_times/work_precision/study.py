@@ -1,7 +1,5 @@
 """Error against run time: who is ahead, at which error, on which data."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,8 +8,6 @@ import pandas as pd
 from fracstudy.inputs import Inputs, Result
 from fracstudy.machine import machine_note
 from scenes.run_times.contests import best, front, trials_of
-
-__all__ = ["study"]
 
 _GROUPS = {"ours": "ours", "peers": "peer", "schemes": "scheme of the papers"}
 

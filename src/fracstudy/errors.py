@@ -1,0 +1,40 @@
+"""Errors as the tables of scenes show them."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fracparticles.errors import FracparticlesWarning
+
+__all__ = ["off", "power_of_ten", "quiet", "three_digits"]
+
+_ROUNDING = 1e-13
+
+
+def off(found: ArrayLike, exact: ArrayLike, size: float | None = None) -> float:
+    """Return max |found - exact| over a size, that of the greatest |exact| if none is given."""
+    exact = np.asarray(exact)
+    return float(np.abs(found - exact).max() / (np.abs(exact).max() if size is None else size))
+
+
+def three_digits(error: float) -> float:
+    """Return |error| to three digits; what is below 1e-13 is round-off, and written as that."""
+    return float(f"{max(abs(error), _ROUNDING):.3g}")
+
+
+def power_of_ten(error: float, least: float = 2.0**-53) -> float:
+    """Return the next power of ten: of round-off only the size is reproducible."""
+    return float(10.0 ** np.ceil(np.log10(max(abs(error), least))))
+
+
+@contextmanager
+def quiet(kind: type[Warning] = FracparticlesWarning) -> Iterator[None]:
+    """Say nothing of what a block warns of: it is asked for something else."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", kind)
+        yield

@@ -1,0 +1,25 @@
+"""The scene that a test module is called after, its study and its figure on the smoke grid."""
+
+from __future__ import annotations
+
+import pytest
+
+from fracstudy.inputs import Inputs
+from fracstudy.scene import call
+from scene_functions import scenes
+
+
+@pytest.fixture(scope="module")
+def scene(request):
+    return scenes()[request.module.__name__.removeprefix("test_").removesuffix("_scene")]
+
+
+@pytest.fixture(scope="module")
+def result(scene):
+    return call(scene.function("study"), Inputs(scene.name), **scene.parameters)
+
+
+@pytest.fixture(scope="module")
+def panels(scene, result):
+    """The axes of the figure, drawn."""
+    return call(scene.function("figure"), result.series, result.table, **scene.parameters).axes
