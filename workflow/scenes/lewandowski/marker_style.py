@@ -23,8 +23,7 @@ LOADING_LOOKS = {
     "wide": ("uniform in [−L, L]", ORANGE, "^"),
 }
 EXACT: Look = {"color": COLOURS["exact"], "linewidth": 1.0, "label": "exact"}
-HOLLOW: Look = {"marker": "o", "linestyle": "", "markerfacecolor": "white"}
-HOLLOW["markersize"] = 3.5
+HOLLOW: Look = {"marker": "o", "linestyle": "", "markersize": 3.5, "markerfacecolor": "white"}
 
 
 def symbol(shape: str) -> str:

@@ -15,18 +15,11 @@ from numpy.polynomial import Polynomial
 from pydantic import BaseModel, ConfigDict
 from scipy.optimize import minimize_scalar
 
-from fracparticles.markers import (
-    MarkerRun,
-    MarkerVelocity,
-    equal_weight,
-    random,
-    run,
-    shape_function,
-    uniform,
-)
+from fracparticles.markers import MarkerVelocity, equal_weight, random, run, shape_function, uniform
 from fracparticles.markers.clusters import emptiness
 from fracparticles.markers.profiles import Square
 from fracparticles.markers.shapes import Shape
+from fracparticles.markers.solver import MarkerRun
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracstudy.findings import Finding, measured
 

@@ -151,10 +151,7 @@ def _orders(line: ParticleLine, variable: dict[str, float]) -> Iterator[Finding]
 
 
 def _singularity(
-    line: ParticleLine,
-    order: float,
-    table: pd.DataFrame,
-    errors: Mapping[str, Mapping[str, float]],
+    line: ParticleLine, order: float, table: pd.DataFrame, errors: Mapping[str, Mapping[str, float]]
 ) -> Iterator[Finding]:
     """Sec. 5: the infinite terms of (23), what the sums without them give, and what a derivative costs."""
     singular, ours = (pd.Series(errors[name]) for name in (_SINGULAR, _DIGITS))

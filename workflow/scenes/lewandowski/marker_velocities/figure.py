@@ -6,16 +6,16 @@ import pandas as pd
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import Axes, Figure, axes_row, draw, legend_below, log_log, name_ticks, note
+from fracstudy.style import Axes, Figure, Look, axes_row, draw, legend_below, log_log, note
 from scenes.lewandowski.marker_style import HOLLOW
 
-_PROFILES: dict[str, tuple[str, dict[str, Any]]] = {
+_DOTTED: Look = {"linestyle": (0, (1, 1.5)), "linewidth": 2.6}
+_PROFILES: dict[str, tuple[str, Look]] = {
     "initial": ("$f_0$", {"color": "0.55", "linestyle": ":"}),
     "exact": ("exact", {"color": "black"}),
     "in the velocity": ("source in the velocity", {"color": style.RED, "linestyle": "--"}),
-    "in the weights": ("source in the weights", {"color": style.BLUE, "linestyle": (0, (1, 1.5))}),
+    "in the weights": ("source in the weights", {"color": style.BLUE, **_DOTTED}),
 }
-_PROFILES["in the weights"][1]["linewidth"] = 2.6
 
 
 def figure(
@@ -85,5 +85,5 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
             marker, line = ("D", "") if soliton else ("o", "-")
         draw(ax, part, color=colour, marker=marker, linestyle=line, label=label)
     log_log(ax, xlabel="number of markers $N$", ylabel="relative $L^1$ error")
-    name_ticks(ax, sorted(series.loc[~series["series"].str.startswith("KdV"), "x"].unique()))
+    style.name_ticks(ax, sorted(series.loc[~series["series"].str.startswith("KdV"), "x"].unique()))
     style.slope_triangle(ax, 140.0, 0.75 * series["y"].min(), -1.0)

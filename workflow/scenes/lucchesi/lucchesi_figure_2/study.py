@@ -107,12 +107,14 @@ def _draw(
 def _readings(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """The truncated errors by scheme, once for each remeshing that the text can be read to mean."""
     shown = pick(table, exterior="truncated")
-    moving = shown["scheme"].str.startswith("DVM, ")
+    moving = shown["scheme"].str.startswith("DVM")
     readings = {}
-    for name in shown.loc[moving, "scheme"].drop_duplicates():
-        both = [shown[~moving], pick(shown, scheme=name).assign(scheme="DVM")]
-        readings[name.replace("DVM, ", "DVM remeshed by ")] = pd.concat(both).set_index("scheme")
-    return {name: of for name, of in readings.items() if name != "DVM remeshed by none"}
+    for name in shown.loc[moving, "scheme"]:
+        if name != "DVM, none":
+            both = [shown[~moving], pick(shown, scheme=name).assign(scheme="DVM")]
+            title = name.replace("DVM, ", "DVM remeshed by ")
+            readings[title] = pd.concat(both).set_index("scheme")
+    return readings
 
 
 def _errors_judged(main: Inputs, table: pd.DataFrame) -> Iterator[Finding]:

@@ -18,12 +18,7 @@ _NEAREST, _FARTHEST, _NODES, _ANGLES = 1e-3, 1e4, 400, 256
 
 
 def study(
-    inputs: Inputs,
-    *,
-    beta: float,
-    radii: list[float],
-    reach: list[float],
-    terms: dict[str, float],
+    inputs: Inputs, *, beta: float, radii: list[float], reach: list[float], terms: dict[str, float]
 ) -> Result:
     """Values of Phi_{2,alpha}, three other ways to compute it, and the density in one dimension beside it."""
     alpha, (low, high) = 1.0 + beta, reach

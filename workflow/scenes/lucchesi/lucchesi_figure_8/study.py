@@ -79,7 +79,7 @@ def _findings(series: pd.DataFrame, table: pd.DataFrame, files: list[str]) -> It
     exact_slope = _slope(curves["DD", "y = 0"], "exact")
     decades = by_curve(lambda part: np.log10(part["exact"].max() / part["exact"].min()))
     directions = {scheme: _directions(curves, scheme) for scheme in paper}
-    means = (opened[_MEAN].xs(line, level="line") for line in ("y = 0", "y = x"))
+    axis, diagonal = (opened[_MEAN].xs(line, level="line") for line in ("y = 0", "y = x"))
     median, below, ratio = here[_MEDIAN], here[_BELOW], 1.0 + truncated["error"]
     ratio = ratio.groupby([truncated["scheme"], truncated["line"]])
     logarithms = np.log10(1.0 + median).abs() / decades
@@ -99,7 +99,7 @@ def _findings(series: pd.DataFrame, table: pd.DataFrame, files: list[str]) -> It
         always={scheme: r for scheme, (_, r) in directions.items()},
         half=curves["DD", "y = 0"]["r"].max(),
     )
-    yield found("L-C19.extent", difference=(next(means) / next(means) - 1.0).abs())
+    yield found("L-C19.extent", difference=(axis / diagonal - 1.0).abs())
     yield found("L-C19.dd_below", median=median[["DD"]], share=100.0 * below[["DD"]])
     layer = max(_particles_from_the_edge(curves["FPSE", line]) for line in _LINES)
     share = 100.0 * (1.0 - below[["FPSE"]])

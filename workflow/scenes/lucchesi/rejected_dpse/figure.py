@@ -43,7 +43,7 @@ def _enlarged(ax: Axes, series: pd.DataFrame) -> None:
         points = pick(series, series=scheme, panel="profile")
         points = points[points["x"] < 15.0]
         style = scheme_style(scheme, linewidth=1.0, markersize=2.5, **_OWN.get(scheme, {}))
-        inset.plot(points["x"], points["y"], **style)
+        draw(inset, points, **style)
         inset.plot(points["x"], points["exact"], color="black", linestyle=":")
     inset.set(xlim=(15.0, -0.5))
     inset.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=True)
