@@ -23,6 +23,7 @@ __all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 
+_FORMS = st.sampled_from(tuple(FORMS))
 _ALPHAS = st.one_of(between(1.05, 1.95), among(1.01, 1.99))
 _SEEDS = st.integers(0, 10**6)
 _DEGREES = among(1.0, 2.0, 4.0, 8.0)
@@ -36,13 +37,7 @@ def _kernel(name: str, z: np.ndarray, s: Setting) -> np.ndarray:
 
 
 @PROPERTIES.add("variable diffusivity", "the sums one by one", "naive sums", 2)
-@drawn(
-    st.sampled_from(tuple(FORMS)),
-    between(1.05, 1.95),
-    st.integers(4, 20),
-    among(2, 4),
-    among(1.0, 1e-12, 1e12),
-)
+@drawn(_FORMS, between(1.05, 1.95), st.integers(4, 20), among(2, 4), among(1.0, 1e-12, 1e12))
 def _diffusivity(form: str, alpha: float, n: int, order: int, size: float) -> float:
     """The sums of the three forms, one by one, on a truncated lattice."""
     s = Setting(alpha=alpha, n=n, spacing=0.25, order=order, overlap=2.0)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.linalg import expm
 
 from fracparticles.run.case import Case
 from fracparticles.run.dataset import read_run, write
@@ -17,11 +15,10 @@ from fracparticles.run.reliability import LIMITS
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solve import solve
 from fracparticles.run.solver import compute, prepare
-from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.dpse import laplacian_weights, potential_weights
-from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.probe import EPS, HELD
+from scenes.extremes.dense import whole
 from scenes.extremes.fuzzing.cases import cases, changed, refuse_dear, runs
 from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
 
@@ -105,19 +102,9 @@ def _matrix(run: Run) -> float:
     if case.particles > 300 or case.span * case.setting.rate > 1e8:
         raise NotRun("too large for a matrix")
     u = _final(case, u0)
-    setting = replace(case.setting, summation="naive")
-    a = dense_matrix(SCHEMES[case.scheme].operator(setting))
-    unit = np.eye(case.particles)
-    if case.resolved_integrator == "exponential":
-        whole = expm(a * case.span)
-    else:
-        z, step, term = a * case.time_step, unit, unit
-        for k in range(STEP_POLYNOMIALS[case.resolved_integrator].stages):
-            term = term @ z / (k + 1)
-            step = step + term
-        whole = np.linalg.matrix_power(step, case.steps)
+    matrix = whole(case, summation="naive")
     size = max(float(np.abs(u0).max()), 1e-300)
-    expected = (whole @ (u0.reshape(-1) / size)).reshape(u0.shape) * size
+    expected = (matrix @ (u0.reshape(-1) / size)).reshape(u0.shape) * size
     return _apart(case, u, expected, u0)
 
 

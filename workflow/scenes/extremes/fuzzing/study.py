@@ -11,15 +11,8 @@ from scenes.extremes.fuzzing.harness import row
 
 __all__ = ["PROPERTIES", "study"]
 
-PROPERTIES = (
-    *fields.PROPERTIES,
-    *runs.PROPERTIES,
-    *functions.PROPERTIES,
-    *problems.PROPERTIES,
-    *domains.PROPERTIES,
-    *flags.PROPERTIES,
-    *configuration.PROPERTIES,
-)
+_MODULES = (fields, runs, functions, problems, domains, flags, configuration)
+PROPERTIES = [one for module in _MODULES for one in module.PROPERTIES]
 
 
 def study(inputs: Inputs, *, cases: int) -> Result:

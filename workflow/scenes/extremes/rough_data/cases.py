@@ -1,4 +1,4 @@
-"""What the probes of rough data have in common: a case of each scheme, and its matrix."""
+"""What the probes of rough data have in common: a case of each scheme."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ import numpy as np
 
 import fracparticles as fp
 from fracparticles.run.solver import compute
-from fracparticles.schemes import ALL_SCHEMES, SCHEMES
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes import ALL_SCHEMES
 
-__all__ = ["case_of", "cases_of", "deviation", "matrix_of", "point", "run"]
+__all__ = ["case_of", "cases_of", "deviation", "point", "run"]
 
 EPS = float(np.finfo(float).eps)
 
@@ -41,11 +40,6 @@ def cases_of(beta: float, schemes: list[str], **given: Any) -> Iterator[fp.Case]
 def run(case: fp.Case, u0: Any) -> np.ndarray:
     """Return the final strengths."""
     return compute(case, u0).u
-
-
-def matrix_of(case: fp.Case) -> np.ndarray:
-    """Return the matrix A of a case, dense."""
-    return dense_matrix(SCHEMES[case.scheme].operator(case.setting))
 
 
 def deviation(u: np.ndarray, exact: np.ndarray) -> float:

@@ -8,13 +8,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.linalg import expm
 
-from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
-from scenes.extremes.rough_data.cases import case_of, cases_of, deviation, matrix_of, run
+from scenes.extremes.dense import matrix_of, whole
+from scenes.extremes.rough_data.cases import case_of, cases_of, deviation, run
 
 __all__ = ["exact", "sizes", "symmetries", "units"]
 
@@ -49,20 +48,14 @@ def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
     """
     right = Kind("exact", "exp(A T) u0", source="scipy, dense")
     for case in cases_of(beta, schemes):
-        whole = _whole(case)
+        matrix = whole(case)
         # The series rounds T |lambda| 2^-52 of its terms some 64 times, which an open exterior may make larger than
         # their sum.
         stiffness = case.span * float(np.abs(matrix_of(case)).sum(axis=1).max())
         bound = max(_SAME, 64.0 * EPS * stiffness)
         for words, u0 in _shapes(case.x).items():
             name = f"{case.scheme}, {case.exterior}, {words}"
-            yield right(name, lambda: deviation(run(case, u0), whole @ u0), bound=bound)
-
-
-def _whole(case: Case) -> np.ndarray:
-    """exp(A T), of GPSE 1 + A T."""
-    a = matrix_of(case) * case.span
-    return np.eye(len(a)) + a if case.kind.self_timed else expm(a)
+            yield right(name, lambda: deviation(run(case, u0), matrix @ u0), bound=bound)
 
 
 def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
@@ -77,7 +70,7 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
             for case in cases_of(beta, [scheme], dim=dim, **small):
                 u0 = np.exp(-sum(np.square(part) for part in case.positions))
                 dense = case.particles < _DENSE
-                by_matrix = (_whole(case) @ u0.ravel()).reshape(u0.shape) if dense else None
+                by_matrix = (whole(case) @ u0.ravel()).reshape(u0.shape) if dense else None
                 usual = prepare(case).solve(u0) if by_matrix is None else by_matrix
                 for size in (1e-300, 1e-320, 1e306, -1.0):
                     lost = max(1.0, math.ulp(abs(size)) / abs(size) / EPS)  # to denormal numbers

@@ -11,22 +11,15 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.special.stable import green
 from fracparticles.time.whole_space import evolve
 from fracstudy.probe import WARNED, Kind, Probe
+from scenes.extremes.dense import matrix_of
 from scenes.extremes.geometry.lattices import OF_A_FUNCTION
-from scenes.extremes.rough_data.cases import case_of, cases_of, matrix_of, point, run
+from scenes.extremes.rough_data.cases import case_of, cases_of, point, run
 
 __all__ = ["bounds", "functions", "point_masses", "signs"]
 
 _ROUNDED = 1e-13
-_KERNELS = (
-    ("KPSE", 2, 0.5),
-    ("KPSE", 4, 0.5),
-    ("KPSE", 4, 0.9),
-    ("KPSE", 12, 0.5),
-    ("GPSE", 2, 0.5),
-    ("FD", 2, 0.5),
-    ("DD", 2, 0.5),
-    ("FPSE", 2, 0.5),
-)
+_KERNELS = [("KPSE", 2, 0.5), ("KPSE", 4, 0.5), ("KPSE", 4, 0.9), ("KPSE", 12, 0.5)]
+_KERNELS += [(scheme, 2, 0.5) for scheme in ("GPSE", "FD", "DD", "FPSE")]
 
 
 def signs(beta: float) -> Iterator[Probe]:

@@ -12,16 +12,15 @@ from typing import Any
 import mpmath
 import numpy as np
 import pandas as pd
-from scipy.linalg import expm
 
 import fracparticles as fp
 from fracparticles.arguments import operand, real_array
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES
-from fracparticles.schemes.spectrum import dense_matrix
 from fracstudy.inputs import write_table
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
+from scenes.extremes.dense import matrix_of, whole
 
 __all__ = ["probes"]
 
@@ -151,17 +150,13 @@ def _series() -> Iterator[Probe]:
 
 
 def _of_series(case: Case) -> float:
-    u0, matrix = np.linspace(1.0, 2.0, 17), _matrix(case)
+    u0, matrix = np.linspace(1.0, 2.0, 17), matrix_of(case)
     with mpmath.workdps(50):
         whole = mpmath.expm(mpmath.matrix(matrix.tolist()) * mpmath.mpf(case.span))
         exact = np.array([float(one) for one in whole * mpmath.matrix(u0.tolist())])
     condition = float(np.linalg.cond(np.linalg.eig(matrix)[1]))  # 1 if A is symmetric
     stiffness = case.span * float(np.abs(matrix).sum(axis=1).max()) * condition
     return off(prepare(case).solve(u0), exact, np.abs(u0).max()) / (EPS * (10.0 + stiffness))
-
-
-def _matrix(case: Case) -> np.ndarray:
-    return dense_matrix(SCHEMES[case.scheme].operator(case.setting))
 
 
 def _kept() -> Iterator[Probe]:
@@ -206,7 +201,7 @@ def _arithmetic() -> Iterator[Probe]:
     )
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.full(case.shape, 3e-310)
-    exact = expm(_matrix(case) * case.span) @ np.full(u0.size, 3.0)
+    exact = whole(case) @ np.full(u0.size, 3.0)
     bound, expected = 5e-324 * 1e300 * 1e10 + 1e-12, "to the 5e-324 that they have"
     yield Kind("arithmetic", expected, bound, "scipy", HELD)(
         "strengths of 3e-310", lambda: off(compute(case, u0).u * 1e300 * 1e10, exact, 1.0)

@@ -10,15 +10,12 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from scipy.linalg import expm
 
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
 from fracparticles.run.case import Case
 from fracparticles.run.solver import initial_strengths, prepare
-from fracparticles.schemes import SCHEMES
-from fracparticles.schemes.spectrum import dense_matrix
-from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.probe import EPS, HELD, WARNED, Kind, Probe, quiet
+from scenes.extremes.dense import matrix_of, whole
 
 __all__ = ["hidden", "overflow", "words"]
 
@@ -96,25 +93,14 @@ def _against_powers(case: Case, above: bool) -> tuple[float, str]:
 def _against_the_matrix(case: Case) -> tuple[float, str]:
     """The run from rough data, against exp(A T) or p(A dt)^n of the dense matrix."""
     u0 = np.random.default_rng(1).standard_normal(case.particles)
-    matrix = dense_matrix(SCHEMES[case.scheme].operator(case.setting))
-    if case.steps:
-        exact = np.linalg.matrix_power(_polynomial(case, matrix), case.steps) @ u0
-    else:
-        exact = expm(case.span * matrix) @ u0
+    exact = whole(case) @ u0
     u = prepare(case).solve(u0)
     size = float(np.abs(exact).max())
     return float(np.abs(u - exact).max()) / size, f"|u| grows {size / np.abs(u0).max():.0e} times"
 
 
-def _polynomial(case: Case, matrix: np.ndarray) -> np.ndarray:
-    identity = p = np.eye(len(matrix))
-    for k in range(STEP_POLYNOMIALS[case.resolved_integrator].stages, 0, -1):
-        p = identity + case.time_step / k * matrix @ p
-    return p
-
-
 def _step_of_overflow(case: Case) -> float:
-    values, modes = np.linalg.eig(dense_matrix(SCHEMES[case.scheme].operator(case.setting)))
+    values, modes = np.linalg.eig(matrix_of(case))
     z = values * case.time_step
     coefficients = np.linalg.solve(modes, initial_strengths(case)[0])
     amplitude = np.maximum(np.abs(coefficients) * np.abs(modes).max(axis=0), EPS * 1e-3)
