@@ -1,10 +1,9 @@
 """Error against particles, in time, and where the particles are."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, curves, log_log, name_ticks, small_legend
+from fracstudy.style import Figure, axes_row, curves, log_log, name_ticks, small_legend
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:

@@ -2,20 +2,10 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    COLOURS,
-    MARKERS,
-    axes_row,
-    curves,
-    draw,
-    log_log,
-    name_ticks,
-    small_legend,
-)
+from fracstudy.style import BLUE, COLOURS, MARKERS, Figure
 
 _TITLES = (
     "disc, absorbing",
@@ -27,28 +17,28 @@ _TITLES = (
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) disc, (b) square, (c) decay, (d) truncated schemes."""
-    drawn, axes = axes_row(_TITLES, height=3.7, width=3.4)
+    drawn, axes = style.axes_row(_TITLES, height=3.7, width=3.4)
     fitted, plain = (pick(series, panel=f"square, {kind}") for kind in ("fitted", "plain"))
     for ax, part in zip(axes, (pick(series, panel="disc"), fitted), strict=False):
-        curves(ax, part, name=r"$\alpha$ = {}", markersize=4.0)
-        log_log(ax)
-        name_ticks(ax, np.unique(part["x"]))
-        small_legend(ax, "lower left")
-    curves(axes[1], plain, name=None, linestyle="--", markersize=4.0)
+        style.curves(ax, part, name=r"$\alpha$ = {}", markersize=4.0)
+        style.log_log(ax)
+        style.name_ticks(ax, np.unique(part["x"]))
+        style.small_legend(ax, "lower left")
+    style.curves(axes[1], plain, name=None, linestyle="--", markersize=4.0)
     axes[0].set(xlabel="rings $N$", ylabel="error of the first eigenvalue, relative")
     axes[1].set_xlabel("particles along a side $N$")
     decay = pick(series, panel="decay")
     axes[2].plot(decay["x"], decay["exact"], color="black", marker="", label="spectral method")
-    draw(axes[2], decay, "o", color=BLUE, label="rings of particles")
+    style.draw(axes[2], decay, "o", color=BLUE, label="rings of particles")
     axes[2].set(yscale="log", xlabel="time $t$", ylabel="$u(0, t)$")
-    small_legend(axes[2], "lower left")
+    style.small_legend(axes[2], "lower left")
     truncated = pick(series, panel="truncated")
     for name, points in truncated.groupby("series", sort=False):
         colour = COLOURS[str(name)]
-        draw(axes[3], points, label=str(name), color=colour, marker=MARKERS[str(name)])
+        style.draw(axes[3], points, label=str(name), color=colour, marker=MARKERS[str(name)])
         axes[3].axhline(points["exact"].iloc[0], color=colour, linestyle=":", marker="")
     axes[3].set(xlabel="$1/n$", ylabel="decay of the longest wave")
     axes[3].set_xlim(0.0, 1.15 * truncated["x"].max())
     axes[3].set_ylim(0.0, 1.15 * truncated[["y", "exact"]].to_numpy().max())
-    small_legend(axes[3], "center right")
+    style.small_legend(axes[3], "center right")
     return drawn

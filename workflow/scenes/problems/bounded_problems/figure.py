@@ -1,44 +1,34 @@
 """Errors on the interval and in the plane, and a bump that is carried."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    RED,
-    axes_row,
-    curves,
-    draw,
-    log_log,
-    name_ticks,
-    slope_triangle,
-    small_legend,
-)
+from fracstudy.style import BLUE, RED, Figure
 
 _TITLES = ("interval", "disc and square", "carried by $a = 4(1 - x^2)$")
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float) -> Figure:
     """Draw (a) interval, (b) disc and square, (c) profiles."""
-    figure, (line, plane, profile) = axes_row(_TITLES, height=3.7, width=4.0)
+    figure, (line, plane, profile) = style.axes_row(_TITLES, height=3.7, width=4.0)
     errors = pick(series, alpha=drawn)
-    curves(line, pick(errors, panel="interval"))
+    style.curves(line, pick(errors, panel="interval"))
     first = pick(errors, panel="interval", series="D(x, t)").sort_values("x").iloc[0]
-    slope_triangle(line, 1.1 * first["x"], 2e-3 * first["y"], drawn - 8.0)
-    for domain, style in (("disc", "-"), ("square", "--")):
-        curves(plane, pick(errors, panel=domain), name=f"{domain}: {{}}", linestyle=style)
-    log_log(line, xlabel="particles $N$", ylabel="mean error at $t = 1$, relative")
-    log_log(plane, xlabel="rings, particles along a side $N$")
-    small_legend(line, "upper right")
-    small_legend(plane, "lower left")
+    style.slope_triangle(line, 1.1 * first["x"], 2e-3 * first["y"], drawn - 8.0)
+    for domain, dashes in (("disc", "-"), ("square", "--")):
+        style.curves(plane, pick(errors, panel=domain), name=f"{domain}: {{}}", linestyle=dashes)
+    style.log_log(line, xlabel="particles $N$", ylabel="mean error at $t = 1$, relative")
+    style.log_log(plane, xlabel="rings, particles along a side $N$")
+    style.small_legend(line, "upper right")
+    style.small_legend(plane, "lower left")
     for ax, domains in ((line, ["interval"]), (plane, ["disc", "square"])):
         counts = series.loc[series["panel"].isin(domains), "x"]
-        name_ticks(ax, sorted(counts.astype(int).unique()))
+        style.name_ticks(ax, sorted(counts.astype(int).unique()))
     for (exterior, d), points in pick(series, panel="profile").groupby(["series", "alpha"]):
         colour = RED if exterior == "reflecting" else BLUE
         look = {"color": colour, "linestyle": "-" if d == 1.0 else "--", "marker": ""}
-        draw(profile, points, label=f"{exterior}, $D$ = {d:g}", **look)
+        style.draw(profile, points, label=f"{exterior}, $D$ = {d:g}", **look)
     profile.set(xlabel="position $x$", ylabel="$u$")
-    small_legend(profile, "upper left")
+    style.small_legend(profile, "upper left")
     return figure

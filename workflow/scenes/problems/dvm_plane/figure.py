@@ -1,10 +1,9 @@
 """Errors of the plane and the line against the spacing."""
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, RED, axes_row, draw, log_log, name_ticks, small_legend
+from fracstudy.style import BLUE, RED, Figure, axes_row, draw, log_log, name_ticks, small_legend
 
 _TITLES = {
     "none, open": "open, not remeshed",

@@ -4,21 +4,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    axes_row,
-    curves,
-    draw,
-    guide,
-    log_log,
-    name_ticks,
-    note,
-    small_legend,
-)
+from fracstudy.style import BLUE, Axes, Figure
 
 _STEPS = {"dop853": "order 8 (DOP853)", "rkc2": "stabilised (RKC2)"}
 _TITLES = (
@@ -31,17 +20,17 @@ _TITLES = (
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the front, (b) its rate, (c) errors against evaluations, (d) how close particles come to the rate."""
-    drawn, axes = axes_row(_TITLES, height=3.6, width=3.4)
+    drawn, axes = style.axes_row(_TITLES, height=3.6, width=3.4)
     _front(axes[0], pick(series, panel="front"))
     _rates(axes[1], pick(series, panel="rate"))
-    curves(axes[2], pick(series, panel="tolerance").replace({"series": _STEPS}))
+    style.curves(axes[2], pick(series, panel="tolerance").replace({"series": _STEPS}))
     work, error = "evaluations of the right-hand side", "error relative to the greatest $u$"
-    log_log(axes[2], xlabel=work, ylabel=error)
-    name_ticks(axes[2], (100, 300, 1000, 3000))
+    style.log_log(axes[2], xlabel=work, ylabel=error)
+    style.name_ticks(axes[2], (100, 300, 1000, 3000))
     axes[2].legend(loc="upper right")
-    curves(axes[3], pick(series, panel="followed"))
+    style.curves(axes[3], pick(series, panel="followed"))
     axes[3].set(xlabel="time $t$", ylabel="relative distance from $1/(1+\\alpha)$", yscale="log")
-    small_legend(axes[3], "lower left")
+    style.small_legend(axes[3], "lower left")
     return drawn
 
 
@@ -49,20 +38,20 @@ def _front(ax: Axes, part: pd.DataFrame) -> None:
     names = list(part["series"].unique())
     for name, shade in zip(names, np.linspace(0.35, 1.0, len(names)), strict=True):
         label = f"t = {float(name):g}"
-        draw(ax, pick(part, series=name), color=BLUE, alpha=shade, marker="", label=label)
+        style.draw(ax, pick(part, series=name), color=BLUE, alpha=shade, marker="", label=label)
     last = pick(part, series=names[-1])
     far = last.iloc[(last["x"] - 0.5 * last["x"].max()).abs().argmin()]
     ends: list[Any] = [0.1 * last["x"].max(), last["x"].max()]
-    guide(ax, ends, (far["x"], 3.0 * far["y"]), -2.5)
+    style.guide(ax, ends, (far["x"], 3.0 * far["y"]), -2.5)
     top = 3.0 * far["y"] * (far["x"] / ends[0]) ** 2.5
-    note(ax, "$x^{-1-\\alpha}$", (ends[0], top), (5, -2))
-    log_log(ax, xlabel="position $x$", ylabel="$u(x, t)$")
-    small_legend(ax, "lower left")
+    style.note(ax, "$x^{-1-\\alpha}$", (ends[0], top), (5, -2))
+    style.log_log(ax, xlabel="position $x$", ylabel="$u(x, t)$")
+    style.small_legend(ax, "lower left")
 
 
 def _rates(ax: Axes, part: pd.DataFrame) -> None:
     for k, (name, points) in enumerate(part.groupby("series", sort=False)):
-        draw(ax, points, color=f"C{k}", marker="osD^"[k], markersize=3.5, label=name)
+        style.draw(ax, points, color=f"C{k}", marker="osD^"[k], markersize=3.5, label=name)
         ax.axhline(points["exact"].iloc[0], color=f"C{k}", linestyle=":", linewidth=0.9)
     ax.set(xlabel="time $t$", ylabel=r"rate $\Delta \ln x_{1/2} / \Delta t$")
-    small_legend(ax, "lower right")
+    style.small_legend(ax, "lower right")

@@ -4,24 +4,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    PINK,
-    RED,
-    SKY,
-    axes_row,
-    draw,
-    legend_below,
-    log_log,
-    name_ticks,
-    small_legend,
-)
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, SKY, Axes, Figure
 
 _TIMES = (SKY, GREEN, ORANGE, RED)
 _WAYS: dict[str, dict[str, Any]] = {
@@ -38,30 +24,30 @@ _LEVELS = (0.03, 0.05)
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) the linear field, (b), (c) errors against the spacing, (d) contours of the blob."""
-    drawn, axes = axes_row(_TITLES, height=3.7, width=3.3)
+    drawn, axes = style.axes_row(_TITLES, height=3.7, width=3.3)
     _linear(axes[0], pick(series, panel="linear field"))
     for ax, field in zip(axes[1:3], ("uniform", "linear"), strict=True):
         part = pick(series, panel=f"error, {field}")
         for way, points in part.groupby("series", sort=False):
-            draw(ax, points, label=way, **_WAYS[str(way)])
-        log_log(ax, xlabel="particle spacing $h$", ylim=(3e-11, 1.0))
-        name_ticks(ax, sorted(part["x"].unique()))
+            style.draw(ax, points, label=way, **_WAYS[str(way)])
+        style.log_log(ax, xlabel="particle spacing $h$", ylim=(3e-11, 1.0))
+        style.name_ticks(ax, sorted(part["x"].unique()))
     axes[1].set_ylabel("error / largest $u$")
     _rotation(axes[3], pick(series, panel="rotation"))
-    legend_below(drawn, axes[1], columns=5)
+    style.legend_below(drawn, axes[1], columns=5)
     return drawn
 
 
 def _linear(ax: Axes, part: pd.DataFrame) -> None:
-    draw(ax, pick(part, series="start"), color="0.5", linestyle=":", marker="")
+    style.draw(ax, pick(part, series="start"), color="0.5", linestyle=":", marker="")
     names = [name for name in part["series"].unique() if name.startswith("exact")]
     for name, colour in zip(names, _TIMES, strict=False):
         exact, ours = pick(part, series=name), pick(part, series=name.replace("exact", "ours"))
-        draw(ax, exact, color=colour, marker="", label=name.removeprefix("exact, "))
+        style.draw(ax, exact, color=colour, marker="", label=name.removeprefix("exact, "))
         some = ours.iloc[:: max(1, len(ours) // 24)]
-        draw(ax, some, "o", color=colour, markersize=3.0)
+        style.draw(ax, some, "o", color=colour, markersize=3.0)
     ax.set(xlabel="position $x$", ylabel="$u(x, t)$", xlim=(-6.0, 6.0), ylim=(0.0, None))
-    small_legend(ax, "upper right")
+    style.small_legend(ax, "upper right")
 
 
 def _rotation(ax: Axes, part: pd.DataFrame) -> None:

@@ -2,44 +2,32 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    COLOURS,
-    MARKERS,
-    axes_row,
-    draw,
-    entry,
-    guide,
-    legend_below,
-    log_log,
-    name_ticks,
-    note,
-    scheme_style,
-    slope_triangle,
-)
+from fracstudy.style import COLOURS, MARKERS, Axes, Figure
 
 _TITLES = ("error, line", "error, plane", "the two equations", "distance between the two")
 _MEAN = r"$(D\,Lu + L(Du) - u\,LD)/2$, limit of the exchange"
 _FORMS = (
-    entry(r"$\mathrm{div}(D\,\mathrm{grad}^\beta u)$", color="0.2", marker=""),
-    entry(_MEAN, color="0.2", marker="", linestyle=":"),
+    style.entry(r"$\mathrm{div}(D\,\mathrm{grad}^\beta u)$", color="0.2", marker=""),
+    style.entry(_MEAN, color="0.2", marker="", linestyle=":"),
 )
 _SCHEMES = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a), (b) errors on the line and in the plane, (c) right-hand sides, (d) the distance of the equations."""
-    drawn, axes = axes_row(_TITLES, height=3.9, width=3.4)
+    drawn, axes = style.axes_row(_TITLES, height=3.9, width=3.4)
     for ax, panel in zip(axes, ("line", "plane"), strict=False):
         _errors(ax, pick(series, panel=panel))
     axes[0].set_ylabel("error of $du/dt$ / its largest value")
     _right_hand_sides(axes[2], pick(series, panel="right-hand side"))
     _gap(axes[3], pick(series, panel="gap"))
-    schemes = [entry(name, color=COLOURS[s], marker=MARKERS[s]) for name, s in _SCHEMES.items()]
-    legend_below(drawn, [*schemes, *_FORMS], columns=5)
+    schemes = [
+        style.entry(name, color=COLOURS[s], marker=MARKERS[s]) for name, s in _SCHEMES.items()
+    ]
+    style.legend_below(drawn, [*schemes, *_FORMS], columns=5)
     return drawn
 
 
@@ -49,12 +37,12 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
         scheme = _SCHEMES[str(form)]
         dotted = form == "exchange" and not str(equation).startswith("div")
         look = {"color": COLOURS[scheme], "marker": MARKERS[scheme], "markersize": 4.0}
-        draw(ax, points, linestyle=":" if dotted else "-", **look)
+        style.draw(ax, points, linestyle=":" if dotted else "-", **look)
         if form == "FPSE":
             _slope(ax, points.sort_values("x"), float(order))
     ticks = sorted(part["x"].unique())
-    log_log(ax, xlabel="particle spacing $h$", xlim=(0.6 * ticks[0], 1.3 * ticks[-1]))
-    name_ticks(ax, ticks)
+    style.log_log(ax, xlabel="particle spacing $h$", xlim=(0.6 * ticks[0], 1.3 * ticks[-1]))
+    style.name_ticks(ax, ticks)
 
 
 def _slope(ax: Axes, points: pd.DataFrame, order: float) -> None:
@@ -62,24 +50,24 @@ def _slope(ax: Axes, points: pd.DataFrame, order: float) -> None:
     h, error = points["x"].to_numpy(), points["y"].to_numpy()
     slopes = np.diff(np.log(error)) / np.diff(np.log(h))
     if slopes.size and slopes.argmax() == 0:
-        slope_triangle(ax, h[0], 1.8 * error[0], order, above=True)
+        style.slope_triangle(ax, h[0], 1.8 * error[0], order, above=True)
     elif slopes.size:  # it ends at round-off
-        note(ax, f"order {order:g}", (h[1], error[1]), (9, -3), ha="left")
+        style.note(ax, f"order {order:g}", (h[1], error[1]), (9, -3), ha="left")
 
 
 def _right_hand_sides(ax: Axes, part: pd.DataFrame) -> None:
     looks = (
         {"linestyle": "-"},
         {"linestyle": ":"},
-        scheme_style("KPSE", linestyle="", markersize=3.5),
+        style.scheme_style("KPSE", linestyle="", markersize=3.5),
     )
     for (_, points), look in zip(part.groupby("series", sort=False), looks, strict=True):
-        draw(ax, points, **{"color": "0.2", "marker": "", **look})
+        style.draw(ax, points, **{"color": "0.2", "marker": "", **look})
     ax.set(xlabel="position $x$", ylabel="$du/dt$", xlim=(-4.0, 4.0))
 
 
 def _gap(ax: Axes, part: pd.DataFrame) -> None:
-    draw(ax, part, color="0.2")
+    style.draw(ax, part, color="0.2")
     end = part.iloc[-1]
-    guide(ax, list(part["x"]), (end["x"], 0.5 * end["y"]), 1.0)
-    log_log(ax, xlabel=r"$2 - \alpha$", ylabel="largest relative distance")
+    style.guide(ax, list(part["x"]), (end["x"], 0.5 * end["y"]), 1.0)
+    style.log_log(ax, xlabel=r"$2 - \alpha$", ylabel="largest relative distance")

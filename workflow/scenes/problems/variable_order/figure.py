@@ -5,24 +5,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    PINK,
-    RED,
-    axes_row,
-    draw,
-    log_log,
-    name_ticks,
-    slope_triangle,
-    small_legend,
-)
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, Axes, Figure
 
 _COLOURS, _MARKERS = (BLUE, RED, GREEN, PINK, ORANGE), "osD^v"
 _TAILS = {"own": "of each end", "one for both": "one for both", "none": "none: truncated"}
@@ -31,16 +18,16 @@ _TITLES = ("error", r"interpolation in $\alpha$", "tails of a run", "tail beyond
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) errors, (b) interpolation, (c) tails, (d) what is beyond a narrow lattice."""
-    drawn, axes = axes_row(_TITLES, height=3.7, width=3.4)
+    drawn, axes = style.axes_row(_TITLES, height=3.7, width=3.4)
     _errors(axes[0], pick(series, panel="error"))
     _interpolation(axes[1], pick(series, panel="interpolation"))
     _tails(axes[2], pick(series, panel="tail"))
     exterior = pick(series, panel="exterior")
-    for points, name, style in _styled(exterior):
-        draw(axes[3], points, label=_TAILS[name], **style)
-    log_log(axes[3], xlabel="half-width of the lattice", ylabel="error of $du/dt$, relative")
-    name_ticks(axes[3], sorted(exterior["x"].unique()))
-    small_legend(axes[3], "lower left", title="tail", title_fontsize=7)
+    for points, name, look in _styled(exterior):
+        style.draw(axes[3], points, label=_TAILS[name], **look)
+    style.log_log(axes[3], xlabel="half-width of the lattice", ylabel="error of $du/dt$, relative")
+    style.name_ticks(axes[3], sorted(exterior["x"].unique()))
+    style.small_legend(axes[3], "lower left", title="tail", title_fontsize=7)
     return drawn
 
 
@@ -51,34 +38,36 @@ def _styled(part: pd.DataFrame) -> Iterator[tuple[pd.DataFrame, str, dict[str, A
 
 
 def _errors(ax: Axes, part: pd.DataFrame) -> None:
-    for points, name, style in _styled(part):
+    for points, name, look in _styled(part):
         plane = points["dim"].iloc[0] == 2
-        draw(ax, points, linestyle="--" if plane else "-", label=name, **style)
+        style.draw(ax, points, linestyle="--" if plane else "-", label=name, **look)
         h, error = points.sort_values("x")[["x", "y"]].to_numpy().T
         slopes = np.diff(np.log(error)) / np.diff(np.log(h))
         if not plane and slopes.size and slopes.argmax() == 0:  # it does not end at round-off
-            slope_triangle(ax, h[0], 1.8 * error[0], float(points["order"].iloc[0]), above=True)
+            style.slope_triangle(
+                ax, h[0], 1.8 * error[0], float(points["order"].iloc[0]), above=True
+            )
     ticks = sorted(part["x"].unique())
-    log_log(ax, xlabel="particle spacing $h$", ylabel="error of $du/dt$, relative")
+    style.log_log(ax, xlabel="particle spacing $h$", ylabel="error of $du/dt$, relative")
     ax.set_xlim(0.6 * ticks[0], 1.3 * ticks[-1])
-    name_ticks(ax, ticks)
-    small_legend(ax, "lower right")
+    style.name_ticks(ax, ticks)
+    style.small_legend(ax, "lower right")
 
 
 def _interpolation(ax: Axes, part: pd.DataFrame) -> None:
-    for points, name, style in _styled(part):
-        draw(ax, points, label=name, linestyle="", **style)
-        ax.plot(points["x"], points["bound"], color=style["color"], linestyle=":", marker="")
+    for points, name, look in _styled(part):
+        style.draw(ax, points, label=name, linestyle="", **look)
+        ax.plot(points["x"], points["bound"], color=look["color"], linestyle=":", marker="")
     ax.set(xlabel="number of orders summed, $K$", ylabel="difference of rows; bound (dotted)")
     ax.set_yscale("log")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-    small_legend(ax, "upper right", title=r"range of $\alpha$", title_fontsize=7)
+    style.small_legend(ax, "upper right", title=r"range of $\alpha$", title_fontsize=7)
 
 
 def _tails(ax: Axes, part: pd.DataFrame) -> None:
-    for points, name, style in _styled(part):
+    for points, name, look in _styled(part):
         label = f"{name}, $\\alpha = {points['alpha'].iloc[0]:g}$"
-        draw(ax, points, label=label, linestyle="", **style)
-        ax.plot(points["x"], points["theory"], color=style["color"], linestyle=":", marker="")
-    log_log(ax, xlabel="distance $|x|$", ylabel="$u(x, t)$")
-    small_legend(ax, "lower left")
+        style.draw(ax, points, label=label, linestyle="", **look)
+        ax.plot(points["x"], points["theory"], color=look["color"], linestyle=":", marker="")
+    style.log_log(ax, xlabel="distance $|x|$", ylabel="$u(x, t)$")
+    style.small_legend(ax, "lower left")

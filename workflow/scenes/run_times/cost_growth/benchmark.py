@@ -16,16 +16,7 @@ import numpy as np
 from fracparticles.run.case import Case
 from fracparticles.run.solver import Prepared, prepare
 from fracparticles.schemes import SCHEMES
-from fracstudy.race.clock import (
-    Timing,
-    conditions,
-    forget_tables,
-    in_fresh_process,
-    measure,
-    one_core,
-    peak_so_far,
-    timings_dataset,
-)
+from fracstudy.race import clock
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -91,16 +82,20 @@ def benchmark(
     for (shape, dim), sizes in zip(_DIMENSIONS.items(), (lines, squares, cubes), strict=True):
         for kind in kinds.get(shape, ()):
             task = kind, dim, [_TINY, *sorted(sizes)], limits, often
-            measured = in_fresh_process(measure_sizes, *task) if memory else measure_sizes(*task)
+            measured = (
+                clock.in_fresh_process(measure_sizes, *task) if memory else measure_sizes(*task)
+            )
             least = measured[0]["peak_memory"]
             for row in measured[1:]:
                 row["memory_per_particle"] = (row["peak_memory"] - least) / row["particles"]
                 rows.append({"kind": kind, "dim": dim, "machine_memory": machine_memory, **row})
     # Of the processes that measured, not of this one.
-    taken = {name: np.fmax.reduce([row[name] for row in rows]) for name in conditions() if rows}
+    taken = {
+        name: np.fmax.reduce([row[name] for row in rows]) for name in clock.conditions() if rows
+    }
     facts = {"repeats": repeats, "beta": _BETA, "spacing": _SPACING, **taken}
     title = "Run time and memory against the number of particles"
-    return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
+    return clock.timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
 
 
 def measure_sizes(
@@ -111,7 +106,7 @@ def measure_sizes(
     The smallest makes a short run: an open exterior would be too close for the whole one. The peak memory, nan if it
     is not wanted, is that of the process so far.
     """
-    one_core()
+    clock.one_core()
     rows = []
     for number, size in enumerate(sizes):
         case = _case(kind, dim, size, _END if number else _START + _SHORT)
@@ -119,8 +114,8 @@ def measure_sizes(
         if case.particles <= limits["naive_particles"] and case.exterior == "truncated":
             row["naive_time"] = _naive_time(case, *often)
         row |= _run_times(case, limits["most_solved"], *often)
-        row["peak_memory"] = peak_so_far() if limits["memory"] else float("nan")
-        rows.append({**row, **conditions()})
+        row["peak_memory"] = clock.peak_so_far() if limits["memory"] else float("nan")
+        rows.append({**row, **clock.conditions()})
     return rows
 
 
@@ -142,7 +137,7 @@ def _naive_time(case: Case, repeats: int, seconds: float) -> float:
     setting = case.model_copy(update={"summation": "naive"}).setting
     operator = SCHEMES[case.scheme].operator(setting)
     u = _strengths(case).reshape(-1)
-    return measure(partial(operator.apply, u), repeats, seconds)[0].minimum
+    return clock.measure(partial(operator.apply, u), repeats, seconds)[0].minimum
 
 
 def _run_times(case: Case, most_solved: float, repeats: int, seconds: float) -> dict[str, Any]:
@@ -153,24 +148,24 @@ def _run_times(case: Case, most_solved: float, repeats: int, seconds: float) -> 
     apply = partial(ready.operator.combine, u.reshape(-1), np.zeros(u.size), 1.0)
     row = {
         "setup_time": setup.minimum,
-        "application_time": measure(apply, repeats, seconds)[0].minimum,
+        "application_time": clock.measure(apply, repeats, seconds)[0].minimum,
         "applications": ready.operator_applications,
     }
     if case.particles <= most_solved:
-        row["solve_time"] = measure(partial(ready.solve, u), repeats, seconds)[0].minimum
+        row["solve_time"] = clock.measure(partial(ready.solve, u), repeats, seconds)[0].minimum
     else:
         brief = case.model_copy(update={"t_final": _START + _SHORT})
         prepare(brief, ready.operator).solve(u)
     return row
 
 
-def _set_up(case: Case, repeats: int, seconds: float) -> tuple[Timing, Prepared]:
+def _set_up(case: Case, repeats: int, seconds: float) -> tuple[clock.Timing, Prepared]:
     """Prepare a case, each time as if it were the first."""
-    forget_tables()
-    timing, ready = measure(partial(prepare, case))
+    clock.forget_tables()
+    timing, ready = clock.measure(partial(prepare, case))
     while len(timing.times) < repeats and sum(timing.times) < seconds:
         del ready  # before the next one takes its memory
-        forget_tables()
-        again, ready = measure(partial(prepare, case))
+        clock.forget_tables()
+        again, ready = clock.measure(partial(prepare, case))
         timing += again
     return timing, ready

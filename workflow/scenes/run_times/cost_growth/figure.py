@@ -6,22 +6,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from fracstudy import style
 from fracstudy.inputs import NUMERALS
 from fracstudy.panels import pick
-from fracstudy.style import (
-    draw,
-    entry,
-    legend_below,
-    log_log,
-    note,
-    note_below,
-    scheme_style,
-    slope_triangle,
-)
+from fracstudy.style import Axes, Figure
 
 _SHAPES = {1: "lines", 2: "squares", 3: "cubes"}
 # The truncated points are hollow and larger, so that an open one that agrees fills it.
@@ -55,30 +45,30 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     axes[0, 0].set_ylabel("time of one application / s")
     axes[1, 0].set_ylabel("peak memory of the process / byte")
     handles = _handles(series)
-    legend_below(figure, handles, columns=len(handles) // 2)
-    note_below(figure, series["note"].iloc[0])
+    style.legend_below(figure, handles, columns=len(handles) // 2)
+    style.note_below(figure, series["note"].iloc[0])
     return figure
 
 
 def _application(ax: Axes, points: pd.DataFrame) -> None:
-    log_log(ax)
-    for way, style in (("fast", "-"), ("naive", ":")):
+    style.log_log(ax)
+    for way, line in (("fast", "-"), ("naive", ":")):
         some = pick(points, series=way)
         if some.empty:
             continue
-        _curves(ax, some, style)
+        _curves(ax, some, line)
         _name_end(ax, some, _durations)
         measured = some[~some["extrapolated"]]
         middle = measured[measured["x"] <= np.sqrt(measured["x"].min() * measured["x"].max())]
         corner = middle.loc[middle["x"].idxmax()]
         if way == "fast":
-            slope_triangle(ax, corner["x"], 0.2 * corner["y"], 1.0)
+            style.slope_triangle(ax, corner["x"], 0.2 * corner["y"], 1.0)
         else:
-            slope_triangle(ax, corner["x"], 4.0 * corner["y"], 2.0, above=True)
+            style.slope_triangle(ax, corner["x"], 4.0 * corner["y"], 2.0, above=True)
 
 
 def _memory(ax: Axes, points: pd.DataFrame) -> None:
-    log_log(ax)
+    style.log_log(ax)
     peak = pick(points, series="peak")
     _curves(ax, peak, "-")
     _name_end(ax, peak, _gigabytes)
@@ -86,23 +76,23 @@ def _memory(ax: Axes, points: pd.DataFrame) -> None:
     if len(peak) and np.isfinite(machine):
         ax.axhline(machine, color=_GREY, linewidth=0.8, linestyle="-.")
         text = f"memory of the machine, {machine / 2**30:.2g} GiB"
-        note(ax, text, (peak["x"].min(), machine), (0, 3), **_SMALL)
+        style.note(ax, text, (peak["x"].min(), machine), (0, 3), **_SMALL)
 
 
-def _curves(ax: Axes, points: pd.DataFrame, style: str) -> None:
+def _curves(ax: Axes, points: pd.DataFrame, line: str) -> None:
     """What was measured, and a dashed line to what is extrapolated."""
     for kind, curve in points.groupby("kind", sort=False):
         curve = curve.sort_values("x")
-        look = _look(kind, linestyle=style)
-        draw(ax, curve[~curve["extrapolated"]], **look)
-        draw(ax, curve.iloc[-2:], color=look["color"], linewidth=0.9, linestyle=_DASHES)
+        look = _look(kind, linestyle=line)
+        style.draw(ax, curve[~curve["extrapolated"]], **look)
+        style.draw(ax, curve.iloc[-2:], color=look["color"], linewidth=0.9, linestyle=_DASHES)
 
 
 def _name_end(ax: Axes, points: pd.DataFrame, text: Callable[[float, float], str]) -> None:
     """Write the least and the greatest extrapolated value at their end."""
     x, y = points[points["extrapolated"]][["x", "y"]].to_numpy().T
     if y.size:
-        note(ax, text(y.min(), y.max()), (x.max(), y.max()), (0, 5), ha="right", **_SMALL)
+        style.note(ax, text(y.min(), y.max()), (x.max(), y.max()), (0, 5), ha="right", **_SMALL)
 
 
 def _durations(least: float, greatest: float) -> str:
@@ -123,7 +113,7 @@ def _range(least: float, greatest: float, unit: str) -> str:
 
 def _look(kind: str, **more: Any) -> dict[str, Any]:
     scheme, _, exterior = kind.split("-")
-    return scheme_style(scheme, **{**_FACES[exterior], **more})
+    return style.scheme_style(scheme, **{**_FACES[exterior], **more})
 
 
 def _handles(series: pd.DataFrame) -> list[Line2D]:
@@ -132,7 +122,7 @@ def _handles(series: pd.DataFrame) -> list[Line2D]:
     for kind in series["kind"].unique():
         scheme, order, exterior = kind.split("-")
         name = f"{scheme} {NUMERALS[int(order)]}, {exterior}"
-        kinds.append(entry(name, **_look(kind, linestyle="none")))
-    ways = [entry(name, color=_GREY, linestyle=style) for name, style in _WAYS.items()]
-    blank = entry(" ", linestyle="none")
+        kinds.append(style.entry(name, **_look(kind, linestyle="none")))
+    ways = [style.entry(name, color=_GREY, linestyle=line) for name, line in _WAYS.items()]
+    blank = style.entry(" ", linestyle="none")
     return [handle for column in zip_longest(kinds, ways, fillvalue=blank) for handle in column]

@@ -3,21 +3,11 @@
 from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    PINK,
-    SKY,
-    axes_row,
-    entry,
-    legend_below,
-    log_log,
-    note_below,
-    plain_times,
-    scheme_style,
-)  # fmt: skip
+from fracstudy.style import PINK, SKY, Figure
 
 _COLUMNS = 3
 _FLOOR = 1e-14  # errors below are drawn there
@@ -36,10 +26,10 @@ _TITLES = {
 }
 # Okabe & Ito: schemes as everywhere, other methods of ours in theirs, peers hollow.
 _LOOKS: dict[str, dict[str, Any]] = {
-    "FPSE 12": scheme_style("FPSE"),
-    "FPSE 4": scheme_style("FPSE", linestyle=":"),
-    "DD 12": scheme_style("DD"),
-    "DD 4": scheme_style("DD", linestyle=":"),
+    "FPSE 12": style.scheme_style("FPSE"),
+    "FPSE 4": style.scheme_style("FPSE", linestyle=":"),
+    "DD 12": style.scheme_style("DD"),
+    "DD 4": style.scheme_style("DD", linestyle=":"),
     "graded particles": {"color": SKY, "marker": "h"},
     "adaptive particles": {"color": PINK, "marker": "P"},
     "evolve, one lattice": {"color": "#000000", "marker": "*"},
@@ -60,14 +50,14 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     rows = -(-len(problems) // _COLUMNS)
     blank = [""] * (rows * _COLUMNS - len(problems))
     titles = [_TITLES[problem] for problem in problems] + blank
-    drawn, axes = axes_row(titles, 3.1 + 1.2 / rows, 3.4, rows, sharey=True)
+    drawn, axes = style.axes_row(titles, 3.1 + 1.2 / rows, 3.4, rows, sharey=True)
     for ax, problem in zip(axes, problems, strict=False):
         part = pick(series, problem=problem)
         for name, points in part[part["front"].astype(bool)].groupby("contender", sort=False):
             line = points.sort_values("time")
             ax.plot(1e3 * line["time"], line["error"].clip(lower=_FLOOR), **_look(points, name))
-        log_log(ax, xlabel="set-up and solve / ms")
-        plain_times(ax)
+        style.log_log(ax, xlabel="set-up and solve / ms")
+        style.plain_times(ax)
     for ax in axes[::_COLUMNS]:
         ax.set_ylabel("relative error")
     for ax in axes[len(problems) :]:
@@ -75,9 +65,11 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     axes[0].set_ylim(0.5 * _FLOOR, 2.0)
     axes[0].yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
     there = {name: pick(series, contender=name) for name in _LOOKS}
-    entries = [entry(name, **_look(own, name)) for name, own in there.items() if not own.empty]
-    legend_below(drawn, entries, columns=5)
-    note_below(drawn, str(series["note"].iloc[0]))
+    entries = [
+        style.entry(name, **_look(own, name)) for name, own in there.items() if not own.empty
+    ]
+    style.legend_below(drawn, entries, columns=5)
+    style.note_below(drawn, str(series["note"].iloc[0]))
     return drawn
 
 

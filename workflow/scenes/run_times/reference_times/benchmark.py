@@ -25,15 +25,7 @@ import scipy.fft
 from fracparticles.lattice.fourier import complex_length
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, initial_strengths, prepare
-from fracstudy.race.clock import (
-    Timing,
-    forget_tables,
-    in_fresh_process,
-    measure,
-    one_core,
-    peak_so_far,
-    timings_dataset,
-)
+from fracstudy.race import clock
 from fracstudy.race.contenders.schemes import naive_steps
 
 if TYPE_CHECKING:
@@ -83,7 +75,7 @@ def benchmark(
     xarray.Dataset
         Dimension `run`; times in seconds, nan where not measured.
     """
-    one_core()
+    clock.one_core()
     common = {"beta": 0.5, "truncation": truncation, "spacing": spacing}
     schemes = product(("DD", "FPSE", "KPSE"), (2, 4))
     cases = [Case(scheme=scheme, order=order, dt=dt, **common) for scheme, order in schemes]
@@ -93,7 +85,7 @@ def benchmark(
     for case in cases:
         row = _time_series(case, repeats, pairs)
         if memory:
-            row["peak_memory"] = in_fresh_process(peak_of, case.to_json())
+            row["peak_memory"] = clock.in_fresh_process(peak_of, case.to_json())
         if case.order == 2 and case.scheme in stepping:
             row |= _time_stepping(case)
         if case.order == 2 and case.scheme in naive:
@@ -103,13 +95,13 @@ def benchmark(
         rows.append(row)
     title = "Run times of the reference problem"
     facts = {"repeats": repeats, "case": cases[0].to_json()}
-    return timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
+    return clock.timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
 
 
 def peak_of(case: str) -> float:
     """Return the peak memory of this process, in bytes, after the run of a case given as JSON."""
     compute(Case.from_json(case))
-    return peak_so_far()
+    return clock.peak_so_far()
 
 
 def transform_pairs(length: int, measured_plans: bool = True) -> dict[str, Action]:
@@ -165,15 +157,15 @@ def _time_series(case: Case, repeats: int, pairs: dict[str, Action]) -> dict[str
     """Time the series and, in turn with it, the transforms of each library."""
     u0, _ = initial_strengths(case)
     prepare(case).solve(u0)  # compiles what is not compiled yet
-    setup = solve = Timing(())
+    setup = solve = clock.Timing(())
     least = dict.fromkeys(pairs, np.inf)
     for _ in range(repeats):
-        forget_tables()
-        once, ready = measure(partial(prepare, case))
+        clock.forget_tables()
+        once, ready = clock.measure(partial(prepare, case))
         setup += once
-        solve += measure(partial(ready.solve, u0))[0]
+        solve += clock.measure(partial(ready.solve, u0))[0]
         for name, pair in pairs.items():
-            many, _ = measure(partial(_repeat, pair))
+            many, _ = clock.measure(partial(_repeat, pair))
             least[name] = min(least[name], many.minimum / _PAIRS)
     single, cosine = least.pop(_SINGLE), least.pop(_COSINE)
     fastest = min(least, key=lambda name: least[name])
@@ -208,7 +200,7 @@ def _time_stepping(case: Case) -> dict[str, float]:
     u0, _ = initial_strengths(case)
     series = prepare(case).solve(u0)
     stepped = prepare(_changed(case, evaluation="stepping"))
-    time, u = measure(partial(stepped.solve, u0))
+    time, u = clock.measure(partial(stepped.solve, u0))
     return {
         "stepping_time": time.minimum,
         "stepping_applications": stepped.operator_applications,
@@ -221,7 +213,7 @@ def _time_naive(case: Case, steps: int) -> dict[str, float]:
     small = _changed(case, truncation=100.0 * case.spacing)
     prepare(naive_steps(small, steps)).solve(initial_strengths(small)[0])  # compiles
     u0, _ = initial_strengths(case)
-    time, _ = measure(partial(prepare(naive_steps(case, steps)).solve, u0))
+    time, _ = clock.measure(partial(prepare(naive_steps(case, steps)).solve, u0))
     return {
         "naive_measured_steps": steps,
         "naive_step_time": time.minimum / steps,

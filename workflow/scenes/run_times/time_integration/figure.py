@@ -3,25 +3,11 @@
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    RED,
-    SKY,
-    axes_row,
-    legend_below,
-    log_log,
-    note,
-    note_below,
-    plain_times,
-    slope_triangle,
-)
+from fracstudy.style import BLUE, GREEN, ORANGE, RED, SKY, Axes, Figure
 
 # Colours of Okabe & Ito again: no scheme has a curve here, one panel is one operator.
 _LINES: dict[str, dict[str, Any]] = {
@@ -41,13 +27,13 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """One panel an operator; a line an integrator that takes steps, a large marker one that takes none."""
     operators = list(series["operator"].unique())
     width = 3.3 if len(operators) > 1 else 5.0
-    figure, axes = axes_row(operators, height=4.2, width=width, sharex=True, sharey=True)
+    figure, axes = style.axes_row(operators, height=4.2, width=width, sharex=True, sharey=True)
     for ax, operator in zip(axes, operators, strict=True):
         _panel(ax, pick(series, operator=operator))
     _slopes(axes[0], pick(series, operator=operators[0]))
     axes[0].set_ylabel("relative error of the time integration,\n" + r"against $e^{A T} u(0)$")
-    legend_below(figure, axes[0], columns=6 if len(operators) > 1 else 3)
-    note_below(figure, f"timed: the solve, with the operator made; {series['note'].iloc[0]}")
+    style.legend_below(figure, axes[0], columns=6 if len(operators) > 1 else 3)
+    style.note_below(figure, f"timed: the solve, with the operator made; {series['note'].iloc[0]}")
     return figure
 
 
@@ -62,9 +48,9 @@ def _panel(ax: Axes, runs: pd.DataFrame) -> None:
             ax.axvline(time, color=look["color"], linewidth=0.7, linestyle=":", zorder=1)
             ax.plot(time, run.error, label=integrator, linestyle="none", **look)
             text = {"va": "center", "fontsize": 7, "color": look["color"]}
-            note(ax, f"{run.applications}\napplications", (time, run.error), (8, 0), **text)
-    log_log(ax, xlabel="time of a solve / ms")
-    plain_times(ax)
+            style.note(ax, f"{run.applications}\napplications", (time, run.error), (8, 0), **text)
+    style.log_log(ax, xlabel="time of a solve / ms")
+    style.plain_times(ax)
     ax.yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
     ax.minorticks_off()
 
@@ -75,4 +61,4 @@ def _slopes(ax: Axes, runs: pd.DataFrame) -> None:
         line = pick(runs, integrator=integrator).sort_values("steps")
         if len(line) > 1:
             middle = line.iloc[len(line) // 2]
-            slope_triangle(ax, 1e3 * middle["solve_time"], 2.0 * middle["error"], -order)
+            style.slope_triangle(ax, 1e3 * middle["solve_time"], 2.0 * middle["error"], -order)

@@ -4,15 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from fracstudy.panels import pick
 from fracstudy.race.contender import Contender
 from fracstudy.race.contenders import CONTENDERS
 from fracstudy.race.problems import PROBLEMS
-from fracstudy.style import legend_below, log_log, note_below
+from fracstudy.style import Axes, Figure, legend_below, log_log, note_below
 from scenes.run_times.contests import TIMES, front
 
 _FRONT: dict[str, Any] = {"color": "0.85", "linewidth": 7.0, "solid_capstyle": "round", "zorder": 0}
