@@ -189,6 +189,6 @@ def overheard() -> Iterator[list[str]]:
             warnings.simplefilter("always")
             yield words
     finally:
+        words += [str(w.message) for w in caught if issubclass(w.category, FracparticlesWarning)]
         for one in caught:
             warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
-        words += [str(w.message) for w in caught if issubclass(w.category, FracparticlesWarning)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fracparticles.errors import AccuracyWarning, FracparticlesError, InvalidInput
-from fracstudy.probe import Kind, Verdict, frame
+from fracstudy.probe import HELD, REFUSED, Kind, Verdict, frame, off, overheard, quiet
 
 
 def refuses():
@@ -74,3 +74,55 @@ def test_a_probe_says_what_was_found():
 def test_probes_make_a_table():
     table = frame([Kind("k", "e", 1.0)("c", float, 0.25, source="closed form")])
     assert list(table.iloc[0]) == ["k", "c", "e", "closed form", "2.5e-01", 0.25, 1.0, "held"]
+
+
+def test_what_a_kind_says_holds_unless_a_probe_says_otherwise():
+    kind = Kind("k", "e", 1.0, "closed form", HELD)
+    assert kind("c", float, 0.5) == kind("c", lambda: 0.5)
+    loose = kind("c", float, 1.5, bound=2.0, source="")
+    assert (loose.bound, loose.source, loose.verdict) == (2.0, "", "held")
+    assert kind("c", float, 1.5).verdict == "silent"
+
+
+def test_what_must_be_refused_may_return_anything():
+    refused, accepted = Kind("k", must=REFUSED).of({"no": refuses, "yes": lambda: np.ones(3)})
+    assert (refused.verdict, refused.expected) == ("refused", "refused")
+    assert (accepted.verdict, accepted.found) == ("failed", "accepted")
+
+
+def test_off_is_relative_to_the_greatest_exact_value():
+    assert off([1.0, -3.0], [1.0, -4.0]) == 0.25
+    assert off([1.0, -3.0], [1.0, -4.0], 0.5) == 2.0
+    assert np.isnan(off([np.nan], [1.0]))
+
+
+def overflows_and_grows():
+    overflows()
+    grows(1.0)()
+
+
+def grows_and_refuses():
+    grows(1.0)()
+    refuses()
+
+
+def test_warnings_are_overheard_and_go_on():
+    loud = pytest.warns(AccuracyWarning, match="it grows")
+    with quiet(RuntimeWarning), loud, overheard() as words:
+        overflows_and_grows()
+    assert words == ["it grows"]
+
+
+def test_warnings_are_overheard_of_what_ends_in_an_error():
+    with quiet(), pytest.raises(FracparticlesError), overheard() as words:
+        grows_and_refuses()
+    assert words == ["it grows"]
+
+
+def test_quiet_says_nothing_of_one_kind_of_warning():
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        with quiet(AccuracyWarning):
+            grows(1.0)()
+            warnings.warn("another", UserWarning, stacklevel=1)
+    assert [str(one.message) for one in caught] == ["another"]

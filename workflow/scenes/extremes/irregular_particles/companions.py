@@ -62,9 +62,9 @@ def _exchange() -> Iterator[Probe]:
     for ratio in (1e100, 1e300):
         yield kept(f"PSE, volumes from 1 to {ratio:g}", _uneven_lost, ratio)
     # An eigenvalue is known to some ulps of the greatest.
-    none = Kind("growth", "no eigenvalue above zero", 64.0 * EPS, "dense eigenvalues", HELD)
+    stays = Kind("growth", "no eigenvalue above zero", 64.0 * EPS, "dense eigenvalues", HELD)
     for jitter in (0.2, 0.5, 2.0):
-        yield none(f"PSE, kernel (20), {_words(jitter)}", _greatest_eigenvalue, jitter)
+        yield stays(f"PSE, kernel (20), {_words(jitter)}", _greatest_eigenvalue, jitter)
 
 
 def _total_lost(dim: int, order: int) -> float:

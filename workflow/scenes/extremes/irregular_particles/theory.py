@@ -40,13 +40,13 @@ def probes(x: np.ndarray, overlap: float, seeds: int) -> Iterator[Probe]:
     three times that is allowed, which is 0.27 for six; a power of h is that of two.
     """
     close = 3.0 / sqrt(20.0 * seeds)
-    right_error = Kind("accuracy", "the predicted error", close, "error theory", HELD)
+    predicted_error = Kind("accuracy", "the predicted error", close, "error theory", HELD)
     for form, jitter, right in product(("KPSE", "GPSE"), (0.05, 0.2, 0.5), (True, False)):
         how, name = ("jittered", jitter, right), f"{form}, jitter {jitter:g} h, {volumes(right)}"
-        yield right_error(name, _ratio_off, form, x, overlap, how, seeds)
+        yield predicted_error(name, _ratio_off, form, x, overlap, how, seeds)
     for form in ("KPSE", "GPSE"):
         how, name = ("random", 0.0, False), f"{form}, random places, equal volumes"
-        yield right_error(name, _ratio_off, form, x, overlap, how, seeds)
+        yield predicted_error(name, _ratio_off, form, x, overlap, how, seeds)
     power = Kind("order lost", "the predicted power", 2.0 * close, "error theory", HELD)
     for right in (True, False):
         name = f"KPSE, ε = {overlap:g} h, jitter 0.3 h, {volumes(right)}"

@@ -65,8 +65,8 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
     shown = slice(1, None, 2) if len(counts) > 3 else slice(None)
     for _, name, values, eps in ways:
         for n, value in zip(counts[shown], values[shown], strict=True):
-            case_ = f"KPSE, {n:.0e} steps of Euler, {name}"
-            yield kept(case_, float, value, bound=n * terms * eps)
+            words = f"KPSE, {n:.0e} steps of Euler, {name}"
+            yield kept(words, float, value, bound=n * terms * eps)
     same = Kind("mass", "the same, below n N eps", most * terms * EPS, must=HELD)
     yield same(
         f"KPSE, {most:.0e} steps, step by step and one series",

@@ -85,9 +85,9 @@ def refused() -> Iterator[Probe]:
         "FD in the plane": ("FD", 0.5, 2, 2.0, 2),
         "no scheme": ("XPSE", 0.5),
     }
-    row = Kind("refused", "an error of ours", must=REFUSED)
+    kind = Kind("refused", "an error of ours", must=REFUSED)
     for name, arguments in cases.items():
-        yield row(name, stability_limit, *arguments)
+        yield kind(name, stability_limit, *arguments)
 
 
 def _limit(scheme: str, beta: float, order: int, s: float) -> float:
