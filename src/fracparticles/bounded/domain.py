@@ -96,7 +96,8 @@ class Domain(DomainOperator):
         outside : callable or number, optional
             g of places and time, or of places alone, where the exterior is given.
         tolerance : float
-            Of each step in time, relative to u, if something depends on it.
+            Of each step in time, relative to u or what is held outside, if something depends on it. A pulse that is on
+            between two of 513 times is not seen.
 
         Raises
         ------
@@ -108,7 +109,7 @@ class Domain(DomainOperator):
         Warns
         -----
         AccuracyWarning
-            If the particles do not resolve what is given.
+            If the particles do not resolve what is given, or little is left of u beside the errors of early steps.
         """
         dim = len(self.points)
         time = self._lasting(time)
