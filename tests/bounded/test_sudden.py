@@ -52,9 +52,36 @@ def test_values_outside_that_are_on_for_a_short_time_are_refused():
     assert np.isfinite(smooth).all()
 
 
-def test_what_fades_below_the_tolerance_warns():
-    with pytest.warns(AccuracyWarning, match="tolerance"):
-        DOMAINS["interval"].react(bell, 1.0, lambda x, t, u: -20.0 * u, tolerance=1e-6)
+@pytest.mark.parametrize("domain", DOMAINS.values(), ids=DOMAINS)
+def test_what_fades_keeps_its_digits(domain: Domain):
+    """e^-20 is in the factor of the solution without the source; some 20 steps may add a tolerance each."""
+    u = domain.react(bell, 1.0, lambda *a: -20.0 * a[-1], tolerance=1e-6)
+    exact = domain.evolve(bell, 1.0)
+    assert np.abs(u * np.exp(20.0) - exact).max() < 20.0 * 1e-6 * np.abs(exact).max()
+
+
+def test_what_a_source_takes_away_warns():
+    """u = e^(-20 t) psi by a source that does not know u: what early steps miss decays like e^(-1.6 t) only."""
+    line = DOMAINS["interval"]
+    psi = line.decayed(line.values("psi", bell), 2.0)
+    rate = line.rate(psi)
+    with pytest.warns(AccuracyWarning, match="errors of early steps"):
+        line.evolve(psi, 1.0, lambda x, t: -np.exp(-20.0 * t) * (20.0 * psi + rate), tolerance=1e-6)
+
+
+def test_a_level_outside_that_grows_from_nothing_is_followed():
+    """u = t everywhere: what is carried is zero to round-off, and its size is that of what is held."""
+    for kind in DOMAINS:
+        given = {
+            "interval": lambda: Interval(alpha=1.5, particles=60, exterior="given"),
+            "disc": lambda: Disc(1.5, 24, 16, "given"),
+            "square": lambda: Square(1.5, 16, "given"),
+        }[kind]()
+        u = given.evolve(
+            0.0, 1.0, lambda *place: 1.0 + 0.0 * place[0] * place[-1],
+            lambda *place: place[-1] + 0.0 * place[0], tolerance=1e-8,
+        )  # fmt: skip
+        assert u == pytest.approx(1.0, abs=1e-7)
 
 
 def test_a_smooth_function_has_no_sudden_times():

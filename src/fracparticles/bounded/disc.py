@@ -27,9 +27,9 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import Rings, exterior_rate
 from fracparticles.bounded.domain import EXTERIORS
-from fracparticles.bounded.exponential import Modes
 from fracparticles.bounded.given import Lift
 from fracparticles.bounded.modal import ModalDomain
+from fracparticles.bounded.modes import Modes
 from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 

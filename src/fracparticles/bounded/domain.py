@@ -19,130 +19,31 @@ depends on time, u is the steady field and what is left of the distance from it;
 from __future__ import annotations
 
 import warnings
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from itertools import pairwise, product
+from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.exponential import Rest
-from fracparticles.bounded.given import Lift, Outside, given_outside, lifted_in_time, takes
+from fracparticles.bounded.given import Outside, given_outside, takes
+from fracparticles.bounded.modes import Rest
+from fracparticles.bounded.operator import LOOKS, DomainOperator
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
-from fracparticles.time.steps import Steps
+from fracparticles.time.fading import FADED, early_errors
 from fracparticles.time.sudden import sudden_times
 
 __all__ = ["EXTERIORS", "Domain"]
 
-_LOOKS, _FEW = 512, 9  # times, at what depends on it; in a piece of them
-_FADED = 0.01  # of u, the tolerance
-_FAR = 1.1, 1.5, 3.0  # half-widths from the middle
+_FEW = 9  # times, at what a source makes in a piece of them
 
 EXTERIORS = ("absorbing", "reflecting", "given")
 """What may be outside."""
 
 
-class Domain(ABC):
-    """Particles in a bounded domain. A field is an array of the shape of `volumes`.
-
-    Attributes
-    ----------
-    alpha, diffusivity : float
-    exterior : str
-    points : tuple of arrays
-        Where the particles are: x, or x and y.
-    volumes : array
-        What they stand for.
-    """
-
-    alpha: float
-    diffusivity: float
-    exterior: str
-    points: tuple[FloatArray, ...]
-    volumes: FloatArray
-
-    balance: float
-    """Of int |f|, what int f may be where nothing can leave and nothing shall change."""
-
-    # --- what a domain says --------------------------------------------------------------------------
-
-    @abstractmethod
-    def applied(self, u: FloatArray) -> FloatArray:
-        """Return D A u at the particles, with u = 0 outside."""
-
-    @abstractmethod
-    def at_rest(self, load: FloatArray) -> FloatArray:
-        """Return u of D A u + load = 0, u = 0 outside; of a load of total 0, that of total 0, if nothing is outside."""
-
-    @abstractmethod
-    def decayed(self, u: FloatArray, time: float) -> FloatArray:
-        """Return exp(time D A) u, u = 0 outside."""
-
-    @abstractmethod
-    def steps(self, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
-        """Return what takes steps of u' = D A u + rest(t, u), u = 0 outside, from fields of the size of `start`."""
-
-    @abstractmethod
-    def lifted(self, g: Callable[..., Any]) -> Lift:
-        """Return a field w with the values g(places) outside, and D A w."""
-
-    @abstractmethod
-    def carried(
-        self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
-    ) -> FloatArray:
-        """Return -div(a (v + base)): v is 0 at an edge as u with u = 0 outside, the base is smooth there."""
-
-    @abstractmethod
-    def eigenvalues(self, count: int) -> FloatArray:
-        """Return the lowest eigenvalues of -D A in ascending order; the first of reflecting edges is 0."""
-
-    @abstractmethod
-    def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
-        """Warn if the particles do not resolve f, the initial data or a source."""
-
-    @abstractmethod
-    def unresolved(self, v: FloatArray) -> float:
-        """Return the norm of what of v, 0 outside, is in the waves that the particles do not tell apart."""
-
-    def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
-        """Return the exchange with a d that varies, the mean of a pair; with the outside by d itself.
-
-        D (C int_Omega (d(x) + d(y)) / 2 (u(y) - u(x)) |x - y|^(-n-alpha) dy - d kappa u)
-        = (d A u + A(d u) - u A d + d u A 1) D / 2, A 1 = -kappa.
-        """
-        one = np.ones(u.shape)
-        parts = d * self.applied(u) + self.applied(d * u) - u * self.applied(d)
-        return np.asarray(0.5 * (parts + d * u * self.applied(one)))
-
-    # --- what all of them do -------------------------------------------------------------------------
-
-    def total(self, u: Any) -> float:
-        """Return the strength of all particles, int u dx."""
-        return float((self.volumes * self.values("u", u)).sum())
-
-    def norm(self, u: FloatArray) -> float:
-        """Return (int u^2 dx)^(1/2)."""
-        return float(np.sqrt((self.volumes * u * u).sum()))
-
-    def rate(self, u: Any, outside: Any = None) -> FloatArray:
-        """Return D A u at the particles."""
-        lift = self._lift_at(given_outside(self.exterior, outside, len(self.points)), 0.0)
-        return self.applied(self.values("u", u) - lift.base) + lift.load
-
-    def values(self, field: str, given: Any) -> FloatArray:
-        """Return a function of places, an array or a number at the particles."""
-        if callable(given):
-            return check.sampled(field, given, *self.points)
-        return np.asarray(check.finite_array(field, given, self.volumes.shape), dtype=float)
-
-    def seen(self, field: str, given: Any) -> FloatArray:
-        """Return these values; warns if they are those of a function that the particles do not resolve."""
-        values = self.values(field, given)
-        if callable(given):
-            self.warn_of_the_unseen(field, given, values)
-        return values
+class Domain(DomainOperator):
+    """Particles in a bounded domain, and the problems that can be solved on them."""
 
     def stationary(self, source: Any = 0.0, outside: Any = None) -> FloatArray:
         """Return u of D A u + f = 0; of reflecting edges the one of total 0.
@@ -195,7 +96,8 @@ class Domain(ABC):
         outside : callable or number, optional
             g of places and time, or of places alone, where the exterior is given.
         tolerance : float
-            Of each step in time, relative to u, if something depends on it.
+            Of each step in time, relative to u or what is held outside, if something depends on it. A pulse that is on
+            between two of 513 times is not seen.
 
         Raises
         ------
@@ -207,7 +109,7 @@ class Domain(ABC):
         Warns
         -----
         AccuracyWarning
-            If the particles do not resolve what is given.
+            If the particles do not resolve what is given, or little is left of u beside the errors of early steps.
         """
         dim = len(self.points)
         time = self._lasting(time)
@@ -281,54 +183,33 @@ class Domain(ABC):
 
         if time == 0.0:
             return start
-        sudden = sudden_times(lambda t: f(t, start).reshape(-1), 0.0, time, looks=_LOOKS)
-        pieces, size = list(pairwise((0.0, *sudden, time))), start
-        if not start.any():  # what the source may make of it
+        sudden = sudden_times(lambda t: f(t, start).reshape(-1), 0.0, time, looks=LOOKS)
+        pieces, made = list(pairwise((0.0, *sudden, time))), 0.0
+        if not start.any() and not lift(0.0).base.any():  # what the source may make of it
             made = sum(
                 (b - a) * max(float(np.abs(rest(t, start)).max()) for t in np.linspace(a, b, _FEW))
                 for a, b in pieces
             )
-            size = np.full(start.shape, made or 1.0)
-        v, steps = start - lift(0.0).base, self.steps(rest, tolerance, size)
+            made = made or 1.0
+
+        def held(t: float) -> FloatArray:
+            return np.maximum(np.abs(lift(t).base), made)
+
+        v, steps = start - lift(0.0).base, self.steps(rest, tolerance, held)
         for before, after in pieces:
             v = steps.advance(v, after - before, before)
             steps.forget()
         u = self._finite(lift(time).base + v, time)
-        if (share := tolerance * float(np.abs(size).max() / (np.abs(u).max() or 1.0))) > _FADED:
+        (share,) = early_errors(
+            tolerance, (0.0, time), (start, u), f, lambda: float(self.eigenvalues(1)[0]),
+            lambda t: float(held(t).max()),
+        )  # fmt: skip
+        if share > FADED:
+            text = f"u has fallen: errors of early steps, within the tolerance, are {share:.2g} of what is left. Take a"
             warnings.warn(
-                f"the steps are accurate to the tolerance times what u was, and that is {share:.2g} of what it is. "
-                "Take a smaller tolerance, or go in shorter times.",
-                AccuracyWarning,
-                stacklevel=3,
+                f"{text} smaller tolerance, or go in shorter times.", AccuracyWarning, stacklevel=3
             )
         return u
-
-    def lift_in_time(self, g: Outside | None, start: float, span: float) -> Callable[[float], Lift]:
-        """Return w and what it does as a function of the time, zero where nothing is given."""
-        varies, sudden = g is not None and g.varies and span > 0.0, list[float]()
-        if g is not None and varies:
-            beyond, at = self._beyond(), g.at
-            sudden = sudden_times(lambda t: at(*beyond, t), start, span, looks=_LOOKS)
-        return lifted_in_time(lambda t: self._lift_at(g, t), varies, start, span, sudden)
-
-    def _beyond(self) -> tuple[FloatArray, ...]:
-        """Some places outside, along the axes and the diagonals."""
-        directions = np.array(list(product((-1.0, 0.0, 1.0), repeat=len(self.points))))
-        directions = directions[np.abs(directions).max(axis=1) > 0.0]
-        ends = [(float(x.min()), float(x.max())) for x in self.points]
-        return tuple(
-            np.concatenate([0.5 * (a + b) + far * 0.5 * (b - a) * along for far in _FAR])
-            for (a, b), along in zip(ends, directions.T, strict=True)
-        )
-
-    def _lift_at(self, g: Outside | None, t: float) -> Lift:
-        if g is None:
-            nothing = np.zeros(self.volumes.shape)
-            return Lift(nothing, nothing, nothing, nothing)
-        return self.lifted(lambda *place: g.at(*place, t))
-
-    def _mean(self, u: FloatArray) -> float:
-        return float((self.volumes * u).sum() / self.volumes.sum())
 
     def _lasting(self, time: float) -> float:
         return check.not_negative("time", time)

@@ -12,62 +12,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.special import gammainc
 
 from fracparticles.arguments import FloatArray
+from fracparticles.bounded.modes import ModalSteps
 from fracparticles.errors import NonFiniteSolution
 
-__all__ = ["ExponentialSteps", "Modes", "moments_of_decay"]
-
-Rest = Callable[[float, FloatArray], FloatArray]
-"""N(t, u), between fields."""
+__all__ = ["ExponentialSteps", "moments_of_decay"]
 
 _FIRST = 1e-3  # of the time: the first step
 _SHORTEST = 1e-10
 _MOST = 20_000  # steps
+_NOTHING = 1e-300
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 3.0
 _ORDER = 3.0  # of the difference, where N does not vanish at the edge
 _TERMS = 24  # of the series for z <= 1
 
 
-class Modes(NamedTuple):
-    """The rates of the modes of an operator, and the way from fields to their amplitudes and back; |y|^2 = int u^2."""
+class ExponentialSteps(ModalSteps):
+    """Steps of u' = A u + N(t, u), with A in its modes; no eigenvalue limits them."""
 
-    rates: FloatArray
-    into: Callable[[FloatArray], Any]
-    back: Callable[[Any], FloatArray]
-
-
-class ExponentialSteps:
-    """Steps of u' = A u + N(t, u), with A in its modes.
-
-    Parameters
-    ----------
-    modes : Modes
-        Of -A.
-    rest : callable
-        N.
-    tolerance : float
-        Of each step, relative to the norm of u.
-    size : float
-        A norm of u that is not small: below it the tolerance is relative to this one.
-
-    Attributes
-    ----------
-    accepted, rejected : int
-    largest : float
-        Zero: no eigenvalue limits the steps.
-    """
-
-    def __init__(self, modes: Modes, rest: Rest, tolerance: float, size: float = 0.0) -> None:
-        self._modes, self._rest, self._tolerance = modes, rest, tolerance
-        self._least = max(size, 1e-300)
-        self.accepted = self.rejected = 0
-        self.largest = 0.0
-        self._h: float | None = None
+    rejected: int = 0
 
     def advance(self, u: FloatArray, span: float, start: float = 0.0) -> FloatArray:
         """Return u after the time `span`.
@@ -88,7 +56,8 @@ class ExponentialSteps:
             half = _Step(self._modes.rates, 0.5 * h)
             middle = half.advance(y, start + t, self._slope)
             halves = half.advance(middle, start + t + 0.5 * h, self._slope)
-            off = _norm(halves - whole) / max(_norm(halves), self._least)
+            size = self._size(start + t + h, halves)
+            off = float(np.linalg.norm(halves - whole)) / max(size, _NOTHING)
             if off <= self._tolerance:
                 t, y = t + h, halves
                 self.accepted += 1
@@ -108,10 +77,6 @@ class ExponentialSteps:
             "becomes infinite, or where it is carried much faster than it spreads. End before, or mend the source "
             "or the velocity."
         )
-
-    def forget(self) -> None:
-        """Let the next step find its length anew."""
-        self._h = None
 
     def _slope(self, y: Any, t: float) -> Any:
         u = self._modes.back(y)
@@ -140,10 +105,6 @@ class _Step:
         middle = n2 + n3
         change = phi1 * n1 + phi2 * (2.0 * middle - 3.0 * n1 - n4) + 4.0 * phi3 * (n1 - middle + n4)
         return self._decay * y + h * change
-
-
-def _norm(y: Any) -> float:
-    return float(np.linalg.norm(y))
 
 
 def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

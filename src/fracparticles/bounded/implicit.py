@@ -13,51 +13,34 @@ import numpy as np
 from scipy.integrate import Radau
 
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.exponential import Modes, Rest
+from fracparticles.bounded.modes import Held, ModalSteps, Modes, Rest
 from fracparticles.errors import NonFiniteSolution
 from fracparticles.time.steps import blown_up
 
 __all__ = ["ImplicitSteps"]
 
+Beside = Callable[[float, FloatArray], FloatArray]
+
 _FINEST = 1e-12  # of a relative tolerance
 _MOST = 20_000  # steps
 
 
-class ImplicitSteps:
-    """Steps of u' = A u + N(t, u) with the derivative of both in the modes of A.
+class ImplicitSteps(ModalSteps):
+    """Steps of u' = A u + N(t, u) with the derivative of both in the modes of A; those thrown away are not counted.
 
     Parameters
     ----------
-    modes : Modes
-        Of -A.
-    rest : callable
-        N.
+    modes, rest, tolerance, held
+        As those of all steps.
     beside : callable
         P(t, u), shape (N, N): what is to be taken implicitly of the derivative of N.
-    tolerance, size : float
-        Of each step, relative to the norm of u, or to `size` where u is smaller.
-
-    Attributes
-    ----------
-    accepted, rejected : int
-        Steps taken; those thrown away are not told, and are 0 here.
-    largest : float
-        The greatest rate.
     """
 
     def __init__(
-        self,
-        modes: Modes,
-        rest: Rest,
-        beside: Callable[[float, FloatArray], FloatArray],
-        tolerance: float,
-        size: float,
+        self, modes: Modes, rest: Rest, beside: Beside, tolerance: float, held: Held | None = None
     ) -> None:
-        self._modes, self._rest, self._beside = modes, rest, beside
-        self._tolerance, self._size = max(tolerance, _FINEST), size
-        self.accepted = self.rejected = 0
-        self.largest = float(modes.rates.max())
-        self._h: float | None = None
+        super().__init__(modes, rest, max(tolerance, _FINEST), held)
+        self._beside, self.largest = beside, float(modes.rates.max())
 
     def advance(self, u: FloatArray, span: float, start: float = 0.0) -> FloatArray:
         """Return u after the time `span`.
@@ -74,15 +57,18 @@ class ImplicitSteps:
             return np.asarray(-modes.rates * y + modes.into(self._rest(t, modes.back(y))))
 
         with np.errstate(over="ignore", invalid="ignore"):
-            first = float(np.linalg.norm(self._rest(start, u))) * span
-            size = max(float(np.linalg.norm(y)), self._size) or first or 1.0
+            first = float(np.linalg.norm(modes.into(self._rest(start, u)))) * span
+
+            def atol(t: float, y: FloatArray) -> float:
+                return self._tolerance * (self._size(t, y) or first or 1.0) / np.sqrt(y.size)
+
             solver = Radau(
-                rate, start, y, start + span, rtol=self._tolerance,
-                atol=self._tolerance * size / np.sqrt(y.size),
+                rate, start, y, start + span, rtol=self._tolerance, atol=atol(start, y),
                 jac=lambda t, y: self._beside(t, modes.back(y)) - diagonal,
                 first_step=None if self._h is None else min(self._h, span),
             )  # fmt: skip
             for _ in range(_MOST):
+                solver.atol = atol(solver.t, solver.y)
                 solver.step()
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
                     raise blown_up(solver.t, modes.back(solver.y))
@@ -94,7 +80,3 @@ class ImplicitSteps:
             f"the solution stops at t = {solver.t:g} after {_MOST} steps. End before, or mend the source "
             "or the velocity."
         )
-
-    def forget(self) -> None:
-        """Let the next step find its length anew."""
-        self._h = None

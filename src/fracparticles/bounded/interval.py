@@ -35,11 +35,11 @@ from fracparticles.adaptive.samples import unseen_share
 from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import EXTERIORS
-from fracparticles.bounded.exponential import Modes
 from fracparticles.bounded.given import Lift
 from fracparticles.bounded.interval_differences import differences
 from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
 from fracparticles.bounded.modal import ModalDomain
+from fracparticles.bounded.modes import Modes
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import tail_constant
 

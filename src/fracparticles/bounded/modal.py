@@ -8,7 +8,8 @@ import numpy as np
 
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import Domain
-from fracparticles.bounded.exponential import ExponentialSteps, Modes, Rest
+from fracparticles.bounded.exponential import ExponentialSteps
+from fracparticles.bounded.modes import Held, Modes, Rest
 from fracparticles.time.steps import Steps
 
 __all__ = ["ModalDomain"]
@@ -26,9 +27,9 @@ class ModalDomain(Domain):
         modes = self.all_modes()
         return modes.back(np.exp(-modes.rates * time) * modes.into(u))
 
-    def steps(self, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
+    def steps(self, rest: Rest, tolerance: float, held: Held) -> Steps:
         """Return an exponential integrator of u' = D A u + rest(t, u)."""
-        return self.steps_with(self.all_modes(), rest, tolerance, start)
+        return ExponentialSteps(self.all_modes(), rest, tolerance, held)
 
     def unresolved(self, v: FloatArray) -> float:
         """Return the norm of v in all but the slowest quarter of the modes."""
@@ -39,8 +40,3 @@ class ModalDomain(Domain):
     @abstractmethod
     def modes_with(self, d: FloatArray, form: str) -> Modes:
         """Return all modes of -D d A for the form "FPSE", of the negative of `spread` for the form "exchange"."""
-
-    @staticmethod
-    def steps_with(modes: Modes, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
-        """Return an exponential integrator in these modes."""
-        return ExponentialSteps(modes, rest, tolerance, float(np.linalg.norm(modes.into(start))))

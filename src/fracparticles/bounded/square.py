@@ -28,8 +28,8 @@ from scipy.sparse.linalg import LinearOperator, cg, eigsh
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import EXTERIORS, Domain
-from fracparticles.bounded.exponential import Rest
 from fracparticles.bounded.given import Lift
+from fracparticles.bounded.modes import Held, Rest
 from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.bounded.square_lattice import (
@@ -148,9 +148,12 @@ class Square(Domain):
             v = v - v.mean()  # round-off
         return self._outer(v + mean)
 
-    def steps(self, rest: Rest, tolerance: float, start: FloatArray) -> Steps:
+    def steps(self, rest: Rest, tolerance: float, held: Held) -> Steps:
         """Return steps of order 8 of u' = D A u + rest(t, u)."""
-        least = tolerance * max(float(np.abs(start).max()), 1e-100)
+
+        def least(t: float, u: FloatArray) -> float:
+            return tolerance * max(float(np.abs(u).max()), float(np.abs(held(t)).max()), 1e-100)
+
         return EighthOrderStep(lambda t, u: self.applied(u) + rest(t, u), tolerance, least)
 
     def lifted(self, g: Callable[..., Any]) -> Lift:

@@ -115,11 +115,13 @@ def to_dataset(
         "mass_initial": _scalar(layout.integral(u0), "total mass, the sum of V u, at t_initial"),
         "mass_final": _scalar(float(mass[-1]), "total mass, the sum of V u, at t_final"),
         "accepted_steps": _scalar(np.int64(result.accepted), "number of time steps"),
-        "rejected_steps": _scalar(np.int64(result.rejected), "number of time steps that were thrown away"),
         "evaluations": _scalar(np.int64(result.evaluations), "number of evaluations of the right-hand side"),
         "stiffness": _scalar(result.stiffness, "estimate of the largest eigenvalue times the time of the run"),
         **{name: each(values, meaning) for name, (values, meaning) in estimates.items()},
     }  # fmt: skip
+    if result.rejected is not None:
+        thrown = "number of time steps that were thrown away"
+        data["rejected_steps"] = _scalar(np.int64(result.rejected), thrown)
     fields = type(problem).model_fields
     coordinates: dict[str, tuple] = {
         name: _scalar(_plain(getattr(problem, name)), label_of(fields[name])) for name in _STORED

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol
@@ -15,7 +16,7 @@ from fracparticles.time.krylov import KrylovStep
 from fracparticles.time.stabilised import StabilisedStep, spectral_radius
 from fracparticles.time.steps import STAGES, Absolute, EighthOrderStep, Steps
 
-__all__ = ["Integration", "advanced", "integrate"]
+__all__ = ["Integration", "advanced", "integrate", "size_of_start"]
 
 _FINEST = 1e-9  # rtol of RKC2; below, the estimate of its error is round-off
 _LOOKS = 17  # at a source that starts from nothing
@@ -32,8 +33,10 @@ class Integration:
         At each output time.
     method : str
         "exponential", "rkc2" or "dop853"; on an interval "radau", too.
-    accepted, rejected, evaluations : int
-        Steps taken, steps thrown away, and evaluations of the right-hand side.
+    accepted, evaluations : int
+        Steps taken, and evaluations of the right-hand side.
+    rejected : int or None
+        Steps thrown away, if that is known.
     stiffness : float
         The time of the run times an estimate of the largest |lambda|.
     """
@@ -41,7 +44,7 @@ class Integration:
     u: list[np.ndarray]
     method: str
     accepted: int
-    rejected: int
+    rejected: int | None
     evaluations: int
     stiffness: float
 
@@ -57,9 +60,12 @@ class RightHandSide(Protocol):
 
 
 def integrate(
-    problem: Problem, rates: RightHandSide, u0: np.ndarray, size: float = 0.0
+    problem: Problem,
+    rates: RightHandSide,
+    u0: np.ndarray,
+    held: Callable[[float], float] = lambda t: 0.0,
 ) -> Integration:
-    """Integrate u' = R(t, u) from u0, shape (N,), to the output times; `size` is that of what is added to u.
+    """Integrate u' = R(t, u) from u0, shape (N,), to the output times; `held` is the size of what is added to u.
 
     Raises
     ------
@@ -80,8 +86,8 @@ def integrate(
     # The error is to be small where the solution is, not in the mean over a lattice that it hardly fills.
     shares = np.sqrt(_filled(u0))
     rtol = problem.rtol * shares
-    least = size or _size(problem, rates, u0)
-    atol: Absolute = lambda u: rtol * (max(float(np.abs(u).max()), size) or least)  # noqa: E731
+    least = 0.0 if held(problem.t_initial) else size_of_start(problem, rates, u0)
+    atol: Absolute = lambda t, u: rtol * (max(float(np.abs(u).max()), held(t)) or least)  # noqa: E731
     if problem.atol:
         atol = problem.atol * shares
     start, span = problem.t_initial, problem.span
@@ -124,8 +130,8 @@ def advanced(
     return outputs
 
 
-def _size(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
-    """The greatest |u| at t_initial, or what the source may make of it where that is zero."""
+def size_of_start(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
+    """Return the greatest |u| at t_initial, or what the source may make of it where that is zero."""
     size = float(np.abs(u0).max())
     if size == 0.0:
         times = problem.t_initial + problem.span * np.linspace(0.0, 1.0, _LOOKS)

@@ -19,7 +19,7 @@ coefficient_misfit
     less its least value. Of a source, c itself, and of the sum and that of 2 |u| / (t_final - t_initial) the larger.
     That of the worst coefficient: what the particles do not see of it.
 atol_share
-    The absolute tolerance that was asked for over the greatest |u|.
+    The errors of early steps over the greatest |u|, see `time.fading`; or the absolute tolerance, if one was asked for.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ import numpy as np
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
+from fracparticles.problems.rates import reaction_of
 from fracparticles.problems.transport import Transport
 from fracparticles.run.reliability import (
     LIMITS,
@@ -45,13 +46,14 @@ from fracparticles.run.reliability import (
 )
 from fracparticles.schemes import SCHEMES
 from fracparticles.special.stable import central_mass
+from fracparticles.time.fading import FADED, early_errors
 
 __all__ = ["estimates", "warn_if_doubtful"]
 
 Estimates = dict[str, tuple[list[float], str]]
 
 _LEAST_SMOOTHING = 1.1  # as there
-_LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": 0.01}
+_LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": FADED}
 _MOST = 2.0  # of the error of a wave over it
 _CONSTANT = 1e-9  # of a coefficient, a variation that is round-off
 
@@ -98,9 +100,14 @@ def estimates(problem: Problem, solutions: list[np.ndarray], initial: Any = None
         ]
         meaning = "misfit of a coefficient between the particles"
         found["coefficient_misfit"] = (_since_start(misfits), meaning)
-    if problem.atol:
-        shares = [problem.atol / max(float(np.abs(u).max()), 1e-300) for u in solutions[1:]]
-        found["atol_share"] = (shares, "absolute tolerance over the greatest |u|")
+    if problem.atol or problem.reaction is not None:
+        times, least = (problem.t_initial, *problem.output_times), problem.atol or 0.0
+        shares = early_errors(
+            problem.rtol, times, solutions, reaction_of(problem), lambda: 0.0,
+            lambda t: least / problem.rtol,
+        )  # fmt: skip
+        meaning = "errors of early steps, within their tolerance, over the greatest |u|"
+        found["atol_share"] = (shares, meaning)
     if problem.exterior == "open":
         travels = 1.0 - float(
             central_mass(0.5 * case.reach, case.diffusivity * problem.span, case.alpha, case.dim)
@@ -196,8 +203,8 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "say. Take a smaller spacing, or wider data",
         "coefficient_misfit": "a coefficient differs between the particles by {:.2g} from what they see of it. Take a "
         "smaller spacing, or a smoother coefficient",
-        "atol_share": "the solution is of the size of atol, which is {:.2g} of its greatest value: its digits are not "
-        "under control. Take a smaller atol, or leave it out",
+        "atol_share": "the solution has fallen: errors of early steps, within rtol of what it was, or atol, are {:.2g} "
+        "of its greatest value. Take a smaller rtol, or atol",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
     }

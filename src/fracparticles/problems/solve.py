@@ -49,6 +49,13 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
         If the solution has reached the ends of the lattice, the lattice does not resolve it, the initial data or a
         coefficient, or the solution is of the size of `atol`.
 
+    Notes
+    -----
+    What depends on t is looked at before the run at 1025 times, or at 65 and more if it is a function that takes the
+    particles alone as its places, and the steps end where it jumps. A pulse that is on between two of these times is
+    not seen: let one of `times` be in it. A coefficient whose slope jumps in space is taken as it is at the particles,
+    without a warning: compare with twice as many.
+
     Examples
     --------
     >>> problem = Problem(alpha=1.5, velocity="-x", half_width=50.0, spacing=0.1, t_initial=1.0, t_final=2.0)

@@ -41,7 +41,7 @@ class KrylovStep:
     size : int
         Of u.
     rtol : float
-    atol : float, or function of u
+    atol : float, or function of t and u
         The error of the run in the 2-norm is to be below rtol |u| + atol sqrt(N), each step's share by its length; u is
         the smaller of those before and after it.
     run : float
@@ -99,7 +99,7 @@ class KrylovStep:
             while True:
                 weights, error = _phi(h, basis.shape[0], tau)
                 new = u + size * np.einsum("i,ij->j", weights, basis)
-                scale = min(self._allowed(u), self._allowed(new))
+                scale = min(self._allowed(start, u), self._allowed(start, new))
                 allowed, error = scale * tau / self._run, size * error
                 faded = 0.0 < norm(new) < _FADED * norm(u)
                 if error <= allowed and not faded:
@@ -118,8 +118,8 @@ class KrylovStep:
                 tau = left
         return u
 
-    def _allowed(self, u: np.ndarray) -> float:
-        return self._rtol * norm(u) + absolute(self._atol, u) * float(np.sqrt(u.size))
+    def _allowed(self, t: float, u: np.ndarray) -> float:
+        return self._rtol * norm(u) + absolute(self._atol, t, u) * float(np.sqrt(u.size))
 
     def _arnoldi(self, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """V_m, shape (m, N), and H of shape (m + 1, m); m smaller where the space is full."""

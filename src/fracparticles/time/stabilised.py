@@ -21,6 +21,9 @@ from fracparticles.time.steps import Absolute, Rate, absolute, blown_up, norm
 
 __all__ = ["StabilisedStep", "spectral_radius"]
 
+State = tuple[np.ndarray, np.ndarray]
+"""u and R(u)."""
+
 _MOST_STAGES = 200
 _RENEW = 25  # steps after which rho is estimated again
 _SAFETY = 1.2  # of rho
@@ -37,7 +40,7 @@ class StabilisedStep:
     rate : callable
         R(t, u).
     rtol : float
-    atol : float, or function of u
+    atol : float, or function of t and u
         The root mean square of Est / (atol + rtol |u|) is at most sqrt(rtol) in each step.
 
     Attributes
@@ -77,7 +80,7 @@ class StabilisedStep:
             stages = max(2, 1 + int(np.sqrt(1.0 + 1.54 * dt * self._rho)))
             new = _one_step(self._rate, stages, t, u, r, dt)
             after = self._rate(t + dt, new)
-            error = self._error(u, new, dt, r, after)
+            error = self._error(t, (u, r), (new, after), dt)
             if not error <= 1.0:
                 self.rejected += 1
                 dt *= max(0.1, 0.8 * error ** (-1.0 / 3.0)) if np.isfinite(error) else 0.1
@@ -109,22 +112,21 @@ class StabilisedStep:
         self._before = dt, error
         return float(min(5.0, max(0.1, factor)))
 
-    def _error(
-        self, u: np.ndarray, new: np.ndarray, dt: float, r: np.ndarray, after: np.ndarray
-    ) -> float:
+    def _error(self, t: float, before: State, after: State, dt: float) -> float:
+        (u, r), (new, r_new) = before, after
         with np.errstate(over="ignore", invalid="ignore"):
-            estimate = 0.8 * (u - new) + 0.4 * dt * (r + after)
-            return self._norm(estimate, u, new)
+            estimate = 0.8 * (u - new) + 0.4 * dt * (r + r_new)
+            return self._norm(estimate, t, u, new)
 
-    def _norm(self, what: np.ndarray, *of: np.ndarray) -> float:
-        scale = absolute(self._atol, of[0]) + self._rtol * np.max(np.abs(of), axis=0)
+    def _norm(self, what: np.ndarray, t: float, *of: np.ndarray) -> float:
+        scale = absolute(self._atol, t, of[0]) + self._rtol * np.max(np.abs(of), axis=0)
         return float(np.sqrt(np.mean(np.square(what / scale)) / self._rtol))
 
     def _first(self, t: float, u: np.ndarray, r: np.ndarray, span: float) -> float:
         """A first step whose error is about a tenth of what is allowed, by the change of R over a short one."""
         dt = min(span, 1.0 / self._rho if self._rho > 0.0 else span)
         with np.errstate(over="ignore", invalid="ignore"):
-            change = dt * self._norm(self._rate(t + dt, u + dt * r) - r, u)
+            change = dt * self._norm(self._rate(t + dt, u + dt * r) - r, t, u)
         if not np.isfinite(change):
             return dt * 1e-3
         return min(span, 0.1 * dt / np.sqrt(change)) if change > 0.01 else dt

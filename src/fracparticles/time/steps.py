@@ -15,8 +15,8 @@ __all__ = ["STAGES", "Absolute", "EighthOrderStep", "Rate", "Steps", "absolute",
 Rate = Callable[[float, np.ndarray], np.ndarray]
 """R(t, u)."""
 
-Absolute = float | Callable[[np.ndarray], float]
-"""An absolute tolerance: a number, or a function of the u of the time."""
+Absolute = float | Callable[[float, np.ndarray], float]
+"""An absolute tolerance: a number, or a function of the time and of u."""
 
 STAGES = 12  # evaluations that a step of order 8 takes
 
@@ -26,15 +26,20 @@ class Steps(Protocol):
 
     Attributes
     ----------
-    accepted, rejected : int
-        Steps taken, and steps thrown away.
+    accepted : int
+        Steps taken.
+    rejected : int or None
+        Steps thrown away; None if nobody counts them.
     largest : float
         The largest |lambda| that was seen; 0 if nobody looked.
     """
 
     accepted: int
-    rejected: int
     largest: float
+
+    @property
+    def rejected(self) -> int | None:
+        """Of a class an attribute."""
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u, shape (N,), at the time `start + span`; raises `NonFiniteSolution` if it blows up."""
@@ -61,7 +66,7 @@ class EighthOrderStep:
             If it grows without bound: the step has shrunk to nothing; says when.
         """
         first = None if self._dt is None else min(self._dt, span)
-        tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, u)}
+        tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, start, u)}
         with np.errstate(over="ignore", invalid="ignore"):
             solver = DOP853(
                 lambda t, y: self._rate(t, y.reshape(u.shape)).reshape(-1),
@@ -69,7 +74,7 @@ class EighthOrderStep:
             )  # fmt: skip
             began, taken = solver.nfev, 0
             while solver.status == "running":
-                solver.atol = absolute(self._atol, solver.y)
+                solver.atol = absolute(self._atol, solver.t, solver.y)
                 solver.step()
                 taken += 1
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
@@ -84,9 +89,9 @@ class EighthOrderStep:
         self._dt = None
 
 
-def absolute(atol: Absolute, u: np.ndarray) -> float:
-    """Return the absolute tolerance where the solution is u."""
-    return atol(u) if callable(atol) else atol
+def absolute(atol: Absolute, t: float, u: np.ndarray) -> float:
+    """Return the absolute tolerance at a time when the solution is u."""
+    return atol(t, u) if callable(atol) else atol
 
 
 def blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:

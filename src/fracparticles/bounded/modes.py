@@ -1,0 +1,67 @@
+"""An operator in its modes, and what all steps between their amplitudes have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fracparticles.arguments import FloatArray
+
+__all__ = ["Held", "ModalSteps", "Modes", "Rest"]
+
+Rest = Callable[[float, FloatArray], FloatArray]
+"""N(t, u), between fields."""
+
+Held = Callable[[float], FloatArray]
+"""By time, the size of what is added to the field that steps carry: the tolerance does not fall below its share."""
+
+
+class Modes(NamedTuple):
+    """The rates of the modes of an operator, and the way from fields to their amplitudes and back; |y|^2 = int u^2."""
+
+    rates: FloatArray
+    into: Callable[[FloatArray], Any]
+    back: Callable[[Any], FloatArray]
+
+
+class ModalSteps:
+    """Steps of u' = A u + N(t, u), with A in its modes: y' = -lambda y + N(y, t).
+
+    Parameters
+    ----------
+    modes : Modes
+        Of -A.
+    rest : callable
+        N.
+    tolerance : float
+        Of each step, relative to the norm of u or, where u is smaller, of `held` at the time.
+    held : callable, optional
+
+    Attributes
+    ----------
+    accepted : int
+    rejected : int or None
+        None if they are not counted.
+    largest : float
+        The greatest |lambda|; zero where no eigenvalue limits the steps.
+    """
+
+    rejected: int | None = None
+
+    def __init__(
+        self, modes: Modes, rest: Rest, tolerance: float, held: Held | None = None
+    ) -> None:
+        self._modes, self._rest, self._tolerance, self._held = modes, rest, tolerance, held
+        self.accepted, self.largest = 0, 0.0
+        self._h: float | None = None
+
+    def _size(self, t: float, y: Any) -> float:
+        """What the tolerance is relative to."""
+        held = 0.0 if self._held is None else float(np.linalg.norm(self._modes.into(self._held(t))))
+        return max(float(np.linalg.norm(y)), held)
+
+    def forget(self) -> None:
+        """Let the next step find its length anew."""
+        self._h = None

@@ -1,0 +1,188 @@
+"""The right-hand side of a problem on a bounded domain, between its particles:
+
+    v' = B(t) v + div(...) of what is held outside - div(a u) + f(x, t, u) - w',    u = w + v,
+
+w has the values outside, v = 0 there, and B is D A, or the exchange with the mean of a pair, or on the interval
+
+    D A v + D' grad^beta v = div(D grad^beta v).
+
+On the interval and the disc B is taken in its modes: those of the greatest D of the run at each place; what is left of
+it is beside them, like all else.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fracparticles.bounded.given import Outside
+from fracparticles.bounded.interval import Interval
+from fracparticles.bounded.modal import ModalDomain
+from fracparticles.bounded.modes import Modes
+from fracparticles.problems.problem import Problem
+from fracparticles.problems.rates import over_time, reaction_of
+from fracparticles.time.fading import slope_of
+
+__all__ = ["DomainRates"]
+
+_LOOKS = 33  # at a diffusivity that depends on time
+_KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
+
+
+class DomainRates:
+    """The right-hand side of a problem on a bounded domain.
+
+    Attributes
+    ----------
+    evaluations : int
+        How often it has been asked for.
+    lift : callable
+        w and what it does, by time.
+    source : callable or None
+        f(t, u).
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.domain, self.evaluations = problem, problem.bounded_domain, 0
+        start, at = problem.t_initial, self.domain.points
+        self._varies = bool(problem.diffusion.depends_on - {"t"})
+        anywhere = (np.array(0.0),) * problem.dim
+        self._d = over_time(problem.diffusion, at if self._varies else anywhere, start=start)
+        self._flux = self._varies and problem.form == "FPSE"
+        self._velocity = [over_time(one, at, start=start) for one in problem.transport]
+        self.source = reaction_of(problem)
+        self.lift = self.domain.lift_in_time(_outside(problem), start, problem.span)
+        self.shape = self.domain.volumes.shape
+        linear = (problem.diffusion, *problem.transport)
+        self._steady_matrix = all("t" not in one.depends_on for one in linear)
+        self._matrix: np.ndarray | None = None
+        self._kept: tuple[float, tuple[Any, Any, list[Any]]] | None = None
+
+    def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
+        """Return dv/dt for v = u, flat as that."""
+        field = u.reshape(self.shape)
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.asarray(self._spread(field, self._now(t)[0]) + self.beside(t, field)).reshape(
+                -1
+            )
+
+    def beside(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return dv/dt without D A v, or the exchange of v."""
+        return self._forcing(t, v) + self._lower(t, v)
+
+    def _forcing(self, t: float, v: np.ndarray) -> np.ndarray:
+        """What is held outside, and the source."""
+        self.evaluations += 1
+        now, (d, slope, velocity), domain = self.lift(t), self._now(t), self.domain
+        total = d * now.load - now.slope
+        if self._flux:
+            total = total + slope * now.flux
+        elif self._varies and self.problem.exterior == "given":
+            total = total + domain.spread(now.base, d) - d * domain.applied(now.base)
+        if velocity and self.problem.exterior == "given":
+            total = total + domain.carried(0.0 * v, now.base, velocity)
+        if self.source is not None:
+            total = total + self.source(t, v + now.base)
+        return np.asarray(total)
+
+    def _lower(self, t: float, v: np.ndarray) -> np.ndarray:
+        """The linear parts of lower order than the diffusion."""
+        total, (_, slope, velocity) = np.zeros(v.shape), self._now(t)
+        if self._flux:
+            total += slope * self._line.gradient(v)
+        if velocity:
+            total += self.domain.carried(v, 0.0 * v, velocity)
+        return total
+
+    def _now(self, t: float) -> tuple[Any, Any, list[Any]]:
+        """D, D' and a at one time, kept until another is asked for."""
+        if self._kept is None or self._kept[0] != t:
+            d = self._d(t)
+            slope = self._line.slope(d) if self._flux else None
+            self._kept = t, (d, slope, [one(t) for one in self._velocity])
+        return self._kept[1]
+
+    @cached_property
+    def modes(self) -> Modes:
+        """Those of the greatest D of the run."""
+        problem, domain = self.problem, self.domain
+        assert isinstance(domain, ModalDomain)
+        if not self._varies:
+            modes = domain.all_modes()
+            return modes._replace(rates=float(self._greatest) * modes.rates)
+        return domain.modes_with(np.asarray(self._greatest), problem.form)
+
+    def beside_modes(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return dv/dt without what is in the modes."""
+        return self._forcing(t, v) + self.modes.back(self._in_modes(t, v))
+
+    def derivative_in_modes(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return the derivative of what is beside the modes, between their amplitudes, shape (N, N)."""
+        modes = self.modes
+        if not self._steady_matrix or self._matrix is None:
+            columns = (self._in_modes(t, modes.back(e)) for e in np.eye(modes.rates.size))
+            self._matrix = np.stack(list(columns), axis=1) * (modes.rates < self._known)
+        if self.problem.is_linear:
+            return self._matrix
+        slope = self.source_slope(t, v)
+        columns = (modes.into(slope * modes.back(e)) for e in np.eye(modes.rates.size))
+        return self._matrix + np.stack(list(columns), axis=1)
+
+    def source_slope(self, t: float, v: np.ndarray) -> np.ndarray:
+        """Return df/du at the particles, by a difference."""
+        if self.source is None or self.problem.is_linear:
+            return np.zeros(v.shape)
+        return slope_of(self.source, t, v + self.lift(t).base)
+
+    def slowest(self) -> float:
+        """Return the lowest eigenvalue of -D A with the least D of the run."""
+        least = min(float(np.min(self._d(t))) for t in self._looks)
+        return least * float(self.domain.eigenvalues(1)[0])
+
+    def _in_modes(self, t: float, v: np.ndarray) -> Any:
+        """What is linear beside the modes, left out of those so fast that no more is known of their rates."""
+        part = self._lower(t, v)
+        if "t" in self.problem.diffusion.depends_on:
+            part += self._spread(v, self._now(t)[0] - self._greatest)  # linear in D
+        known = np.where(self.modes.rates < self._known, self.modes.into(part), 0.0)
+        if self.problem.exterior == "reflecting":
+            known.flat[0] = 0.0  # of the constant: the total
+        return known
+
+    @cached_property
+    def _known(self) -> float:
+        rates = self.modes.rates
+        return _KNOWN * float(rates[rates > 0.0].min())
+
+    @cached_property
+    def _line(self) -> Interval:
+        assert isinstance(self.domain, Interval)
+        return self.domain
+
+    @cached_property
+    def _greatest(self) -> np.ndarray:
+        return np.asarray(np.max([self._d(t) for t in self._looks], axis=0))
+
+    @property
+    def _looks(self) -> np.ndarray:
+        """Times at which a diffusivity may differ."""
+        count = _LOOKS if "t" in self.problem.diffusion.depends_on else 1
+        return np.linspace(self.problem.t_initial, self.problem.t_final, count)
+
+    def _spread(self, v: np.ndarray, d: np.ndarray) -> np.ndarray:
+        if self._varies and not self._flux:
+            return self.domain.spread(v, d)
+        return np.asarray(d * self.domain.applied(v))
+
+
+def _outside(problem: Problem) -> Outside | None:
+    g = problem.outside
+    if g is None:
+        return None
+
+    def at(*place: Any) -> np.ndarray:
+        return np.array(g.checked(dict(zip(g.variables, place, strict=True))))
+
+    return Outside(at, "t" in g.depends_on)

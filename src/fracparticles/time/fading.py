@@ -1,0 +1,73 @@
+r"""What the errors of early steps are worth where a solution fades.
+
+A step at the time s is accurate to the tolerance times |u(s)|. Two solutions of u_t = A u + f(x, t, u) come closer at
+the rate r = lambda_1 - max df/du at least, lambda_1 >= 0 the slowest of -A. So at t the errors are, over |u(t)|,
+
+    tolerance max_s |u(s)| e^(-r (t - s)) / |u(t)|.
+
+Where nothing is held outside and f(x, t, 0) = 0, u is itself the difference of two solutions. Then no error outlasts
+it, and the tolerance is all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+__all__ = ["FADED", "early_errors", "slope_of"]
+
+FADED = 0.01  # of u: a share that is said
+_SMALL = 1e-8  # a difference of u over u
+
+Source = Callable[[float, np.ndarray], np.ndarray]
+"""f(t, u), between fields."""
+
+
+def slope_of(f: Source, t: float, u: np.ndarray) -> np.ndarray:
+    """Return df/du, by a difference."""
+    small = _SMALL * (float(np.abs(u).max()) or 1.0)
+    return np.asarray((f(t, u + small) - f(t, u)) / small)
+
+
+def early_errors(
+    tolerance: float,
+    times: Sequence[float],
+    fields: Sequence[np.ndarray],
+    f: Source | None,
+    slowest: Callable[[], float],
+    held: Callable[[float], float] | None = None,
+) -> list[float]:
+    """Return the share at each time but the first, by u at it and at those before.
+
+    Parameters
+    ----------
+    tolerance : float
+    times, fields : sequences
+    f : callable or None
+        The source.
+    slowest : callable
+        lambda_1, asked for if u has faded.
+    held : callable, optional
+        What is held outside, as a size by time: then the tolerance is not below its share.
+    """
+    t, sizes = np.asarray(times), np.array([float(np.abs(u).max()) for u in fields])
+    least = np.array([0.0 if held is None else held(time) for time in times])
+    early, rate = np.maximum(sizes, least), 0.0
+
+    def shares() -> list[float]:
+        found = []
+        for n in range(1, t.size):
+            left = float((early[: n + 1] * np.exp(-rate * (t[n] - t[: n + 1]))).max())
+            found.append(tolerance * left / max(float(sizes[n]), 1e-300) if left else 0.0)
+        return found
+
+    with np.errstate(all="ignore"):
+        if max(shares()) <= FADED:
+            return shares()
+        nothing = np.zeros_like(fields[0])
+        if not least.any() and (f is None or not any(f(time, nothing).any() for time in times)):
+            return [tolerance] * (t.size - 1)
+        slopes = [slope_of(f, *at).max() for at in zip(times, fields, strict=True)] if f else [0.0]
+        rate = float(slowest() - max(slopes))
+        return shares() if np.isfinite(rate) else [np.inf] * (t.size - 1)
