@@ -277,3 +277,19 @@ def test_a_field_without_a_slope_holds_no_wave():
     assert (
         wave_error(MarkerVelocity(SHAPES["S8"], 0.3, derivatives=0), x, w, Steps(1e-3, 50)) == 0.0
     )
+
+
+def test_places_that_steps_round_away_are_warned_of():
+    """Far from zero an ulp is more than markers move in a step: without steps to spare the field stays as it was."""
+    x = 0.05 * np.arange(200)
+    w = 0.05 * (1.0 + 0.5 * np.cos(0.2 * np.pi * x))
+    velocity = MarkerVelocity(SHAPES["S8"], 0.3, period=10.0)
+    z = np.linspace(0.0, 10.0, 21)
+    exact = 1.0 + 0.5 * np.exp(-0.2 * (0.2 * np.pi) ** 2) * np.cos(0.2 * np.pi * z)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        near = run(x + 1e8, w, velocity, dt=0.01, steps=20)
+    assert np.abs(near.field(z) - exact).max() < 1e-4
+    with pytest.warns(AccuracyWarning, match="Move the origin"):
+        far = run(x + 1e14, w, velocity, dt=0.01, steps=20)
+    assert np.abs(far.field(z) - exact).max() > 0.03

@@ -24,6 +24,7 @@ from fracparticles.markers.reliability import Steps, warn_of_waves
 from fracparticles.markers.resolution import warn_of_resolution
 from fracparticles.markers.shapes import Shape
 from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
+from fracparticles.moving.reliability import warn_of_round_off
 from fracparticles.moving.scattered import NeighbourSum, ScatteredSum
 
 __all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run"]
@@ -172,13 +173,14 @@ def run(
         own only.
     AccuracyWarning
         If the markers are too far apart for epsilon or for the derivatives of the flux, lie too irregularly, or epsilon
-        or dt is too large for the field.
+        or dt is too large for the field; or the markers are so far from zero that their places are rounded by much.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x = check.positions("x", x)
     weights, dt = check.vector("weights", weights, x.size), check.scale("dt", dt)
     steps = check.positive_integer("steps", steps, most=check.MOST_STEPS)
     warn_of_waves(velocity, x, weights, Steps(dt, steps))
+    warn_of_round_off(x, steps, velocity.epsilon)
     _warn_of_tearing(x, weights, velocity, dt)
     at_start = x, weights
     x, weights, history = advance(

@@ -32,6 +32,7 @@ from fracparticles.markers.reliability import Steps, warn_of_waves
 from fracparticles.markers.resolution import warn_of_resolution
 from fracparticles.markers.solver import Flux, MarkerVelocity
 from fracparticles.moving.lagrangian import quotient_velocity
+from fracparticles.moving.reliability import warn_of_round_off
 from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["GaussianSource", "advance_weights", "source_flux"]
@@ -93,6 +94,7 @@ def advance_weights(
     step = ChebyshevStep(stages)
     taken = Steps(dt, steps, np.exp, step.stability_interval)
     warn_of_waves(velocity, x, weights, taken)
+    warn_of_round_off(x, steps, velocity.epsilon)
     sign = np.sign(weights)
 
     def rate(state: np.ndarray) -> np.ndarray:

@@ -51,7 +51,7 @@ from fracparticles.moving.lagrangian import (
     advance,
     quotient_velocity,
 )
-from fracparticles.moving.reliability import ripple, warn_of_ripple
+from fracparticles.moving.reliability import ripple, warn_of_ripple, warn_of_round_off
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
 from fracparticles.moving.tail import REACH, TailModel
 
@@ -276,6 +276,7 @@ def run_to_outputs(
     with np.errstate(over="ignore"):
         given = finite_result("u", spacing * finite_array("u", u))
     _warn_of_step(velocity, max(dt for dt, _ in legs))
+    warn_of_round_off(x, sum(steps for _, steps in legs), velocity.epsilon)
     initial, strength, history, runs = x, given, None, []
     for dt, steps in legs:
         x, strength, own = advance(

@@ -5,6 +5,9 @@ ripple
     Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths, of
     the greatest value that a gap of this size or a smaller one can give.
 
+round-off
+    Every step rounds a place x by half an ulp of it, or does not move it at all if it would move by less.
+
 smoothing
     The field of the particles at the start is the data smoothed by the kernel: it differs from them, over their peak.
 """
@@ -18,10 +21,11 @@ import numpy as np
 
 from fracparticles.errors import AccuracyWarning
 
-__all__ = ["RIPPLE", "cells", "ripple", "warn_of_ripple", "warn_of_smoothing"]
+__all__ = ["RIPPLE", "cells", "ripple", "warn_of_ripple", "warn_of_round_off", "warn_of_smoothing"]
 
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
+_ROUNDED = 0.02  # epsilon: of the places, by all steps together
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 
 Transform = Callable[[np.ndarray], np.ndarray]
@@ -76,6 +80,23 @@ def warn_of_ripple(found: float, epsilon: float, remedy: str, stacklevel: int) -
             f"{min(found, 1.0):.2g} of itself. {remedy}",
             AccuracyWarning,
             stacklevel=stacklevel + 1,
+        )
+
+
+def warn_of_round_off(x: np.ndarray, steps: int, epsilon: float) -> None:
+    """Warn if so many steps may round the places x away by a fiftieth of the smoothing length.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    rounded = 0.5 * (steps + 1) * float(np.spacing(np.abs(x).max()))
+    if rounded > _ROUNDED * epsilon:
+        warnings.warn(
+            f"the places are so far from zero that {steps} steps may round them by {rounded:.2g}, beside the smoothing "
+            f"length {epsilon:.4g}: smaller steps do not move them. Move the origin, or take fewer steps.",
+            AccuracyWarning,
+            stacklevel=3,
         )
 
 
