@@ -92,10 +92,17 @@ def warn_of_resolution(
     warn_of_ripple(found, velocity.epsilon, "Take more markers, or a larger epsilon.", stacklevel=3)
     noisy, smoothed = noise(velocity, *markers[0]), smoothing(velocity, *markers[0])
     off = smoothed + _WORST * noisy * math.sqrt(kept(velocity, *markers[0], steps))
-    if not found > RIPPLE and (noisy > _NOISE or (off > _BOTH and smoothed <= _SMOOTHED)):
+    if noisy > _NOISE and not found > RIPPLE:
         warnings.warn(
-            f"the markers lie irregularly: at the start F is uncertain by about {noisy:.2g} of itself, and at the end "
-            f"it may be off by {off:.2g} of its peak. Take a quiet start, more markers, or another epsilon.",
+            f"the markers lie irregularly: at the start F is uncertain by about {noisy:.2g} of itself. Take a quiet "
+            "start, more markers, or a larger epsilon.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    elif off > _BOTH and smoothed <= _SMOOTHED and not found > RIPPLE:
+        warnings.warn(
+            f"the markers lie irregularly: what is left of their noise, and epsilon, may put F off by {off:.2g} of its "
+            "peak. Take a quiet start, or more markers.",
             AccuracyWarning,
             stacklevel=3,
         )

@@ -19,9 +19,18 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import AccuracyWarning, StabilityWarning
 
-__all__ = ["RIPPLE", "cells", "ripple", "warn_of_ripple", "warn_of_round_off", "warn_of_smoothing"]
+__all__ = [
+    "RIPPLE",
+    "cells",
+    "ripple",
+    "warn_of_misfit",
+    "warn_of_ripple",
+    "warn_of_round_off",
+    "warn_of_smoothing",
+    "warn_of_step",
+]
 
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
@@ -114,4 +123,36 @@ def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
             "it. Take a smaller spacing, an overlap of 2, or order 4.",
             AccuracyWarning,
             stacklevel=3,
+        )
+
+
+def warn_of_step(dt: float, limit: float, stacklevel: int) -> None:
+    """Warn if a step of the diffusion velocity method is above the limit of stability.
+
+    Warns
+    -----
+    StabilityWarning
+    """
+    if dt > limit:
+        warnings.warn(
+            f"dt = {dt:.6g} lies outside the stability interval of DVM: at most {limit:.6g} is stable. Beyond, waves "
+            "of the particles' places grow. The run is computed as it is. Take a smaller dt.",
+            StabilityWarning,
+            stacklevel=stacklevel + 1,
+        )
+
+
+def warn_of_misfit(found: float, most: float, stacklevel: int) -> None:
+    """Warn if the far field may hold more than this share of the total wrongly.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    if found > most:
+        warnings.warn(
+            "the far field that continues u beyond the particles does not meet the field inside: "
+            f"{min(found, 1.0):.2g} of the total may be wrong. Take a wider lattice, or data about the origin.",
+            AccuracyWarning,
+            stacklevel=stacklevel + 1,
         )
