@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -178,3 +180,19 @@ def test_errors_do_not_depend_on_the_unit(scale):
     exact, ours = scale * np.array([1.0, 3.0]), scale * np.array([1.0, 2.0])
     assert relative_l2(exact, ours) == pytest.approx(10.0**-0.5)
     assert r2_score(exact, ours) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("unit", [1e-60, 1e-3, 1.0, 1e3, 1e4, 1e8, 1e60])
+def test_an_eta_that_takes_the_second_derivative_is_told(unit):
+    """The default, 0.0001 h^2, is no length: with spacings of 1e4 it leaves 0.4 of x^2'' / 2, in others nothing."""
+    x = unit * np.arange(-50.0, 51.0)
+    arguments = [0.0], [0.0], x, unit, 0.5 * x * x / unit**2, 1.1 * unit
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = float(second_derivative(*arguments)[0] * unit**2)
+        assert float(second_derivative(*arguments, eta=1e-4 * unit)[0] * unit**2) == (
+            pytest.approx(1.0, rel=1e-7)
+        )
+    told = ["eta" in str(one.message) for one in caught]
+    assert told == ([True] if unit > 1e3 else [])
+    assert abs(found - 1.0) < 0.02 or told

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.sph.closed_forms import Cosine
 from fracparticles.sph.definition import defining_integral
 
 
@@ -20,3 +23,15 @@ def test_the_defining_integral_of_a_power():
 def test_what_is_refused(x, alpha):
     with pytest.raises(InvalidInput):
         defining_integral(np.cos, x, alpha)
+
+
+def test_waves_that_the_nodes_do_not_resolve_are_told():
+    """cos 200 x has 64 half waves from 0 to 1: forty nodes give five times too much, four times as many are right."""
+    exact = float(Cosine(200.0).rl([1.0], -0.5)[0])
+    with pytest.warns(AccuracyWarning, match="do not resolve"):
+        few = defining_integral(lambda x: np.cos(200.0 * x), [1.0], [0.5])
+    assert abs(few[0]) > 5.0 * abs(exact)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        many = defining_integral(lambda x: np.cos(200.0 * x), [1.0], [0.5], nodes=160)
+    assert many[0] == pytest.approx(exact, rel=1e-9)

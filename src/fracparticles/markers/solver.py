@@ -20,9 +20,11 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
 from fracparticles.markers.derivatives import warn_of_derivatives
-from fracparticles.markers.reliability import warn_of_resolution, warn_of_waves
+from fracparticles.markers.reliability import Steps, warn_of_waves
+from fracparticles.markers.resolution import warn_of_resolution
 from fracparticles.markers.shapes import Shape
 from fracparticles.moving.lagrangian import History, Observer, advance, quotient_velocity
+from fracparticles.moving.reliability import warn_of_round_off
 from fracparticles.moving.scattered import NeighbourSum, ScatteredSum
 
 __all__ = ["Flux", "MarkerRun", "MarkerVelocity", "diffusion", "run"]
@@ -170,20 +172,21 @@ def run(
         takes most of the markers farther from all others than the shape function reaches. F at such a marker is its
         own only.
     AccuracyWarning
-        If the markers are too far apart for epsilon or for the derivatives of the flux, or epsilon or dt is too large
-        for the field.
+        If the markers are too far apart for epsilon or for the derivatives of the flux, lie too irregularly, or epsilon
+        or dt is too large for the field; or the markers are so far from zero that their places are rounded by much.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x = check.positions("x", x)
     weights, dt = check.vector("weights", weights, x.size), check.scale("dt", dt)
     steps = check.positive_integer("steps", steps, most=check.MOST_STEPS)
-    warn_of_waves(velocity, x, weights, dt, steps)
+    warn_of_waves(velocity, x, weights, Steps(dt, steps))
+    warn_of_round_off(x, steps, velocity.epsilon)
     _warn_of_tearing(x, weights, velocity, dt)
     at_start = x, weights
     x, weights, history = advance(
         x, weights, velocity, dt=dt, steps=steps, start=start, observe=observe
     )
-    warn_of_resolution(velocity, at_start, (x, weights))
+    warn_of_resolution(velocity, Steps(dt, steps), at_start, (x, weights))
     warn_of_derivatives(velocity, *at_start)
     return MarkerRun(x, weights, history, velocity)
 

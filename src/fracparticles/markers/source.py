@@ -28,9 +28,11 @@ from scipy.special import erf, erfc
 from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 from fracparticles.markers.profiles import Gaussian
-from fracparticles.markers.reliability import warn_of_resolution, warn_of_waves
+from fracparticles.markers.reliability import Steps, warn_of_waves
+from fracparticles.markers.resolution import warn_of_resolution
 from fracparticles.markers.solver import Flux, MarkerVelocity
 from fracparticles.moving.lagrangian import quotient_velocity
+from fracparticles.moving.reliability import warn_of_round_off
 from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["GaussianSource", "advance_weights", "source_flux"]
@@ -90,7 +92,9 @@ def advance_weights(
     weights, dt = check.vector("weights", weights, x.size), check.scale("dt", dt)
     steps = check.positive_integer("steps", steps, most=check.MOST_STEPS)
     step = ChebyshevStep(stages)
-    warn_of_waves(velocity, x, weights, dt, steps, np.exp, step.stability_interval)
+    taken = Steps(dt, steps, np.exp, step.stability_interval)
+    warn_of_waves(velocity, x, weights, taken)
+    warn_of_round_off(x, steps, velocity.epsilon)
     sign = np.sign(weights)
 
     def rate(state: np.ndarray) -> np.ndarray:
@@ -109,7 +113,7 @@ def advance_weights(
 
     _warn_of_what_is_missed(velocity, x, weights, source)
     state = step.advance(rate, np.stack([x, weights]), dt=dt, steps=steps, observe=observe)
-    warn_of_resolution(velocity, (x, weights), (state[0], state[1]))
+    warn_of_resolution(velocity, taken, (x, weights), (state[0], state[1]))
     return state[0], state[1]
 
 

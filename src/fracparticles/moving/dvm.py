@@ -39,7 +39,7 @@ from fracparticles.arguments import (
     real_array,
     scale,
 )
-from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.kernels.families import kernel_transform
 from fracparticles.moving.lagrangian import (
     REMESH_ABOVE,
@@ -51,7 +51,13 @@ from fracparticles.moving.lagrangian import (
     advance,
     quotient_velocity,
 )
-from fracparticles.moving.reliability import ripple, warn_of_ripple
+from fracparticles.moving.reliability import (
+    ripple,
+    warn_of_misfit,
+    warn_of_ripple,
+    warn_of_round_off,
+    warn_of_step,
+)
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
 from fracparticles.moving.tail import REACH, TailModel
 
@@ -275,7 +281,9 @@ def run_to_outputs(
         redistribution = Remeshing(remeshing, spacing, above, ends, continued)
     with np.errstate(over="ignore"):
         given = finite_result("u", spacing * finite_array("u", u))
-    _warn_of_step(velocity, max(dt for dt, _ in legs))
+    longest = max(positive_real("dt", dt) for dt, _ in legs)
+    warn_of_step(longest, velocity.largest_stable_step, stacklevel=3)
+    warn_of_round_off(x, sum(steps for _, steps in legs), velocity.epsilon)
     initial, strength, history, runs = x, given, None, []
     for dt, steps in legs:
         x, strength, own = advance(
@@ -299,19 +307,8 @@ def run_to_outputs(
     )
     _warn_of_loss(runs[-1].history, exterior)
     if velocity.tail is not None:
-        _warn_of_misfit(velocity.tail.misfit(x, strength))
+        warn_of_misfit(velocity.tail.misfit(x, strength), _MISFIT, stacklevel=3)
     return runs
-
-
-def _warn_of_step(velocity: DiffusionVelocity, dt: float) -> None:
-    limit = velocity.largest_stable_step
-    if positive_real("dt", dt) > limit:
-        warnings.warn(
-            f"dt = {dt:.6g} lies outside the stability interval of DVM: at most {limit:.6g} is stable. Beyond, waves "
-            "of the particles' places grow. The run is computed as it is. Take a smaller dt.",
-            StabilityWarning,
-            stacklevel=4,
-        )
 
 
 def _warn_of_loss(history: History, exterior: str) -> None:
@@ -329,16 +326,6 @@ def _warn_of_loss(history: History, exterior: str) -> None:
         warnings.warn(
             f"remeshing onto the initial lattice has left out {lost:.2g} of the total strength, which now lies beyond "
             "its ends. Take a wider lattice, exterior='open' or lattice='extended'.",
-            AccuracyWarning,
-            stacklevel=4,
-        )
-
-
-def _warn_of_misfit(found: float) -> None:
-    if found > _MISFIT:
-        warnings.warn(
-            f"the far field that continues u beyond the particles does not meet the field inside: "
-            f"{min(found, 1.0):.2g} of the total may be wrong. Take a wider lattice, or data about the origin.",
             AccuracyWarning,
             stacklevel=4,
         )

@@ -24,14 +24,19 @@ from fracparticles.errors import (
     AccuracyWarning,
     FracparticlesError,
     NonFiniteSolution,
-    StabilityWarning,
 )
 from fracparticles.moving.dvm import EXTERIORS, DiffusionVelocity, largest_gap
 from fracparticles.moving.lagrangian import REMESHING, FieldNotPositive, quotient_velocity
 from fracparticles.moving.plane_remeshing import Particles, on_square, remesh_plane
 from fracparticles.moving.plane_sums import PlaneSums
 from fracparticles.moving.plane_tail import REACH, PlaneTail
-from fracparticles.moving.reliability import ripple, warn_of_ripple, warn_of_smoothing
+from fracparticles.moving.reliability import (
+    ripple,
+    warn_of_misfit,
+    warn_of_ripple,
+    warn_of_smoothing,
+    warn_of_step,
+)
 from fracparticles.moving.remeshing import REMESHINGS
 
 __all__ = ["PlaneRun", "PlaneVelocity", "run_in_plane"]
@@ -217,14 +222,7 @@ def run_in_plane(
     n = max(len(np.atleast_1d(u)) // 2, 2)
     strength = h * h * check.of_shape("u", u, (2 * n + 1, 2 * n + 1), "an odd square of numbers")
     velocity = PlaneVelocity(alpha, order, overlap * h, diffusivity, exterior)
-    limit = velocity.largest_stable_step
-    if dt > limit:
-        warnings.warn(
-            f"dt = {dt:.6g} lies outside the stability interval of DVM: at most {limit:.6g} is stable. The run is "
-            "computed as it is. Take a smaller dt.",
-            StabilityWarning,
-            stacklevel=2,
-        )
+    warn_of_step(dt, velocity.largest_stable_step, stacklevel=2)
     lattice = h * np.arange(-n, n + 1.0)
     x, y = np.meshgrid(lattice, lattice, indexing="ij")
     warn_of_smoothing(velocity.field(x, y, strength, (x.ravel(), y.ravel())), u.ravel())
@@ -263,13 +261,8 @@ def _warn(
             AccuracyWarning,
             stacklevel=3,
         )
-    if found is not None and found > _MISFIT:
-        warnings.warn(
-            "the far field that continues u beyond the particles does not meet the field inside: "
-            f"{min(found, 1.0):.2g} of the total may be wrong. Take a wider lattice, or data about the origin.",
-            AccuracyWarning,
-            stacklevel=3,
-        )
+    if found is not None:
+        warn_of_misfit(found, _MISFIT, stacklevel=3)
 
 
 def _flat(arrays: Particles) -> Particles:

@@ -5,6 +5,9 @@ ripple
     Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths, of
     the greatest value that a gap of this size or a smaller one can give.
 
+round-off
+    Every step rounds a place x by half an ulp of it, or does not move it at all if it would move by less.
+
 smoothing
     The field of the particles at the start is the data smoothed by the kernel: it differs from them, over their peak.
 """
@@ -16,12 +19,22 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import AccuracyWarning, StabilityWarning
 
-__all__ = ["RIPPLE", "cells", "ripple", "warn_of_ripple", "warn_of_smoothing"]
+__all__ = [
+    "RIPPLE",
+    "cells",
+    "ripple",
+    "warn_of_misfit",
+    "warn_of_ripple",
+    "warn_of_round_off",
+    "warn_of_smoothing",
+    "warn_of_step",
+]
 
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
+_ROUNDED = 0.02  # epsilon: of the places, by all steps together
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 
 Transform = Callable[[np.ndarray], np.ndarray]
@@ -79,6 +92,23 @@ def warn_of_ripple(found: float, epsilon: float, remedy: str, stacklevel: int) -
         )
 
 
+def warn_of_round_off(x: np.ndarray, steps: int, epsilon: float) -> None:
+    """Warn if so many steps may round the places x away by a fiftieth of the smoothing length.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    rounded = 0.5 * (steps + 1) * float(np.spacing(np.abs(x).max()))
+    if rounded > _ROUNDED * epsilon:
+        warnings.warn(
+            f"the places are so far from zero that {steps} steps may round them by {rounded:.2g}, beside the smoothing "
+            f"length {epsilon:.4g}: smaller steps do not move them. Move the origin, or take fewer steps.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+
+
 def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
     """Warn if the field `held` at the start is not the data u, of the same shape, by a tenth of their peak.
 
@@ -93,4 +123,36 @@ def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
             "it. Take a smaller spacing, an overlap of 2, or order 4.",
             AccuracyWarning,
             stacklevel=3,
+        )
+
+
+def warn_of_step(dt: float, limit: float, stacklevel: int) -> None:
+    """Warn if a step of the diffusion velocity method is above the limit of stability.
+
+    Warns
+    -----
+    StabilityWarning
+    """
+    if dt > limit:
+        warnings.warn(
+            f"dt = {dt:.6g} lies outside the stability interval of DVM: at most {limit:.6g} is stable. Beyond, waves "
+            "of the particles' places grow. The run is computed as it is. Take a smaller dt.",
+            StabilityWarning,
+            stacklevel=stacklevel + 1,
+        )
+
+
+def warn_of_misfit(found: float, most: float, stacklevel: int) -> None:
+    """Warn if the far field may hold more than this share of the total wrongly.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    if found > most:
+        warnings.warn(
+            "the far field that continues u beyond the particles does not meet the field inside: "
+            f"{min(found, 1.0):.2g} of the total may be wrong. Take a wider lattice, or data about the origin.",
+            AccuracyWarning,
+            stacklevel=stacklevel + 1,
         )

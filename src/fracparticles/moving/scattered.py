@@ -26,10 +26,7 @@ from __future__ import annotations
 
 import math
 import threading
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 from pyfftw import empty_aligned
@@ -37,9 +34,7 @@ from scipy.fft import next_fast_len, rfft
 from scipy.special import erfc
 
 from fracparticles import arguments as check
-from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels.families import KERNELS, kernel
 from fracparticles.moving.equally_spaced import EquallySpacedSum, equal_spacing, transforms
 from fracparticles.moving.gridding import (
     WIDTH,
@@ -47,6 +42,14 @@ from fracparticles.moving.gridding import (
     spread,
     window_transform,
     window_weights,
+)
+from fracparticles.moving.pair_sums import NaiveScatteredSum, NeighbourSum
+from fracparticles.moving.scattered_base import (
+    GAUSSIAN_BAND,
+    ScatteredKernel,
+    ScatteredSum,
+    checked_kernels,
+    smooth_kernel,
 )
 
 __all__ = [
@@ -59,107 +62,12 @@ __all__ = [
     "smooth_kernel",
 ]
 
-# exp(-k^2/4), in the transform of every kernel with a Gaussian in it, is 2e-16 at k = 12.
-_GAUSSIAN_BAND = 12.0
-# exp(-r^2) is 4e-19 at r = 6.5; the order-IV kernels hold exp(-r^2/2), which is that at 9.2.
-_GAUSSIAN_REACH = {2: 6.5, 4: 9.2}
 _EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: the cut-off is 1 on one side of this, 0 on the other
 # How much wider than a set that grew the box is made, so that it is not made anew at every step.
 _MARGIN = 1.125
 _MOST_MODES = 2**24  # about 1 GiB of buffers
 _ACCURACY = 1e-11
 _ULP = 2.0**-52
-_ORDINARY = (
-    1e150  # strengths: divided by the least epsilon, 1e-100, and summed they do not overflow
-)
-_PAIRS = 2**14  # pairs evaluated together: they stay in the second-level cache
-
-
-@dataclass(frozen=True)
-class ScatteredKernel:
-    """A kernel of unit smoothing length.
-
-    Raises `InvalidInput` if the profile is not a function, or one of the others not positive.
-
-    Attributes
-    ----------
-    profile : callable
-        K(r) for an array of signed distances.
-    bandwidth : float
-        Wavenumber beyond which the transform is zero, to round-off, falling like a Gaussian; infinite if there is none.
-    reach : float
-        Distance beyond which the kernel is zero, to round-off; infinite if there is none.
-    """
-
-    profile: Callable[[np.ndarray], np.ndarray]
-    bandwidth: float = math.inf
-    reach: float = math.inf
-
-    def __post_init__(self) -> None:
-        check.function("profile", self.profile)
-        for name in ("bandwidth", "reach"):
-            value = getattr(self, name)
-            if not (isinstance(value, float) and value == math.inf):
-                object.__setattr__(self, name, check.real_between(name, value, 0.0, inside=True))
-
-
-def smooth_kernel(name: str, alpha: float, order: int = 2) -> ScatteredKernel:
-    """Return a kernel of `kernels.families` that is a convolution with the Gaussian of its order: all but E.
-
-    Raises `InvalidInput` if the kernel, its order or alpha does not exist, or the kernel is E.
-    """
-    check.choice("name", name, [n for n in KERNELS if n != "E"])
-    order = check.whole_number("order", order, least=1)
-
-    def profile(r: np.ndarray) -> np.ndarray:
-        return np.asarray(kernel(name, r, alpha, order=order))
-
-    profile(np.zeros(1))
-    gaussian = math.isinf(KERNELS[name].decay(alpha))
-    reach = _GAUSSIAN_REACH[order] if gaussian else math.inf
-    return ScatteredKernel(profile, _GAUSSIAN_BAND, reach)
-
-
-class ScatteredSum(ABC):
-    """What every one of the sums offers.
-
-    `accuracy` bounds the error of a field relative to its largest value; 0 if the error of every value is
-    relative to its own terms.
-
-    Parameters
-    ----------
-    kernels : sequence of ScatteredKernel
-    epsilon : float
-        Smoothing length.
-    """
-
-    accuracy = 0.0
-
-    def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        self._kernels, self._epsilon = _kernels(kernels), check.scale("epsilon", epsilon)
-
-    def __call__(self, x: np.ndarray, q: np.ndarray, z: np.ndarray | None = None) -> np.ndarray:
-        """Return y, shape (kernels, M), a new array: the sums at the points z, or at the particles themselves.
-
-        Raises `InvalidInput` if the arrays do not fit together, a position is not finite, the set is too wide, or the
-        sums overflow.
-        """
-        x, q, z, ordinary = _checked(x, q, z)
-        out = np.zeros((len(self._kernels), x.size if z is None else z.size))
-        if not (x.size and out.size):
-            return out
-        if ordinary:
-            self._add_to(out, x, q, z)
-            return out
-        with np.errstate(over="ignore", invalid="ignore"):
-            self._add_to(out, x, q, z)
-        finite: np.ndarray = check.finite_result("q", out)
-        return finite
-
-    @abstractmethod
-    def _add_to(
-        self, out: np.ndarray, x: np.ndarray, q: np.ndarray, z: np.ndarray | None
-    ) -> None: ...
 
 
 def scattered_sum(
@@ -180,7 +88,7 @@ def scattered_sum(
     """
     if check.choice("summation", summation, ("fft", "naive")) == "naive":
         return NaiveScatteredSum(kernels, epsilon)
-    if all(math.isfinite(k.reach) for k in _kernels(kernels)):
+    if all(math.isfinite(k.reach) for k in checked_kernels(kernels)):
         return NeighbourSum(kernels, epsilon)
     return NonuniformFourierSum(kernels, epsilon)
 
@@ -240,7 +148,7 @@ class NonuniformFourierSum(ScatteredSum):
 
     def _make_box(self, low: float, high: float, margin: float) -> None:
         """Fourier coefficients of the kernels and plans for a set within [low, high], and a little more."""
-        scale = _GAUSSIAN_BAND / self._band  # of the cut-off, which must not exceed the band either
+        scale = GAUSSIAN_BAND / self._band  # of the cut-off, which must not exceed the band either
         half = 0.5 * margin * (high - low) + scale
         centre = low + 0.5 * (high - low)
         period = 2.0 * (2.0 * half + 2.0 * _EDGE * scale)
@@ -264,106 +172,3 @@ class NonuniformFourierSum(ScatteredSum):
         self._modes, self._forward, self._products, self._backward, self._fields = transforms(
             self._particles, self._coefficients
         )
-
-
-class _PairSum(ScatteredSum):
-    """The sum over the pairs that `_partners` gives, a block of rows at a time."""
-
-    def _add_to(self, out, x, q, z):
-        z = x if z is None else z
-        x, q, first, last = self._partners(x, q, z)
-        count = last - first
-        ends = np.cumsum(count)
-        row = 0
-        while row < z.size:
-            done = ends[row] - count[row]
-            stop = max(row + 1, int(np.searchsorted(ends, done + _PAIRS, side="right")))
-            distance = np.empty(ends[stop - 1] - done)
-            _distances(x, z[row:stop], first[row:stop], last[row:stop], self._epsilon, distance)
-            for k, y in zip(self._kernels, out, strict=True):
-                values = np.ascontiguousarray(k.profile(distance))
-                _add_up(values, q, first[row:stop], last[row:stop], y[row:stop])
-            row = stop
-        out /= self._epsilon
-
-    @abstractmethod
-    def _partners(
-        self, x: np.ndarray, q: np.ndarray, z: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return x and q in an order in which the partners of z_i are x[first_i:last_i], first and last."""
-
-
-class NaiveScatteredSum(_PairSum):
-    """The sums over all pairs, O(N M)."""
-
-    def _partners(self, x, q, z):
-        return x, q, np.zeros(z.size, dtype=np.int64), np.full(z.size, x.size)
-
-
-class NeighbourSum(_PairSum):
-    """The sums over the pairs that are no farther apart than the widest kernel reaches.
-
-    Raises `InvalidInput` if a kernel has no finite reach.
-    """
-
-    def __init__(self, kernels: Sequence[ScatteredKernel], epsilon: float) -> None:
-        super().__init__(kernels, epsilon)
-        self._reach = max(k.reach for k in self._kernels) * self._epsilon
-        if not math.isfinite(self._reach):
-            allowed = "a finite number for a sum over neighbours"
-            raise InvalidInput("reach", math.inf, allowed, "Take another sum.")
-
-    def _partners(self, x, q, z):
-        order = np.argsort(x, kind="stable")
-        x, q = x[order], q[order]
-        first = np.searchsorted(x, z - self._reach, side="left")
-        return x, q, first, np.searchsorted(x, z + self._reach, side="right")
-
-
-def _kernels(kernels: Any) -> list[ScatteredKernel]:
-    listed: Any = check.instance("kernels", kernels, (list, tuple), "a list of kernels")
-    if not listed:
-        raise InvalidInput("kernels", kernels, "one kernel or more", "Give a list of kernels.")
-    return [check.instance("kernels", k, ScatteredKernel) for k in listed]
-
-
-def _checked(x: Any, q: Any, z: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, bool]:
-    """The arrays, and whether no sum of them can overflow."""
-    x = x if _in_range(x, check.SIZES[1]) else check.positions("x", x, least=0)
-    ordinary = _in_range(q, _ORDINARY)
-    if not (ordinary and q.shape == x.shape):
-        q = check.vector("q", q, x.size, least=0)
-    if z is not None:
-        z = z if _in_range(z, check.SIZES[1]) else check.positions("z", z, least=0)
-        z = np.ascontiguousarray(z)
-    return np.ascontiguousarray(x), np.ascontiguousarray(q), z, ordinary
-
-
-def _in_range(values: Any, largest: float) -> bool:
-    """Whether it is an array of numbers of one dimension that are no larger; a nan is not."""
-    return (
-        type(values) is np.ndarray
-        and values.dtype == np.float64
-        and values.ndim == 1
-        and (not values.size or bool(-largest <= values.min() and values.max() <= largest))
-    )
-
-
-@njit()
-def _distances(x, z, first, last, epsilon, out):
-    pair = 0
-    for i in range(z.size):
-        for j in range(first[i], last[i]):
-            out[pair] = (z[i] - x[j]) / epsilon
-            pair += 1
-
-
-@njit()
-def _add_up(values, q, first, last, out):
-    pair = 0
-    for i in range(out.size):
-        total = 0.0
-        for j in range(first[i], last[i]):
-            total += values[pair] * q[j]
-            pair += 1
-        out[i] = total

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -9,8 +10,11 @@ import numpy as np
 from scipy.special import gamma, roots_jacobi
 
 from fracparticles.arguments import positive_integer, within
+from fracparticles.errors import AccuracyWarning
 
 __all__ = ["defining_integral"]
+
+_UNRESOLVED = 1e-3  # of the greatest integral
 
 
 def defining_integral(
@@ -18,7 +22,8 @@ def defining_integral(
 ) -> np.ndarray:
     """I^alpha f (1), (7) by Gauss-Jacobi: x^alpha / Gamma(alpha) int_0^1 (1-t)^(alpha-1) f(x t) dt.
 
-    Raises `InvalidInput` if a point is negative, an order not positive, or their shapes differ.
+    Raises `InvalidInput` if a point is negative, an order not positive, or their shapes differ. Warns with
+    `AccuracyWarning` if the nodes do not resolve f.
 
     Parameters
     ----------
@@ -34,6 +39,21 @@ def defining_integral(
     x = within("x", x, 0.0)
     alpha = within("alpha", alpha, 0.0, inside=True, shape=x.shape)
     nodes = positive_integer("nodes", nodes)
+    out, finer = (_quadrature(f, x, alpha, n) for n in (nodes, nodes + nodes // 2 + 1))
+    off, size = float(np.abs(out - finer).max(initial=0.0)), float(np.abs(finer).max(initial=0.0))
+    if not off <= _UNRESOLVED * size:
+        warnings.warn(
+            f"{nodes} nodes do not resolve f: half as many more change the integral by {off:.2g}, beside its greatest "
+            f"value {size:.2g}. Take more nodes.",
+            AccuracyWarning,
+            stacklevel=2,
+        )
+    return out
+
+
+def _quadrature(
+    f: Callable[[np.ndarray], np.ndarray], x: np.ndarray, alpha: np.ndarray, nodes: int
+) -> np.ndarray:
     out = np.empty_like(x)
     for order in np.unique(alpha):
         at_nodes, weights = roots_jacobi(nodes, order - 1.0, 0.0)  # on [-1, 1]

@@ -6,7 +6,9 @@ r"""SPH derivatives: sums over the particles within 2 h.
 
 V_j = m_j / rho_j. Equation (19) prints L_i^{-1} for what is L_i: the gradient of f(x) = x is then 1 and not L_i^2.
 Equation (37), Brookshaw's, has eta = 0.0001 (1/h)^2 in print, far larger than a distance and of another dimension;
-the paper's digits come with eta = 0.0001 h^2.
+the paper's digits come with eta = 0.0001 h^2. That is no length either: it is small beside x_ij for h << 1e4 only.
+Of f = (x - x_i)^2 / 2, whose second derivative is 1, (37) leaves sum_j w_j x_ij^2 / (x_ij^2 + eta^2), w_j the terms
+of L_i over L_i: where that is not near 1, there is an `AccuracyWarning`, too.
 
 A point within 2 h of the last particle lacks a part of its sums: see the virtual particles of `particles`. The value
 of L shows whether there are enough particles: it is 1 inside, and a half at the end of a line. Values below a quarter
@@ -29,6 +31,7 @@ __all__ = ["BROOKSHAW_ETA", "correction", "gradient", "second_derivative"]
 
 BROOKSHAW_ETA = 1.0e-4  # eta / h^2
 _ENOUGH = 0.25  # of L
+_TAKEN = 0.02  # of a second derivative, by eta
 
 
 def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
@@ -83,15 +86,18 @@ def second_derivative(
 
     `eta` is that of the formula, zero or more, by default 0.0001 h^2.
 
-    Errors as for `gradient`.
+    Errors as for `gradient`. Warns with `AccuracyWarning`, too, if eta is not small beside the distances.
     """
     z, x, volumes, h = _particles(z, x, volumes, h)
     f = check.vector("f", f, x.size, complex_too=True)
     f_z = check.vector("f_z", f_z, z.size, least=0, complex_too=True)
     f, f_z = (a.astype(np.result_type(f, f_z), copy=False) for a in (f, f_z))
     eta = BROOKSHAW_ETA * h * h if eta is None else check.real_between("eta", eta, 0.0)
-    out = np.empty(z.size, dtype=f.dtype)
-    _brookshaw(z, f_z, x, volumes, f, h, eta, *_neighbours(z, x, h), out)
+    near = _neighbours(z, x, h)
+    out, parabola = np.empty(z.size, dtype=f.dtype), np.empty(z.size)
+    _brookshaw(z, f_z, x, volumes, f, h, eta, *near, out)
+    _parabola(z, x, volumes, h, eta, *near, parabola)
+    _warn_of_eta(parabola, _correction_at(z, x, volumes, h), eta)
     return _divided(out, z, x, volumes, h, corrected)
 
 
@@ -125,6 +131,20 @@ def _divided(
             stacklevel=3,
         )
     return result
+
+
+def _warn_of_eta(parabola: np.ndarray, factor: np.ndarray, eta: float) -> None:
+    """Warn if eta takes more than a part of a second derivative that is 1."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        left = np.where(factor > 0.0, parabola / factor, 1.0)
+    least = float(left.min(initial=1.0))
+    if least < 1.0 - _TAKEN:
+        warnings.warn(
+            f"eta = {eta:.3g} is not small beside the distances of the particles: of a second derivative {least:.2g} "
+            "is left. Give a smaller eta, such as 0.0001 h, or change the unit of length.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def _correction_at(z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float) -> np.ndarray:
@@ -165,4 +185,16 @@ def _brookshaw(z, f_z, x, volumes, f, h, eta, first, end, out):
             d = z[i] - x[j]
             if d * d > 0.0:  # the particle itself has no share
                 total -= 2.0 * volumes[j] * (f[j] - f_z[i]) * d * dw(d / h) / (d * d + eta * eta)
+        out[i] = total / (h * h)
+
+
+@njit()
+def _parabola(z, x, volumes, h, eta, first, end, out):
+    """(37), uncorrected, of (x - z_i)^2 / 2."""
+    for i in range(z.size):
+        total = 0.0
+        for j in range(first[i], end[i]):
+            d = z[i] - x[j]
+            if d * d > 0.0:
+                total -= volumes[j] * dw(d / h) * d * (d * d / (d * d + eta * eta))
         out[i] = total / (h * h)

@@ -1,0 +1,115 @@
+r"""What the markers of a run reveal of their field: whether F is what the equation is about.
+
+All is estimated from the run alone.
+- The gaps between the markers leave a ripple on F (`moving.reliability`).
+- Gaps d at random leave a noise of the relative variance (var d / d^2) (d / eps) int S^2. Between neighbours d F / W
+  differs by (var d / (2 d^2))^(1/2). A run multiplies its wave q by g(q), that of `reliability`, and leaves
+
+      variance at the end = variance at the start int |S^ g|^2 dq / int |S^|^2 dq:
+
+  of N markers at random of a field as wide as L after the time t >> eps^2, about L / (N (8 pi t)^(1/2)). F is off by
+  twice its square root at the worst of some twenty places.
+- F is smoother than the field: how much, is what a smaller epsilon changes, or a larger one (`smoothing`).
+Where the set of markers ends, F ends too, and says nothing about the field.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+
+from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.markers.reliability import WAVENUMBERS, Steps, Velocity, inner, kept
+from fracparticles.moving.reliability import RIPPLE, cells, ripple, warn_of_ripple
+
+__all__ = ["noise", "smoothing", "warn_of_resolution"]
+
+_SMOOTHED = 0.1  # of F, before there is a warning
+_NOISE = 0.15  # at the start: diffusion takes most of it away
+_BOTH = 0.2  # of the smoothing and of the noise at the end at its worst place: each by itself may be allowed
+_PARTS = (2.0, 0.5, 0.25, 0.125)  # of epsilon
+_SIGMAS = 3.0  # of noise, the greatest of some hundred markers
+_WORST = 2.0  # the same of some twenty places, as many as F has that do not know of each other
+
+
+def smoothing(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
+    """Return an estimate of max |F - f| / max |f| over the markers away from the ends, f the field that F smooths.
+
+    The greatest of what others say of it: F with twice of epsilon, whose error is larger by a factor that the order
+    tells; and in the place of f itself F with a half, a quarter and an eighth of epsilon, as far as the gaps between
+    the markers allow, and for the last two their noise.
+    """
+    inside = inner(velocity, x)
+    field, found = velocity.fields(x, weights)[0][inside], 0.0
+    for part in _PARTS:
+        try:
+            other = velocity.field_alone(part * velocity.epsilon)
+        except InvalidInput:  # wider than the period
+            continue
+        if part < 1.0 and ripple(x, weights, other.epsilon, other.shape.transform) > RIPPLE:
+            break
+        if part < 0.5 and _SIGMAS * noise(other, x, weights) > _SMOOTHED:
+            break
+        exacter = other.fields(x, weights)[0][inside]
+        apart, size = np.abs(field - exacter).max(), np.abs(exacter if part < 1.0 else field).max()
+        gained = part**velocity.shape.moment_order - 1.0 if part > 1.0 else 1.0
+        found = max(found, float(apart / (gained * size)))
+    return found
+
+
+def noise(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
+    """Return the noise that gaps at random leave on F, relative to it: the mean over the markers, by their weights."""
+    order = np.argsort(x, kind="stable")
+    order = order[weights[order] != 0.0]
+    x, weights = x[order], weights[order]
+    if x.size < 3:
+        return 0.0
+    width, field = cells(x), velocity.fields(x, weights)[0]
+    squares = velocity.shape.transform(WAVENUMBERS) ** 2
+    square = (
+        float(squares.sum()) * (WAVENUMBERS[1] - WAVENUMBERS[0]) / math.pi
+    )  # int S^2, by Parseval
+    variance = np.minimum(2.0 * np.diff(width * field / weights) ** 2, 1.0)
+    held = np.minimum(width[1:] / velocity.epsilon * square, 1.0)
+    share = np.abs(weights[1:]) / np.abs(weights).max()
+    return float(np.sqrt(share @ (variance * held) / share.sum()))
+
+
+def warn_of_resolution(
+    velocity: Velocity, steps: Steps, *markers: tuple[np.ndarray, np.ndarray]
+) -> None:
+    """Warn if the markers, at one of several times, are too far apart, or epsilon is too large for their field.
+
+    Also if they lie irregularly at the first of them, so that F is off at the start, or by the last of the steps.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    found = max(ripple(*one, velocity.epsilon, velocity.shape.transform) for one in markers)
+    warn_of_ripple(found, velocity.epsilon, "Take more markers, or a larger epsilon.", stacklevel=3)
+    noisy, smoothed = noise(velocity, *markers[0]), smoothing(velocity, *markers[0])
+    off = smoothed + _WORST * noisy * math.sqrt(kept(velocity, *markers[0], steps))
+    if noisy > _NOISE and not found > RIPPLE:
+        warnings.warn(
+            f"the markers lie irregularly: at the start F is uncertain by about {noisy:.2g} of itself. Take a quiet "
+            "start, more markers, or a larger epsilon.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    elif off > _BOTH and smoothed <= _SMOOTHED and not found > RIPPLE:
+        warnings.warn(
+            f"the markers lie irregularly: what is left of their noise, and epsilon, may put F off by {off:.2g} of its "
+            "peak. Take a quiet start, or more markers.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    if smoothed > _SMOOTHED:
+        warnings.warn(
+            f"epsilon = {velocity.epsilon:.4g} is too large for this field: it changes F by about "
+            f"{smoothed:.2g} of itself. Take a smaller epsilon.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
