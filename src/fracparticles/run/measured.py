@@ -25,10 +25,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fracparticles.arguments import finite_array
+from fracparticles.arguments import SIZES, finite_array
 from fracparticles.errors import AccuracyWarning, InvalidInput, one_of, spelled
 from fracparticles.files import load_netcdf
-from fracparticles.run.tables import is_table, read_table
+from fracparticles.run.tables import is_table, name_and_unit, read_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +40,7 @@ _FEWEST = 4
 _TOO_FEW, _SOME, _MANY = 8, 16, 32  # points along an axis, see the module
 _NOTICED = 0.05
 _MOST_GAIN = 16.0  # of half the spacing: the order of both cubics is four at most
+_LEAST, _MOST = 1e-200, 1e200  # of values and their integrals: slopes and sums of both are numbers
 _FIELD = "initial"
 _AXES = ("x", "y", "z")
 
@@ -215,8 +216,7 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
         columns = {f"column {k}": np.ravel(finite_array(_FIELD, one)) for k, one in enumerate(data)}
         return _of_columns(columns, {}, None, None, "arrays")
     if kind == "DataFrame":
-        columns = {str(name): np.asarray(data[name]) for name in data.columns}
-        return _of_columns(columns, {}, names, u, kind)
+        return _of_columns(*_of_frame(data), names, u, kind)
     if kind == "Series":
         columns = {"x": np.asarray(data.index), "u": np.asarray(data)}
         return _of_columns(columns, {}, None, None, kind)
@@ -236,6 +236,21 @@ def _names(x: Any) -> tuple[str, ...] | None:
     if not (names is None or listed):
         raise InvalidInput("x", x, "a name, or a list of names", "Give these, or leave it out.")
     return None if names is None else tuple(names)
+
+
+def _of_frame(data: Any) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """The columns by name and their units, as of a table in a file; an index that is not counted is a column, too."""
+    from pandas import RangeIndex
+
+    if not isinstance(data.index, RangeIndex):
+        data = data.rename_axis(data.index.name or "index").reset_index()
+    split = [name_and_unit(str(heading)) for heading in data.columns]
+    names = [name for name, _ in split]
+    if len(set(names)) < len(names):
+        different = "columns of different names"
+        raise InvalidInput(_FIELD, "DataFrame", different, f"It has {spelled(names, ' and ')}.")
+    columns = {name: data.iloc[:, k].to_numpy() for k, name in enumerate(names)}
+    return columns, dict(split)
 
 
 # --- reading ---------------------------------------------------------------------------------------------
@@ -264,6 +279,11 @@ def _of_columns(
         raise InvalidInput(_FIELD, source, allowed, "Say which: fp.measured(data, x=..., u=...).")
     places = [finite_array(_FIELD, columns[name]) for name in x]
     values = finite_array(_FIELD, columns[u])
+    if any(place.size != values.size for place in places):
+        sizes = spelled((f"{name}: {columns[name].size}" for name in (*x, u)), ", ")
+        long = f"columns of one length, a row for each value, and there are {sizes}"
+        remedy = "Give each value its place: np.meshgrid(..., indexing='ij') makes those of a grid."
+        raise InvalidInput(_FIELD, source, long, remedy)
     axes = [np.unique(place) for place in places]
     shape = tuple(axis.size for axis in axes)
     index = tuple(np.searchsorted(axis, place) for axis, place in zip(axes, places, strict=True))
@@ -354,6 +374,16 @@ def _checked(axes: list[np.ndarray], values: np.ndarray, units: Any, source: str
         if axis.size < _FEWEST:
             few = f"at least {_FEWEST} points along an axis, and there are {axis.size}"
             raise InvalidInput(_FIELD, source, few, "Measure at more points.")
+        if np.abs(axis).max() > SIZES[1] or np.diff(axis).min() < SIZES[0]:
+            sizes = f"places up to {SIZES[1]:g}, at least {SIZES[0]:g} apart"
+            raise InvalidInput(_FIELD, source, sizes, "Take another unit of length.")
+    greatest, volume = float(np.abs(values).max()), np.prod([axis[-1] - axis[0] for axis in axes])
+    if (
+        greatest > 0.0
+        and not _LEAST < greatest * min(1.0, volume) <= greatest * max(1.0, volume) < _MOST
+    ):
+        between = f"values whose integral is from {_LEAST:g} to {_MOST:g}, and they go up to {greatest:.3g}"
+        raise InvalidInput(_FIELD, source, between, "Take another unit of u, or of length.")
     return Measured(tuple(axes), values, units, source)
 
 
