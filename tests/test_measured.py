@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.cli import main
-from fracparticles.run.measured import Measured
+from fracparticles.run.interpolated import Measured
 
 GIVEN = {"scheme": "KPSE", "order": 4, "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "t_initial": 0.0,
          "integrator": "exponential", "exterior": "open"}  # fmt: skip
