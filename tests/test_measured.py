@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.cli import main
-from fracparticles.run.measured import Measured
+from fracparticles.run.interpolated import Measured
 
 GIVEN = {"scheme": "KPSE", "order": 4, "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "t_initial": 0.0,
          "integrator": "exponential", "exterior": "open"}  # fmt: skip
@@ -308,3 +308,65 @@ def test_good_data_are_not_warned_of():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         fp.solve(fp.Case(**GIVEN), fp.measured((X, profile(X))))
+
+
+def test_headings_with_blanks_before_the_units_name_their_columns(tmp_path):
+    """Separated by blanks, "u [mg]  x [m]" are two names: the columns are not taken for each other."""
+    x = np.linspace(-3.0, 3.0, 9)
+    table = tmp_path / "swapped.txt"
+    lines = "\n".join(f"{2.0 + place} {place}" for place in x.tolist())
+    table.write_text(f"u [mg]  x [m]\n{lines}")
+    found = fp.measured(table)
+    assert found.axes[0].tolist() == x.tolist()
+    assert found.values.tolist() == (2.0 + x).tolist()
+    assert found.units == ("m", "mg")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("u of x, at noon\n1 2\n2 3\n3 4\n4 5", "a name for each of the 2 columns"),
+        ("x\tu\n800\t0.5\n900\t0.7\n1,000\t0.4\n1,100\t0.1", "one decimal mark"),
+    ],
+)
+def test_headings_and_thousands_that_could_be_misread_are_refused(tmp_path, text, words):
+    """A title is no heading, and a comma beside points parts thousands: 1,000 is not 1."""
+    table = tmp_path / "table.txt"
+    table.write_text(text)
+    with pytest.raises(fp.InvalidInput, match=words):
+        fp.measured(table)
+
+
+def test_a_frame_is_read_like_a_table():
+    """Units stand in its headings, an index of places is a column, and two columns of one name are refused."""
+    pd = pytest.importorskip("pandas")
+    x = np.linspace(-3.0, 3.0, 9)
+    swapped = fp.measured(pd.DataFrame({"u [mg]": 2.0 + x, "x [m]": x}))
+    assert swapped.axes[0].tolist() == x.tolist()
+    assert swapped.units == ("m", "mg")
+    indexed = fp.measured(pd.DataFrame({"u": 2.0 + x}, index=pd.Index(x, name="x")))
+    assert indexed.axes[0].tolist() == x.tolist()
+    assert indexed.values.tolist() == (2.0 + x).tolist()
+    for frame, words in (
+        (pd.DataFrame({"v": 2.0 * x, "u": x}, index=pd.Index(x, name="x")), "Say which"),
+        (pd.DataFrame(np.c_[x, x, x], columns=["x", "u", "u"]), "different names"),
+    ):
+        with pytest.raises(fp.InvalidInput, match=words):
+            fp.measured(frame)
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        ((np.arange(9.0), np.arange(5.0), np.ones((9, 5))), "columns of one length"),
+        ((np.arange(9.0), np.ones(5)), "columns of one length"),
+        ((1e150 * np.arange(9.0), np.ones(9)), "unit of length"),
+        ((1e-150 * np.arange(9.0), np.ones(9)), "unit of length"),
+        ((np.arange(9.0), 1e250 * np.ones(9)), "unit of u"),
+        ((np.arange(9.0), 1e-250 * np.ones(9)), "unit of u"),
+    ],
+)
+def test_arrays_that_do_not_belong_together_or_overflow_are_refused(data, words):
+    """No error of a library comes through, and no integral that is zero because it underflows."""
+    with pytest.raises(fp.InvalidInput, match=words):
+        fp.measured(data)

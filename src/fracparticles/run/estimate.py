@@ -28,7 +28,7 @@ from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.initial import Initial, resolved
-from fracparticles.run.measured import Measured
+from fracparticles.run.interpolated import Measured
 from fracparticles.run.prepared import scheme_amplification
 from fracparticles.run.solution import Solution
 from fracparticles.run.solver import compute

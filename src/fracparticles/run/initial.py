@@ -23,7 +23,8 @@ from fracparticles.arguments import real_array
 from fracparticles.errors import AccuracyWarning, InvalidInput, spelled
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.run.measured import MEASURED, Measured, measured
+from fracparticles.run.interpolated import Measured
+from fracparticles.run.measured import MEASURED, measured
 from fracparticles.run.tables import is_table
 from fracparticles.special.stable import green
 

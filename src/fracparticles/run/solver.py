@@ -13,7 +13,7 @@ from fracparticles.run.advection import advect, advect_to_outputs
 from fracparticles.run.case import Case
 from fracparticles.run.doubts import warn_if_doubtful
 from fracparticles.run.initial import Initial, initial_strengths, resolved
-from fracparticles.run.measured import Measured
+from fracparticles.run.interpolated import Measured
 from fracparticles.run.prepared import Prepared, in_range, matrix_of, prepare
 from fracparticles.run.reliability import estimates
 from fracparticles.run.solution import Solution

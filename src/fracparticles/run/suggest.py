@@ -20,7 +20,7 @@ from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidI
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.estimate import estimate_of
 from fracparticles.run.initial import Initial, resolved
-from fracparticles.run.measured import Measured
+from fracparticles.run.interpolated import Measured
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 from fracparticles.special.stable import central_mass

@@ -11,7 +11,7 @@ import numpy as np
 
 from fracparticles.errors import InvalidInput, spelled
 
-__all__ = ["is_table", "read_table"]
+__all__ = ["is_table", "name_and_unit", "read_table"]
 
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
 
@@ -45,8 +45,13 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
         rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
     headings = None if _is_number(rows[0][0], comma) else rows.pop(0)
     count = len(rows[0]) if rows else 0
-    if headings is None or len(headings) != count:
+    if headings is not None and separator is None:  # "c [mg/L]  x [m]"
+        headings = re.findall(r"\S+(?:\s+[\[(][^\])]*[\])])?", lines[0])
+    if headings is None or (separator is not None and len(headings) == 1 < count):  # or a title
         headings = [f"column {k + 1}" for k in range(count)]
+    elif len(headings) != count:
+        one = f"a name for each of the {count} columns, and the first line is {lines[0].strip()!r}"
+        raise InvalidInput("file", str(path), one, "Mend that line, or begin it with #.")
     numbers = np.empty((len(rows), count))
     for number, row in enumerate(rows):
         if len(row) != count or not all(_is_number(cell, comma) for cell in row):
@@ -54,7 +59,11 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
             allowed = f"a table of {count} numbers a row, and this is {shown}"
             raise InvalidInput("file", str(path), allowed, "Mend or remove the row.")
         numbers[number] = [float(cell.replace(",", ".") if comma else cell) for cell in row]
-    split = [_name_and_unit(heading) for heading in headings]
+    cells = [cell for row in rows for cell in row]
+    if comma and any("." in cell for cell in cells):
+        one = "one decimal mark, and it has commas and points in its numbers"
+        raise InvalidInput("file", str(path), one, "Write thousands without a mark.")
+    split = [name_and_unit(heading) for heading in headings]
     names = [name for name, _ in split]
     if len(set(names)) < len(names):
         raise InvalidInput(
@@ -72,7 +81,7 @@ def _is_number(text: str, comma: bool) -> bool:
     return "_" not in text
 
 
-def _name_and_unit(heading: str) -> tuple[str, str]:
+def name_and_unit(heading: str) -> tuple[str, str]:
     """Return "c", "mg/L" of "c [mg/L]" or "c (mg/L)"."""
     found = re.fullmatch(r"(.*?)\s*[\[(](.*)[\])]", heading.strip())
     return (found[1].strip(), found[2].strip()) if found else (heading.strip(), "")

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from fracparticles.errors import InvalidInput
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.run.measured import Measured
+from fracparticles.run.interpolated import Measured
 
 if TYPE_CHECKING:
     import xarray as xr
