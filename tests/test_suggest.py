@@ -142,3 +142,21 @@ def test_what_is_refused(changes, field):
     with pytest.raises(InvalidInput) as refused:
         fp.suggest(given.pop("initial"), **given)
     assert refused.value.field == field
+
+
+def test_a_narrow_blob_far_from_the_rest_is_on_the_lattice():
+    """A quarter of the mass lies within a tenth, three hundred away: between the points of a ray."""
+    case = fp.suggest(
+        lambda x: np.exp(-x * x) + 3.0 * np.exp(-(((x - 300.0) / 0.1) ** 2)),
+        error=1e-3,
+        alpha=1.5,
+        t_final=1.0,
+    )
+    assert case.reach > 300.0
+
+
+@pytest.mark.parametrize("width", [1e3, 1e7, 1e11])
+def test_data_far_wider_than_they_spread_take_few_particles(width):
+    case = fp.suggest(lambda x: np.exp(-((x / width) ** 2)), error=1e-3, alpha=1.5, t_final=1.0)
+    assert case.x.size < 100
+    assert width < case.reach < 10.0 * width

@@ -1,10 +1,10 @@
 """From a problem and an accuracy to a run: scheme, order, spacing, half-width, evaluation.
 
 The fastest of the schemes is GPSE in one step over the whole time, on an open lattice, by one pair of transforms
-(`results/tables/time_to_accuracy`). Where its kernel would be wider than a lattice can sum, a thousand spacings, KPSE
-of order 12, exact in time, takes its place. The search starts on a coarse and narrow lattice. The estimate of the
-error says which of the two, spacing or half-width, leaves more, and that is mended until the error is what was asked
-for; then both are taken back as far as it allows.
+(`results/tables/time_to_accuracy`). Where its kernel would be wider than a lattice can sum, a thousand spacings, or
+narrower than one on which data so wide need few particles, KPSE of order 12, exact in time, takes its place. The
+search starts on a coarse and narrow lattice. The estimate of the error says which of the two, spacing or half-width,
+leaves more, and that is mended until the error is what was asked for; then both are taken back as far as it allows.
 """
 
 from __future__ import annotations
@@ -44,6 +44,9 @@ _SAFE = 0.7  # of the error that is asked for
 _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
 _LOWER, _MOST_IN_VAIN = 0.9, 5  # trials one after the other that do not lower the error
 _HELD = 0.97  # of the mass of a point, where no radius is given
+_WIDE = 100.0  # radii of interest over (D T)^(1/alpha): beyond, the kernel of GPSE asks for more particles than data
+_RAY = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 2401)])  # where data are looked at
+_NEAR, _LOOKS = 1000.0, 40_001  # and evenly, within so many of the radius that is found there
 _POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate: many are made
 _TERMS = {1: 3, 2: 3, 3: 2}
 _SMALLEST = 1e-11
@@ -126,7 +129,7 @@ def suggest(
         )
     more = {"far_terms": _TERMS[dim]}
     reached = [np.inf]
-    for way in _WAYS:
+    for way in _WAYS if within < _WIDE * spread else reversed(_WAYS):
         case = _search(way | fields | more, initial, within, least, spread, error, reached)
         if case is not None:
             if least == 0.0:
@@ -273,17 +276,32 @@ def _errors(case: Case, initial: Initial, within: float | None) -> tuple[float, 
 
 
 def _radius_of(initial: Initial, problem: Case, dim: int) -> float:
-    """Return the radius that holds nine tenths of the data, of those within 1e6 of the unit that they are of."""
+    """Return the radius that holds nine tenths of the data along the axes, of those within 1e12 of their unit.
+
+    What is narrower than 1 % of its distance is found within a thousand times the radius of the rest, if it is wider
+    than a fortieth of that.
+    """
     if isinstance(initial, str):
         return float((problem.diffusivity * problem.t_initial) ** (1.0 / problem.alpha))
     if isinstance(initial, Measured):
         return max(float(np.abs(axis[[0, -1]]).max()) for axis in initial.axes)
     assert callable(initial)
-    function: Callable[..., Any] = np.vectorize(initial)
-    r = np.concatenate([[0.0], np.geomspace(1e-6, 1e6, 1201)])
-    rays = [axis * sign for axis in np.eye(dim) for sign in (1.0, -1.0)]
-    density = r ** (dim - 1) * sum(np.abs(function(*(r * part for part in ray))) for ray in rays)
-    mass = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(r))])
-    if not mass[-1] > 0.0:
-        raise InvalidInput("initial", initial, "data that are not zero", "Give within.")
-    return float(np.interp(0.9 * mass[-1], mass, r))
+    function: Callable[..., Any] = np.vectorize(initial, otypes=[float])
+
+    def held(r: np.ndarray) -> float:
+        rays = [axis * sign for axis in np.eye(dim) for sign in (1.0, -1.0)]
+        sizes = sum(np.abs(function(*(r * part for part in ray))) for ray in rays)
+        with np.errstate(over="ignore"):
+            density = r ** (dim - 1) * sizes
+            mass = np.concatenate(
+                [[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(r))]
+            )
+        if not 0.0 < mass[-1] < np.inf:
+            raise InvalidInput(
+                "initial", initial, "data that are finite and not zero", "Give within."
+            )
+        return float(np.interp(0.9 * mass[-1], mass, r))
+
+    radius = held(_RAY)
+    even = np.linspace(0.0, _NEAR * radius, _LOOKS)
+    return held(np.union1d(_RAY, even))
