@@ -221,9 +221,9 @@ def _check_own_step(case: Parameters) -> None:
 def _check_far_field(case: Parameters) -> None:
     """The lattice must end in the tail of the solution; more than one term, used again and again, ask for more.
 
-    Found by computation (tests/test_exterior.py): from n = 10 epsilon / h on, no eigenvalue leaves the range of the
-    symbol by more than 2e-6 of it, nor lies above zero by more than 4e-7, but nearer the ends the fit to strengths at
-    n / 2 makes modes that grow.
+    Found by computation (tests/lattice/test_exterior.py): from n = 10 epsilon / h on, no eigenvalue leaves the range of
+    the symbol by more than 2e-6 of it, nor lies above zero by more than 4e-7, but nearer the ends the fit to strengths
+    at n / 2 makes modes that grow.
     """
     if case.exterior == "open":
         _check_spread(case)

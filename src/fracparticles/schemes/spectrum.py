@@ -29,7 +29,7 @@ _ROOM_OF_STEPS = (
 )
 # Where the eigenvalues are not proved to be real and in the interval, T_k of the operator may grow like exp(g k). The
 # coefficients of a series of degree K fall like exp(-74 (k / K)^2), so that its terms grow by exp((g K)^2 / 300) at
-# most. Measured (tests/test_stiff.py): on the line with exact kernels, unless the ends amplify, g < 0.001 and
+# most. Measured (tests/run/test_stiff.py): on the line with exact kernels, unless the ends amplify, g < 0.001 and
 # K = 10000, else g < 0.1 and K = 400.
 _LARGEST_DEGREE = {"line": 10_000, "other": 400}
 # Half the intervals of a small lattice: some reaches of the kernels, of which eigenvalues take milliseconds.
@@ -60,9 +60,9 @@ def eigenvalue_bounds(
     diagonal (Weyl). DPSE is the product of a negative and a positive symmetric matrix, so that its eigenvalues are
     real. The symbol is that of interpolated kernels, on the line.
 
-    The rest is found by computation, not proved (tests/test_spectrum.py): exchanges whose weights change sign stay
-    below zero, and the eigenvalues of DPSE, FPSE and of the open exterior lie in the range of the symbol and are real
-    on the line. `largest_degree` keeps the series short enough for the deviations that are known, and the evaluation
+    The rest is found by computation, not proved (tests/schemes/test_spectrum.py): exchanges whose weights change sign
+    stay below zero, and the eigenvalues of DPSE, FPSE and of the open exterior lie in the range of the symbol and are
+    real on the line. `largest_degree` keeps the series short enough for the deviations that are known, and the evaluation
     looks at the size of its terms. Where the ends amplify (FPSE from order 6 on) the largest eigenvalue, up to 3e-4
     of the range above zero, is that of a small lattice, on whose size it does not depend. Where there are positive
     eigenvalues, for scheme (29) or an overlap too small for the order, the largest is computed.

@@ -12,7 +12,7 @@ from fracparticles.errors import InvalidInput
 from fracstudy.config import batches, jobs, read_config
 from fracstudy.scene import Scene, expand, merged, resolved
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 BLOCK = {
     "scheme": ["DD", "KPSE"],
     "order": [2, 4],

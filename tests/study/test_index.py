@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fracstudy.index import index
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "INDEX.md").read_text("utf-8")
 
 

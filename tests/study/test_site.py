@@ -18,7 +18,7 @@ from fracstudy.report import build as build_report
 from fracstudy.scene import Scene
 from fracstudy.site import SiteError, build, ledger_page
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PAGES = ("README.md", "INDEX.md", "CONTRIBUTING.md", "CHANGELOG.md", "config/README.md")
 PRINTED = """
 - {id: L-T3.DD, where: Table 3, what: A limit of DD., printed: "4.81"}

@@ -18,7 +18,7 @@ from fracstudy.lookup import LookUpError
 from fracstudy.report import ReportError, build
 from fracstudy.scene import Scene
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 TEMPLATES = ROOT / "report/template"
 FINDINGS = 'A limit is {{ ours("L-T3.DD") }}.'
 SCENES = ROOT / "workflow/scenes"

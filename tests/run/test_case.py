@@ -176,7 +176,7 @@ def test_every_field_is_described():
 
 
 def test_the_table_of_the_configuration_is_that_of_the_fields():
-    readme = Path(__file__).parents[1] / "config" / "README.md"
+    readme = Path(__file__).parents[2] / "config" / "README.md"
     assert f"\n\n{field_table(Case)}\n" in readme.read_text(encoding="utf-8")
 
 

@@ -562,7 +562,7 @@ def test_version_and_help(cli):
 
 def test_the_list_of_scenes(cli, monkeypatch):
     assert refused(cli("scenes"), "config/study.yaml", "the folder of the study")
-    monkeypatch.chdir(Path(__file__).parents[1])
+    monkeypatch.chdir(Path(__file__).parents[2])
     status, out, err = cli("scenes", "--document", "lucchesi")
     assert (status, err) == (0, "")
     (row,) = [line for line in out.splitlines() if line.split()[0] == "lucchesi_table_3"]
