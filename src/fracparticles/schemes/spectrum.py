@@ -62,10 +62,10 @@ def eigenvalue_bounds(
 
     The rest is found by computation, not proved (tests/schemes/test_spectrum.py): exchanges whose weights change sign
     stay below zero, and the eigenvalues of DPSE, FPSE and of the open exterior lie in the range of the symbol and are
-    real on the line. `largest_degree` keeps the series short enough for the deviations that are known, and the evaluation
-    looks at the size of its terms. Where the ends amplify (FPSE from order 6 on) the largest eigenvalue, up to 3e-4
-    of the range above zero, is that of a small lattice, on whose size it does not depend. Where there are positive
-    eigenvalues, for scheme (29) or an overlap too small for the order, the largest is computed.
+    real on the line. `largest_degree` keeps the series short enough for the deviations that are known, and the
+    evaluation looks at the size of its terms. Where the ends amplify (FPSE from order 6 on) the largest eigenvalue, up
+    to 3e-4 of the range above zero, is that of a small lattice, on whose size it does not depend. Where there are
+    positive eigenvalues, for scheme (29) or an overlap too small for the order, the largest is computed.
     """
     low, high = range_in(name, setting)
     one, rate = scheme(name), setting.rate
