@@ -145,7 +145,7 @@ CALLS = {
     "gradient": (derivatives.gradient, PARTICLES | {"f": (X, "complex line"), "corrected": (True, "flag")}),
     "second_derivative": (
         derivatives.second_derivative,
-        PARTICLES | {"f_z": (Z, "complex line"), "f": (X, "complex line"), "eta": (0.1, "not negative*")},
+        PARTICLES | {"f_z": (Z, "complex line"), "f": (X, "complex line"), "eta": (1e-3, "not negative*")},
     ),
     "power_integral": (
         integrals.power_integral,
