@@ -48,7 +48,7 @@ VARIABLES = {
     "setups": ("set-ups that were timed", "1"),
     "solves": ("solves that were timed", "1"),
     "block_time": ("a further solve in a block of many, minimum", "s"),
-    "peak_memory": ("greatest memory of set-up and solve", "B"),
+    "peak_memory": ("greatest memory of set-up and solve; nan off the front of all", "B"),
     "extrapolated": ("run time over the time that was measured: 1 for a whole run", "1"),
     "failure": ("what went wrong; empty if nothing did", "1"),
 }
