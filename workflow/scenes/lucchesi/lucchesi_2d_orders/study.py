@@ -95,7 +95,7 @@ def _findings(
                 readings={" over ".join(key): order for key, order in readings[_OURS].items()},
             )
         for spacing in here["h"].head(1):
-            yield measured(f"L-2D-ORD.spacing.h{h}", ours=spacing, particles=count)
+            yield measured(f"L-2D-ORD.spacing.h{h}", ours=spacing)
     order = pick(table, N=table["N"].max()).set_index(["compared", "summed over", "scheme"])[_OURS]
     order = order.sort_index()
     readings = (("field (7)", "r <= 5"), ("strengths", "r <= 5"), ("field (7)", "all particles"))
