@@ -161,7 +161,7 @@ def _singularity(
     finite = np.count_nonzero(~infinite.any(axis=1))
     yield measured("S-EQ.singular", finite=finite, ratio=dict(singular / ours))
     same = table["figures with the same digits"][_SINGULAR]
-    yield measured("S-EQ.non_singular", figures=same, of=len(CASES))
+    yield measured("S-EQ.non_singular", figures=same)
     apart = np.abs(line.x[:, None] - line.x_all)
     near = np.count_nonzero((apart > 0.0) & (apart < SUPPORT * line.smoothing))
     terms, count = np.count_nonzero(share > 0.0), line.count

@@ -66,8 +66,7 @@ def _more(numbers: pd.DataFrame, square: SquareRuns, seeds: range) -> Finding:
             means[shape, loading] = errors.mean(axis=1)
     others = {"one seed alone": {"ratio": {start: largest(e) for start, e in one.items()}}}
     ratio = {start: largest(e) for start, e in means.items()}
-    every = {start: float((np.diff(e) < 0.0).mean()) for start, e in one.items()}
-    return measured("M-C2.more", ratio=ratio, every=every, others=others)
+    return measured("M-C2.more", ratio=ratio, others=others)
 
 
 def _per_support() -> Finding:

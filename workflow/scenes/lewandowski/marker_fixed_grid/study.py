@@ -38,7 +38,7 @@ def _numbers(square: SquareRuns, starts: Starts, seeds: range) -> dict[str, dict
         INFINITE.name: infinite.measured["maxima"][infinite.clustered],
     }
     return {
-        "M-F8.deterministic": {"error": level["S8"], "empty": quiet["empty"].max()},
+        "M-F8.deterministic": {"error": level["S8"]},
         "M-F8.wiggles": {
             "maxima": {name: maxima.min() if len(maxima) else 0 for name, maxima in with_clusters.items()},
             "without": quiet["maxima"]["S4"],

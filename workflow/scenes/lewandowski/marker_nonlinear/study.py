@@ -115,7 +115,7 @@ def _set_up(setting: Markers, half_width: float, off: float) -> Iterator[Finding
     work = {"by quadrature from far left": points / markers, "in closed form": 1.0 / markers}
     yield measured("M-F17.integral", work=work, gap=gap, points=points, markers=markers)
     misfit = np.abs(setting.field(setting.x) - Gaussian().value(setting.x)).max()
-    yield measured("M-F17.initial", misfit=misfit, epsilon=setting.epsilon)
+    yield measured("M-F17.initial", misfit=misfit)
 
 
 def _quadrature(p: NonlinearDiffusion, x: np.ndarray, left: float = -4.0) -> int:

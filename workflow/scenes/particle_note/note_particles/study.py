@@ -99,7 +99,7 @@ def _superposed(spacing: float, half_width: float) -> Finding:
         found = reconstruct(x, particles, two_bumps(particles), h, np.sqrt(2.0) * h, _UNIT)
         errors.append(np.abs(found - two_bumps(x)).max() / two_bumps(x).max())
     order = observed_order(spacings, errors)[-1]
-    return measured("P-F1.smooth", order=order, error=errors[-1], finest=spacings[-1])
+    return measured("P-F1.smooth", order=order, error=errors[-1])
 
 
 def _kernel(table: pd.DataFrame) -> Finding:
