@@ -56,6 +56,25 @@ def test_the_sums_follow_particles_that_move_away(scattered):
         assert np.abs(sums(*moved, q) - naive).max() < 1e-10 * np.abs(naive).max()
 
 
+@pytest.mark.parametrize("exponent", [-1000, -600, 600, 1000])
+def test_the_sums_are_linear_to_the_ends_of_the_range_of_numbers(scattered, exponent):
+    """Times a power of 2 they are the same to the last bit, however small the strengths and 1 / epsilon^2 large."""
+    x, y, q = scattered
+    unit = 1e-40 if exponent < 0 else 1e40
+    sums = PlaneSums(ALPHA, 2, 0.4 * unit)
+    found = sums(unit * x, unit * y, np.ldexp(q, exponent))
+    assert np.array_equal(np.ldexp(found, -exponent), sums(unit * x, unit * y, q))
+
+
+def test_strengths_that_lose_their_digits_are_refused():
+    """1e-300 at spacings of 0.1 is 1e-302 in the plane: a field, but no strengths to 1e-16 of it."""
+    u = 1e-300 * exact(*lattice(0.1, 1.0))
+    with pytest.raises(InvalidInput, match=r"u = .* strengths of 1e-290 and more"):
+        run_in_plane(u, spacing=0.1, alpha=ALPHA, dt=1e-4, steps=1)
+    with pytest.raises(InvalidInput, match="overflow"):
+        run_in_plane(1e308 + 0.0 * u, spacing=1e10, alpha=ALPHA, dt=1e-4, steps=1)
+
+
 def test_sums_at_other_points(scattered):
     x, y, q = scattered
     sums = PlaneSums(ALPHA, 2, 0.4)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import kolmogorov
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.moving.random_walk import (
     cell_counts,
     cell_masses,
@@ -86,6 +87,19 @@ def test_the_start_is_left_as_it_is_and_shifts_the_end(generator):
     moved = walk(start, 1.5, 1.0, np.random.default_rng(3))
     assert_array_equal(start, kept)
     assert_allclose(moved - start, walk(np.zeros(5), 1.5, 1.0, np.random.default_rng(3)))
+
+
+def test_places_that_hold_no_digits_of_the_walk_are_warned_of():
+    """An ulp of 1e17 is 16; from 1e12 the increments of many steps are still those from zero, rounded once."""
+    near = walk(np.zeros(500), 1.5, 1.0, np.random.default_rng(3), 1000)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        far = walk(np.full(500, 1e12), 1.5, 1.0, np.random.default_rng(3), 1000) - 1e12
+        walk(np.full(5, 1e17), 1.5, 1e30, np.random.default_rng(3))
+    off = np.abs(far - near) / np.spacing(np.maximum(np.abs(near + 1e12), 1e12))
+    assert off.max() <= 0.5
+    with pytest.warns(AccuracyWarning, match="rounded by up to 8, beside the 1 that they go"):
+        walk(np.full(500, 1e17), 1.5, 1.0, np.random.default_rng(3))
 
 
 def test_time_scales_increments(generator):

@@ -131,6 +131,16 @@ def test_neighbours_in_any_order(n, seed):
 
 
 @pytest.mark.parametrize("summation", ["fft", "naive"])
+@pytest.mark.parametrize("exponent", [-1000, -600, 600, 1000])
+def test_sums_of_strengths_of_any_size(summation, exponent):
+    """Times a power of 2 they are the same, to the last bit."""
+    rng = np.random.default_rng(5)
+    x, q = rng.normal(size=100), rng.uniform(0.5, 1.0, 100)
+    sums = scattered_sum(summation, pair(), EPSILON)
+    assert np.array_equal(np.ldexp(sums(x, np.ldexp(q, exponent)), -exponent), sums(x, q))
+
+
+@pytest.mark.parametrize("summation", ["fft", "naive"])
 def test_nothing_gives_nothing(summation):
     sums = scattered_sum(summation, pair(), EPSILON)
     nothing = np.empty(0)

@@ -24,6 +24,14 @@ def test_few_walkers():
     assert few_walkers_beyond(10, 0.25, 1.5, 1.5) == 0.0
 
 
+@pytest.mark.parametrize("unit", [1e-40, 1e-12, 1e-6, 1e40])
+def test_the_unit_of_length_does_not_matter(unit):
+    """All lengths times a unit, the time its power alpha."""
+    x = few_walkers_beyond(10**6, 0.25, 1.5, 1.5)
+    scaled = few_walkers_beyond(10**6, 0.25 * unit, 1.5 * unit**1.5, 1.5)
+    assert scaled == pytest.approx(x * unit, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("field", "call"),
     [
@@ -35,6 +43,8 @@ def test_few_walkers():
         ("masses", lambda: walkers_to_equal([], 0.1)),
         ("masses", lambda: walkers_to_equal([1e-320], 1e-100)),
         ("walkers", lambda: few_walkers_beyond(10**400, 1.0, 1.0, 1.5)),
+        ("t", lambda: few_walkers_beyond(10, 1.0, 1e-200, 1.5)),
+        ("alpha", lambda: few_walkers_beyond(10, 1.0, 1.0, 2.0)),
     ],
 )
 def test_what_is_refused(field, call):

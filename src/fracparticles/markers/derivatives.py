@@ -11,15 +11,12 @@ even one they see its peak, each with the same sign. F itself may be smooth to f
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fracparticles.errors import AccuracyWarning, FracparticlesError
+from fracparticles.markers.reliability import CORE, Velocity
 from fracparticles.moving.reliability import cells
-
-if TYPE_CHECKING:
-    from fracparticles.markers.reliability import Velocity
 
 __all__ = ["flux_ripple", "warn_of_derivatives"]
 
@@ -27,7 +24,6 @@ _WAVENUMBERS = np.linspace(
     0.0, 400.0, 8001
 )  # eps k; beyond, S2 and what is smoother leave little: 0 is said
 _MOST = 0.1  # of the flux
-_CORE = 2.0  # epsilon: nearer to an end F says nothing of the field
 
 
 def flux_ripple(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
@@ -37,7 +33,7 @@ def flux_ripple(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float
     """
     fields = velocity.fields(x, weights)
     even = range(2, len(fields), 2)
-    felt = min(velocity.shape.reach, _CORE) * velocity.epsilon
+    felt = min(velocity.shape.reach, CORE) * velocity.epsilon
     inner = (x > x.min() + felt) & (x < x.max() - felt)
     if x.size < 2 or not even or not inner.any():
         return 0.0

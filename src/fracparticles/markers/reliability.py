@@ -27,9 +27,11 @@ from fracparticles.errors import AccuracyWarning, FracparticlesError, StabilityW
 from fracparticles.markers.shapes import Shape
 
 __all__ = [
+    "CORE",
     "WAVENUMBERS",
     "Steps",
     "Velocity",
+    "all_coefficients",
     "coefficients",
     "inner",
     "kept",
@@ -43,7 +45,7 @@ _MOST_GROWTH = math.log(10.0)  # of a wave over a run, before there is a warning
 _WAVE_ERROR = 0.1
 WAVENUMBERS = np.linspace(0.0, 30.0, 601)[1:]  # eps q
 _HARMONICS = np.array([2.0, 1.0, 0.5])
-_CORE = 2.0  # epsilon: S8 is negligible for an end that is farther away
+CORE = 2.0  # epsilon: S8 is negligible for an end that is farther away
 _DIFFERENCE = 1e-4  # of a derivative of F, relative to F / eps^m: a flux quadratic in it has exact differences
 _TOO_LARGE = 1.0 + 1e-9
 
@@ -53,6 +55,7 @@ class Velocity(Protocol):
 
     shape: Shape
     epsilon: float
+    period: float | None
     flux: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
     def fields(self, x: Any, weights: Any) -> np.ndarray:
@@ -86,6 +89,23 @@ class Steps:
     interval: float = 2.0
 
 
+def all_coefficients(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Return c_m - V [m = 0] at every marker, shape (N, derivatives + 1); not finite where F has no uniform flux."""
+    fields = velocity.fields(x, weights)
+    uniform = np.zeros_like(fields)
+    uniform[0] = fields[0]
+    found = []
+    with np.errstate(all="ignore"):
+        for m in range(len(fields)):
+            step = _DIFFERENCE * fields[0] / velocity.epsilon**m
+            up, down = uniform.copy(), uniform.copy()
+            up[m] += step
+            down[m] -= step
+            found.append((velocity.flux(x, up) - velocity.flux(x, down)) / (2.0 * step))
+        found[0] = found[0] - velocity.flux(x, uniform) / fields[0]
+    return np.array(found).T
+
+
 def coefficients(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Return c_m - V [m = 0] at the markers where one of them is the largest or the smallest.
 
@@ -99,24 +119,11 @@ def coefficients(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> np.n
     -------
     array, shape (up to 2 (derivatives + 1), derivatives + 1)
     """
-    fields = velocity.fields(x, weights)
-    uniform = np.zeros_like(fields)
-    uniform[0] = fields[0]
-    found = []
-    with np.errstate(all="ignore"):
-        for m in range(len(fields)):
-            step = _DIFFERENCE * fields[0] / velocity.epsilon**m
-            up, down = uniform.copy(), uniform.copy()
-            up[m] += step
-            down[m] -= step
-            found.append((velocity.flux(x, up) - velocity.flux(x, down)) / (2.0 * step))
-        found[0] = found[0] - velocity.flux(x, uniform) / fields[0]
-    c = np.array(found)
-    c = c[:, np.isfinite(c).all(axis=0)]
+    c = all_coefficients(velocity, x, weights)
+    c = c[np.isfinite(c).all(axis=1)]
     if not c.size:
-        return np.zeros((0, len(fields)))
-    worst = np.unique(np.concatenate([c.argmin(axis=1), c.argmax(axis=1)]))
-    return np.asarray(c[:, worst].T)
+        return c
+    return np.asarray(c[np.unique(np.concatenate([c.argmin(axis=0), c.argmax(axis=0)]))])
 
 
 def rates(c: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -161,7 +168,7 @@ def wave_error(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps: St
 
 def inner(velocity: Velocity, x: np.ndarray) -> np.ndarray:
     """Return which markers do not feel the ends of the set, where F ends, too; all if all do."""
-    felt = min(velocity.shape.reach, _CORE) * velocity.epsilon
+    felt = min(velocity.shape.reach, CORE) * velocity.epsilon
     found = (x > x.min() + felt) & (x < x.max() - felt)
     return found if found.any() else np.ones(x.size, dtype=bool)
 

@@ -20,6 +20,7 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.errors import FracparticlesError, InvalidInput, StabilityWarning
 from fracparticles.markers.derivatives import warn_of_derivatives
+from fracparticles.markers.edges import warn_of_edges
 from fracparticles.markers.reliability import Steps, warn_of_waves
 from fracparticles.markers.resolution import warn_of_resolution
 from fracparticles.markers.shapes import Shape
@@ -173,7 +174,8 @@ def run(
         own only.
     AccuracyWarning
         If the markers are too far apart for epsilon or for the derivatives of the flux, lie too irregularly, or epsilon
-        or dt is too large for the field; or the markers are so far from zero that their places are rounded by much.
+        or dt is too large for the field, or epsilon for a jump at their ends; or the markers are so far from zero that
+        their places are rounded by much.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x = check.positions("x", x)
@@ -188,6 +190,7 @@ def run(
     )
     warn_of_resolution(velocity, Steps(dt, steps), at_start, (x, weights))
     warn_of_derivatives(velocity, *at_start)
+    warn_of_edges(velocity, *at_start, Steps(dt, steps))
     return MarkerRun(x, weights, history, velocity)
 
 

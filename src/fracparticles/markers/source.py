@@ -27,6 +27,7 @@ from scipy.special import erf, erfc
 
 from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
+from fracparticles.markers.edges import warn_of_edges
 from fracparticles.markers.profiles import Gaussian
 from fracparticles.markers.reliability import Steps, warn_of_waves
 from fracparticles.markers.resolution import warn_of_resolution
@@ -84,8 +85,8 @@ def advance_weights(
     StabilityWarning
         If dt is too large for these stages, or waves of the markers' places grow: see `reliability`.
     AccuracyWarning
-        If the markers are too far apart for epsilon, or epsilon is too large for the field; or if the weights do not
-        gain int |Q| dx: the source is where no markers are, or narrower than their distance.
+        If the markers are too far apart for epsilon, or epsilon is too large for the field or for a jump at their ends;
+        or if the weights do not gain int |Q| dx: the source is where no markers are, or narrower than their distance.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x, source = check.positions("x", x), check.function("source", source)
@@ -114,6 +115,7 @@ def advance_weights(
     _warn_of_what_is_missed(velocity, x, weights, source)
     state = step.advance(rate, np.stack([x, weights]), dt=dt, steps=steps, observe=observe)
     warn_of_resolution(velocity, taken, (x, weights), (state[0], state[1]))
+    warn_of_edges(velocity, x, weights, taken)
     return state[0], state[1]
 
 

@@ -33,7 +33,6 @@ import numpy as np
 from fracparticles.arguments import (
     choice,
     finite_array,
-    finite_result,
     fractional_order,
     positive_real,
     real_array,
@@ -50,6 +49,7 @@ from fracparticles.moving.lagrangian import (
     Remeshing,
     advance,
     quotient_velocity,
+    strengths_of,
 )
 from fracparticles.moving.reliability import (
     ripple,
@@ -279,8 +279,7 @@ def run_to_outputs(
         continued = None if velocity.tail is None else velocity.tail.continued
         above = largest_gap(exterior) if remesh_above is None else remesh_above
         redistribution = Remeshing(remeshing, spacing, above, ends, continued)
-    with np.errstate(over="ignore"):
-        given = finite_result("u", spacing * finite_array("u", u))
+    given = strengths_of(finite_array("u", u), spacing)
     longest = max(positive_real("dt", dt) for dt, _ in legs)
     warn_of_step(longest, velocity.largest_stable_step, stacklevel=3)
     warn_of_round_off(x, sum(steps for _, steps in legs), velocity.epsilon)

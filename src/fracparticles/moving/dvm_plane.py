@@ -26,7 +26,12 @@ from fracparticles.errors import (
     NonFiniteSolution,
 )
 from fracparticles.moving.dvm import EXTERIORS, DiffusionVelocity, largest_gap
-from fracparticles.moving.lagrangian import REMESHING, FieldNotPositive, quotient_velocity
+from fracparticles.moving.lagrangian import (
+    REMESHING,
+    FieldNotPositive,
+    quotient_velocity,
+    strengths_of,
+)
 from fracparticles.moving.plane_remeshing import Particles, on_square, remesh_plane
 from fracparticles.moving.plane_sums import PlaneSums
 from fracparticles.moving.plane_tail import REACH, PlaneTail
@@ -220,7 +225,8 @@ def run_in_plane(
     dt, steps = check.scale("dt", dt), check.positive_integer("steps", steps)
     start, u = check.finite_real("start", start), check.finite_array("u", u)
     n = max(len(np.atleast_1d(u)) // 2, 2)
-    strength = h * h * check.of_shape("u", u, (2 * n + 1, 2 * n + 1), "an odd square of numbers")
+    check.of_shape("u", u, (2 * n + 1, 2 * n + 1), "an odd square of numbers, from 5 by 5 on")
+    strength = strengths_of(u, h * h)
     velocity = PlaneVelocity(alpha, order, overlap * h, diffusivity, exterior)
     warn_of_step(dt, velocity.largest_stable_step, stacklevel=2)
     lattice = h * np.arange(-n, n + 1.0)

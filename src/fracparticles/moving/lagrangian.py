@@ -40,6 +40,7 @@ __all__ = [
     "Remeshing",
     "advance",
     "quotient_velocity",
+    "strengths_of",
 ]
 
 # What holds if nothing is said: the remeshing kernel, the spacing above which it is used, in h, and the share of the
@@ -49,6 +50,9 @@ REMESHING, REMESH_ABOVE, THRESHOLD = "M4'", 1.5, 0.0
 Velocity = Callable[[np.ndarray, np.ndarray], np.ndarray]
 Continued = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 Observer = Callable[[float, np.ndarray, np.ndarray], None]
+
+
+_SMALLEST = 1e-290  # of the strengths, the greatest: those down to 1e-16 of it are numbers with all their digits
 
 
 class FieldNotPositive(NonFiniteSolution):
@@ -90,6 +94,19 @@ class Remeshing:
 
 def _above_one(_: str, value: Any) -> float:
     return check.real_between("remesh_above", value, 1.0, inside=True, remedy="Give 1.5.")
+
+
+def strengths_of(u: np.ndarray, volume: float) -> np.ndarray:
+    """Return the strengths U_i = V u_i of a field at particles of this volume, zeros included.
+
+    Raises `InvalidInput` if they overflow, or are so small that they lose their digits.
+    """
+    with np.errstate(over="ignore"):
+        strength: np.ndarray = check.finite_result("u", volume * u)
+    if u.any() and not np.abs(strength).max() >= _SMALLEST:
+        shown = f"a field of at most {np.abs(u).max():.3g}, of strengths of at most {np.abs(strength).max():.3g}"
+        raise InvalidInput("u", shown, f"strengths of {_SMALLEST:g} and more", "Change the units.")
+    return strength
 
 
 def quotient_velocity(flux: Any, u: Any, x: Any, accuracy: float = 0.0) -> np.ndarray:

@@ -21,10 +21,10 @@ from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import kernel
 from fracparticles.moving.gridding import WIDTH, window_transform, window_weights
+from fracparticles.moving.scattered_base import GAUSSIAN_BAND, in_range
 
 __all__ = ["PlaneSums", "naive_sums"]
 
-_BAND = 12.0  # of the Gaussian in every kernel, as in `scattered`
 _EDGE = 5.5  # erfc(5.5) / 2 < 1e-14
 _MARGIN = 1.125  # how much wider than the set the box is made
 _MOST_MODES = 2**13  # along an axis: 0.5 GiB a field
@@ -69,6 +69,7 @@ class PlaneSums:
         x, y, q : array, shape (N,)
         at : tuple of two arrays, shape (M,)
         """
+        q, exponent = in_range(q)
         zx, zy = (x, y) if at is None else at
         low = np.array([min(x.min(), zx.min()), min(y.min(), zy.min())])
         high = np.array([max(x.max(), zx.max()), max(y.max(), zy.max())])
@@ -89,16 +90,19 @@ class PlaneSums:
             ]
         out = np.empty((3, zx.size))
         _interpolate(*places[0], *places[1], fields, out)
-        return out
+        return np.asarray(np.ldexp(out, exponent))
 
     def _make_box(self, width: float) -> None:
         """Fourier coefficients of the kernels for a set of this width."""
         scale = self._epsilon  # of the cut-off: its band is that of the Gaussian
         self._width = width + scale
         period = 2.0 * (self._width + 2.0 * _EDGE * scale)
-        needed = _BAND / self._epsilon * period / math.pi + 4 * WIDTH
+        needed = GAUSSIAN_BAND / self._epsilon * period / math.pi + 4 * WIDTH
         if not needed <= _MOST_MODES:
-            shown, most = f"particles {width:.4g} apart", _MOST_MODES * math.pi / _BAND / 2.0
+            shown, most = (
+                f"particles {width:.4g} apart",
+                _MOST_MODES * math.pi / GAUSSIAN_BAND / 2.0,
+            )
             allowed = f"a set no wider than {most * self._epsilon:.4g}, for this smoothing length"
             raise InvalidInput("x", shown, allowed, "Look for a particle that ran away.")
         size = 2 * next_fast_len(math.ceil(0.5 * needed), real=True)

@@ -59,10 +59,13 @@ class PlaneTail:
         """Return how much of the total the far field may hold wrongly: its share times the spread of A at the ends."""
         edge = _edge(x)
         r = np.hypot(x[edge], y[edge])
-        amplitude = strength[edge] / _cells(x, y)[edge] * r ** (2.0 + self._alpha)
-        # The far field beyond a circle of that radius, the mean of those of the ends.
-        share = 2.0 * np.pi / self._alpha * float(r.mean()) ** -self._alpha
-        return float(share * amplitude.std() / abs(strength.sum()))
+        radius = float(r.mean())
+        # A and the far field beyond a circle of that radius, 2 pi A R^-alpha / alpha, in units of R.
+        area = _cells(x, y)[edge] / radius**2
+        amplitude = (
+            strength[edge] / abs(strength.sum()) / area * (r / radius) ** (2.0 + self._alpha)
+        )
+        return float(2.0 * np.pi / self._alpha * amplitude.std())
 
     def flux(
         self, wide: tuple[np.ndarray, np.ndarray, np.ndarray], x: np.ndarray, y: np.ndarray

@@ -19,6 +19,7 @@ All functions raise `InvalidInput` if an argument is outside its range.
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from scipy.special import gammaln, xlog1py, xlogy
 from fracparticles import arguments as check
 from fracparticles._compiled import njit
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special.stable import green, tail_mass
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
 
 _NARROW = 1e-3  # cell, in units of the nearest length: the error of Simpson's rule is its fourth power / 2880
 _CHUNK = 2**14  # walkers at a time: their random numbers stay in the cache
+_ROUNDED = 0.02  # of the way that walkers go: what the round-off of their places may be
 _MOST_WALKERS = 10**9  # beyond, the logarithms in `expected_deviation` lose digits
 
 
@@ -65,9 +67,12 @@ def walk(
 ) -> FloatArray:
     """Return where walkers at x are after `time`: x + sum over the steps of (D dt)^(1/alpha) S.
 
-    Walkers at 0 end with the density G(x, D time). The same generator state gives the same walk.
+    Walkers at 0 end with the density G(x, D time). The same generator state gives the same walk. The sum is rounded by
+    itself, and added to x at the end.
 
     Raises `InvalidInput` if an argument is outside its range, or (D dt)^(1/alpha) is beyond 1e-100 .. 1e100.
+
+    Warns with `AccuracyWarning` if the places are so far from zero that they hold few digits of the walk.
 
     Parameters
     ----------
@@ -84,7 +89,7 @@ def walk(
     diffusivity : float
         D of Eq. (2).
     """
-    position = check.positions("x", x).copy()
+    start = check.positions("x", x)
     alpha = check.fractional_order(alpha)
     time, diffusivity = check.scale("time", time), check.scale("diffusivity", diffusivity)
     steps = check.positive_integer("steps", steps)
@@ -95,14 +100,28 @@ def walk(
     if not math.log(least) <= logarithm <= math.log(most):
         allowed = f"a time with (D dt)^(1/alpha) between {least:g} and {most:g}"
         raise InvalidInput("time", time, allowed, "Change the units of length or time.")
-    for first in range(0, position.size, _CHUNK):
-        part = position[first : first + _CHUNK]
+    _warn_of_round_off(start, math.exp(logarithm + math.log(steps) / alpha))
+    gone = np.zeros_like(start)
+    for first in range(0, gone.size, _CHUNK):
+        part = gone[first : first + _CHUNK]
         uniform, exponential = np.empty_like(part), np.empty_like(part)
         for _ in range(steps):
             generator.random(out=uniform)
             generator.standard_exponential(out=exponential)
             _add_increments(part, math.exp(logarithm), alpha, uniform, exponential)
-    return position
+    return start + gone
+
+
+def _warn_of_round_off(start: FloatArray, way: float) -> None:
+    """Warn if half an ulp of the places is not small beside the way that walkers go, (D time)^(1/alpha)."""
+    rounded = 0.5 * float(np.spacing(np.abs(start).max()))
+    if rounded > _ROUNDED * way:
+        warnings.warn(
+            f"the walkers start so far from zero that their places are rounded by up to {rounded:.2g}, beside the "
+            f"{way:.3g} that they go. Let them start near zero, and add the place to a number of more digits.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 @njit()

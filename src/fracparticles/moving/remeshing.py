@@ -57,8 +57,10 @@ _BACKWARDS = [
     for row in _SIX_FOUR
 ]
 _NINTH = np.array([_SIX_FOUR, _BACKWARDS], dtype=float)
-_FARTHEST = 2**31  # lattice points from the origin: a particle beyond has run away
-_MOST_POINTS = 2**26
+_FARTHEST = (
+    2**31
+)  # lattice points from the origin: beyond, places are rounded by more than 1e-7 of a spacing
+_MOST_POINTS = 2**26  # between the particles: one farther out has run away
 _ULPS = 2.0 * float(np.finfo(float).eps)
 
 
@@ -147,10 +149,13 @@ def remesh(x: Any, strength: Any, spacing: float, name: str) -> tuple[np.ndarray
     strength = check.vector("strength", strength, x.size)
     cell = x / spacing
     low, high = cell.min(), cell.max()
-    if not (abs(low) < _FARTHEST and abs(high) < _FARTHEST and high - low < _MOST_POINTS):
-        shown = f"particles from {x.min():.6g} to {x.max():.6g}"
-        allowed = f"finite positions less than {_MOST_POINTS * spacing:.4g} apart"
+    shown = f"particles from {x.min():.6g} to {x.max():.6g}"
+    if not high - low < _MOST_POINTS:
+        allowed = f"particles less than {_MOST_POINTS * spacing:.4g} apart, for a lattice of the spacing {spacing:.4g}"
         raise InvalidInput("x", shown, allowed, "Look for a particle that ran away.")
+    if not (abs(low) < _FARTHEST and abs(high) < _FARTHEST):
+        allowed = f"places nearer to zero than {_FARTHEST * spacing:.4g}, for a lattice of the spacing {spacing:.4g}"
+        raise InvalidInput("x", shown, allowed, "Move the origin.")
     reach = REACH[name]
     first = int(np.floor(low)) + 1 - reach
     total = np.zeros(int(np.floor(high)) + reach + 1 - first)

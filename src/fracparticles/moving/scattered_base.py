@@ -14,15 +14,21 @@ from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import KERNELS, kernel
 
-__all__ = ["GAUSSIAN_BAND", "ScatteredKernel", "ScatteredSum", "checked_kernels", "smooth_kernel"]
+__all__ = [
+    "GAUSSIAN_BAND",
+    "ScatteredKernel",
+    "ScatteredSum",
+    "checked_kernels",
+    "in_range",
+    "smooth_kernel",
+]
 
 # exp(-k^2/4), in the transform of every kernel with a Gaussian in it, is 2e-16 at k = 12.
 GAUSSIAN_BAND = 12.0
 # exp(-r^2) is 4e-19 at r = 6.5; the order-IV kernels hold exp(-r^2/2), which is that at 9.2.
 _GAUSSIAN_REACH = {2: 6.5, 4: 9.2}
-_ORDINARY = (
-    1e150  # strengths: divided by the least epsilon, 1e-100, and summed they do not overflow
-)
+# The largest strength: divided by an epsilon from 1e-100 to 1e100 and summed, they neither overflow nor lose digits.
+_ORDINARY = 1e-150, 1e150
 
 
 @dataclass(frozen=True)
@@ -101,9 +107,10 @@ class ScatteredSum(ABC):
         if ordinary:
             self._add_to(out, x, q, z)
             return out
-        with np.errstate(over="ignore", invalid="ignore"):
-            self._add_to(out, x, q, z)
-        finite: np.ndarray = check.finite_result("q", out)
+        q, exponent = in_range(q)
+        self._add_to(out, x, q, z)
+        with np.errstate(over="ignore"):
+            finite: np.ndarray = check.finite_result("q", np.ldexp(out, exponent))
         return finite
 
     @abstractmethod
@@ -120,19 +127,30 @@ def checked_kernels(kernels: Any) -> list[ScatteredKernel]:
     return [check.instance("kernels", k, ScatteredKernel) for k in listed]
 
 
+def in_range(q: np.ndarray) -> tuple[np.ndarray, int]:
+    """Return strengths of a size about 1, and the power of 2 that makes those given of them: sums stay the same.
+
+    Those of strengths next to the ends of the range of numbers would overflow, or lose their digits on the way.
+    """
+    exponent = int(np.frexp(np.abs(q).max(initial=0.0))[1])
+    return np.ldexp(q, -exponent), exponent
+
+
 def _checked(x: Any, q: Any, z: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, bool]:
-    """The arrays, and whether no sum of them can overflow."""
-    x = x if _in_range(x, check.SIZES[1]) else check.positions("x", x, least=0)
-    ordinary = _in_range(q, _ORDINARY)
+    """The arrays, and whether the sums of these strengths stay within the range of numbers."""
+    x = x if _no_larger(x, check.SIZES[1]) else check.positions("x", x, least=0)
+    least, most = _ORDINARY
+    ordinary = _no_larger(q, most)
     if not (ordinary and q.shape == x.shape):
         q = check.vector("q", q, x.size, least=0)
+    ordinary = ordinary and bool(max(q.max(initial=0.0), -q.min(initial=0.0)) >= least)
     if z is not None:
-        z = z if _in_range(z, check.SIZES[1]) else check.positions("z", z, least=0)
+        z = z if _no_larger(z, check.SIZES[1]) else check.positions("z", z, least=0)
         z = np.ascontiguousarray(z)
     return np.ascontiguousarray(x), np.ascontiguousarray(q), z, ordinary
 
 
-def _in_range(values: Any, largest: float) -> bool:
+def _no_larger(values: Any, largest: float) -> bool:
     """Whether it is an array of numbers of one dimension that are no larger; a nan is not."""
     return (
         type(values) is np.ndarray

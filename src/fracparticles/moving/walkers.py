@@ -8,9 +8,16 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from fracparticles.arguments import SIZES, positive_integer, real_array, scale, within
+from fracparticles.arguments import (
+    SIZES,
+    fractional_order,
+    positive_integer,
+    real_array,
+    scale,
+    within,
+)
 from fracparticles.errors import InvalidInput
-from fracparticles.special.stable import green
+from fracparticles.special.stable import reduced_green
 
 __all__ = ["few_walkers_beyond", "walkers_to_equal"]
 
@@ -66,10 +73,12 @@ def few_walkers_beyond(
         If an argument is outside its range.
     """
     n = positive_integer("walkers", walkers, most=_MOST)
-    level = scale("few", few) / (n * scale("width", width))
-    if green(0.0, t, alpha) <= level:
+    t, width = scale("t", t), scale("width", width)
+    length = t ** (1.0 / fractional_order(alpha))
+    level = scale("few", few) / n / (width / length)  # of Phi(x / length) = length G(x, t)
+    if reduced_green(0.0, alpha) <= level:
         return 0.0
     far = 1.0
-    while green(far, t, alpha) > level:
+    while reduced_green(far, alpha) > level:
         far *= 2.0
-    return float(brentq(lambda x: green(x, t, alpha) - level, 0.0, far))
+    return float(length * brentq(lambda r: reduced_green(r, alpha) - level, 0.0, far))

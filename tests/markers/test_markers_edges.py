@@ -1,0 +1,83 @@
+"""The jump of a field at the end of its markers: how far F is off, and what is said of it."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from fracparticles.errors import AccuracyWarning
+from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, Square, random, run, uniform
+from fracparticles.markers.burgers import PointSource, burgers
+from fracparticles.markers.edges import edge_error
+from fracparticles.markers.kdv import Soliton, kdv
+from fracparticles.markers.reliability import Steps
+from fracparticles.markers.stability import extremes
+
+SQUARE = uniform(Square().value, (-1.0, 1.0), 1000)
+EPSILON = 0.3
+
+
+def steps_to(t, shape="S8"):
+    """So many that a step is at most half of what is stable, in units of epsilon."""
+    count = max(2, int(np.ceil(2.0 * t / extremes(SHAPES[shape]).eta)))
+    return Steps(t * EPSILON**2 / count, count)
+
+
+def field_error(markers, t, shape):
+    """The largest error of F after t epsilon^2, and whether an edge was warned of."""
+    velocity, steps = MarkerVelocity(SHAPES[shape], EPSILON), steps_to(t, shape)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        end = run(*markers, velocity, dt=steps.dt, steps=steps.count)
+    z = np.linspace(-2.0, 2.0, 801)
+    error = np.abs(end.field(z) - Square().value(z, steps.dt * steps.count)).max()
+    return error, any("the field jumps" in str(one.message) for one in caught)
+
+
+@pytest.mark.parametrize("shape", ["S2", "S4", "S8"])
+@pytest.mark.parametrize("t", [0.003, 0.01, 0.03])
+def test_the_error_next_to_a_jump_is_the_estimated_one(shape, t):
+    """Linear waves leave out that F spreads the markers by itself: a tenth of the error."""
+    error, told = field_error(SQUARE, t, shape)
+    found = edge_error(MarkerVelocity(SHAPES[shape], EPSILON), *SQUARE, steps_to(t, shape))
+    assert told
+    assert found == pytest.approx(error, rel=0.12)
+
+
+@pytest.mark.parametrize("t", [0.1, 1.0])
+def test_what_diffusion_has_smoothed_is_not_warned_of(t):
+    error, told = field_error(SQUARE, t, "S8")
+    assert error < 0.1
+    assert not told
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_random_markers_of_a_square_are_warned_of(seed):
+    error, told = field_error(random(Square(), 2000, np.random.default_rng(seed)), 0.02, "S8")
+    assert error > 0.15
+    assert told
+
+
+def test_a_shock_that_epsilon_does_not_hold_is_warned_of():
+    """The shock stays narrower than epsilon; the markers overtake one another in it, and F is off by half."""
+    source, markers = PointSource(0.001, 1.0), 400
+    x = source.quantile((np.arange(markers) + 0.5) / markers, 0.2)
+    weights = np.full(markers, 1.0 / markers)
+    velocity, z = MarkerVelocity(SHAPES["S8"], 0.05, burgers(0.001)), np.linspace(-1.0, 3.0, 2001)
+    with pytest.warns(AccuracyWarning, match="the field jumps where the markers end"):
+        end = run(x, weights, velocity, dt=0.01, steps=20)
+    exact = source.value(z, 0.4)
+    assert np.abs(end.field(z) - exact).max() > 0.4 * exact.max()
+
+
+def test_fields_without_a_jump_at_the_ends_have_no_error_there():
+    """exp(-2.8^2) of a bell; a periodic line; waves of a step, which KdV makes of the background."""
+    steps = Steps(1e-4, 2)
+    bell = uniform(Gaussian().value, (-2.8, 2.8), 400)
+    assert edge_error(MarkerVelocity(SHAPES["S8"], EPSILON), *bell, steps) < 0.002
+    line = 0.01 * np.arange(1000), np.full(1000, 0.01)
+    assert edge_error(MarkerVelocity(SHAPES["S8"], EPSILON, period=10.0), *line, steps) == 0.0
+    soliton = uniform(Soliton(1.0, 1.0).value, (-8.0, 8.0), 400)
+    assert edge_error(MarkerVelocity(SHAPES["S8"], EPSILON, kdv, 2), *soliton, steps) == 0.0
