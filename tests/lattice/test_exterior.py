@@ -14,7 +14,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.schemes.stability import symbol_range
 
-LONG = 2_000_000
+LONG = 200_000
 
 
 def brute_force(weight, alpha: float, n: int, i: int) -> float:

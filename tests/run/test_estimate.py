@@ -30,6 +30,8 @@ PLANE = {name: LINE[name] for name in ("KPSE, order 4", "GPSE")} | {
     "FPSE": {"scheme": "FPSE", "dt": 0.05}
 }
 SETTLED = 1e-11  # below it round-off has its say
+# The others are mixtures of stable densities, any of which hypothesis finds below.
+ROUGH = [name for name in PROBLEMS if name not in ("fundamental", "mixture")]
 
 
 def estimated_and_true(problem, half_width, spacing, **given):
@@ -45,7 +47,7 @@ def estimated_and_true(problem, half_width, spacing, **given):
 
 @pytest.mark.parametrize("way", LINE)
 @pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize("name", ROUGH)
 def test_on_the_line_it_is_within_a_factor_of_three(name, beta, way):
     problem = PROBLEMS[name](beta)
     for widths, spacing in ((4.0, 0.2), (20.0, 0.1)):
@@ -54,7 +56,7 @@ def test_on_the_line_it_is_within_a_factor_of_three(name, beta, way):
 
 
 @pytest.mark.parametrize("way", PLANE)
-@pytest.mark.parametrize("name", ["fundamental", "mixture", "other tail", "compact", "two scales"])
+@pytest.mark.parametrize("name", ROUGH)
 def test_in_the_plane_too(name, way):
     problem = PROBLEMS[name](0.5, 2)
     widths, spacing = (3.0, 0.12) if name == "two scales" else (6.0, problem.width / 8.0)

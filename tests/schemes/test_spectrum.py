@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from combinations import case_of
 from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.operators import ConvolutionOperator
-from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import (
     dense_matrix,
@@ -21,24 +21,6 @@ from fracparticles.time import STEP_POLYNOMIALS
 OVERLAPS = {"GPSE": (1.65, 2.0, 2.9), "FD": (2.0,)}
 # FPSE of order IV with overlap 2.9 has a defective eigenvalue near zero: round-off eps splits it by sqrt(eps).
 ROUND_OFF = np.sqrt(np.finfo(float).eps)
-
-
-def case_of(combination, beta, overlap, n, **other) -> Case:
-    scheme, order, exterior = combination
-    given = {"integrator": "exponential", **({} if scheme == "FD" else {"overlap": overlap})}
-    if scheme == "GPSE":
-        step = overlap ** (1.0 + beta)
-        given = {"dt": step, "t_final": 0.5 + 2.0 * step}
-    given.update(other)
-    return Case(
-        scheme=scheme,
-        order=order,
-        exterior=exterior,
-        beta=beta,
-        half_width=float(n),
-        spacing=1.0,
-        **given,
-    )
 
 
 @pytest.mark.parametrize("beta", [0.02, 0.1, 0.5, 0.9, 0.98])

@@ -10,9 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm, toeplitz
 from scipy.special import ive
-from test_spectrum import case_of
 
-from combinations import combinations_without
+from combinations import case_of, combinations_without
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.run.solver import prepare
