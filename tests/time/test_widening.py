@@ -156,9 +156,9 @@ def test_doublings_and_not_units_of_time_are_paid_for(monkeypatch):
             made.append(self)
             super().__init__(*given, **more)
 
-        def __call__(self, u):
+        def __call__(self, *given):
             done.append(self)
-            return super().__call__(u)
+            return super().__call__(*given)
 
     monkeypatch.setattr(continued, "Circle", Counted)
     alpha, h = 1.5, 0.1

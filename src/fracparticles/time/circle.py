@@ -12,9 +12,17 @@ from functools import reduce
 import numpy as np
 from scipy.fft import irfft, irfftn, rfft, rfftn
 
-__all__ = ["Amplification", "Circle"]
+from fracparticles.time.short_waves import ShortWaves
+
+__all__ = ["Amplification", "Circle", "Look", "unseen"]
 
 Amplification = Callable[[np.ndarray], np.ndarray]
+Look = Callable[[np.ndarray], object]
+"""What is shown u^ of the data before the run."""
+
+
+def unseen(spectrum: np.ndarray) -> None:
+    """Nobody looks."""
 
 
 class Circle:
@@ -49,7 +57,7 @@ class Circle:
         every: int = 1,
         moved: Sequence[float] | None = None,
     ) -> None:
-        self._axes, self._every = tuple(range(-dim, 0)), every
+        self._axes, self._every, self._points = tuple(range(-dim, 0)), every, points
         self._shape = (points // every,) * dim
         tau = scaled_time * float(every) ** -alpha
         self._amplification = _amplification(points // every, dim, alpha, tau, amplification)
@@ -57,22 +65,20 @@ class Circle:
             steps = [by / every for by in moved]
             self._amplification = self._amplification * _displacement(points // every, steps)
 
-    def __call__(self, u: np.ndarray) -> np.ndarray:
-        """Return the result from u, shape (.., L, .., L)."""
-        return self.result(self.spectrum(u))
-
-    def spectrum(self, u: np.ndarray) -> np.ndarray:
-        """Return u^ from u, shape (.., L, .., L); the last axis as of a real transform."""
-        return np.asarray(rfft(u) if len(self._axes) == 1 else rfftn(u, axes=self._of(u)))
-
-    def result(self, spectrum: np.ndarray) -> np.ndarray:
-        """Return the result from u^, whose array may be overwritten."""
+    def __call__(self, u: np.ndarray, look: Look = unseen) -> np.ndarray:
+        """Return the result from u, shape (.., L, .., L); show u^, the last axis as of a real transform, to `look`."""
+        spectrum = np.asarray(rfft(u) if len(self._axes) == 1 else rfftn(u, axes=self._of(u)))
+        look(spectrum)
         if self._every > 1:
             spectrum = self._long_waves(spectrum)
         spectrum *= self._amplification
         if len(self._axes) == 1:
             return np.asarray(irfft(spectrum, self._shape[0]))
         return np.asarray(irfftn(spectrum, self._shape, axes=self._of(spectrum)))
+
+    def waves(self, spectrum: np.ndarray) -> ShortWaves:
+        """Return what u^ says about waves that are not on the circle."""
+        return ShortWaves.of(spectrum, len(self._axes), self._points)
 
     def _of(self, u: np.ndarray) -> tuple[int, ...] | None:
         """The axes of space, None if they are all: then they need not be looked for."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.time.circle import Amplification, Circle
+from fracparticles.time.circle import Amplification, Circle, Look, unseen
 from fracparticles.time.tails import Tails
 
 __all__ = ["Continued"]
@@ -38,6 +38,8 @@ class Continued:
     Attributes
     ----------
     tails : Tails
+    waves : callable
+        See `Circle`.
     """
 
     def __init__(
@@ -66,16 +68,18 @@ class Continued:
             self._shown = (..., *(slice(first // every, first // every + points),) * dim)
         time = scaled_time * float(length) ** -alpha
         self.tails = Tails(inside, shown, length, alpha, time, before, after, moved, outer)
-        self._circle = Circle(length, dim, alpha, scaled_time, amplification, every, moved)
-        self._every = every
+        circle = Circle(length, dim, alpha, scaled_time, amplification, every, moved)
+        self._circle, self._every, self.waves = circle, every, circle.waves
 
-    def __call__(self, u: np.ndarray, b: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def __call__(
+        self, u: np.ndarray, b: np.ndarray | None = None, look: Look = unseen
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return the result from data of shape (data, N, .., N), and the numbers on which its tail depends.
 
-        With the amplitudes b of the tail of the data nothing is fitted.
+        With the amplitudes b of the tail of the data nothing is fitted. `look` is shown u^ of the data on the circle.
         """
         longer, images, numbers = self.tails.complete(u, b)
-        return self._circle(longer)[self._shown] - images, numbers
+        return self._circle(longer, look)[self._shown] - images, numbers
 
     def amplitudes(self, numbers: np.ndarray) -> np.ndarray:
         """Return those of the tail of the result, shape (data, terms), in units of its spacing."""

@@ -22,10 +22,10 @@ from scipy.fft import next_fast_len
 
 from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.time.circle import Amplification, Circle
+from fracparticles.time.circle import Amplification, Circle, Look, unseen
 from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import MOST_TERMS, later_exponents, powers, tail_exponents
-from fracparticles.time.short_waves import unresolved, unresolved_of
+from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["WholeSpace", "evolve", "tail_exponents"]
 
@@ -89,8 +89,8 @@ def evolve(
     Warns
     -----
     AccuracyWarning
-        If the powers that continue the solution miss it at the faces of the lattice by a thousandth of its maximum; if
-        waves that the lattice does not hold may be as much of it.
+        If the powers that continue the solution miss it at the faces of the lattice by a thousandth of its maximum, and
+        the time is long enough for that to count; if waves that the lattice does not hold may be as much of it.
 
     Examples
     --------
@@ -177,7 +177,8 @@ class WholeSpace:
         self._inside: tuple[Any, ...] | None = None  # the lattice in a longer circle
         if length != points:
             self._inside = (..., *(slice(self._start, self._start + points),) * dim)
-        self._decay = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
+        self._alpha, self._tau = alpha, scaled_time
+        self._changed = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
         self._circle: Circle | Continued
         if terms:
             fundamental = tail_exponents(alpha, terms)
@@ -198,44 +199,51 @@ class WholeSpace:
         InvalidInput
             If u has another shape.
         """
-        return self._run(u, judged=False)[0]
+        return self._run(u)[0]
 
     def solve_and_judge(self, u: np.ndarray) -> tuple[np.ndarray, float, float]:
         """Return the solution, and two doubts.
 
-        How far its tail is from it at the faces of the lattice, over its maximum; and what of it may be of waves that
-        the lattice does not hold, see `short_waves`. Of several data, the worst. A doubt below a thousandth may be an
-        upper bound.
+        How far its tail is from it at the faces of the lattice, over its maximum, less where the time is too short for
+        that to count; and what waves that the lattice does not hold may be of that, see `short_waves`. Of several data,
+        the worst. A doubt below a thousandth may be an upper bound.
 
         Raises
         ------
         InvalidInput
             If u has another shape, or sums of it overflow.
         """
+        seen: list[ShortWaves] = []
         with np.errstate(over="ignore", invalid="ignore"):
-            result, numbers, lacking = self._run(u, judged=True)
+            result, numbers = self._run(
+                u, lambda spectrum: seen.append(self._circle.waves(spectrum))
+            )
         check.finite_result("u", result)
-        return result, self._miss(result, numbers), self._decay * lacking
+        return result, self._changed * self._miss(result, numbers), self._lacking(result, seen[0])
 
-    def _run(self, u: np.ndarray, judged: bool) -> tuple[np.ndarray, np.ndarray | None, float]:
-        """Return the solution, the numbers of its tail if it has one, and what the data lack if that is asked for."""
+    def _run(self, u: np.ndarray, look: Look = unseen) -> tuple[np.ndarray, np.ndarray | None]:
+        """Return the solution, and the numbers of its tail if it has one; show u^ of the data to `look`."""
         points, dim = self._points, self._dim
         shape = (points,) * dim
         if u.ndim < dim or u.shape[u.ndim - dim :] != shape:
             allowed = f"the shape {shape}, after what counts the data"
             raise InvalidInput("u", u.shape, allowed, "Give a value at each lattice point.")
-        if self._inside is None and isinstance(self._circle, Circle):
-            spectrum = self._circle.spectrum(u)
-            lacking = unresolved_of(spectrum, dim) if judged else 0.0
-            return self._circle.result(spectrum), None, lacking
-        each, numbers = u.reshape(_count(u, dim), *shape), None
         if isinstance(self._circle, Continued):
-            result, numbers = self._circle(each)
-        else:
-            longer = np.zeros((len(each), *(self._length,) * dim))
-            longer[self._inside] = each
-            result = self._circle(longer)[self._inside]
-        return result.reshape(u.shape), numbers, unresolved(each) if judged else 0.0
+            result, numbers = self._circle(u.reshape(_count(u, dim), *shape), look=look)
+            return result.reshape(u.shape), numbers
+        if self._inside is None:
+            return self._circle(u, look), None
+        longer = np.zeros((*u.shape[: u.ndim - dim], *(self._length,) * dim))
+        longer[self._inside] = u
+        return self._circle(longer, look)[self._inside], None
+
+    def _lacking(self, result: np.ndarray, waves: ShortWaves) -> float:
+        """Return what the waves that the lattice does not hold may be of the greatest value."""
+        of_each = _count(result, self._dim), self._points**self._dim
+        size = np.abs(result).reshape(of_each).max(axis=1) + _TINY
+        if (waves.most / size).max(initial=0.0) < _NOTICED:
+            return float((waves.most / size).max(initial=0.0))
+        return min(1.0, float((waves.of_a_peak(self._alpha, self._tau) / size).max(initial=0.0)))
 
     def _miss(self, result: np.ndarray, numbers: np.ndarray | None) -> float:
         """Return how far the tail is from the result in the middles of the faces, over its maximum."""

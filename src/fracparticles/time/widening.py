@@ -29,7 +29,7 @@ from fracparticles.arguments import finite_array, fractional_order, positive_rea
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import later_exponents, powers, tail_exponents
-from fracparticles.time.short_waves import unresolved
+from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["evolve_long"]
 
@@ -104,7 +104,6 @@ def evolve_long(
         )
     points, dim = u.shape[0], u.ndim
     doubling = _LET_GO * (2.0 / np.pi) ** alpha  # D t / h^alpha at which the spacing doubles
-    _warn_of_short_waves(u)
     middle = _middle(u)
     before = tail_exponents(alpha, _TERMS[dim]) if tail is None else powers(tail, dim)
     after = later_exponents(before, alpha, max([_GREATEST, *before]))
@@ -112,9 +111,7 @@ def evolve_long(
         _step, points, dim, alpha, before=before, after=after, middle=middle, outer=True
     )
     if left <= doubling * h**alpha:
-        only = first(left * h**-alpha, moved=None)
-        _warn_of_tails(only, u, points)
-        return _onward(only, u)[0], h
+        return _begun(first(left * h**-alpha, moved=None), u)[0], h
     if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
         least = int(np.ceil(2.0 * _NARROW * doubling ** (1.0 / alpha)))
         warnings.warn(
@@ -123,9 +120,7 @@ def evolve_long(
             AccuracyWarning,
             stacklevel=2,
         )
-    start = first(doubling, every=2)
-    _warn_of_tails(start, u, points)
-    u, b = _onward(start, u)
+    u, b = _begun(first(doubling, every=2), u)
     moved = -h * np.array(middle)  # back to the middle of the lattice that was given
     left, h = left - doubling * h**alpha, 2.0 * h
     between = doubling * (1.0 - 2.0**-alpha)
@@ -146,36 +141,42 @@ def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
     return Continued(points, length, *given, every=every, **more)
 
 
-def _onward(
-    step: Continued, u: np.ndarray, b: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the result and the amplitudes of its tail, from those of the data; or from the data alone."""
+def _begun(step: Continued, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the result of the first step and the amplitudes of its tail; warn if the data are not what it takes."""
+    seen: list[ShortWaves] = []
+    result, numbers = step(u[None], look=lambda spectrum: seen.append(step.waves(spectrum)))
+    _warn_of_short_waves(seen[0].of_the_integral)
+    _warn_of_tails(step, u)
+    return result[0], step.amplitudes(numbers)
+
+
+def _onward(step: Continued, u: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the result and the amplitudes of its tail, from those of the data."""
     result, numbers = step(u[None], b)
     return result[0], step.amplitudes(numbers)
 
 
-def _warn_of_short_waves(u: np.ndarray) -> None:
+def _warn_of_short_waves(lacking: float) -> None:
     """Warn if the lattice does not hold the data: then their sum is not their integral, for ever."""
-    lacking = unresolved(u[None])
     if lacking > _SHORT_WAVES:
         warnings.warn(
             f"the lattice does not resolve the data: up to {lacking:.2g} of their integral may be missed. Take a "
             "smaller spacing, if they are samples of something finer.",
             AccuracyWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 
-def _warn_of_tails(step: Continued, u: np.ndarray, points: int) -> None:
+def _warn_of_tails(step: Continued, u: np.ndarray) -> None:
     """Warn if the powers do not say what lies beyond the lattice."""
     doubt = step.tails.meeting.doubt(u)
     if doubt > _DOUBTFUL:
         warnings.warn(
-            f"the powers that continue the data beyond the lattice of {points} points an axis leave up to {doubt:.2g} "
+            f"the powers that continue the data beyond the lattice of {len(u)} points an axis leave up to {doubt:.2g} "
             "of their integral open. Take a wider lattice, with the same spacing; or say by which powers they fall: "
             "tail=() for data that end.",
             AccuracyWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 
