@@ -97,10 +97,17 @@ def lifted_in_time(
     if not varies:
         fixed = lifted(start)
         return lambda t: fixed
-    degree = _FIRST
+
+    def at(steps: FloatArray) -> FloatArray:
+        """The parts at the times of these nodes, the last one first."""
+        nodes = 0.5 + 0.5 * np.cos(np.pi * steps)
+        return np.array([lifted(start + span * node)[:3] for node in nodes])
+
+    degree, values = _FIRST, at(np.arange(0.5 * _FIRST + 1.0) / (0.5 * _FIRST))
     while degree <= _LAST:
-        nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(degree + 1) / degree)
-        values = np.array([lifted(start + span * node)[:3] for node in nodes[::-1]])
+        # The nodes of half the degree are every second one of these.
+        between = at(np.arange(1.0, degree, 2.0) / degree)
+        values = np.insert(values, np.arange(1, len(values)), between, axis=0)
         c = dct(values, type=1, axis=0) / degree
         c[[0, -1]] *= 0.5
         # Of w and D A w; D A w, and the flux at the ends, may be round-off of w.
