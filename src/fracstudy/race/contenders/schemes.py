@@ -137,18 +137,18 @@ class PapersWay(Contender):
     def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
         """Return a few steps made ready, and the whole run by FFT for the error."""
         case = Case(beta=problem.beta, dt=5.0e-5, **fields)
-        few = naive_steps(case, _NAIVE_STEPS)
+        few = few_steps(case, _NAIVE_STEPS, "naive")
         ready = Ready((case.x,), case.volumes, prepare(few).solve, scale=case.steps / _NAIVE_STEPS)
         return replace(ready, result=lambda u0: compute(case, u0).u)
 
 
-def naive_steps(case: Case, steps: int) -> Case:
-    """Return the same lattice with so many of the time steps, sums over all pairs."""
+def few_steps(case: Case, steps: int, summation: str) -> Case:
+    """Return the same lattice with so many of the time steps, one by one, and sums of that kind."""
     fields = case.model_dump(exclude_none=True, exclude={"truncation"})
     few = {
         "half_width": case.reach,  # C would follow from the final time
         "t_final": case.t_initial + steps * case.time_step,
-        "summation": "naive",
+        "summation": summation,
         "evaluation": "stepping",
     }
     return Case(**{**fields, **few})
