@@ -6,7 +6,7 @@ import tracemalloc
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from itertools import compress, islice
 from typing import Any
 
@@ -186,9 +186,15 @@ def _block_time(record: _Record) -> float:
     if ready.batched:
         times.append(measure(partial(ready.solve, block), 2, LONG)[0].minimum)
     if ready.points <= _MATRIX:
-        matrix = np.zeros((ready.points, ready.points))
-        times.append(measure(partial(np.dot, block.reshape(count, -1), matrix), 3)[0].minimum)
+        times.append(_matrix_time(count, ready.points))
     return min(times, default=record.solves.minimum * count) / count
+
+
+@lru_cache(maxsize=_MATRIX)
+def _matrix_time(count: int, points: int) -> float:
+    """The time of a block's product with a matrix, measured once: it is the same for all methods."""
+    block, matrix = np.zeros((count, points)), np.zeros((points, points))
+    return measure_warm(partial(np.dot, block, matrix), 5)[0].minimum
 
 
 def _peak_memory(problem: Problem, record: _Record) -> float:
