@@ -125,14 +125,16 @@ def lifted_in_time(
 
 
 class _Interpolated:
-    """A lift by Chebyshev coefficients of its parts, shape (degree + 1, 3, ..)."""
+    """A lift by Chebyshev coefficients of its parts, shape (degree + 1, 3, ..), and of the derivative of the first."""
 
     def __init__(self, c: FloatArray, start: float, span: float) -> None:
-        self._c, self._start, self._span = c, start, span
-        self._slope = chebyshev.chebder(c[:, 0], scl=2.0 / span)
+        self._shape, self._start, self._span = c.shape[2:], start, span
+        self._c = np.zeros((c.shape[0], 4, int(np.prod(self._shape))))
+        self._c[:, :3] = c.reshape(*c.shape[:2], -1)
+        self._c[:-1, 3] = chebyshev.chebder(self._c[:, 0], scl=2.0 / span)
 
     def __call__(self, t: float) -> Lift:
         s = min(1.0, max(-1.0, 2.0 * (t - self._start) / self._span - 1.0))
-        parts = np.asarray(chebyshev.chebval(s, self._c))
-        slope = np.asarray(chebyshev.chebval(s, self._slope))
-        return Lift(parts[0], parts[1], parts[2], slope)
+        polynomials = np.cos(np.arccos(s) * np.arange(len(self._c)))
+        parts = polynomials @ self._c.reshape(len(self._c), -1)
+        return Lift(*parts.reshape(4, *self._shape))
