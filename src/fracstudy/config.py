@@ -16,7 +16,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracstudy.read_yaml import read_yaml
-from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
+from fracstudy.run_blocks import RunBlock
+from fracstudy.scene import Scene, check_parameters
+from fracstudy.scene_files import complaint, read_scenes
 
 __all__ = [
     "CONFIG",
