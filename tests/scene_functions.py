@@ -11,7 +11,8 @@ import pandas as pd
 import yaml
 
 from fracstudy.inputs import Result
-from fracstudy.scene import Scene, call, read_scenes
+from fracstudy.scene import Scene, call
+from fracstudy.scene_files import read_scenes
 
 ROOT = Path(__file__).resolve().parents[1]
 

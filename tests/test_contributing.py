@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from copies import answer, copy_packages
-from fracstudy.claims import read_printed
-from fracstudy.criteria import Status
 from fracstudy.findings import measured
 from fracstudy.ledger import ledger
+from fracstudy.printed import read_printed
+from fracstudy.verdicts import Status
 
 ROOT = Path(__file__).resolve().parents[1]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
@@ -26,7 +26,7 @@ import numpy as np
 import fracparticles as fp
 from fracparticles.run.solver import compute
 from fracstudy.make import make
-from fracstudy.scene import read_scenes
+from fracstudy.scene_files import read_scenes
 
 warnings.simplefilter("ignore")
 fields = {"beta": 0.5, "half_width": 20.0, "integrator": "exponential", "exterior": "truncated"}

@@ -11,12 +11,13 @@ import pandas as pd
 import pytest
 import yaml
 
-from fracstudy.claims import Statement, Value, read_claims, read_printed
+from fracstudy.claims import Statement, Value
 from fracstudy.config import read_config
-from fracstudy.criteria import Status
 from fracstudy.findings import read_findings
 from fracstudy.ledger import ledger as made_ledger
 from fracstudy.ledger_text import read_ledger, summary_line
+from fracstudy.printed import read_claims, read_printed
+from fracstudy.verdicts import Status
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = yaml.safe_load((ROOT / "config/study.yaml").read_text())

@@ -126,8 +126,8 @@ def reported(finished):
 
 
 def test_the_ledger_judges_every_claim_and_the_report_shows_it(reported):
-    from fracstudy.claims import read_claims
     from fracstudy.ledger_text import read_ledger, summary_line
+    from fracstudy.printed import read_claims
 
     df = read_ledger(reported / "results-smoke/claims.csv")
     printed = [

@@ -16,7 +16,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracstudy.read_yaml import read_yaml
-from fracstudy.scene import RunBlock, Scene, check_parameters, complaint, read_scenes
+from fracstudy.run_blocks import RunBlock
+from fracstudy.scene import Scene, check_parameters
+from fracstudy.scene_files import complaint, read_scenes
 
 __all__ = [
     "CONFIG",
@@ -34,8 +36,8 @@ CONFIG = Path("config/study.yaml")
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
 # Runs of a job by dimension: its start takes as long as a few of them. Those of particles that move take a hundred
 # times as long.
-_AT_ONCE = {1: 60, 2: 12, 3: 4}
-_MOVING_AT_ONCE = 3
+_AT_ONCE = {1: 120, 2: 24, 3: 8}
+_MOVING_AT_ONCE = 6
 _SMOKE_JOBS = 2  # where it takes longer than all of them
 
 

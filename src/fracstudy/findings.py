@@ -20,7 +20,8 @@ import pandas as pd
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from fracparticles.files import write_text
-from fracstudy.claims import LedgerError, refuse_repeats
+from fracstudy.printed import refuse_repeats
+from fracstudy.verdicts import LedgerError
 
 __all__ = ["Finding", "each", "filled", "measured", "read_findings", "write_findings"]
 

@@ -13,8 +13,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-from fracstudy.claims import read_printed
 from fracstudy.config import read_project
+from fracstudy.printed import read_printed
 from fracstudy.scene import Scene
 
 __all__ = ["index"]

@@ -6,16 +6,11 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from fracstudy.claims import (
-    LedgerError,
-    Sentence,
-    Statement,
-    Value,
-    read_conventions,
-    refuse_repeats,
-)
-from fracstudy.criteria import Condition, Convention, Judged, Status, judge_value, judged
+from fracstudy.claims import Sentence, Statement, Value
+from fracstudy.criteria import Condition, Convention, Judged, judged
 from fracstudy.findings import Finding, filled
+from fracstudy.printed import read_conventions, refuse_repeats
+from fracstudy.verdicts import LedgerError, Status, judge_value
 
 if TYPE_CHECKING:
     import pandas as pd

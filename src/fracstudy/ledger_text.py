@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fracparticles.files import write_text
-from fracstudy.criteria import LedgerError, Status
 from fracstudy.ledger import COLUMNS
+from fracstudy.verdicts import LedgerError, Status
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,9 +8,10 @@ from pathlib import Path
 import pandas as pd
 
 from fracparticles.run.dataset import read_benchmark
-from fracstudy.claims import Value, read_claims
+from fracstudy.claims import Value
 from fracstudy.findings import write_findings
 from fracstudy.inputs import Inputs, Result, write_table
+from fracstudy.printed import read_claims
 from fracstudy.scene import Scene, call
 
 __all__ = ["made", "make"]

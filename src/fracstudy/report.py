@@ -18,12 +18,13 @@ import jinja2
 
 from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
-from fracstudy.claims import read_conventions
 from fracstudy.config import Document
-from fracstudy.criteria import CLOSE, Convention, Status
+from fracstudy.criteria import CLOSE, Convention
 from fracstudy.ledger_text import sentence_status, short_markdown, summary_line
 from fracstudy.lookup import LookUps
+from fracstudy.printed import read_conventions
 from fracstudy.scene import Scene
+from fracstudy.verdicts import Status
 
 if TYPE_CHECKING:
     import pandas as pd

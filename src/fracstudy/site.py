@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any
 from fracparticles.errors import FracparticlesError
 from fracparticles.files import write_text
 from fracstudy.config import Document
-from fracstudy.criteria import Status
 from fracstudy.ledger_text import ours_text, read_ledger, summary_line
 from fracstudy.scene import Scene
+from fracstudy.verdicts import Status
 
 if TYPE_CHECKING:
     import pandas as pd

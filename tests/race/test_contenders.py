@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
+from contextlib import suppress
+
 import numpy as np
 import pytest
 from scipy.linalg import expm, toeplitz
 from scipy.special import gamma
 
 from fracparticles.special.tails import tail_constant
-from fracstudy.race.contender import Contender, Ready, lattices
+from fracstudy.race.contender import Contender, Ready, lattices, sweep
 from fracstudy.race.contenders import CONTENDERS
 from fracstudy.race.contenders.differences import DuoWykZhang, FractionalCentred, HuangOberman
 from fracstudy.race.contenders.rational import _functions
@@ -124,7 +127,7 @@ class Echo(Contender):
     name, label, group = "echo", "echo", "peers"
 
     def trials(self, problem):
-        return [{"variant": "a", "size": size} for size in (0.0, 0.5)]
+        yield from ({"variant": "a", "size": size} for size in (0.0, 0.5))
 
     def prepare(self, problem, variant, size):
         x = (np.linspace(-6.0, 6.0, 41),)
@@ -142,8 +145,26 @@ def test_rows_of_trials():
     assert rows[0]["points"] == 41
 
 
+def test_a_sweep_leaves_out_what_gains_nothing():
+    """Of errors h^4 + C^-3 that fall with h and C, each part by more than 1 / 0.9 a step: no better grid is missed."""
+    places = list(itertools.product(range(8), range(6)))
+    error = {(i, k): 2.0 ** (-4.0 * i) + 2.0 ** (-3.0 * k) for i, k in places}
+    whole = list(sweep({place: {"place": place} for place in places}, variant="a"))
+    assert [given["place"] for given in whole] == places  # nobody says an error
+    trials = sweep({place: {"place": place} for place in places}, variant="a")
+    tried, given = [], next(trials)
+    with suppress(StopIteration):
+        while True:
+            tried.append(given["place"])
+            given = trials.send(error[given["place"]])
+    assert len(tried) < 0.8 * len(places)
+    for i, k in set(places) - set(tried):
+        least = min(error[a, b] for a, b in tried if a <= i and b <= k and (a, b) != (i, k))
+        assert error[i, k] > 0.85 * least
+
+
 def test_lattices_are_even_and_not_too_large():
     problem = PROBLEMS["fundamental"](0.5)
-    given = list(lattices(problem))
+    given = list(lattices(problem).values())
     assert len(given) == len({(one["points"], one["half_width"]) for one in given}) > 40
     assert all(one["points"] % 2 == 0 and one["points"] <= 2**16 for one in given)

@@ -8,7 +8,7 @@ import pytest
 import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
-from fracstudy.scene import RunBlock, expand
+from fracstudy.run_blocks import RunBlock, expand
 
 GIVEN = {"scheme": "KPSE", "half_width": 20.0, "spacing": 0.2, "integrator": "exponential"}
 

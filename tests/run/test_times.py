@@ -14,7 +14,7 @@ from fracparticles.run.cli import main
 from fracparticles.run.solver import compute
 from fracparticles.time.chebyshev import exponential
 from fracparticles.time.snapshots import exponential_snapshots
-from fracstudy.scene import RunBlock, expand
+from fracstudy.run_blocks import RunBlock, expand
 
 TIMES = (0.6, 0.75, 1.0, 1.5)
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "half_width": 20.0, "spacing": 0.2}

@@ -9,7 +9,7 @@ import pytest
 
 from fracparticles.run.dataset import write
 from fracparticles.run.solve import solve
-from fracstudy.scene import expand
+from fracstudy.run_blocks import expand
 
 
 @pytest.fixture(scope="module")

@@ -5,16 +5,9 @@ from __future__ import annotations
 import pytest
 import yaml
 
-from fracstudy.claims import (
-    LedgerError,
-    Sentence,
-    Statement,
-    Value,
-    read_claims,
-    read_conventions,
-    read_printed,
-    refuse_repeats,
-)
+from fracstudy.claims import Sentence, Statement, Value
+from fracstudy.printed import read_claims, read_conventions, read_printed, refuse_repeats
+from fracstudy.verdicts import LedgerError
 
 VALUE = {
     "id": "L-T3.FPSE.beta0.5",

@@ -9,16 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracstudy.criteria import (
-    CLOSE,
-    Condition,
-    Convention,
-    LedgerError,
-    Status,
-    judge_value,
-    judged,
-    unit_of_last_digit,
-)
+from fracstudy.criteria import CLOSE, Condition, Convention, judged
+from fracstudy.verdicts import LedgerError, Status, judge_value, unit_of_last_digit
 
 WORDS = {
     "several": Convention(at_least=2.0, means="Several: at least twice."),

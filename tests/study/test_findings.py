@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fracstudy.claims import LedgerError
 from fracstudy.findings import Finding, each, filled, measured, read_findings, write_findings
+from fracstudy.verdicts import LedgerError
 
 ID = "L-T3.ordering"
 

@@ -13,7 +13,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fracstudy.claims import Sentence, Value
-from fracstudy.criteria import Convention, LedgerError, Status
+from fracstudy.criteria import Convention
 from fracstudy.findings import Finding, measured
 from fracstudy.ledger import COLUMNS, judge, ledger
 from fracstudy.ledger_text import (
@@ -24,6 +24,7 @@ from fracstudy.ledger_text import (
     summary_line,
     write_ledger,
 )
+from fracstudy.verdicts import LedgerError, Status
 
 WORDS = {
     "several": Convention(at_least=2.0, means="At least twice."),

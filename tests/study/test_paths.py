@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from fracparticles.run.case import Case
 from fracstudy.config import batches
-from fracstudy.scene import Scene, expand
+from fracstudy.run_blocks import expand
+from fracstudy.scene import Scene
 
 GIVEN = {"scheme": "KPSE", "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "dt": 1e-4}
 GRADED = {"scheme": "GPSE", "dt": None, "graded_scale": 5.0}

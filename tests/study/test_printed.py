@@ -12,9 +12,10 @@ from string import Formatter
 import pytest
 import yaml
 
-from fracstudy.claims import Sentence, Statement, Value, read_conventions, read_printed
+from fracstudy.claims import Sentence, Statement, Value
 from fracstudy.config import StudyConfig
-from fracstudy.scene import read_scenes
+from fracstudy.printed import read_conventions, read_printed
+from fracstudy.scene_files import read_scenes
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = StudyConfig(**yaml.safe_load((ROOT / "config/study.yaml").read_text("utf-8")))

@@ -8,15 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from fracstudy.claims import read_printed
 from fracstudy.config import Document
-from fracstudy.criteria import Convention, Status
+from fracstudy.criteria import Convention
 from fracstudy.findings import measured
 from fracstudy.ledger import ledger
 from fracstudy.ledger_text import write_ledger
 from fracstudy.lookup import LookUpError
+from fracstudy.printed import read_printed
 from fracstudy.report import ReportError, build
 from fracstudy.scene import Scene
+from fracstudy.verdicts import Status
 
 ROOT = Path(__file__).parents[2]
 TEMPLATES = ROOT / "report/template"

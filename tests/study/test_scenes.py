@@ -10,7 +10,9 @@ import yaml
 
 from fracparticles.errors import InvalidInput
 from fracstudy.config import batches, jobs, read_config
-from fracstudy.scene import Scene, expand, merged, resolved
+from fracstudy.run_blocks import expand
+from fracstudy.scene import Scene
+from fracstudy.scene_files import merged, resolved
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = {

@@ -52,7 +52,7 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
     """A repository of one scene, its results, its report, and a library of one function."""
-    from fracstudy.claims import read_printed
+    from fracstudy.printed import read_printed
 
     root = tmp_path_factory.mktemp("repository")
     for page in (*PAGES, "src/fracparticles/README.md"):

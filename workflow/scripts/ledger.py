@@ -3,10 +3,10 @@
 import sys
 from typing import Any
 
-from fracstudy.claims import read_printed
 from fracstudy.findings import read_findings
 from fracstudy.ledger import ledger
 from fracstudy.ledger_text import write_ledger
+from fracstudy.printed import read_printed
 
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115

@@ -98,7 +98,7 @@ class Disc(ModalDomain):
     def applied(self, u: FloatArray) -> FloatArray:
         """Return D A u, with u = 0 outside."""
         root = self._root[:, None]
-        out = np.einsum("lij,jl->il", self._matrices, root * self._transformed(u))
+        out = _products(self._matrices, (root * self._transformed(u)).T).T
         return -self._rate * self._back(out / root)
 
     def at_rest(self, load: FloatArray) -> FloatArray:
@@ -224,10 +224,10 @@ class Disc(ModalDomain):
         size = np.sqrt(self.volumes[:, 0] / self.angular * both[:, None])  # (waves, N)
 
         def into(u: FloatArray) -> Any:
-            return np.einsum("lji,lj->li", vectors, size * self._transformed(u).T)
+            return _products(vectors.transpose(0, 2, 1), size * self._transformed(u).T)
 
         def back(y: Any) -> FloatArray:
-            return self._back((np.einsum("lij,lj->li", vectors, y) / size).T)
+            return self._back((_products(vectors, y) / size).T)
 
         return Modes(self._rate * values, into, back)
 
@@ -248,11 +248,15 @@ class Disc(ModalDomain):
             self._transformed(sampled(1.0 / rings.r[:, None]) - level),
             self._transformed(edge - level)[0],
         )
-        all_of_it = exterior_rate(rings, self.alpha, 0).sum(axis=1)
-        inflow = np.outer(rings.outward_rate(self.alpha) - all_of_it, near)
-        for wave in range(near.size):
-            inflow[:, wave] += exterior_rate(rings, self.alpha, wave) @ far[:, wave]
-        return level, inflow
+        beyond_rings, rates = self._from_outside
+        return level, np.outer(beyond_rings, near) + _products(rates, far.T).T
+
+    @cached_property
+    def _from_outside(self) -> tuple[FloatArray, FloatArray]:
+        """The rate to the outside that no ring there stands for, and those of the rings for each wave number."""
+        waves = range(self.angular // 2 + 1)
+        rates = np.array([exterior_rate(self._rings, self.alpha, wave) for wave in waves])
+        return self._rings.outward_rate(self.alpha) - rates[0].sum(axis=1), rates
 
     # --- fields and their waves in the angle ------------------------------------------------------
 
@@ -270,6 +274,12 @@ class Disc(ModalDomain):
 
     def _back(self, modes: Any) -> FloatArray:
         return np.asarray(np.fft.irfft(modes, self.angular, axis=1))
+
+
+def _products(matrices: FloatArray, vectors: Any) -> Any:
+    """Return the real matrix of each wave number times its complex vector, shapes (waves, N, N) and (waves, N)."""
+    parts = np.ascontiguousarray(vectors, dtype=complex)[..., None].view(float)
+    return (matrices @ parts).view(complex)[..., 0]
 
 
 def _with_the_constant(rates: FloatArray, vectors: FloatArray, root: FloatArray) -> None:

@@ -10,12 +10,11 @@ are kept.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.special import gammainc
+from scipy.special import factorial
 
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.modes import ModalSteps
@@ -114,15 +113,14 @@ def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
-    """Return int_0^1 e^(-z r) r^m dr for m = 0, .., degree, shape (degree + 1, ..): m! P(m + 1, z) / z^(m+1)."""
-    small = np.minimum(z, 1.0)
-    large = np.maximum(z, 1.0)
-    result = []
-    for m in range(degree + 1):
-        series, term = np.zeros_like(small), np.ones_like(small)
-        for k in range(_TERMS):
-            series += term / (m + 1.0 + k)
-            term = term * (-small / (k + 1.0))
-        closed = math.factorial(m) * gammainc(m + 1.0, large) * large ** -(m + 1.0)
-        result.append(np.where(z <= 1.0, series, closed))
-    return np.array(result)
+    """Return I_m = int_0^1 e^(-z r) r^m dr for m = 0, .., degree, shape (degree + 1, ..).
+
+    For z <= 1 sum_k (-z)^k / (k! (m + 1 + k)), beyond I_0 = (1 - e^-z) / z and I_m = (m I_(m-1) - e^-z) / z.
+    """
+    small, large = np.minimum(z, 1.0), np.maximum(z, 1.0)
+    m, k = np.arange(degree + 1.0), np.arange(float(_TERMS))
+    series = (-small[..., None]) ** k @ (1.0 / (factorial(k) * (m[:, None] + 1.0 + k))).T
+    decay, closed = np.exp(-large), [-np.expm1(-large) / large]
+    for power in m[1:]:
+        closed.append((power * closed[-1] - decay) / large)
+    return np.where(z <= 1.0, np.moveaxis(series, -1, 0), closed)

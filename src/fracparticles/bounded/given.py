@@ -97,10 +97,17 @@ def lifted_in_time(
     if not varies:
         fixed = lifted(start)
         return lambda t: fixed
-    degree = _FIRST
+
+    def at(steps: FloatArray) -> FloatArray:
+        """The parts at the times of these nodes, the last one first."""
+        nodes = 0.5 + 0.5 * np.cos(np.pi * steps)
+        return np.array([lifted(start + span * node)[:3] for node in nodes])
+
+    degree, values = _FIRST, at(np.arange(0.5 * _FIRST + 1.0) / (0.5 * _FIRST))
     while degree <= _LAST:
-        nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(degree + 1) / degree)
-        values = np.array([lifted(start + span * node)[:3] for node in nodes[::-1]])
+        # The nodes of half the degree are every second one of these.
+        between = at(np.arange(1.0, degree, 2.0) / degree)
+        values = np.insert(values, np.arange(1, len(values)), between, axis=0)
         c = dct(values, type=1, axis=0) / degree
         c[[0, -1]] *= 0.5
         # Of w and D A w; D A w, and the flux at the ends, may be round-off of w.
@@ -118,14 +125,16 @@ def lifted_in_time(
 
 
 class _Interpolated:
-    """A lift by Chebyshev coefficients of its parts, shape (degree + 1, 3, ..)."""
+    """A lift by Chebyshev coefficients of its parts, shape (degree + 1, 3, ..), and of the derivative of the first."""
 
     def __init__(self, c: FloatArray, start: float, span: float) -> None:
-        self._c, self._start, self._span = c, start, span
-        self._slope = chebyshev.chebder(c[:, 0], scl=2.0 / span)
+        self._shape, self._start, self._span = c.shape[2:], start, span
+        self._c = np.zeros((c.shape[0], 4, int(np.prod(self._shape))))
+        self._c[:, :3] = c.reshape(*c.shape[:2], -1)
+        self._c[:-1, 3] = chebyshev.chebder(self._c[:, 0], scl=2.0 / span)
 
     def __call__(self, t: float) -> Lift:
         s = min(1.0, max(-1.0, 2.0 * (t - self._start) / self._span - 1.0))
-        parts = np.asarray(chebyshev.chebval(s, self._c))
-        slope = np.asarray(chebyshev.chebval(s, self._slope))
-        return Lift(parts[0], parts[1], parts[2], slope)
+        polynomials = np.cos(np.arccos(s) * np.arange(len(self._c)))
+        parts = polynomials @ self._c.reshape(len(self._c), -1)
+        return Lift(*parts.reshape(4, *self._shape))

@@ -42,15 +42,14 @@ def mean_outside(
     stretch = stretch ** (-1.0 / alpha)
     total, whole = np.zeros(np.broadcast(x, y).shape), np.zeros(np.broadcast(x, y).shape)
     for outward, along, d, low, high in _sides(x, y, half, alpha):
-        size = d**-alpha * (high - low)
+        size, step = d**-alpha * (high - low), np.multiply.outer(stretch, d)
         whole += size
         for node, weight in zip(nodes, shares, strict=True):
             slope = _slope(low + node * (high - low), alpha)
-            for far, part in zip(stretch, parts, strict=True):
-                step = d * far
-                at_x = x + step * (outward[0] + slope * along[0])
-                at_y = y + step * (outward[1] + slope * along[1])
-                total += weight * part * size * check.sampled("outside", g, at_x, at_y)
+            at_x = x + step * (outward[0] + slope * along[0])
+            at_y = y + step * (outward[1] + slope * along[1])
+            values = check.sampled("outside", g, at_x, at_y)
+            total += weight * size * np.tensordot(parts, values, 1)
     return np.asarray(total / whole)
 
 

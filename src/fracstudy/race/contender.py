@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -12,10 +12,16 @@ from scipy.fft import next_fast_len
 
 from fracstudy.race.problem import Points, Problem
 
-__all__ = ["Contender", "Mapped", "Ready", "lattices"]
+__all__ = ["Contender", "Grids", "Mapped", "Ready", "Trials", "lattices", "sweep"]
+
+Trials = Generator[dict[str, Any], float | None, None]
+"""Keywords of `prepare` to try; the error of each may be sent back."""
+Grids = Mapping[tuple[int, int], dict[str, Any]]
+"""Keywords of grids, by how fine and how wide they are: 0, 1, .."""
 
 SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
 TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)
+_LEFT = 0.9  # of an error that is not due to what was refined
 _MOST = {1: 2**16, 2: 2**20, 3: 2**21}  # points
 
 
@@ -70,8 +76,8 @@ class Contender:
         """Whether it can solve the problem at all."""
         return problem.dim in self.dims
 
-    def trials(self, problem: Problem) -> Iterable[dict[str, Any]]:
-        """Return the keywords of `prepare` to try; `variant` is always among them."""
+    def trials(self, problem: Problem) -> Trials:
+        """Yield the keywords of `prepare` to try; `variant` is always among them."""
         raise NotImplementedError
 
     def prepare(self, problem: Problem, *args: Any, **parameters: Any) -> Ready:
@@ -85,8 +91,8 @@ class Mapped(Contender):
     counts: tuple[int, ...]
     scales: tuple[float, ...]  # in units of R_alpha t_f^(1/alpha)
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return numbers of points, each with every scale."""
+    def trials(self, problem: Problem) -> Trials:
+        """Yield numbers of points, each with every scale."""
         for points, scale in product(self.counts, self.scales):
             yield {"variant": "", "points": points, "scale": scale * problem.width}
 
@@ -95,17 +101,37 @@ def lattices(
     problem: Problem,
     spacings: Iterable[float] | None = None,
     truncations: Iterable[float] = TRUNCATIONS,
-) -> Iterator[dict[str, Any]]:
-    """Yield `points` an axis and `half_width` D = C R_alpha t_f^(1/alpha): each spacing with each truncation factor C.
+) -> Grids:
+    """Return `points` an axis and `half_width` D = C R_alpha t_f^(1/alpha): each spacing with each truncation factor C.
 
     Spacings are those of a problem with details of the size 1, and smaller for finer ones. The number of points is the
     next even one that transforms fast; the spacing falls with it.
     """
-    seen = set()
-    for spacing, truncation in product(spacings or SPACINGS, truncations):
+    grids: dict[tuple[int, int], dict[str, Any]] = {}
+    for (fine, spacing), (wide, truncation) in product(
+        enumerate(spacings or SPACINGS), enumerate(truncations)
+    ):
         half_width = truncation * problem.width
-        spacing *= problem.finest
-        points = 2 * next_fast_len(int(np.ceil(half_width / spacing)), real=True)
-        if points**problem.dim <= _MOST[problem.dim] and (points, half_width) not in seen:
-            seen.add((points, half_width))
-            yield {"points": points, "half_width": half_width}
+        points = 2 * next_fast_len(int(np.ceil(half_width / (spacing * problem.finest))), real=True)
+        grid = {"points": points, "half_width": half_width}
+        if points**problem.dim <= _MOST[problem.dim] and grid not in grids.values():
+            grids[fine, wide] = grid
+    return grids
+
+
+def sweep(grids: Grids, **fields: Any) -> Trials:
+    """Yield the fields with each grid, the coarse and the narrow first, without those that gain nothing.
+
+    Where two widenings at a spacing have left nine tenths of the error, it is not due to the width, and wider grids of
+    that spacing are not tried. The same holds of two refinements at a width. One is not enough: errors may cross zero.
+    """
+    errors: dict[tuple[int, int], float] = {}
+    for (fine, wide), grid in grids.items():
+        narrower = [errors.get((fine, wide - k)) for k in (1, 3)]
+        coarser = [errors.get((fine - k, wide)) for k in (1, 3)]
+        if idle := [
+            one for one, before in (narrower, coarser) if one and before and one > _LEFT * before
+        ]:
+            errors[fine, wide] = min(idle)
+        elif (error := (yield {**fields, **grid})) is not None:
+            errors[fine, wide] = error

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tracemalloc
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from itertools import compress, islice
 from typing import Any
 
@@ -106,12 +107,10 @@ def run_trials(
     most : int, optional
         Only the first trials of each contender.
     """
-    records = []
+    records: list[_Record] = []
     for contender in contenders:
-        trials = list(islice(contender.trials(problem), most)) if contender.takes(problem) else []
-        for given in trials[:1]:  # each does once what a process does once
-            _first(problem, contender, given)
-        records += [_first(problem, contender, given) for given in trials]
+        if contender.takes(problem):
+            records += islice(_tried(problem, contender), most)
     judged = [record for record in records if np.isfinite(record.row.get("error", np.nan))]
     worth = [record for record in _near_own(judged, _SLACK) if record.times[1] < LONG]
     again = list(compress(worth, _near(worth, judged, 1, _FAR)))
@@ -127,6 +126,18 @@ def run_trials(
     for record in compress(again, _near(again, judged, 1, slack=1.0)):
         record.row["peak_memory"] = _peak_memory(problem, record)
     return [record.finished() for record in records]
+
+
+def _tried(problem: Problem, contender: Contender) -> Iterator[_Record]:
+    """Try what a contender says, which hears of each error."""
+    trials = contender.trials(problem)
+    given = next(trials)
+    _first(problem, contender, given)  # does once what a process does once
+    with suppress(StopIteration):
+        while True:
+            record = _first(problem, contender, given)
+            yield record
+            given = trials.send(record.row.get("error", float("nan")))
 
 
 def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Record:
@@ -146,7 +157,7 @@ def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Re
         with quiet():
             forget_tables()
             setup, ready = measure(partial(contender.prepare, problem, **given))
-            u0 = problem.initial(ready.x)
+            u0 = problem.kept("initial", ready.x)
             solve, u = measure_warm(partial(ready.solve, u0))
             u = u if ready.result is None else ready.result(u0)
     except FracparticlesError as failure:
@@ -175,9 +186,15 @@ def _block_time(record: _Record) -> float:
     if ready.batched:
         times.append(measure(partial(ready.solve, block), 2, LONG)[0].minimum)
     if ready.points <= _MATRIX:
-        matrix = np.zeros((ready.points, ready.points))
-        times.append(measure(partial(np.dot, block.reshape(count, -1), matrix), 3)[0].minimum)
+        times.append(_matrix_time(count, ready.points))
     return min(times, default=record.solves.minimum * count) / count
+
+
+@lru_cache(maxsize=_MATRIX)
+def _matrix_time(count: int, points: int) -> float:
+    """The time of a block's product with a matrix, measured once: it is the same for all methods."""
+    block, matrix = np.zeros((count, points)), np.zeros((points, points))
+    return measure_warm(partial(np.dot, block, matrix), 5)[0].minimum
 
 
 def _peak_memory(problem: Problem, record: _Record) -> float:

@@ -9,10 +9,11 @@ import pytest
 
 from fracparticles.sph import ParticleLine
 from fracparticles.sph.closed_forms import FUNCTIONS
-from fracstudy.claims import Value, read_claims
-from fracstudy.criteria import Status
+from fracstudy.claims import Value
 from fracstudy.inputs import Inputs
 from fracstudy.ledger import judge
+from fracstudy.printed import read_claims
+from fracstudy.verdicts import Status
 from scene_functions import figure, study
 from scenes.ghorbani.operators import OPERATORS, order_at
 from scenes.ghorbani.sph_closed_forms.non_singular import _memory

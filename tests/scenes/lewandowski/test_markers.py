@@ -11,10 +11,10 @@ import pytest
 from fracparticles.markers import SHAPES
 from fracparticles.markers.nonlinear import NonlinearDiffusion
 from fracparticles.markers.stability import extremes, rate
-from fracstudy.claims import read_claims
-from fracstudy.criteria import Status
 from fracstudy.inputs import Inputs
 from fracstudy.ledger import judge
+from fracstudy.printed import read_claims
+from fracstudy.verdicts import Status
 from scene_functions import figure, scenes, study
 from scenes.lewandowski.marker_nonlinear.evolution import Evolution, Markers
 from scenes.lewandowski.square_profile import INFINITE, SquareRuns, Starts

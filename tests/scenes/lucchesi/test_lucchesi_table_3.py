@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 
 from fracparticles.lattice.dense import spectrum
 from fracparticles.schemes.stability import stability_limit
-from fracstudy.claims import Value, read_claims
+from fracstudy.claims import Value
 from fracstudy.inputs import Inputs
+from fracstudy.printed import read_claims
 from scenes.lucchesi.lucchesi_table_3.figure import figure
 from scenes.lucchesi.lucchesi_table_3.study import _matrix, study
 

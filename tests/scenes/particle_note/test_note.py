@@ -16,10 +16,10 @@ from fracparticles.pse import (
     moment,
     regularised,
 )
-from fracstudy.claims import read_claims
-from fracstudy.criteria import Status
 from fracstudy.inputs import Inputs
 from fracstudy.ledger import judge
+from fracstudy.printed import read_claims
+from fracstudy.verdicts import Status
 from scene_functions import figure, scenes, study
 from scenes.particle_note.note_lattice_kernel.study import SCHEMES
 from scenes.particle_note.waves import Skewed, arranged, heat, heat_second, wave

@@ -13,8 +13,8 @@ from scenes.run_times.reference_times.benchmark import transform_pairs
 @pytest.fixture(scope="module")
 def data():
     return reference(
-        repeats=2, truncation=4.0, spacing=0.1, dt=5e-3, green_dt=0.05, stepping=["KPSE"],
-        naive=["KPSE"], naive_steps=2, memory=False, measured_plans=False,
+        repeats=2, truncation=4.0, spacing=0.1, dt=5e-3, green_dt=0.05, stepped=["KPSE"],
+        timed_steps={"fft": 1000, "naive": 2}, memory=False, measured_plans=False,
     )  # fmt: skip
 
 
@@ -39,6 +39,7 @@ def test_stepping_and_naive_steps_are_those_of_the_schemes_asked_for(data):
         assert (np.isfinite(data[name]) == asked).all(), name
     run = data.isel(run=int(np.flatnonzero(asked)[0]))
     assert run["stepping_applications"] == 2 * run["steps"] == 400
+    assert run["stepping_measured_steps"] == 200  # all that there are
     assert run["naive_measured_steps"] == 2
     assert run["naive_time"] == pytest.approx(float(run["naive_step_time"] * run["steps"]))
     # Series and stepping are one polynomial of A: 400 products, each with a rounding error of some ulp.

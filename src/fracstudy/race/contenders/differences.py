@@ -5,16 +5,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 from scipy.fft import irfft, rfft
 
 from fracparticles.special.images import image_series, square_basis
 from fracparticles.special.tails import tail_constant
 from fracparticles.time.whole_space import WholeSpace
-from fracstudy.race.contender import Contender, Ready, lattices
+from fracstudy.race.contender import Contender, Ready, Trials, lattices, sweep
 from fracstudy.race.problem import Problem, lattice
 
 _SPACINGS = (0.4, 0.2, 0.1, 0.05, 0.025, 0.0125, 0.006, 0.003)
@@ -46,11 +43,10 @@ class _Differences(Contender):
         """Return a_1 .. a_count."""
         raise NotImplementedError
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return lattices of second-order formulas: finer ones, fewer widths."""
+    def trials(self, problem: Problem) -> Trials:
+        """Yield lattices of second-order formulas: finer ones, fewer widths."""
         for variant in ("periodic", "tails lent"):
-            for given in lattices(problem, _SPACINGS, _TRUNCATIONS):
-                yield {"variant": variant, **given}
+            yield from sweep(lattices(problem, _SPACINGS, _TRUNCATIONS), variant=variant)
 
     def prepare(self, problem: Problem, variant: str, points: int, half_width: float) -> Ready:
         """Return the multiplier made ready."""

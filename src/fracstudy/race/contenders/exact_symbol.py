@@ -5,13 +5,10 @@ u^_k(t) = exp(-t |k|^alpha) u^_k(0)
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 from scipy.fft import fftfreq, irfftn, rfftfreq, rfftn
 
-from fracstudy.race.contender import Contender, Ready, lattices
+from fracstudy.race.contender import Contender, Ready, Trials, lattices, sweep
 from fracstudy.race.problem import Problem, lattice
 
 
@@ -23,9 +20,9 @@ class ExactSymbol(Contender):
     place, dims = 1, (1, 2, 3)
     colour, marker = "#000000", "*"
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return all lattices."""
-        yield from ({"variant": "", **given} for given in lattices(problem))
+    def trials(self, problem: Problem) -> Trials:
+        """Yield lattices."""
+        yield from sweep(lattices(problem), variant="")
 
     def prepare(self, problem: Problem, variant: str, points: int, half_width: float) -> Ready:
         """Return the multiplier made ready."""

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import product
-from typing import Any
 
 from fracparticles.graded.field import INTERPOLATED, graded_step
 from fracparticles.graded.particles import graded_particles
-from fracstudy.race.contender import Contender, Ready
+from fracstudy.race.contender import Contender, Ready, Trials
 from fracstudy.race.problem import Problem
 
 _COUNTS = (25, 35, 49, 69, 97, 137, 193, 273)
@@ -24,8 +22,8 @@ class Graded(Contender):
     group, place = "ours", 10
     colour, marker = "#56B4E9", "h"
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return numbers of particles, half-widths and scales of the grading."""
+    def trials(self, problem: Problem) -> Trials:
+        """Yield numbers of particles, half-widths and scales of the grading."""
         for count, reach, scale in product(_COUNTS, _REACHES, _SCALES):
             yield {"variant": "", "count": count, "reach": reach, "scale": scale}
 

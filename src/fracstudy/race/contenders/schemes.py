@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -12,7 +11,7 @@ import numpy as np
 from fracparticles.run.case import Case
 from fracparticles.run.solver import advect, compute, prepare
 from fracparticles.schemes import SCHEMES
-from fracstudy.race.contender import Contender, Ready
+from fracstudy.race.contender import Contender, Grids, Ready, Trials, sweep
 from fracstudy.race.problem import Problem
 
 _SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
@@ -21,10 +20,13 @@ _MOST = {1: 20000, 2: 60000, 3: 100000}
 _NAIVE_STEPS = 2
 
 
-def _cases(problem: Problem, fields: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    for spacing, truncation in product(_SPACINGS, _TRUNCATIONS[problem.dim]):
-        if (2.0 * truncation * problem.width / spacing) ** problem.dim <= _MOST[problem.dim]:
-            yield {**fields, "spacing": spacing, "truncation": truncation}
+def _lattices(problem: Problem) -> Grids:
+    return {
+        (fine, wide): {"spacing": spacing, "truncation": truncation}
+        for fine, spacing in enumerate(_SPACINGS)
+        for wide, truncation in enumerate(_TRUNCATIONS[problem.dim])
+        if (2.0 * truncation * problem.width / spacing) ** problem.dim <= _MOST[problem.dim]
+    }
 
 
 _WAYS = tuple(
@@ -49,12 +51,11 @@ class _Scheme(Contender):
         cls.reference, cls.place = f"Lucchesi et al. (2020), Eq. ({equation})", place
         cls.colour, cls.marker = SCHEMES[cls.name].colour, SCHEMES[cls.name].marker
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return the orders and evaluations on lattices."""
-        far = {"far_terms": 3} if problem.dim == 1 else {}
+    def trials(self, problem: Problem) -> Trials:
+        """Yield the orders and evaluations on lattices."""
+        open_one = {"exterior": "open", **({"far_terms": 3} if problem.dim == 1 else {})}
         for variant, fields in self.ways:
-            for given in _cases(problem, {"exterior": "open", **far, **fields}):
-                yield {"variant": variant, **given}
+            yield from sweep(_lattices(problem), variant=variant, **open_one, **fields)
 
     def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
         """Return the case made ready; its times differ by 1 as those of the problem."""
@@ -99,8 +100,8 @@ class MovingParticles(Contender):
         """Whether the data are positive everywhere, and resolved by a lattice."""
         return problem.dim == 1 and problem.name in ("fundamental", "mixture")
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return a few lattices and steps."""
+    def trials(self, problem: Problem) -> Trials:
+        """Yield a few lattices and steps."""
         for order in (2, 4):
             for spacing, steps in ((0.1788, 250), (0.0894, 1000)):
                 fields = {"order": order, "spacing": spacing, "dt": 1.0 / steps, "truncation": 10.0}
@@ -126,8 +127,8 @@ class PapersWay(Contender):
         """Whether it is the papers' problem."""
         return problem.dim == 1 and problem.name == "fundamental"
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return the schemes and orders on truncated lattices."""
+    def trials(self, problem: Problem) -> Trials:
+        """Yield the schemes and orders on truncated lattices."""
         grids = product(("DD", "FPSE", "KPSE"), (2, 4), (20.0, 160.0), (0.2, 0.1))
         for scheme, order, truncation, spacing in grids:
             fields = {"scheme": scheme, "order": order, "spacing": spacing}
@@ -136,18 +137,18 @@ class PapersWay(Contender):
     def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
         """Return a few steps made ready, and the whole run by FFT for the error."""
         case = Case(beta=problem.beta, dt=5.0e-5, **fields)
-        few = naive_steps(case, _NAIVE_STEPS)
+        few = few_steps(case, _NAIVE_STEPS, "naive")
         ready = Ready((case.x,), case.volumes, prepare(few).solve, scale=case.steps / _NAIVE_STEPS)
         return replace(ready, result=lambda u0: compute(case, u0).u)
 
 
-def naive_steps(case: Case, steps: int) -> Case:
-    """Return the same lattice with so many of the time steps, sums over all pairs."""
+def few_steps(case: Case, steps: int, summation: str) -> Case:
+    """Return the same lattice with so many of the time steps, one by one, and sums of that kind."""
     fields = case.model_dump(exclude_none=True, exclude={"truncation"})
     few = {
         "half_width": case.reach,  # C would follow from the final time
         "t_final": case.t_initial + steps * case.time_step,
-        "summation": "naive",
+        "summation": summation,
         "evaluation": "stepping",
     }
     return Case(**{**fields, **few})

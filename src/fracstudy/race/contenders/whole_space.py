@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 
 from fracparticles.arguments import finite_array
 from fracparticles.time.whole_space import WholeSpace
-from fracstudy.race.contender import Contender, Ready, lattices
+from fracstudy.race.contender import Contender, Ready, Trials, lattices, sweep
 from fracstudy.race.problem import Problem, lattice
 
 _TRUNCATIONS = (1.5, 2.2, 3.0, 4.1, 5.0, 8.0, 12.0, 20.0)
@@ -23,12 +20,12 @@ class Evolve(Contender):
     group, place, dims = "ours", 0, (1, 2, 3)
     colour, marker = "#7B3294", "o"
 
-    def trials(self, problem: Problem) -> Iterator[dict[str, Any]]:
-        """Return the lattices of the exact symbol without terms, and smaller ones with terms."""
-        yield from ({"variant": "0 terms", "terms": 0, **given} for given in lattices(problem))
+    def trials(self, problem: Problem) -> Trials:
+        """Yield the lattices of the exact symbol without terms, and smaller ones with terms."""
+        yield from sweep(lattices(problem), variant="0 terms", terms=0)
         for terms in (1, 2, 4) if problem.dim == 1 else (1, 2):
-            for given in lattices(problem, truncations=_TRUNCATIONS):
-                yield {"variant": f"{terms} terms", "terms": terms, **given}
+            few = lattices(problem, truncations=_TRUNCATIONS)
+            yield from sweep(few, variant=f"{terms} terms", terms=terms)
 
     def prepare(
         self, problem: Problem, variant: str, points: int, half_width: float, terms: int

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+from numba import njit
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
@@ -96,6 +97,9 @@ def of_the_cache(folder: Path, flips: int, parts: int, seed: int) -> Iterator[Pr
     """The sum of 0, .., 4 by a compiled function, whose index or code is cut, changed, of another version."""
     folder.mkdir()
     source = folder / "summing.py"
+    njit(lambda x: x)(
+        0.0
+    )  # what the compiler loads at its first use is there for all that begin here
     os.environ.pop("NUMBA_CACHE_DIR", None)
 
     def compiled(factor: float) -> dict[str, bytes]:

@@ -18,7 +18,8 @@ from pydantic import BaseModel
 
 from fracparticles.run.case import Case
 from fracstudy.config import StudyConfig, batches, jobs, read_config, targets
-from fracstudy.scene import Scene, merged, resolved
+from fracstudy.scene import Scene
+from fracstudy.scene_files import merged, resolved
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import among, chance, fields_of, numbers, texts
 

@@ -14,10 +14,10 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, power_iteration
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.time import STEP_POLYNOMIALS
-from fracstudy.criteria import judge_value
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.panels import Panels
+from fracstudy.verdicts import judge_value
 
 _SCHEMES = ("DD", "FPSE", "KPSE")
 _STEPS = {"euler": "RK1", "rk2": "RK2"}

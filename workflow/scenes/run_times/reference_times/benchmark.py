@@ -2,8 +2,8 @@
 
 Four ways to the same discrete solution, p(A dt)^n u0, from the papers' own to ours:
 
-    naive stepping      n steps, sums over all pairs            2 n N^2 pairs; a few steps, extrapolated
-    stepping            n steps, sums by FFT                    2 n transform pairs
+    naive stepping      n steps, sums over all pairs            2 n N^2 pairs; a step, extrapolated
+    stepping            n steps, sums by FFT                    2 n transform pairs; some steps, extrapolated
     series              one Chebyshev series of p^n, by FFT     about sqrt(40 T |lambda|) transform pairs
     floor               the transforms of the series alone, by the fastest library at hand
 
@@ -12,7 +12,7 @@ and, of the transform pair that all is made of, what other kinds of it would cos
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from itertools import product
@@ -26,13 +26,14 @@ from fracparticles.lattice.fourier import complex_length
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, initial_strengths, prepare
 from fracstudy.race import clock
-from fracstudy.race.contenders.schemes import naive_steps
+from fracstudy.race.contenders.schemes import few_steps
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Action = Callable[[], Any]
 
+_SLOW = {"fft": "stepping", "naive": "naive"}  # summation, and what stepping with it is called
 _PAIRS = 40  # transform pairs between two looks at the clock
 _OWN = "FFTW, two real numbers as a complex one"
 # What half the data would need: a pair in single precision, or of one half of an even field.
@@ -45,9 +46,8 @@ def benchmark(
     spacing: float,
     dt: float,
     green_dt: float,
-    stepping: Sequence[str],
-    naive: Sequence[str],
-    naive_steps: int,
+    stepped: Sequence[str],
+    timed_steps: Mapping[str, int],
     memory: bool,
     measured_plans: bool,
 ) -> xr.Dataset:
@@ -61,10 +61,10 @@ def benchmark(
         The reference problem.
     green_dt : float
         The time step of GPSE.
-    stepping, naive : sequence of str
-        Schemes, order II, that are also stepped through with fast sums, all steps, and with sums over all pairs.
-    naive_steps : int
-        Naive steps that are timed; the total is extrapolated.
+    stepped : sequence of str
+        Schemes, order II, that are also stepped through.
+    timed_steps : mapping
+        How many steps are timed by summation, "fft" and "naive"; the time of all is extrapolated.
     memory : bool
         Whether to measure the peak memory, each run in a process of its own.
     measured_plans : bool
@@ -86,12 +86,10 @@ def benchmark(
         row = _time_series(case, repeats, pairs)
         if memory:
             row["peak_memory"] = clock.in_fresh_process(peak_of, case.to_json())
-        if case.order == 2 and case.scheme in stepping:
-            row |= _time_stepping(case)
-        if case.order == 2 and case.scheme in naive:
-            row |= _time_naive(case, naive_steps)
-        for slow in ("stepping", "naive"):
-            row[f"{slow}_over_series"] = row.get(f"{slow}_time", np.nan) / row["solve_time"]
+        if case.order == 2 and case.scheme in stepped:
+            for summation, name in _SLOW.items():
+                row |= _time_steps(case, name, summation, timed_steps[summation])
+                row[f"{name}_over_series"] = row[f"{name}_time"] / row["solve_time"]
         rows.append(row)
     title = "Run times of the reference problem"
     facts = {"repeats": repeats, "case": cases[0].to_json()}
@@ -195,29 +193,21 @@ def _repeat(pair: Action) -> None:
         pair()
 
 
-def _time_stepping(case: Case) -> dict[str, float]:
-    """Time all steps with fast sums, and compare with the series."""
-    u0, _ = initial_strengths(case)
-    series = prepare(case).solve(u0)
-    stepped = prepare(_changed(case, evaluation="stepping"))
+def _time_steps(case: Case, name: str, summation: str, most: int) -> dict[str, float]:
+    """Time so many steps, or all if there are fewer, and extrapolate; compare with the series for as long."""
+    steps = min(most, case.steps)
+    small = few_steps(_changed(case, truncation=100.0 * case.spacing), 1, summation)
+    prepare(small).solve(initial_strengths(small)[0])  # compiles
+    few = few_steps(case, steps, summation)
+    stepped, (u0, _) = prepare(few), initial_strengths(case)
     time, u = clock.measure(partial(stepped.solve, u0))
+    series = prepare(_changed(few, summation="fft", evaluation="series")).solve(u0)
     return {
-        "stepping_time": time.minimum,
-        "stepping_applications": stepped.operator_applications,
-        "stepping_deviation": float(np.abs(u - series).max() / np.abs(u).max()),
-    }
-
-
-def _time_naive(case: Case, steps: int) -> dict[str, float]:
-    """Time so many steps with sums over all pairs of particles, and extrapolate."""
-    small = _changed(case, truncation=100.0 * case.spacing)
-    prepare(naive_steps(small, steps)).solve(initial_strengths(small)[0])  # compiles
-    u0, _ = initial_strengths(case)
-    time, _ = clock.measure(partial(prepare(naive_steps(case, steps)).solve, u0))
-    return {
-        "naive_measured_steps": steps,
-        "naive_step_time": time.minimum / steps,
-        "naive_time": time.minimum / steps * case.steps,
+        f"{name}_measured_steps": steps,
+        f"{name}_step_time": time.minimum / steps,
+        f"{name}_time": time.minimum / steps * case.steps,
+        f"{name}_applications": stepped.operator_applications / steps * case.steps,
+        f"{name}_deviation": float(np.abs(u - series).max() / np.abs(u).max()),
     }
 
 
@@ -226,7 +216,7 @@ def _changed(case: Case, **fields: Any) -> Case:
 
 
 _LABELS = {"scheme": "particle scheme", "order": "kernel order", "dt": "time step"}
-# Those of stepping and naive stepping are nan for the schemes left out.
+# Those of stepping are nan for the schemes left out.
 _VARIABLES = {
     "particles": ("number of particles N", "1"),
     "steps": ("number of time steps n", "1"),
@@ -243,9 +233,10 @@ _VARIABLES = {
     "floor_ratio": ("solve time over operator applications times the fastest pair", "1"),
     "own_ratio": ("solve time over that of the same transforms as planned for the solve", "1"),
     "peak_memory": ("peak resident memory of a process that runs the case", "byte"),
-    "stepping_time": ("all steps, sums by FFT, once", "s"),
-    "stepping_applications": ("operator applications of stepping", "1"),
-    "stepping_deviation": ("max |u_stepping - u_series| / max |u_stepping|", "1"),
+    "stepping_measured_steps": ("steps by FFT that were timed", "1"),
+    "stepping_time": ("all steps, sums by FFT, extrapolated: mean of those timed times n", "s"),
+    "stepping_applications": ("operator applications of all steps", "1"),
+    "stepping_deviation": ("max |u_stepping - u_series| / max |u_stepping| after those timed", "1"),
     "naive_measured_steps": ("naive steps that were timed", "1"),
     "naive_step_time": ("one naive step, mean of those timed", "s"),
     "naive_time": ("all naive steps, extrapolated: step time times n", "s"),

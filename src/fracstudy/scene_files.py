@@ -1,0 +1,137 @@
+"""The files of the scenes, `workflow/scenes/<document>/<scene>/scene.yaml`.
+
+What a smoke run changes stands beside the full value: any mapping may hold `smoke`, which is laid over it, and
+`smoke: null` leaves it out. A folder with `variants` stands for several scenes: the common part, and over it its own.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import BaseModel, ValidationError
+
+from fracparticles.errors import InvalidInput
+from fracparticles.run.complaints import closest
+from fracstudy.read_yaml import read_yaml
+from fracstudy.run_blocks import RunBlock
+from fracstudy.scene import Scene
+
+__all__ = ["complaint", "merged", "read_scenes", "resolved"]
+
+_Tree = Any  # of mappings, lists and values, as YAML gives it
+
+
+def read_scenes(root: Path, documents: list[str], smoke: bool) -> dict[str, Scene]:
+    """Return the scenes of the documents' folders below `root`, by name, in the order of the report.
+
+    Raises
+    ------
+    InvalidInput
+        Naming the file, the key, the value, what is allowed and what to do.
+    """
+    found: dict[str, Scene] = {}
+    for document in documents:
+        if not (root / document).is_dir():
+            raise InvalidInput("documents", document, f"a folder of {root}", "Make it.")
+        scenes = [
+            scene
+            for file in (root / document).glob("*/scene.yaml")
+            for scene in _scenes_of(file, smoke)
+        ]
+        for scene in sorted(scenes, key=lambda scene: (scene.place, _natural(scene.name))):
+            if scene.name in found:
+                unique = "a name that no other scene has"
+                raise InvalidInput("scene", scene.name, unique, "Rename one.")
+            found[scene.name] = scene
+    return found
+
+
+def _natural(name: str) -> list[tuple[bool, int, str]]:
+    """Sort `figure_2` before `figure_10`."""
+    parts = re.split(r"(\d+)", name)
+    return [(not part.isdigit(), int(part) if part.isdigit() else 0, part) for part in parts]
+
+
+def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
+    try:
+        tree = read_yaml(file)
+    # Also what is not UTF-8, no such date, or too deep.
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        problem = " ".join(str(error).split())
+        raise InvalidInput(str(file), problem, "YAML", "Mend the file.") from None
+    if not isinstance(tree, dict):
+        raise InvalidInput(str(file), tree, "a mapping with title and runs", "Fill it in.")
+    variants = tree.pop("variants", {file.parent.name: {}})
+    if not (isinstance(variants, dict) and all(isinstance(own, dict) for own in variants.values())):
+        raise InvalidInput(f"{file}: variants", variants, "mappings by name", "Mend them.")
+    for name, own in variants.items():
+        fields = resolved(merged(tree, own), smoke)
+        for key in {"name", "folder"} & fields.keys():
+            said = "left out: paths say it"
+            raise InvalidInput(f"{file}: {key}", fields[key], said, "Remove it.")
+        try:
+            yield Scene.model_validate({**fields, "name": name, "folder": file.parent})
+        except ValidationError as error:
+            raise complaint(error, f"{file}: ", Scene) from None
+
+
+def merged(base: _Tree, own: _Tree) -> _Tree:
+    """Lay one tree over another: mappings by key, where null removes the key, lists of mappings item by item."""
+    if isinstance(base, Mapping) and isinstance(own, Mapping):
+        result = {**base}
+        for key, value in own.items():
+            if value is None and key != "smoke":
+                result.pop(key, None)
+            else:
+                result[key] = merged(base[key], value) if key in base else value
+        return result
+    if _of_mappings(base) and _of_mappings(own):
+        pairs = [merged(one, other) for one, other in zip(base, own, strict=False)]
+        return pairs + base[len(own) :] + own[len(base) :]
+    return own
+
+
+def _of_mappings(tree: _Tree) -> bool:
+    return isinstance(tree, list) and bool(tree) and all(isinstance(x, Mapping) for x in tree)
+
+
+_DROPPED = object()
+
+
+def resolved(tree: _Tree, smoke: bool) -> _Tree:
+    """Return a tree without `smoke`: laid over the mapping that holds it in a smoke run, left out otherwise."""
+    if isinstance(tree, Mapping):
+        changes = tree.get("smoke", {})
+        if smoke and changes is None:
+            return _DROPPED
+        own = {key: value for key, value in tree.items() if key != "smoke"}
+        own = merged(own, changes) if smoke else own
+        values = {key: resolved(value, smoke) for key, value in own.items()}
+        return {key: value for key, value in values.items() if value is not _DROPPED}
+    if isinstance(tree, list):
+        values_ = [resolved(value, smoke) for value in tree]
+        return [value for value in values_ if value is not _DROPPED]
+    return tree
+
+
+def complaint(error: ValidationError, where: str, model: type[BaseModel]) -> InvalidInput:
+    """Return the first mistake that pydantic found, in our words."""
+    first = error.errors()[0]
+    # A run block's field may be a value or a list: pydantic complains about both; the first will do.
+    place = [str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)]
+    field = where + (".".join(place) or "configuration")
+    if first["type"] == "extra_forbidden":
+        fields = (RunBlock if place[0] == "runs" else model).model_fields
+        names = [name for name in fields if name not in ("name", "folder")]
+        remedy = closest(place[-1], names) or "Remove it."
+        return InvalidInput(field, first["input"], f"one of {', '.join(names)}", remedy)
+    if first["type"] == "missing":
+        return InvalidInput(field, None, "needed", "Add it.")
+    number = isinstance(first["input"], str) and "number" in first["msg"]
+    hint = " YAML reads 1e-4 as text: write 1.0e-4." if number else ""
+    allowed = first["msg"].removeprefix("Input should be ")
+    return InvalidInput(field, first["input"], allowed, f"Mend the value.{hint}")
