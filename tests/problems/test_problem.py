@@ -125,3 +125,10 @@ def test_a_field_may_hold_together_what_would_outgrow_the_lattice():
 def test_what_is_wrong_between_the_output_times_is_seen_before_any_work():
     with pytest.raises(InvalidInput, match=r"-1 at .*t = 0\.3"):
         Problem(**PLAIN, diffusivity="where((t > 0.3) & (t < 0.4), -1, 1)")
+
+
+def test_a_problem_has_its_alpha_as_a_case_has():
+    assert Problem(**PLAIN).alpha == Problem(**PLAIN).case.alpha == pytest.approx(1.5)
+    varies = Problem(**{**PLAIN, "alpha": "1.5 + 0.2*tanh(x)"}, form="DD")
+    with pytest.raises(InvalidInput, match="a number, to speak of one alpha"):
+        _ = varies.alpha

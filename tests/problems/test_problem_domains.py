@@ -7,6 +7,7 @@ from math import gamma
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.special import eval_jacobi, gammaln, hyp2f1
 
 from fracparticles.bounded.interval import Interval
@@ -312,7 +313,7 @@ def test_what_the_particles_do_not_resolve_warns():
     front = Problem(
         **{**LINE, "particles": 40, "t_final": 0.1}, diffusivity=1e-5, velocity="-20*tanh(20*x)"
     )
-    with pytest.warns(AccuracyWarning, match="do not resolve the solution"):
+    with pytest.warns(AccuracyWarning, match="leave an error"):
         solve_problem(front, bell)
 
 
@@ -385,3 +386,51 @@ def test_initial_data_that_do_not_fit_are_refused(initial):
         solve_problem(Problem(**LINE), initial)
     with pytest.raises(InvalidInput, match=r"^initial = .*bare array"):
         solve_problem(Problem(**LINE), solve_problem(Problem(**LINE), bell).u)
+
+
+@pytest.mark.parametrize("place", ["(1 + 0.5*x)", ""])
+def test_a_diffusivity_in_time_beside_data_that_jump_at_an_end(place):
+    """D(x) s(t) is D(x) at the time int s. The steps were as short as the fastest mode, of which nothing is known."""
+    fields = {**LINE, "alpha": 1.98, "exterior": "given", "exterior_data": "1", "particles": 100}
+    fields["form"] = "exchange" if place else "FPSE"
+    moved = Problem(**fields | {"t_final": 0.1}, diffusivity=f"1{place and '*' + place}*(1 + 2*t)")
+    still = Problem(**fields | {"t_final": 0.11}, diffusivity=f"1{place and '*' + place}")
+    run, other = (solve_problem(one, lambda x: 0.0 * x) for one in (moved, still))
+    assert int(run.accepted_steps) < 1000
+    assert_allclose(run.u.values, other.u.values, atol=100.0 * moved.rtol)
+
+
+def test_a_source_that_starts_after_all_has_left():
+    """u is e^-90 of what it was where the source begins: from there it is as from nothing."""
+    fields = {**LINE, "particles": 60}
+    late = solve_problem(Problem(**fields, source="where(t > 0.5, 1, 0)*exp(-x**2) - 180*u"), bell)
+    fields["t_final"] = 0.5
+    alone = solve_problem(Problem(**fields, source="exp(-x**2) - 180*u"), 0.0)
+    assert_allclose(late.u.values, alone.u.values, atol=1e-5 * float(alone.u.max()))
+
+
+@pytest.mark.parametrize("size", [2.0**-660, 2.0**530])
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"source": "-40*x*u"},
+        {"velocity": "20*(1 - x**2)"},
+        {"domain": "disc", "velocity": ("-9*y", "9*x")},
+    ],
+)
+def test_a_strength_of_any_size_has_the_same_steps(size, fields):
+    """Its square is no number: the steps were one after another as long as they could be."""
+    problem = Problem(**{**LINE, "t_final": 0.3}, particles=24, **fields)
+
+    def at(*place):
+        return np.exp(-8.0 * sum((x - 0.2) ** 2 for x in place))
+
+    one, other = (solve_problem(problem, lambda *p, c=c: c * at(*p)) for c in (1.0, size))
+    assert_allclose(other.u.values / size, one.u.values, atol=1e-12)
+
+
+def test_a_diffusivity_that_makes_neighbours_give_what_they_have_not_is_refused():
+    peak = "0.05*(0.001 + exp(-((x - 0.456)/0.02)**2))"
+    problem = Problem(**{**LINE, "alpha": 1.9, "particles": 80}, form="exchange", diffusivity=peak)
+    with pytest.warns(AccuracyWarning), pytest.raises(InvalidInput, match="diffusivity"):
+        solve_problem(problem, bell)

@@ -24,6 +24,7 @@ import numpy as np
 from scipy.linalg import eigh, solve_triangular
 
 from fracparticles.arguments import FloatArray
+from fracparticles.errors import InvalidInput
 
 __all__ = ["InverseExchange"]
 
@@ -57,7 +58,13 @@ class InverseExchange:
         outside: FloatArray | None,
         order: np.ndarray,
     ) -> InverseExchange:
-        """Return the inverse for the symmetric K, V, kappa (None for nothing), and an order of elimination."""
+        """Return the inverse for the symmetric K, V, kappa (None for nothing), and an order of elimination.
+
+        Raises
+        ------
+        InvalidInput
+            If K, which a diffusivity that varies may have changed, makes something grow.
+        """
         n, v = len(volumes), volumes[order]
         coupling = np.zeros((n, n + 1))
         coupling[:, :n] = exchange[np.ix_(order, order)] * np.outer(v, v)
@@ -66,6 +73,10 @@ class InverseExchange:
         pivots = _eliminate(coupling)
         last = n if outside is not None else n - 1
         pivots = pivots[:last]
+        if not pivots.min() > 0.0:
+            shown = "a jump between neighbours, some of which would give away what they do not have"
+            what = "one that the particles resolve"
+            raise InvalidInput("diffusivity", shown, what, "Take more particles, or smooth it.")
         upper = -np.triu(coupling[:last, :last], 1) / pivots[:, None]
         scaled = solve_triangular(upper, np.diag(pivots**-0.5), unit_diagonal=True)
         factor = np.zeros((n, n))

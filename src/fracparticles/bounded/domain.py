@@ -32,7 +32,7 @@ from fracparticles.bounded.modes import Rest
 from fracparticles.bounded.operator import LOOKS, DomainOperator
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 from fracparticles.time.fading import FADED, early_errors
-from fracparticles.time.sudden import sudden_times
+from fracparticles.time.sudden import instant, sudden_times
 
 __all__ = ["EXTERIORS", "Domain"]
 
@@ -197,6 +197,8 @@ class Domain(DomainOperator):
 
         v, steps = start - lift(0.0).base, self.steps(rest, tolerance, held)
         for before, after in pieces:
+            if before in sudden and after in sudden and after - before <= instant(0.0, time):
+                continue  # within a jump
             v = steps.advance(v, after - before, before)
             steps.forget()
         u = self._finite(lift(time).base + v, time)

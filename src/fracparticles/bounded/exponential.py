@@ -17,7 +17,7 @@ import numpy as np
 from scipy.special import factorial
 
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.modes import ModalSteps
+from fracparticles.bounded.modes import ModalSteps, size_of
 from fracparticles.errors import NonFiniteSolution
 
 __all__ = ["ExponentialSteps", "moments_of_decay"]
@@ -56,7 +56,7 @@ class ExponentialSteps(ModalSteps):
             middle = half.advance(y, start + t, self._slope)
             halves = half.advance(middle, start + t + 0.5 * h, self._slope)
             size = self._size(start + t + h, halves)
-            off = float(np.linalg.norm(halves - whole)) / max(size, _NOTHING)
+            off = size_of(halves - whole) / max(size, _NOTHING)
             if off <= self._tolerance:
                 t, y = t + h, halves
                 self.accepted += 1

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import Radau
 
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.modes import Held, ModalSteps, Modes, Rest
+from fracparticles.bounded.modes import Held, ModalSteps, Modes, Rest, size_of
 from fracparticles.errors import NonFiniteSolution
 from fracparticles.time.steps import blown_up
 
@@ -57,7 +57,7 @@ class ImplicitSteps(ModalSteps):
             return np.asarray(-modes.rates * y + modes.into(self._rest(t, modes.back(y))))
 
         with np.errstate(over="ignore", invalid="ignore"):
-            first = float(np.linalg.norm(modes.into(self._rest(start, u)))) * span
+            first = size_of(modes.into(self._rest(start, u))) * span
 
             def atol(t: float, y: FloatArray) -> float:
                 return self._tolerance * (self._size(t, y) or first or 1.0) / np.sqrt(y.size)

@@ -9,7 +9,7 @@ import numpy as np
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import Domain
 from fracparticles.bounded.exponential import ExponentialSteps
-from fracparticles.bounded.modes import Held, Modes, Rest
+from fracparticles.bounded.modes import Held, Modes, Rest, size_of
 from fracparticles.time.steps import Steps
 
 __all__ = ["ModalDomain"]
@@ -35,7 +35,7 @@ class ModalDomain(Domain):
         """Return the norm of v in all but the slowest quarter of the modes."""
         modes = self.all_modes()
         y = modes.into(v).reshape(-1)
-        return float(np.linalg.norm(y[np.argsort(modes.rates, axis=None)[y.size // 4 :]]))
+        return size_of(y[np.argsort(modes.rates, axis=None)[y.size // 4 :]])
 
     @abstractmethod
     def modes_with(self, d: FloatArray, form: str) -> Modes:

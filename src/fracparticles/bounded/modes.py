@@ -8,14 +8,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fracparticles.arguments import FloatArray
+from fracparticles.time.steps import norm
 
-__all__ = ["Held", "ModalSteps", "Modes", "Rest"]
+__all__ = ["Held", "ModalSteps", "Modes", "Rest", "size_of"]
 
 Rest = Callable[[float, FloatArray], FloatArray]
 """N(t, u), between fields."""
 
 Held = Callable[[float], FloatArray]
 """By time, the size of what is added to the field that steps carry: the tolerance does not fall below its share."""
+
+
+def size_of(y: Any) -> float:
+    """Return the 2-norm of amplitudes, real or complex, of any size."""
+    return norm(np.abs(y))
 
 
 class Modes(NamedTuple):
@@ -59,8 +65,8 @@ class ModalSteps:
 
     def _size(self, t: float, y: Any) -> float:
         """What the tolerance is relative to."""
-        held = 0.0 if self._held is None else float(np.linalg.norm(self._modes.into(self._held(t))))
-        return max(float(np.linalg.norm(y)), held)
+        held = 0.0 if self._held is None else size_of(self._modes.into(self._held(t)))
+        return max(size_of(y), held)
 
     def forget(self) -> None:
         """Let the next step find its length anew."""

@@ -16,7 +16,7 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.given import Lift, Outside, given_outside, lifted_in_time
 from fracparticles.bounded.modes import Held, Rest
-from fracparticles.time.steps import Steps
+from fracparticles.time.steps import Steps, norm
 from fracparticles.time.sudden import sudden_times
 
 __all__ = ["LOOKS", "DomainOperator"]
@@ -105,7 +105,7 @@ class DomainOperator(ABC):
 
     def norm(self, u: FloatArray) -> float:
         """Return (int u^2 dx)^(1/2)."""
-        return float(np.sqrt((self.volumes * u * u).sum()))
+        return norm(np.sqrt(self.volumes) * u)
 
     def rate(self, u: Any, outside: Any = None) -> FloatArray:
         """Return D A u at the particles."""

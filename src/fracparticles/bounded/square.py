@@ -44,7 +44,7 @@ from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.box import BoxConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.time.pieces import exponential_flow
-from fracparticles.time.steps import EighthOrderStep, Steps
+from fracparticles.time.steps import EighthOrderStep, Steps, norm
 
 __all__ = ["Square"]
 
@@ -152,7 +152,7 @@ class Square(Domain):
         """Return steps of order 8 of u' = D A u + rest(t, u)."""
 
         def least(t: float, u: FloatArray) -> float:
-            return tolerance * max(float(np.abs(u).max()), float(np.abs(held(t)).max()), 1e-100)
+            return tolerance * max(float(np.abs(u).max()), float(np.abs(held(t)).max()), 1e-300)
 
         return EighthOrderStep(lambda t, u: self.applied(u) + rest(t, u), tolerance, least)
 
@@ -211,7 +211,7 @@ class Square(Domain):
         """Return the norm of v in sines, or cosines, of more than half a wave for two particles."""
         waves = (dctn if self.exterior == "reflecting" else dstn)(v, type=2, norm="ortho")
         waves[: self.side // 2, : self.side // 2] = 0.0
-        return float(np.linalg.norm(waves)) * 2.0 * self.half_width / self.side
+        return norm(waves) * 2.0 * self.half_width / self.side
 
     # --- between V^(1/2) u and u ------------------------------------------------------------------
 

@@ -123,7 +123,7 @@ class DomainRates:
         modes = self.modes
         if not self._steady_matrix or self._matrix is None:
             columns = (self._in_modes(t, modes.back(e)) for e in np.eye(modes.rates.size))
-            self._matrix = np.stack(list(columns), axis=1) * (modes.rates < self._known)
+            self._matrix = np.stack(list(columns), axis=1)
         if self.problem.is_linear:
             return self._matrix
         slope = self.source_slope(t, v)
@@ -142,19 +142,23 @@ class DomainRates:
         return least * float(self.domain.eigenvalues(1)[0])
 
     def _in_modes(self, t: float, v: np.ndarray) -> Any:
-        """What is linear beside the modes, left out of those so fast that no more is known of their rates."""
-        part = self._lower(t, v)
-        if "t" in self.problem.diffusion.depends_on:
-            part += self._spread(v, self._now(t)[0] - self._greatest)  # linear in D
-        known = np.where(self.modes.rates < self._known, self.modes.into(part), 0.0)
+        """What is linear beside the modes; of those so fast that they are not known nothing, and nothing of their D."""
+        modes, part = self.modes, self._lower(t, v)
+        y = np.where(self._is_known, modes.into(v), 0.0)
+        less = self._now(t)[0] - self._greatest
+        if self._varies and "t" in self.problem.diffusion.depends_on:
+            part += self._spread(modes.back(y), less)  # linear in D
+        found = np.where(self._is_known, modes.into(part), 0.0)
+        if not self._varies:  # in the modes it is a factor
+            found -= less / self._greatest * modes.rates * y
         if self.problem.exterior == "reflecting":
-            known.flat[0] = 0.0  # of the constant: the total
-        return known
+            found.flat[0] = 0.0  # of the constant: the total
+        return found
 
     @cached_property
-    def _known(self) -> float:
+    def _is_known(self) -> np.ndarray:
         rates = self.modes.rates
-        return _KNOWN * float(rates[rates > 0.0].min())
+        return np.asarray(rates < _KNOWN * float(rates[rates > 0.0].min()))
 
     @cached_property
     def _line(self) -> Interval:

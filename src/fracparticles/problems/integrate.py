@@ -15,11 +15,13 @@ from fracparticles.problems.sudden import sudden_changes
 from fracparticles.time.krylov import KrylovStep
 from fracparticles.time.stabilised import StabilisedStep, spectral_radius
 from fracparticles.time.steps import STAGES, Absolute, EighthOrderStep, Steps
+from fracparticles.time.sudden import instant
 
-__all__ = ["Integration", "advanced", "integrate", "size_of_start"]
+__all__ = ["Integration", "advanced", "integrate", "size_of_start", "size_to_come"]
 
 _FINEST = 1e-9  # rtol of RKC2; below, the estimate of its error is round-off
 _LOOKS = 17  # at a source that starts from nothing
+_FAINT = 1e-12  # of what a source makes
 _REAL_AXIS = 5.5  # |lambda| dt that a step of DOP853 bears
 
 
@@ -87,7 +89,8 @@ def integrate(
     shares = np.sqrt(_filled(u0))
     rtol = problem.rtol * shares
     least = 0.0 if held(problem.t_initial) else size_of_start(problem, rates, u0)
-    atol: Absolute = lambda t, u: rtol * (max(float(np.abs(u).max()), held(t)) or least)  # noqa: E731
+    later = size_to_come(problem, rates, u0)
+    atol: Absolute = lambda t, u: rtol * (max(float(np.abs(u).max()), held(t), later) or least)  # noqa: E731
     if problem.atol:
         atol = problem.atol * shares
     start, span = problem.t_initial, problem.span
@@ -119,12 +122,17 @@ def integrate(
 def advanced(
     problem: Problem, steps: Steps, u0: np.ndarray, sudden: list[float]
 ) -> list[np.ndarray]:
-    """Return u at each output time; where something changes suddenly, steps end and find their length anew."""
+    """Return u at each output time; where something changes suddenly, steps end and find their length anew.
+
+    None is taken within a jump: a solution that has faded would be followed into it beyond the last digit of the time.
+    """
     times, outputs, u = problem.output_times, [], u0
+    at_once = instant(problem.t_initial, problem.span)
     for before, after in pairwise(sorted({problem.t_initial, *sudden, *times})):
         if before in sudden:
             steps.forget()
-        u = steps.advance(u, after - before, before)
+        if not (before in sudden and after in sudden and after - before <= at_once):
+            u = steps.advance(u, after - before, before)
         if after in times:
             outputs.append(np.array(u))
     return outputs
@@ -132,11 +140,24 @@ def advanced(
 
 def size_of_start(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
     """Return the greatest |u| at t_initial, or what the source may make of it where that is zero."""
-    size = float(np.abs(u0).max())
-    if size == 0.0:
-        times = problem.t_initial + problem.span * np.linspace(0.0, 1.0, _LOOKS)
-        size = problem.span * max(float(np.abs(rates(t, u0)).max()) for t in times)
+    size = float(np.abs(u0).max()) or _made(problem, rates, u0)
     return size if 0.0 < size < np.inf else 1.0
+
+
+def size_to_come(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
+    """Return a size that is nothing beside what a source that depends on time makes of nothing.
+
+    A solution that has faded below it is not followed to its own digits: a source that begins then could not be.
+    """
+    if problem.reaction is None or "t" not in problem.reaction.depends_on:
+        return 0.0
+    size = _FAINT * _made(problem, rates, np.zeros_like(u0))
+    return size if size < np.inf else 0.0
+
+
+def _made(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
+    times = problem.t_initial + problem.span * np.linspace(0.0, 1.0, _LOOKS)
+    return problem.span * max(float(np.abs(rates(t, u0)).max()) for t in times)
 
 
 def _filled(u: np.ndarray) -> float:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +22,14 @@ from fracparticles.bounded.modes import Held
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
 from fracparticles.problems.domain_rates import DomainRates
-from fracparticles.problems.integrate import Integration, advanced, integrate, size_of_start
+from fracparticles.problems.fewer_particles import SPACE_ERROR, Estimates, with_space_error
+from fracparticles.problems.integrate import (
+    Integration,
+    advanced,
+    integrate,
+    size_of_start,
+    size_to_come,
+)
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import probe_source
 from fracparticles.problems.sudden import sudden_changes
@@ -34,7 +42,7 @@ if TYPE_CHECKING:
 __all__ = ["solve_on_domain"]
 
 _FAST, _FASTEST = 100.0, 2e4  # rates of a source times the time of the run
-_UNRESOLVED = 0.02  # of the norm of v, in modes that the particles do not tell apart
+_LIMITS = {"atol_share": FADED, "space_error": SPACE_ERROR, "unresolved_share": 0.02}
 
 
 def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
@@ -43,51 +51,75 @@ def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
     _look_at_coefficients(problem)
     probe_source(problem, u0)
     rates = DomainRates(problem)
+    held = _held(problem, rates, u0)
+    result = _integrated(problem, rates, u0, held)
+    fields = result.u
+    found = {
+        "unresolved_share": (
+            [_in_short_waves(rates, *at) for at in zip(problem.output_times, fields, strict=True)],
+            "share of u in waves that the particles do not tell apart",
+        ),
+        "atol_share": (
+            early_errors(
+                problem.rtol, (problem.t_initial, *problem.output_times), [u0, *fields],
+                rates.source, rates.slowest, lambda t: float(held(t).max()),
+            ),
+            "errors of early steps, within their tolerance, over the greatest |u|",
+        ),
+    }  # fmt: skip
+    sampled = initial if callable(initial) else u0
+    found = with_space_error(found, problem, sampled, fields, _on_fewer)
+    _warn(problem, found)
+    return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
+
+
+def _on_fewer(problem: Problem, initial: Any) -> list[np.ndarray]:
+    u0, rates = problem.bounded_domain.values("initial", initial), DomainRates(problem)
+    return _integrated(problem, rates, u0, _held(problem, rates, u0)).u
+
+
+def _integrated(problem: Problem, rates: DomainRates, u0: np.ndarray, held: Held) -> Integration:
+    """The integration of v, with u in its place."""
     v0 = u0 - rates.lift(problem.t_initial).base
-    held = _held(problem, rates, v0)
     if isinstance(rates.domain, ModalDomain):
         result = _in_modes(problem, rates, u0, v0, held)
     else:
         result = integrate(problem, rates, v0.reshape(-1), lambda t: float(held(t).max()))
-    fields = [one.reshape(u0.shape) for one in result.u]
-    shares = []
-    for t, v in zip(problem.output_times, fields, strict=True):
-        waves = rates.domain.unresolved(v)
-        v += rates.lift(t).base
-        shares.append(waves / max(rates.domain.norm(v), 1e-300))
-    times = (problem.t_initial, *problem.output_times)
-    faded = early_errors(
-        problem.rtol,
-        times,
-        [u0, *fields],
-        rates.source,
-        rates.slowest,
-        lambda t: float(held(t).max()),
-    )
-    found = {
-        "unresolved_share": (shares, "share of u in waves that the particles do not tell apart"),
-        "atol_share": (
-            faded,
-            "errors of early steps, within their tolerance, over the greatest |u|",
-        ),
+    at = zip(problem.output_times, result.u, strict=True)
+    return replace(result, u=[v.reshape(u0.shape) + rates.lift(t).base for t, v in at])
+
+
+def _in_short_waves(rates: DomainRates, t: float, u: np.ndarray) -> float:
+    domain = rates.domain
+    return domain.unresolved(u - rates.lift(t).base) / max(domain.norm(u), 1e-300)
+
+
+def _warn(problem: Problem, found: Estimates) -> None:
+    """Warn of each estimate that is too large, at the first output time; of short waves if nothing more is known."""
+    says = {
+        "atol_share": "u has fallen, and the steps are accurate to {:.2g} of what is left at an output time. Take a "
+        "smaller rtol, or atol, or an earlier end.",
+        "space_error": "the particles leave an error of about {:.1g} of a peak, by the same on half and a quarter of "
+        "them. Take more, or smoother coefficients.",
+        "unresolved_share": "the particles do not resolve the solution: {:.2g} of it is in waves that they do not tell "
+        "apart. Take more.",
     }
-    if max(faded) > FADED:
-        text = f"u has fallen, and the steps are accurate to {max(faded):.2g} of what is left at an output time."
-        remedy = "Take a smaller rtol, or atol, or an earlier end."
-        warnings.warn(f"{text} {remedy}", AccuracyWarning, stacklevel=3)
-    for t, share in zip(problem.output_times, shares, strict=True):
-        if share > _UNRESOLVED:
-            text = f"by t = {t:.4g} the particles do not resolve the solution: {share:.2g} of it is in waves that they"
-            warnings.warn(f"{text} do not tell apart. Take more.", AccuracyWarning, stacklevel=3)
-            break
-    return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
+    del says["unresolved_share" if "space_error" in found else "space_error"]
+    for name, text in says.items():
+        for t, value in zip(problem.output_times, found[name][0], strict=True):
+            if value > _LIMITS[name]:
+                warnings.warn(f"by t = {t:.4g} {text.format(value)}", AccuracyWarning, stacklevel=4)
+                break
 
 
-def _held(problem: Problem, rates: DomainRates, v0: np.ndarray) -> Held:
+def _held(problem: Problem, rates: DomainRates, u0: np.ndarray) -> Held:
     """What is held outside, or `atol`; where there is neither and nothing to begin with, what the source may make."""
     least = problem.atol / problem.rtol if problem.atol else 0.0
+    v0 = u0 - rates.lift(problem.t_initial).base
     if not (least or v0.any() or rates.lift(problem.t_initial).base.any()):
         least = size_of_start(problem, rates, v0.reshape(-1))
+    if not problem.atol:
+        least = max(least, size_to_come(problem, rates, v0.reshape(-1)))
     return lambda t: np.maximum(least, np.abs(rates.lift(t).base))
 
 

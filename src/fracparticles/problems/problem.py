@@ -98,6 +98,15 @@ class Problem(WithCoefficients):
         return self
 
     @property
+    def alpha(self) -> float:
+        """The order alpha = 1 + beta; raises `InvalidInput` if it varies."""
+        beta = self.order_coefficient.constant
+        if beta is None:
+            what = "a number, to speak of one alpha"
+            raise InvalidInput("beta", self.beta, what, "Evaluate order_coefficient at places.")
+        return 1.0 + beta
+
+    @property
     def output_times(self) -> tuple[float, ...]:
         """The output times, the last of them t_final."""
         return self.times or (self.t_final,)

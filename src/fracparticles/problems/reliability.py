@@ -18,6 +18,8 @@ coefficient_misfit
     sum |c - I| / sum (|c| + |I|) between the particles, I the cubic through the four that are next, c the coefficient
     less its least value. Of a source, c itself, and of the sum and that of 2 |u| / (t_final - t_initial) the larger.
     That of the worst coefficient: what the particles do not see of it.
+space_error
+    What the same on half and a quarter of the particles says of the error of a peak over it, see `fewer_particles`.
 atol_share
     The errors of early steps over the greatest |u|, see `time.fading`; or the absolute tolerance, if one was asked for.
 """
@@ -31,6 +33,7 @@ import numpy as np
 
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.expressions import Coefficient
+from fracparticles.problems.fewer_particles import SPACE_ERROR
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import reaction_of
 from fracparticles.problems.transport import Transport
@@ -53,7 +56,7 @@ __all__ = ["estimates", "warn_if_doubtful"]
 Estimates = dict[str, tuple[list[float], str]]
 
 _LEAST_SMOOTHING = 1.1  # as there
-_LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": FADED}
+_LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": FADED, "space_error": SPACE_ERROR}
 _MOST = 2.0  # of the error of a wave over it
 _CONSTANT = 1e-9  # of a coefficient, a variation that is round-off
 
@@ -205,6 +208,8 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "smaller spacing, or a smoother coefficient",
         "atol_share": "the solution has fallen: errors of early steps, within rtol of what it was, or atol, are {:.2g} "
         "of its greatest value. Take a smaller rtol, or atol",
+        "space_error": "the particles leave an error of about {:.1g} of a peak, by the same on half and a quarter of "
+        "them. Take a smaller spacing, or smoother coefficients",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
     }

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-__all__ = ["LOOKS", "irregular_times", "sudden_times"]
+__all__ = ["LOOKS", "instant", "irregular_times", "sudden_times"]
 
 Look = Callable[[float], np.ndarray]
 
@@ -57,11 +57,16 @@ def sudden_times(
     if sudden.size > _MOST:  # it is quick everywhere
         found = set(times[sudden[:: -(-sudden.size // _MOST_CUTS)]].tolist())
         sudden = sudden[:0]
-    width = max(_FINEST * span, 64.0 * float(np.spacing(abs(start) + span)))
+    width = instant(start, span)
     for interval in sudden:
         low, high = times[interval : interval + 2]
         found |= set(_narrowed(look, int(seen[change[interval].argmax()]), low, high, width))
     return sorted(t for t in found if start < t < start + span)
+
+
+def instant(start: float, span: float) -> float:
+    """Return how closely a sudden change is found: no step need be taken in so short a time."""
+    return max(_FINEST * span, 64.0 * float(np.spacing(abs(start) + span)))
 
 
 def irregular_times(start: float, span: float, looks: int = LOOKS) -> np.ndarray:
