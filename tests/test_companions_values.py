@@ -427,6 +427,25 @@ def test_the_square_far_out_and_late(x, t):
     assert Square().cumulative(1e30, t if t < 10 else 1.0) == pytest.approx(2.0, rel=1e-13)
 
 
+@pytest.mark.parametrize("s", [0.01, 1.0, 19.9, 20.1])
+@pytest.mark.parametrize("y", [0.1, 1.0, 2.5, 4.9, 5.1, 12.0])
+def test_flanks_keep_their_digits(s, y):
+    """A distance of y widths beyond the square, or the middle of the bell: f and what lies beyond, to round-off."""
+    x, t = -1.0 - y * s, (0.5 * s) ** 2
+    with mp.workdps(200):
+        width = 2 * mp.sqrt(mp.mpf(t))
+        f = float((mp.erfc(-(x + 1) / width) - mp.erfc((1 - x) / width)) / 2)
+        left = float(left_of(x, t))
+        beyond = float(mp.erfc(y)) * 0.5 * sqrt(pi)
+    # y = -(x + 1) / s is off by an ulp of x over s, and exp(-y^2) by 2 y times that.
+    allowed = 64.0 * EPS * (1.0 + y * y + y * abs(x) / s + (s + 1.0 / s))
+    assert Square().value(x, t) == pytest.approx(f, rel=allowed)
+    assert Square().cumulative(x, t) == pytest.approx(left, rel=allowed)
+    assert Square().quantile(left, t) == pytest.approx(x, rel=allowed)
+    assert Gaussian().cumulative(-y) == pytest.approx(beyond, rel=allowed)
+    assert GaussianSource(2.0).cumulative(-y) == pytest.approx(2.0 * beyond, rel=allowed)
+
+
 @pytest.mark.parametrize("part", [1e-300, 1e-20, 1e-9, 9e-5, 2e-4, 0.3])
 def test_quantiles_of_the_gaussian(part):
     x = float(Gaussian().quantile(part * Gaussian.total, 2.0)) / 3.0

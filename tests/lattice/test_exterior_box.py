@@ -13,11 +13,10 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.lattice.exterior_box import (
     BoxFarField,
-    _next_integral,
-    _transforms,
     box_continuation,
     box_far_field,
 )
+from fracparticles.lattice.smooth_modes import _next_integral, transforms
 from fracparticles.schemes import SCHEMES, Setting
 
 ALPHA = 1.5
@@ -143,7 +142,7 @@ def test_the_exterior_does_not_depend_on_how_the_sums_are_done(name, change):
 def test_the_transforms_of_the_smooth_modes(alpha, dim):
     """Against the exponential integrals by a library of any precision."""
     k = np.array([0.01, 1.0, 7.0, 20.0, 40.0])
-    for ours, q in zip(_transforms(k, alpha, dim, 30.0), (0.5 * alpha, alpha), strict=True):
+    for ours, q in zip(transforms(k, alpha, dim, 30.0), (0.5 * alpha, alpha), strict=True):
         scale = np.pi ** (0.5 * dim) * 30.0**q / float(mp.gamma(0.5 * dim + q))
         expected = [scale * float(mp.expint(1.0 + q, one**2 / 120.0)) for one in k]
         # The recurrence subtracts: what it loses grows with z and with 1 / (alpha - 1).

@@ -165,6 +165,17 @@ def test_the_end_of_a_line_is_not():
     assert gradient(x, x, 1.0, x - 3.0, 1.1)[-1] == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("exponent", [-1073, -600, 600, 1020])
+def test_measures_of_error_do_not_depend_on_the_unit(exponent):
+    """Times a power of 2, to the last bit; far from zero the spread keeps its digits."""
+    exact, ours = np.ldexp([1.0, 2.0, 1.0], exponent), np.ldexp([1.0, 2.0, 2.0], exponent)
+    assert relative_l2(exact, ours) == relative_l2([1.0, 2.0, 1.0], [1.0, 2.0, 2.0])
+    assert r2_score(exact, ours) == r2_score([1.0, 2.0, 1.0], [1.0, 2.0, 2.0])
+    assert r2_score([1e9, 1e9 + 1.0], [1e9, 1e9 + 1.5]) == 0.5
+    with pytest.raises(InvalidInput, match="ours"):
+        relative_l2([1e-310], [1.0])
+
+
 @pytest.mark.parametrize(
     ("measure", "exact"),
     [(relative_l2, [0.0, 0.0]), (r2_score, [2.0, 2.0])],

@@ -20,37 +20,32 @@ integrand is the transform of psi_k times the symbol of A; inside it is one appl
 
     S_k = A psi_k - A (psi_k on the lattice).
 
-The transform is radial, and so is the symbol where the lattice has no aliases; the aliases add a short Fourier series.
+The transform (`smooth_modes`) is radial, and so is the symbol where the lattice has no aliases; the aliases add a short
+Fourier series.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, reduce
 from itertools import permutations
 
 import numpy as np
-from scipy.special import gamma, gammaincc, j0, j1, spherical_jn, zeta
 
 from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
+from fracparticles.lattice.smooth_modes import radial_integral, radial_parts, transforms
 
 __all__ = ["BoxFarField", "box_continuation", "box_far_field"]
 
 # At the faces, rho = 1, the smooth mode differs from phi_k by exp(-c) c^(p-1) / Gamma(p): 1e-10.
 # On a lattice of few points c = pi n: the transform has then fallen as far at 2 pi, where the symbol is that of 0.
 _SHARPNESS = 30.0  # the greatest c
-# The transform falls like exp(-k^2 / 4 c): 1e-16 at this k, which is in units of 1 / n.
-_HIGHEST = 66.0
-_WAVES = 160  # nodes of the radial integral
-_BLOCK = 128  # points at a time, so that their sums stay in the first-level cache
 # What the aliases add falls fast in space: as a Fourier series of this period, in units of n, its images are small.
 _PERIOD = {2: 8.0, 3: 4.0}
 # Below this share of the integrand it is round-off. Not more, since psi_k is some thousand times larger in the
 # middle than at the faces, and the sums are the difference of what is large there.
 _ROUND_OFF = 1e-13
-_SMALL = 0.1  # p, below which the recurrence of E_p would lose digits
 
 Symbol = Callable[[np.ndarray], np.ndarray]
 Sums = Callable[[np.ndarray], np.ndarray]
@@ -108,12 +103,12 @@ def box_far_field(symbol: Symbol, inside: Sums, alpha: float, n: int, dim: int) 
         raise InvalidInput("n", n, "at least 1", "Take more particles, or exterior='truncated'.")
     boundary, edge = _shell(n, dim, n)
     modes = _modes(edge / n, alpha)
-    k = _radial_integral(dim)[0]
+    k = radial_integral(dim)[0]
     directions = np.stack([np.eye(dim)[0], np.full(dim, dim**-0.5)])  # an axis and a diagonal
     along, across = _periodic(symbol, directions[:, None] * (k[:, None] / n))
     sharpness = min(_SHARPNESS, np.pi * n)
-    transforms = _transforms(k, alpha, dim, sharpness)
-    values, number = _radial_parts(along, transforms, dim, alpha, n)
+    psi_hat = transforms(k, alpha, dim, sharpness)
+    values, number = radial_parts(along, psi_hat, dim, alpha, n)
     sums = np.empty((4, n + 1, n + 1 if dim == 3 else 1, n + 1))
     # One application for two modes: of psi_1 the sums are even along the first axis, of psi_3 they are odd.
     u = np.empty((2 * n + 1,) * dim)
@@ -121,7 +116,7 @@ def box_far_field(symbol: Symbol, inside: Sums, alpha: float, n: int, dim: int) 
     _outside(values[[0, 2]], number, _as_planes(inside(u)), sums[0], sums[2])
     _psi(values[[4]], number, _as_planes(u))
     _outside(values[[1]], number, _as_planes(inside(u)), sums[1], sums[3])
-    size = transforms[0] * k**dim
+    size = psi_hat[0] * k**dim
     aliased = k[np.abs(across - along) * size > _ROUND_OFF * np.abs(along * size).max()]
     if aliased.size:
         shell = aliased[0], aliased[-1]
@@ -164,102 +159,6 @@ def _shell(n: int, dim: int, distance: int) -> tuple[np.ndarray, np.ndarray]:
     return places, np.array(np.unravel_index(places, there.shape)) - float(n)
 
 
-def _radial_parts(
-    symbol: np.ndarray, transforms: np.ndarray, dim: int, alpha: float, n: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return A psi_k, then psi_k, k = 1, 2, 3, at every |j|^2 there is, those of k = 3 without the factor j_1 / n.
-
-    (2 pi)^-dim int A psi^ e^{ik.x} dk is a Chebyshev series in |x|^2. psi_3 is -d psi_1 / dx_1 / (dim + alpha).
-
-    Parameters
-    ----------
-    symbol : array, shape (_WAVES,)
-        That of A along an axis, at the nodes of the radial integral.
-    transforms : array, shape (2, _WAVES)
-        Those of psi_1 and psi_2.
-    dim, alpha, n
-        As for `box_far_field`.
-
-    Returns
-    -------
-    values : array, shape (6, distinct)
-    number : array of int, shape (dim n^2 + 1,)
-        The column for each |j|^2.
-    """
-    k, volume, mean, slope = _radial_integral(dim)
-    first, second = transforms * volume
-    third = first * k * k / (dim + alpha)
-    means = np.stack([symbol * first, symbol * second, first, second]) @ mean
-    slopes = np.stack([symbol * third, third]) @ slope
-    coefficients = np.stack([means[0], means[1], slopes[0], means[2], means[3], slopes[1]])
-    present = np.zeros(dim * n * n + 1, dtype=bool)
-    present[reduce(np.add.outer, [np.square(np.arange(n + 1))] * dim)] = True
-    distinct = np.flatnonzero(present)
-    values = np.empty((6, distinct.size))
-    _sum_series(coefficients, distinct * (2.0 / (dim * n * n)) - 1.0, values)
-    return values, np.cumsum(present) - 1
-
-
-@cache
-def _radial_integral(dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The nodes |k| of the integral over all k, their volumes, and for each the Chebyshev coefficients of its waves.
-
-    Of e^{ik.x} averaged over the directions of k, and of minus its derivative along x_1 over x_1 k^2, as functions of
-    |x|^2 where |x_d| <= 1; both shape (_WAVES, terms).
-    """
-    # k = _HIGHEST s^4 and equal steps of s: powers k^alpha at the origin become smooth enough for equal weights.
-    s = np.arange(1, _WAVES + 1) / _WAVES
-    k = _HIGHEST * s**4
-    surface = {2: 2.0 * np.pi, 3: 4.0 * np.pi}[dim]
-    volume = surface * k ** (dim - 1) * (4.0 * k / s / _WAVES) / (2.0 * np.pi) ** dim
-    terms = 24 + int(
-        0.5 * _HIGHEST * np.sqrt(dim)
-    )  # the waves of half the diagonal, and some to spare
-    angle = (np.arange(terms) + 0.5) * (np.pi / terms)
-    z = np.outer(k, np.sqrt(dim) * np.cos(0.5 * angle))
-    mean, slope = (j0(z), j1(z) / z) if dim == 2 else (spherical_jn(0, z), spherical_jn(1, z) / z)
-    to_series = (2.0 / terms) * np.cos(np.outer(angle, np.arange(terms)))
-    to_series[:, 0] *= 0.5
-    return k, volume, mean @ to_series, slope @ to_series
-
-
-def _transforms(k: np.ndarray, alpha: float, dim: int, sharpness: float) -> np.ndarray:
-    """The transforms of psi_1 and psi_2, shape (2, ..): pi^(dim/2) c^q E_{1+q}(k^2 / 4 c) / Gamma(dim/2 + q).
-
-    q = alpha / 2 and alpha. The exponential integral E_p is a gamma function for p < 1, and from there
-    p E_{p+1}(z) = e^-z - z E_p(z), where p is not so small that this cancels.
-    """
-    z = k * k / (4.0 * sharpness)
-    decay = np.exp(-z)
-    found = []
-    for q in (0.5 * alpha, alpha):
-        p = q % 1.0
-        integral = z ** (p - 1.0) * gammaincc(1.0 - p, z) * gamma(1.0 - p)
-        integral = _next_integral(p, z) if p < _SMALL else (decay - z * integral) / p
-        if q > 1.0:
-            integral = (decay - z * integral) / (p + 1.0)
-        found.append(np.pi ** (0.5 * dim) * sharpness**q / gamma(0.5 * dim + q) * integral)
-    return np.array(found)
-
-
-def _next_integral(p: float, z: np.ndarray) -> np.ndarray:
-    """E_{1+p}(z), 0 < p < 0.1: by its series up to z = 1, from there by a continued fraction (DLMF 8.19.10, 17).
-
-    Gamma(-p) z^p and the first term of the series have the pole 1 / p each, which is taken off both.
-    """
-    k = np.arange(1.0, 20.0)
-    small = np.minimum(z, 1.0)
-    terms = (-small[..., None]) ** k / (gamma(k + 1.0) * (k - p))
-    log_gamma = (
-        np.euler_gamma * p + (zeta(k + 1.0) * p ** (k + 1.0) / (k + 1.0)).sum()
-    )  # of Gamma(1 - p)
-    near = -np.expm1(log_gamma + p * np.log(small)) / p - terms.sum(axis=-1)
-    large, far = np.maximum(z, 1.0), np.zeros_like(z)
-    for j in range(80, 0, -1):
-        far = j * (p + j) / (large + 1.0 + p + 2.0 * j - far)
-    return np.where(z < 1.0, near, np.exp(-z) / (large + 1.0 + p - far))
-
-
 def _periodic(symbol: Symbol, theta: np.ndarray) -> np.ndarray:
     return symbol(theta - 2.0 * np.pi * np.round(theta / (2.0 * np.pi)))
 
@@ -286,7 +185,7 @@ def _add_aliases(
     place, length = place[:, inner], length[inner]
     along = np.outer(length, np.eye(dim)[0])
     rest = _periodic(symbol, k[place].T / n) - _periodic(symbol, along / n)
-    values = rest * _transforms(length, alpha, dim, sharpness)
+    values = rest * transforms(length, alpha, dim, sharpness)
     series = np.zeros((2, *(k.size,) * dim))
     for order in permutations(range(dim)):
         series[(slice(None), *place[list(order)])] = values
@@ -302,29 +201,6 @@ def _add_aliases(
 
 def _as_planes(block: np.ndarray) -> np.ndarray:
     return block if block.ndim == 3 else block[:, None, :]
-
-
-@njit()
-def _sum_series(coefficients, x, out):
-    """out = sum_m c_m T_m(x) for each row of the coefficients."""
-    last, new = np.empty(_BLOCK), np.empty(_BLOCK)
-    for start in range(0, x.size, _BLOCK):
-        part = x[start : start + _BLOCK]
-        before = np.ones(_BLOCK)
-        last[: part.size] = part
-        for f in range(coefficients.shape[0]):
-            total = out[f, start : start + _BLOCK]
-            for i in range(part.size):
-                total[i] = coefficients[f, 0] + coefficients[f, 1] * part[i]
-        for m in range(2, coefficients.shape[1]):
-            for i in range(part.size):
-                new[i] = 2.0 * part[i] * last[i] - before[i]
-                before[i] = last[i]
-                last[i] = new[i]
-            for f in range(coefficients.shape[0]):
-                c, total = coefficients[f, m], out[f, start : start + _BLOCK]
-                for i in range(part.size):
-                    total[i] += c * last[i]
 
 
 @njit()

@@ -9,8 +9,8 @@ quantile(g, t) with g constant, at any time.
 - `Ramp`: f = x exp(-x^2) on [0, x_0], for the loading of Figs. 1-4; it has no t.
 
 Every x, g is an array of any shape, t a number of zero or more. A quantile is within round-off of the one of g, for any
-0 < g < total. The differences in f of `Square` cancel for large t and in the far tail: for s = 2 sqrt(t) > 20 they are
-integrals over the square by a Gauss rule, and the tail is
+0 < g < total. The differences in f of `Square` cancel for large t and beyond the square. For s = 2 sqrt(t) > 20 they
+are integrals over the square by a Gauss rule, and to the left of the square
 
     int_-inf^x f dx' = s/2 (i(-(x + 1) / s) - i((1 - x) / s)),     i(u) = exp(-u^2) (1/sqrt(pi) - u erfcx(u)).
 """
@@ -31,9 +31,8 @@ __all__ = ["Gaussian", "Profile", "Ramp", "Square", "inside"]
 _WIDE = 20.0  # s, against the square's half-width of 1
 # Exact for exp((x - y)^2 / s^2) with y / s below 1/20.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
-_FAR = 5.0  # erfc(5) = 2e-12: as far the difference of two erf keeps four digits
-_TAIL = 1e-10  # of the total: the plain formulae keep six digits of it
-_ERFINV = 1e-4  # of the total: the same for erfinv, with twelve digits
+_FAR = 0.5  # beyond the square, in s: f is a difference of erfc there, which are small themselves
+_ERFINV = 1e-4  # of the total: erfinv keeps twelve digits of it
 
 
 class Profile(Protocol):
@@ -83,12 +82,23 @@ class Square:
     def _cumulative(self, x: np.ndarray, s: float) -> np.ndarray:
         if s > _WIDE:
             return _over_square(lambda z: erfc(-z), x, s)
-        x = np.clip(x, -1.0 - 30.0 * s, 1.0 + 30.0 * s)  # f is zero beyond
+        outside = self._outside(np.maximum(np.abs(x) - 1.0, 0.0), s)
+        inner = np.clip(x, -1.0, 1.0)
 
         def antiderivative(y: np.ndarray) -> np.ndarray:  # of erf(y / s)
             return y * erf(y / s) + s / math.sqrt(math.pi) * np.exp(-((y / s) ** 2))
 
-        return 1.0 + 0.5 * (antiderivative(x + 1.0) - antiderivative(x - 1.0))
+        inside = 1.0 + 0.5 * (antiderivative(inner + 1.0) - antiderivative(inner - 1.0))
+        return np.where(np.abs(x) <= 1.0, inside, np.where(x < 0.0, outside, 2.0 - outside))
+
+    def _outside(self, y: np.ndarray, s: float) -> np.ndarray:
+        """int f dx' over what is farther than y from the square on one side, to a relative error of round-off."""
+
+        def integral(u: np.ndarray) -> np.ndarray:
+            return np.exp(-u * u) * (1.0 / math.sqrt(math.pi) - u * erfcx(u))
+
+        y = np.minimum(y, 30.0 * s)  # f is zero beyond
+        return 0.5 * s * (integral(y / s) - integral((y + 2.0) / s))
 
     def quantile(self, g: Any, t: float = 0.0) -> np.ndarray:
         """Return x with cumulative(x, t) = g, by bisection; accurate to round-off in g."""
@@ -98,25 +108,9 @@ class Square:
         # The half with x <= 0, where no digits are lost, gives the other by symmetry.
         mirrored, s = np.minimum(g, 2.0 - g), 2.0 * math.sqrt(t)
         zero = np.zeros_like(g)
-        left = zero - (1.0 + 16.0 * math.sqrt(t))
+        left = zero - (1.0 + 27.5 * s)
         x = bisected(lambda x: self._cumulative(x, s) < mirrored, left, zero, 64)
-        if (mirrored < _TAIL).any():
-            left = zero - (1.0 + 27.5 * s)
-            far = bisected(lambda x: self._tail(x, s) < mirrored, left, zero, 64)
-            x = np.where(mirrored < _TAIL, far, x)
         return np.where(g <= 1.0, 1.0, -1.0) * x
-
-    def _tail(self, x: np.ndarray, s: float) -> np.ndarray:
-        """`_cumulative`, for x < -1 to a relative error of round-off."""
-        if s > _WIDE:
-            return self._cumulative(x, s)
-        near, far = (np.maximum(-(x + y) / s, 0.0) for y in (1.0, -1.0))
-
-        def integral(u: np.ndarray) -> np.ndarray:
-            return np.exp(-u * u) * (1.0 / math.sqrt(math.pi) - u * erfcx(u))
-
-        outside = 0.5 * s * (integral(near) - integral(far))
-        return np.where(x < -1.0, outside, self._cumulative(x, s))
 
 
 def _over_square(function: Any, x: np.ndarray, s: float) -> np.ndarray:
@@ -147,7 +141,7 @@ class Gaussian:
     def cumulative(self, x: Any, t: float = 0.0) -> np.ndarray:
         """Return int_-inf^x f dx'."""
         scaled = check.places("x", x) / math.sqrt(1.0 + 4.0 * check.not_negative("t", t))
-        return 0.5 * self.total * np.where(scaled < -4.0, erfc(-scaled), 1.0 + erf(scaled))
+        return 0.5 * self.total * erfc(-scaled)
 
     def quantile(self, g: Any, t: float = 0.0) -> np.ndarray:
         """Return x with cumulative(x, t) = g."""

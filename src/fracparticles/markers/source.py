@@ -181,7 +181,7 @@ class GaussianSource:
         """S^(x)."""
         x = check.places("x", x)
         if self.derivative == 0:
-            return 0.5 * self.total * (1.0 + erf(x))
+            return 0.5 * self.total * erfc(-x)
         with np.errstate(over="ignore"):
             return check.finite_result("q", self.q * (-2.0 * x * np.exp(-x * x)))
 

@@ -25,7 +25,8 @@ from fracparticles.errors import (
     FracparticlesError,
     NonFiniteSolution,
 )
-from fracparticles.moving.dvm import EXTERIORS, DiffusionVelocity, largest_gap
+from fracparticles.moving.diffusion_velocity import EXTERIORS, DiffusionVelocity
+from fracparticles.moving.dvm import largest_gap
 from fracparticles.moving.lagrangian import (
     REMESHING,
     FieldNotPositive,

@@ -40,7 +40,6 @@ __all__ = [
     "Remeshing",
     "advance",
     "quotient_velocity",
-    "strengths_of",
 ]
 
 # What holds if nothing is said: the remeshing kernel, the spacing above which it is used, in h, and the share of the

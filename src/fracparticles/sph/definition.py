@@ -9,12 +9,16 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma, roots_jacobi
 
-from fracparticles.arguments import positive_integer, within
+from fracparticles.arguments import SIZES, finite_result, positive_integer, sampled, within
 from fracparticles.errors import AccuracyWarning
 
 __all__ = ["defining_integral"]
 
 _UNRESOLVED = 1e-3  # of the greatest integral
+_ORDERS = (
+    1e-12,
+    150.0,
+)  # the nodes of lower ones are lost in round-off, and Gamma of higher ones overflows
 
 
 def defining_integral(
@@ -22,8 +26,10 @@ def defining_integral(
 ) -> np.ndarray:
     """I^alpha f (1), (7) by Gauss-Jacobi: x^alpha / Gamma(alpha) int_0^1 (1-t)^(alpha-1) f(x t) dt.
 
-    Raises `InvalidInput` if a point is negative, an order not positive, or their shapes differ. Warns with
-    `AccuracyWarning` if the nodes do not resolve f.
+    That is x^alpha / Gamma(1 + alpha) times the mean of f(x t) by the weights of the quadrature.
+
+    Raises `InvalidInput` if a point is negative, an order outside its range, their shapes differ, f does not take
+    arrays, or the integral overflows. Warns with `AccuracyWarning` if the nodes do not resolve f.
 
     Parameters
     ----------
@@ -32,12 +38,12 @@ def defining_integral(
     x : array_like, shape (M,)
         Points, zero or more.
     alpha : array_like, shape (M,)
-        The order at each, above zero.
+        The order at each, from 1e-12 to 150.
     nodes : int
         The quadrature is exact for polynomials of degree 2 nodes - 1.
     """
-    x = within("x", x, 0.0)
-    alpha = within("alpha", alpha, 0.0, inside=True, shape=x.shape)
+    x = within("x", x, 0.0, SIZES[1])
+    alpha = within("alpha", alpha, *_ORDERS, shape=x.shape)
     nodes = positive_integer("nodes", nodes)
     out, finer = (_quadrature(f, x, alpha, n) for n in (nodes, nodes + nodes // 2 + 1))
     off, size = float(np.abs(out - finer).max(initial=0.0)), float(np.abs(finer).max(initial=0.0))
@@ -58,6 +64,7 @@ def _quadrature(
     for order in np.unique(alpha):
         at_nodes, weights = roots_jacobi(nodes, order - 1.0, 0.0)  # on [-1, 1]
         at = alpha == order
-        values = f(0.5 * np.outer(x[at], at_nodes + 1.0)) @ weights
-        out[at] = (0.5 * x[at]) ** order / gamma(order) * values
-    return out
+        mean = sampled("f", f, 0.5 * np.outer(x[at], at_nodes + 1.0)) @ (weights / weights.sum())
+        with np.errstate(over="ignore", invalid="ignore"):
+            out[at] = x[at] ** order / gamma(1.0 + order) * mean
+    return np.asarray(finite_result("f", out))

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import vector
+from fracparticles.arguments import finite_result, vector
 from fracparticles.errors import InvalidInput
 
 __all__ = ["r2_score", "relative_l2"]
@@ -39,13 +39,15 @@ def r2_score(exact: Any, ours: Any) -> float:
 
 
 def _values(exact: Any, ours: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Both over the largest exact value, so that their squares are numbers."""
+    """Both in units of a power of 2 about the largest exact value, so that their squares are numbers."""
     exact = vector("exact", exact)
     ours = vector("ours", ours, exact.size, complex_too=True)
     greatest = np.abs(exact).max()
     if greatest == 0.0:
         raise _no_size(exact)
-    return exact / greatest, ours / greatest
+    unit = np.ldexp(1.0, np.frexp(greatest)[1] - 1)
+    with np.errstate(over="ignore"):
+        return exact / unit, finite_result("ours", ours / unit)
 
 
 def _no_size(exact: np.ndarray) -> InvalidInput:
