@@ -295,18 +295,20 @@ def test_what_is_not_a_data_set_is_refused(tmp_path):
             fp.write(fp.solve(case(store="metrics")), path)
 
 
-@pytest.mark.parametrize("umask", [0o022, 0o077, 0o027, 0o002])
-def test_the_mode_is_what_the_umask_leaves(tmp_path, umask):
+def test_the_mode_is_what_the_umask_leaves(tmp_path):
     program = (
         "import os, sys, xarray as xr\n"
         "from fracparticles.run.dataset import write\n"
-        f"os.umask({umask})\n"
-        "write(xr.Dataset({'a': 1.0}), sys.argv[1])"
+        "for path in sys.argv[1:]:\n"
+        "    os.umask(int(os.path.basename(path), 8))\n"
+        "    write(xr.Dataset({'a': 1.0}), path)"
     )
-    path = tmp_path / "a.nc"
-    path.touch(0o600)  # the mode of what was there does not count
-    subprocess.run([sys.executable, "-c", program, str(path)], check=True)
-    assert stat.S_IMODE(path.stat().st_mode) == 0o666 & ~umask
+    umasks = 0o022, 0o077, 0o027, 0o002
+    paths = [tmp_path / f"{umask:o}" for umask in umasks]
+    for path in paths:
+        path.touch(0o600)  # the mode of what was there does not count
+    subprocess.run([sys.executable, "-c", program, *map(str, paths)], check=True)
+    assert [stat.S_IMODE(path.stat().st_mode) for path in paths] == [0o666 & ~u for u in umasks]
 
 
 def test_only_regular_files_are_replaced(tmp_path, monkeypatch):

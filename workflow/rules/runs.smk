@@ -8,6 +8,7 @@ rule compile:
     log:
         RESULTS / "logs/compile.log",
     priority: 2
+    threads: 2  # nothing else runs before it has ended
     resources:
         runtime=10,
         mem_mb=1500,
