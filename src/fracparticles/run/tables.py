@@ -32,7 +32,8 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
         raise InvalidInput(
             "file", str(path), f"a readable table ({error})", "Write it as UTF-8."
         ) from None
-    lines, remark = [], ""  # the last one before the numbers
+    lines: list[str] = []
+    remark = ""  # the last one before the numbers
     for line in map(str.strip, text.splitlines()):
         if line.startswith("#"):
             remark = remark if lines else line.lstrip("# ")
