@@ -9,8 +9,8 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.run.radius import radius_of
 from fracparticles.run.solver import compute
-from fracparticles.run.suggest import _radius_of
 from fracstudy.race.problems import PROBLEMS
 
 
@@ -180,7 +180,7 @@ def test_data_are_asked_for_all_places_at_once_where_that_is_the_same(normalised
     case = fp.Case(
         scheme="KPSE", alpha=1.5, half_width=1.0, spacing=0.1, t_initial=0.0, integrator="exponential"
     )  # fmt: skip
-    radius = _radius_of(blob, case, 1)
+    radius = radius_of(blob, case, 1)
     assert max(asked) > 2000 or normalised
     assert (len(asked) < 100) is not normalised
     assert radius == pytest.approx(1.163087, rel=1e-4)  # erf(r) = 0.9
