@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 __all__ = [
     "AccuracyWarning",
@@ -17,6 +18,7 @@ __all__ = [
 ]
 
 _LONGEST = 200  # characters of a value that a message shows
+_MOST_NUMBERS = 12
 
 
 class FracparticlesError(Exception):
@@ -43,10 +45,17 @@ class InvalidInput(FracparticlesError, ValueError):
         self.field, self.value, self.allowed, self.remedy = field, value, allowed, remedy
 
     def __str__(self) -> str:
-        value = " ".join(repr(self.value).split())
+        value = " ".join(_shown(self.value).split())
         shown = value if len(value) <= _LONGEST else f"{value[:_LONGEST]}..."
         line = f"{self.field} = {shown} is not allowed: {self.allowed}. {self.remedy}"
         return " ".join(line.split())  # a name may hold a line feed, too
+
+
+def _shown(value: Any) -> str:
+    """The value, or what kind of array it is: of many numbers the first say nothing."""
+    if getattr(value, "size", 0) > _MOST_NUMBERS and hasattr(value, "dtype"):
+        return f"array of shape {value.shape} and type {value.dtype}"
+    return repr(value)
 
 
 def spelled(values: Iterable[object], last: str = " or ") -> str:

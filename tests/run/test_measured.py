@@ -171,6 +171,25 @@ def test_columns_are_taken_by_their_names(tmp_path, names, axes):
     assert np.array_equal(fp.measured(frame).values, data.values)
 
 
+@pytest.mark.parametrize("names", [("u", "x"), ("c [mg/L]", "X [m]")])
+@pytest.mark.parametrize("mark", [" ", ",", ";", "\t"])
+def test_headings_in_a_remark_name_the_columns(tmp_path, names, mark):
+    """As numpy.savetxt writes them; the values stand first, and would else be taken for places."""
+    path, x = tmp_path / "t.txt", np.linspace(-3.0, 3.0, 21)
+    header = "salt at noon, the second day\n" + mark.join(names)
+    np.savetxt(path, np.array([np.exp(-x * x), x]).T, delimiter=mark, header=header)
+    found = fp.measured(path)
+    np.testing.assert_allclose(found.axes[0], x, rtol=1e-15)
+    assert found.units == (("m", "mg/L") if "[" in names[0] else ("", ""))
+
+
+@pytest.mark.parametrize("remark", ["two words", "x", "x y z", "u of noon", "depth 7"])
+def test_other_remarks_do_not(tmp_path, remark):
+    path, x = tmp_path / "t.txt", np.linspace(-3.0, 3.0, 21)
+    np.savetxt(path, np.array([x, np.exp(-x * x)]).T, header=remark)
+    np.testing.assert_allclose(fp.measured(path, x="column 1").axes[0], x, rtol=1e-15)
+
+
 def test_axes_of_two_units_are_refused(tmp_path):
     """A lattice has one unit of length."""
     points = [(x, y) for x in range(4) for y in range(5)]

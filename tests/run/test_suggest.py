@@ -9,6 +9,7 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.run.radius import radius_of
 from fracparticles.run.solver import compute
 from fracstudy.race.problems import PROBLEMS
 
@@ -160,3 +161,26 @@ def test_data_far_wider_than_they_spread_take_few_particles(width):
     case = fp.suggest(lambda x: np.exp(-((x / width) ** 2)), error=1e-3, alpha=1.5, t_final=1.0)
     assert case.x.size < 100
     assert width < case.reach < 10.0 * width
+
+
+@pytest.mark.parametrize("initial", [lambda x: 1.0, lambda x: np.where(x > 0.0, 1.0, 0.0)])
+def test_data_that_do_not_fall_are_refused(initial):
+    with pytest.raises(InvalidInput, match="data that fall"):
+        fp.suggest(initial, error=1e-3, alpha=1.5, t_final=1.0)
+
+
+@pytest.mark.parametrize("normalised", [False, True])
+def test_data_are_asked_for_all_places_at_once_where_that_is_the_same(normalised):
+    asked = []
+
+    def blob(x):
+        asked.append(np.size(x))
+        return np.exp(-x * x) / (np.size(x) if normalised else 1)
+
+    case = fp.Case(
+        scheme="KPSE", alpha=1.5, half_width=1.0, spacing=0.1, t_initial=0.0, integrator="exponential"
+    )  # fmt: skip
+    radius = radius_of(blob, case, 1)
+    assert max(asked) > 2000 or normalised
+    assert (len(asked) < 100) is not normalised
+    assert radius == pytest.approx(1.163087, rel=1e-4)  # erf(r) = 0.9

@@ -153,7 +153,10 @@ def test_the_data_stay_as_they_are():
         ({"time": -1.0}, "time"),
         ({"time": 1000.0}, "lattice"),
         ({"u": np.ones(7)}, "points"),
-        ({"u": np.float64(1.0), "dim": 1}, "points"),
+        ({"u": np.float64(1.0), "dim": 1}, "u"),
+        ({"u": 1.0}, "u"),
+        ({"u": np.ones((2, 16))}, "u"),
+        ({"u": np.ones((16, 1))}, "u"),
         ({"diffusivity": float("nan")}, "diffusivity"),
         ({"dim": 4}, "dim"),
         ({"terms": 7}, "terms"),
@@ -321,6 +324,13 @@ def test_other_bad_arguments_are_named(change, field):
 def test_a_time_that_is_no_time_at_all_leaves_the_data():
     u = np.exp(-(np.linspace(-5.0, 5.0, 33) ** 2))
     assert_allclose(evolve(u, 1e100, 1.9, 1e-100, diffusivity=1e-100), u, atol=1e-15)
+
+
+def test_a_list_will_do_and_complex_numbers_will_not():
+    run = WholeSpace(16, 1, 1.5, 1.0)
+    assert (run.solve([1.0] * 16) == run.solve(np.ones(16))).all()
+    with pytest.raises(InvalidInput, match="real numbers"):
+        run.solve(np.ones(16) * 1j)
 
 
 def test_no_data_at_all():

@@ -139,6 +139,9 @@ def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:
             "Pass the labelled data to fp.solve, which takes them by their labels, or their values."
         )
         raise InvalidInput("initial", type(u0).__name__, bare, remedy)
+    if isinstance(u0, tuple) and len(u0) == len(shape) + 1:
+        pair = "an array, and not a tuple of places and values"
+        raise InvalidInput("initial", "tuple", pair, "Have them interpolated: fp.measured((x, u)).")
     u0 = _real(u0)
     if u0.shape != shape:
         shaped = f"an array of shape {shape}, one strength for each particle of the lattice"
@@ -320,7 +323,8 @@ def _labels(given: Any) -> xr.Dataset | None:
     pandas = sys.modules.get("pandas")
     if pandas is not None and isinstance(given, pandas.DataFrame):
         series = "an array, or a Series of u with x as its index"
-        raise InvalidInput("initial", "DataFrame", series, "Take a column.")
+        remedy = "Take a column, or have it interpolated: fp.measured(frame)."
+        raise InvalidInput("initial", "DataFrame", series, remedy)
     if pandas is not None and isinstance(given, pandas.Series):
         if isinstance(given.index, pandas.RangeIndex):  # counted, not labelled
             return None

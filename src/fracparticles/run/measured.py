@@ -38,9 +38,9 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
     ----------
     data : path, DataArray, Dataset, Series, DataFrame, or a tuple of arrays (x, u)
         A table (csv, tsv, txt, dat) of two columns, or three or four for a rectangular grid of the plane or of space,
-        the values last; a first line may name them, with units in brackets, "x [m], c (mg/L)": then x, y, z are the
-        places and u, or the other one, the values, wherever they stand. A NetCDF file or labelled data: a variable on
-        axes of any names, whose units are read.
+        the values last. A first line, or the remark above the numbers, may name them, with units in brackets,
+        "x [m], c (mg/L)": then x, y, z are the places and u, or the other one, the values, wherever they stand. A
+        NetCDF file or labelled data: a variable on axes of any names, whose units are read.
     x, u : str, optional
         Names of the columns or axes, and of the values, where there are more than these.
 

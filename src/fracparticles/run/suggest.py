@@ -10,7 +10,7 @@ leaves more, and that is mended until the error is what was asked for; then both
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.estimate import estimate_of
 from fracparticles.run.initial import Initial, resolved
 from fracparticles.run.interpolated import Measured
+from fracparticles.run.radius import radius_of
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 from fracparticles.special.stable import central_mass
@@ -45,8 +46,6 @@ _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
 _LOWER, _MOST_IN_VAIN = 0.9, 5  # trials one after the other that do not lower the error
 _HELD = 0.97  # of the mass of a point, where no radius is given
 _WIDE = 100.0  # radii of interest over (D T)^(1/alpha): beyond, the kernel of GPSE asks for more particles than data
-_RAY = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 2401)])  # where data are looked at
-_NEAR, _LOOKS = 1000.0, 40_001  # and evenly, within so many of the radius that is found there
 _POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate: many are made
 _TERMS = {1: 3, 2: 3, 3: 2}
 _SMALLEST = 1e-11
@@ -115,7 +114,7 @@ def suggest(
     spread = (problem.diffusivity * problem.span) ** (1.0 / problem.alpha)
     least = 0.0
     if within is None:
-        radius = _radius_of(initial, problem, dim)
+        radius = radius_of(initial, problem, dim)
         within = radius + 2.0 * spread
         least = radius + spread  # and more, until the lattice holds the solution
         while central_mass(least, spread**problem.alpha, problem.alpha, dim) < _HELD:
@@ -273,34 +272,3 @@ def _errors(case: Case, initial: Initial, within: float | None) -> tuple[float, 
                 return np.inf, 1.0, 0.0  # a lattice too coarse for the data
             found.append((one.total - one.data, one.spacing, one.domain))
     return max(found)
-
-
-def _radius_of(initial: Initial, problem: Case, dim: int) -> float:
-    """Return the radius that holds nine tenths of the data along the axes, of those within 1e12 of their unit.
-
-    A part narrower than a fiftieth of its distance is found if it is within a thousand radii of the rest, and wider
-    than a fortieth of that radius.
-    """
-    if isinstance(initial, str):
-        return float((problem.diffusivity * problem.t_initial) ** (1.0 / problem.alpha))
-    if isinstance(initial, Measured):
-        return max(float(np.abs(axis[[0, -1]]).max()) for axis in initial.axes)
-    assert callable(initial)
-    function: Callable[..., Any] = np.vectorize(initial, otypes=[float])
-
-    def held(r: np.ndarray) -> float:
-        rays = [axis * sign for axis in np.eye(dim) for sign in (1.0, -1.0)]
-        with np.errstate(all="ignore"):  # a function of the caller's may overflow so far out
-            sizes = sum(np.abs(function(*(r * part for part in ray))) for ray in rays)
-            density = r ** (dim - 1) * sizes
-            parts = 0.5 * (density[1:] + density[:-1]) * np.diff(r)
-        mass = np.concatenate([[0.0], np.cumsum(parts)])
-        if not 0.0 < mass[-1] < np.inf:
-            raise InvalidInput(
-                "initial", initial, "data that are finite and not zero", "Give within."
-            )
-        return float(np.interp(0.9 * mass[-1], mass, r))
-
-    radius = held(_RAY)
-    even = np.linspace(0.0, _NEAR * radius, _LOOKS)
-    return held(np.union1d(_RAY, even))

@@ -13,6 +13,7 @@ from fracparticles.errors import InvalidInput, spelled
 
 __all__ = ["is_table", "name_and_unit", "read_table"]
 
+_KNOWN = ("x", "y", "z", "u")
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
 
 
@@ -31,9 +32,13 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
         raise InvalidInput(
             "file", str(path), f"a readable table ({error})", "Write it as UTF-8."
         ) from None
-    lines = [
-        line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")
-    ]
+    lines: list[str] = []
+    remark = ""  # the last one before the numbers
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith("#"):
+            remark = remark if lines else line.lstrip("# ")
+        elif line:
+            lines.append(line)
     if not lines:
         raise InvalidInput("file", str(path), "a table with numbers", "It is empty.")
     separator = next((mark for mark in ";\t," if mark in lines[-1]), None)
@@ -45,8 +50,10 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
         rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
     headings = None if _is_number(rows[0][0], comma) else rows.pop(0)
     count = len(rows[0]) if rows else 0
-    if headings is not None and separator is None:  # "c [mg/L]  x [m]"
-        headings = re.findall(r"\S+(?:\s+[\[(][^\])]*[\])])?", lines[0])
+    if headings is not None and separator is None:
+        headings = _names_between_blanks(lines[0])
+    if headings is None:
+        headings = _names_in(remark, separator, count)
     if headings is None or (separator is not None and len(headings) == 1 < count):  # or a title
         headings = [f"column {k + 1}" for k in range(count)]
     elif len(headings) != count:
@@ -70,6 +77,23 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
             "file", str(path), "columns of different names", f"It has {spelled(names, ' and ')}."
         )
     return dict(zip(names, numbers.T, strict=True)), dict(split)
+
+
+def _names_between_blanks(line: str) -> list[str]:
+    """Return the names in "c [mg/L]  x [m]"."""
+    return re.findall(r"\S+(?:\s+[\[(][^\])]*[\])])?", line)
+
+
+def _names_in(remark: str, separator: str | None, count: int) -> list[str] | None:
+    """Return the headings in a remark above the numbers, "# u x" of `numpy.savetxt`; None if it is another remark.
+
+    They are headings if there is one for each column, and one of them is x, y, z or u, or has a unit.
+    """
+    cells = _names_between_blanks(remark) if separator is None else remark.split(separator)
+    found = [cell.strip() for cell in cells]
+    split = [name_and_unit(one) for one in found]
+    known = any(name.lower() in _KNOWN or unit for name, unit in split)
+    return found if known and len(found) == count else None
 
 
 def _is_number(text: str, comma: bool) -> bool:

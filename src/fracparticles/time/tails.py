@@ -108,9 +108,10 @@ class Tails:
         own, count = len(self._before), len(self._moments)
         known = np.hstack([self._beyond_the_circle(), np.eye(count)])
         self._result = self._flow(known, alpha, time)
-        self._bases = [self._basis(slice(None), 0.0)] * dim
+        whole = self._basis(slice(None), 0.0)
+        self._bases = [whole] * dim
         self._shown = [
-            self._basis(where, by / length)
+            self._basis(where, by / length) if by else _part(whole, where)
             for where, by in zip(shown, moved or (0.0,) * dim, strict=True)
         ]
         self._series = (
@@ -253,6 +254,12 @@ class Tails:
             parts = summed
         shape = tuple(even.shape[1] for even, _ in bases)
         return parts.get((), np.zeros((len(numbers), *shape)))
+
+
+def _part(basis: tuple[np.ndarray, np.ndarray], where: slice) -> tuple[np.ndarray, np.ndarray]:
+    """The same polynomials at some of the points, in arrays of their own: sums over others are rounded otherwise."""
+    even, odd = basis
+    return np.ascontiguousarray(even[:, where]), np.ascontiguousarray(odd[:, where])
 
 
 def _power(start: float, exponent: float, alpha: float, time: float) -> float:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -98,10 +98,12 @@ def evolve(
     >>> u = evolve(np.exp(-x * x), x[1] - x[0], alpha=1.5, time=1.0, tail=())
     """
     u = check.finite_array("u", u)
-    dim = check.dimension(u.ndim if dim is None else dim)
+    dim = _dimension_of(u) if dim is None else check.dimension(dim)
     alpha, h = check.fractional_order(alpha), check.scale("spacing", spacing)
     span = check.scale("time", time) * check.scale("diffusivity", diffusivity)
     points = u.shape[-1] if u.ndim else 0
+    if u.shape[-dim:] != (points,) * dim:
+        _refuse_shape(u.shape, f"as many points along each of its last {dim} axes, those of space")
     scaled_time = min(max(span * h**-alpha, _TIMES[0]), _TIMES[1])
     run = WholeSpace(points, dim, alpha, scaled_time, terms=terms, tail=tail, stretch=stretch)
     result, miss, lacking = run.solve_and_judge(u)
@@ -225,6 +227,8 @@ class WholeSpace:
         """Return the solution, and the numbers of its tail if it has one; show u^ of the data to `look`."""
         points, dim = self._points, self._dim
         shape = (points,) * dim
+        if type(u) is not np.ndarray or u.dtype.kind not in "fiu":
+            u = check.finite_array("u", u)
         if u.ndim < dim or u.shape[u.ndim - dim :] != shape:
             allowed = f"the shape {shape}, after what counts the data"
             raise InvalidInput("u", u.shape, allowed, "Give a value at each lattice point.")
@@ -265,6 +269,18 @@ class WholeSpace:
             miss = miss - self._circle.tails.result_at(np.transpose(faces) + self._start, numbers)
         miss = np.abs(miss) / np.maximum(size, _TINY)
         return float(miss.max(initial=0.0))
+
+
+def _dimension_of(u: np.ndarray) -> int:
+    """Return how many axes space has, if nobody said: all."""
+    if not (1 <= u.ndim <= 3 and len(set(u.shape)) == 1):
+        _refuse_shape(u.shape, "as many points along each of one to three axes")
+    return u.ndim
+
+
+def _refuse_shape(shape: tuple[int, ...], allowed: str) -> NoReturn:
+    remedy = "If its last axis alone is space, and the others count data, give dim=1."
+    raise InvalidInput("u", f"array of shape {shape}", allowed, remedy)
 
 
 def _refuse_outgrown(points: int, spread: float) -> None:
