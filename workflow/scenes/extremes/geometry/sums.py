@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import cache, partial
 from itertools import product
 from typing import Any
 
@@ -174,16 +175,15 @@ def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
         )
 
 
+@cache
+def _weight(alpha: float, overlap: float, m: float) -> float:
+    """K(m / s), which takes long by mpmath and is asked for again by every end of every line."""
+    return Kernels(alpha).values("K", abs(m) / overlap)
+
+
 def _of_exterior(alpha: float, n: int, overlap: float) -> float:
-    kernels = Kernels(alpha)
-
-    def weight(m: float) -> float:
-        return kernels.values("K", abs(m) / overlap)
-
-    def weights(m: np.ndarray) -> np.ndarray:
-        return np.vectorize(weight)(m)
-
-    found = far_field(weights, 1.0 + alpha, alpha, n).right[0]
+    weight = partial(_weight, alpha, overlap)
+    found = far_field(np.vectorize(weight), 1.0 + alpha, alpha, n).right[0]
     size, worst = float(np.abs(found).max()), 0.0
     for i in (-n, 0, n):
         exact = power_sum(weight, 1.0 + alpha, n, i, far=max(200, 10 * n))
