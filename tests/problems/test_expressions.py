@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from fracparticles.errors import InvalidInput
-from fracparticles.problems.expressions import FUNCTIONS, Coefficient
+from fracparticles.problems.expressions import Coefficient
+from fracparticles.problems.formulas import FUNCTIONS
 
 X = np.linspace(-2.0, 3.0, 7)
 T = np.array(0.5)

@@ -1,71 +1,20 @@
 """The coefficients of a problem: a number, a text such as "1 + tanh(x)", or a function.
 
-A text is an expression in the variables of the coefficient, of numbers, + - * / **, comparisons joined by & and |, and
-the functions of `FUNCTIONS`. `simpleeval` evaluates it over arrays; before that every node of its syntax tree must be
-one of those, so that it has no attributes, no imports, no strings and no whole numbers of many digits. A function is
-called with as many of the variables as it takes, in their order.
+What a text may hold, see `formulas`. A function is called with as many of the variables as it takes, in their order.
 """
 
 from __future__ import annotations
 
-import ast
 import inspect
-import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.special import gamma
-from simpleeval import SimpleEval
 
 from fracparticles.errors import InvalidInput, reason_of, spelled
+from fracparticles.problems.formulas import Formula
 
-__all__ = ["FUNCTIONS", "Coefficient"]
-
-_LONGEST = 2000  # characters; the evaluator descends a level an operation
-_DEEPEST = 100
-
-_NUMPY = """
-sin cos tan arcsin arccos arctan arctan2 sinh cosh tanh exp expm1 log log1p sqrt abs sign minimum maximum where
-"""
-FUNCTIONS: dict[str, Callable[..., Any]] = {name: getattr(np, name) for name in _NUMPY.split()} | {
-    "gamma": gamma
-}
-_TAKES = {"where": 3, "arctan2": 2, "minimum": 2, "maximum": 2}
-_CONSTANTS = {"pi": np.pi, "e": np.e}
-
-
-def _of_truth(test: Callable[..., Any], one: Any, other: Any) -> Any:
-    """Return 1 where it holds and 0 elsewhere: numbers, which add up."""
-    return test(one, other) * 1.0
-
-
-_OPERATORS: dict[type, Callable[..., Any]] = {
-    ast.Add: np.add,
-    ast.Sub: np.subtract,
-    ast.Mult: np.multiply,
-    ast.Div: np.divide,
-    ast.Pow: np.power,
-    ast.USub: np.negative,
-    ast.UAdd: np.positive,
-} | {
-    node: partial(_of_truth, test)
-    for node, test in (
-        (ast.BitAnd, np.logical_and),
-        (ast.BitOr, np.logical_or),
-        (ast.Lt, np.less),
-        (ast.LtE, np.less_equal),
-        (ast.Gt, np.greater),
-        (ast.GtE, np.greater_equal),
-    )
-}
-_INSTEAD = {
-    ast.BitXor: "Write ** for a power.",
-    ast.IfExp: "Write where(condition, one, other).",
-    ast.BoolOp: "Join comparisons by & and |, each in brackets.",
-    ast.Attribute: "Write the name of the function alone.",
-}
+__all__ = ["Coefficient"]
 
 
 class Coefficient:
@@ -94,11 +43,10 @@ class Coefficient:
     def __init__(self, field: str, given: Any, variables: Sequence[str]) -> None:
         self.field, self.variables = field, tuple(variables)
         self.given: Any = given.item() if isinstance(given, np.generic) else given
-        self._tree: ast.expr | None = None
+        self._formula: Formula | None = None
         if isinstance(given, str):
-            self._tree = _parsed(field, given, self.variables)
-            named = {node.id for node in ast.walk(self._tree) if isinstance(node, ast.Name)}
-            self.depends_on = frozenset(named & set(self.variables))
+            self._formula = Formula(field, given, self.variables)
+            self.depends_on = self._formula.depends_on
         elif callable(given):
             self._takes = _arguments_of(field, given, self.variables)
             self.depends_on = frozenset(self.variables[: self._takes])
@@ -146,10 +94,8 @@ class Coefficient:
             ) from error
 
     def _evaluated(self, values: Mapping[str, Any]) -> Any:
-        if self._tree is not None:
-            names = {name: values[name] for name in self.depends_on} | _CONSTANTS
-            # One for each call: an evaluator keeps the names, and threads may share the coefficient.
-            return SimpleEval(_OPERATORS, FUNCTIONS, names).eval(self.given, self._tree)
+        if self._formula is not None:
+            return self._formula(values)
         if not callable(self.given):
             return self.given
         try:
@@ -195,72 +141,6 @@ def _read_only(value: Any) -> Any:
     view = np.asarray(value).view()
     view.flags.writeable = False
     return view
-
-
-def _parsed(field: str, text: str, variables: Sequence[str]) -> ast.expr:
-    """The syntax tree of a text, every node of it allowed, and its numbers floats."""
-    clean = " ".join(text.replace("\t", " ").splitlines())
-    if not clean.strip() or len(clean) > _LONGEST:
-        raise InvalidInput(field, text, f"an expression of 1 to {_LONGEST} characters", "Give one.")
-    ahead = len(clean) - len(clean.lstrip())
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(clean.strip(), mode="eval").body
-    except SyntaxError as error:
-        place = (error.offset or len(clean.strip()) + 1) + ahead
-        what = f"an expression in {spelled(variables)}; {error.msg} at position {place}"
-        raise InvalidInput(field, text, what, "Mend the text.") from None
-    except (ValueError, RecursionError, MemoryError) as error:
-        raise InvalidInput(field, text, "an expression", "Take a shorter one.") from error
-    for complaint, node, remedy in _complaints(tree, variables):
-        column = len(clean.strip().encode()[: node.col_offset].decode()) + ahead + 1
-        raise InvalidInput(field, text, f"{complaint} at position {column}", remedy)
-    return tree
-
-
-def _complaints(tree: ast.expr, variables: Sequence[str]) -> Iterator[tuple[str, ast.expr, str]]:
-    """What is not allowed, where, and what to do; the numbers become floats on the way."""
-    from fracparticles.run.complaints import closest
-
-    known = (*variables, *_CONSTANTS)
-    plain = f"an expression of numbers, {spelled(variables)}, + - * / ** and functions"
-    waiting: list[tuple[ast.expr, int]] = [(tree, 0)]
-    while waiting:
-        node, depth = waiting.pop(0)
-        head = getattr(node, "op", getattr(node, "func", node))
-        remedy = _INSTEAD.get(type(head), _INSTEAD.get(type(node), ""))
-        if depth > _DEEPEST:
-            yield "fewer operations within one another", node, "Take a function."
-        elif isinstance(node, ast.Constant) and isinstance(node.value, int | float):
-            if isinstance(node.value, bool):
-                yield plain, node, "Write 1 or 0."
-            try:
-                node.value = float(node.value)
-            except OverflowError:
-                yield "a number below 1e308", node, "Write it as 1e300."
-        elif isinstance(node, ast.Name):
-            if node.id not in known:
-                near = closest(node.id, (*known, *FUNCTIONS)) or "Take one of these."
-                yield f"one of the names {spelled(known)}, not {node.id!r}", node, near
-        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-            name, count = node.func.id, _TAKES.get(node.func.id, 1)
-            if name not in FUNCTIONS:
-                near = closest(name, FUNCTIONS) or "Take one of these."
-                yield f"one of the functions {spelled(FUNCTIONS)}, not {name!r}", node, near
-            elif node.keywords or len(node.args) != count:
-                yield f"{count} value(s) in the brackets of {name}", node, "Mend their number."
-            waiting += [(one, depth + 1) for one in node.args]
-        elif isinstance(node, ast.Compare):
-            if len(node.ops) > 1 or type(node.ops[0]) not in _OPERATORS:
-                yield "one of < <= > >= between two values", node, "Write (0 < x) & (x < 1)."
-            waiting += [(node.left, depth + 1), (node.comparators[0], depth + 1)]
-        elif isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
-            waiting += [(node.left, depth + 1), (node.right, depth + 1)]
-        elif isinstance(node, ast.UnaryOp) and type(node.op) in _OPERATORS:
-            waiting.append((node.operand, depth + 1))
-        else:
-            yield f"{plain}, and nothing else,", node, remedy or "Leave that out."
 
 
 def _arguments_of(field: str, function: Callable[..., Any], variables: Sequence[str]) -> int:
