@@ -107,6 +107,14 @@ def test_remeshing_is_the_product_of_that_of_the_line(name):
     assert total == pytest.approx(np.outer(once, once), abs=1e-15)
 
 
+@pytest.mark.parametrize("far", [1e4, 1e30, 1e300])
+def test_a_particle_that_ran_away_is_named(far):
+    """Beyond 2^63 lattice points, too."""
+    x, y = np.array([0.0, 0.3]), np.array([0.0, far])
+    with pytest.raises(InvalidInput, match=r"y = 'particles from 0 to .* less than 819.2 apart"):
+        remesh_plane(x, y, np.ones(2), 0.1, "M4'")
+
+
 def test_particles_on_the_lattice_keep_their_strengths():
     x, y = lattice(0.1, 1.0)
     q = np.random.default_rng(1).random(x.shape)

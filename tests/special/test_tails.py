@@ -51,3 +51,13 @@ def test_the_constant_keeps_its_digits_near_two(distance):
 def test_the_constant_is_that_of_an_order():
     with pytest.raises(InvalidInput, match=r"^alpha = "):
         tail_constant(2.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "arguments"),
+    [("half_width", ([10.0, 0.0], 1.5, 1.0)), ("half_width", (-1.0, 1.5, 1.0)),
+     ("alpha", (10.0, 2.0, 1.0)), ("time", (10.0, 1.5, -1.0)), ("time", (10.0, 1.5, np.nan))],
+)  # fmt: skip
+def test_truncations_that_are_none_are_refused(field, arguments):
+    with pytest.raises(InvalidInput, match=field):
+        exchange_truncation_error(*arguments)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracparticles import arguments as check
+from fracparticles.errors import InvalidInput
 from fracparticles.moving.remeshing import REACH, interpolation_function
 
 __all__ = ["Particles", "on_square", "remesh_plane"]
@@ -29,11 +29,11 @@ def remesh_plane(
 
     Raises `InvalidInput` if a particle has run away.
     """
-    (first_x, w_x), (first_y, w_y) = (_split(v.reshape(-1) / spacing, name) for v in (x, y))
+    cells = [_cell(*axis, spacing) for axis in (("x", x), ("y", y))]
+    (first_x, w_x), (first_y, w_y) = (_split(cell, name) for cell in cells)
     low_x, low_y = first_x.min(), first_y.min()
     points = w_x.shape[1]
     shape = int(first_x.max() - low_x) + points, int(first_y.max() - low_y) + points
-    check.whole_number("lattice points along an axis", max(shape), 1, _MOST)
     q, total = strength.reshape(-1), np.zeros(shape[0] * shape[1])
     for a in range(points):
         for b in range(points):
@@ -55,6 +55,16 @@ def on_square(
     inside = [(i >= 0) & (i <= 2 * n) for i in index]
     out[np.ix_(index[0][inside[0]], index[1][inside[1]])] = strength[np.ix_(*inside)]
     return out
+
+
+def _cell(field: str, v: np.ndarray, spacing: float) -> np.ndarray:
+    """The coordinates in units of the spacing, if a lattice can hold them."""
+    cell = v.reshape(-1) / spacing
+    if not cell.max() - cell.min() < _MOST:
+        shown = f"particles from {v.min():.6g} to {v.max():.6g}"
+        allowed = f"particles less than {_MOST * spacing:.4g} apart, for a lattice of the spacing {spacing:.4g}"
+        raise InvalidInput(field, shown, allowed, "Look for a particle that ran away.")
+    return cell
 
 
 def _split(cell: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:

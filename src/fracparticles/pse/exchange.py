@@ -72,7 +72,7 @@ class StrengthExchange:
         points = points[:, None] if points.ndim == 1 else points
         if points.ndim != 2 or not points.size or points.shape[1] > 3:
             shown, allowed = f"array of shape {points.shape}", "shape (N,) or (N, d), d = 1, 2 or 3"
-            raise InvalidInput("x", shown, allowed, "Mend it.")
+            raise InvalidInput("x", shown, allowed, "Give one row for each particle.")
         self.size, dim = points.shape
         kernel = kernel_of(dim, kernel)
         v = check.within("volumes", volumes, *_VOLUMES, shape=(self.size,))

@@ -38,5 +38,10 @@ def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) 
         1 < alpha < 2.
     time : float
         Time of the run, t_f - t_0, times the diffusivity.
+
+    Raises `InvalidInput` if one of them is outside its range.
     """
-    return time * 2.0 * tail_constant(alpha) / alpha * np.asarray(half_width, dtype=float) ** -alpha
+    half_width = check.within("half_width", half_width, *check.SIZES)
+    return (
+        check.not_negative("time", time) * 2.0 * tail_constant(alpha) / alpha * half_width**-alpha
+    )
