@@ -111,3 +111,12 @@ def test_other_units_and_sizes_change_nothing():
         Problem(**ENDS, particles=64, diffusivity="1 + x/2"), lambda x: 1e-200 * bell(x)
     )
     assert float(faint.space_error) == pytest.approx(float(run.space_error), rel=1e-6)
+
+
+def test_a_peak_at_an_end_hides_nothing_of_the_inside():
+    """u is carried to the walls; the particles know its peak there to a hundredth, and int |u| not to a tenth."""
+    fields = {**ENDS, "exterior": "reflecting", "alpha": 1.001, "form": "exchange", "t_final": 0.5}
+    fields |= {"diffusivity": "0.05*(0.05 + abs(x + 0.475))", "velocity": "5*sin(pi*x)"}
+    fields["source"] = "5*u*(1 - u)*(u - 0.3)"
+    with pytest.warns(AccuracyWarning, match="leave an error of about"):
+        solve_problem(Problem(**fields, particles=80), lambda x: np.abs(x + 0.475))

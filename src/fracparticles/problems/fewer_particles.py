@@ -1,14 +1,15 @@
 """The error that the particles leave, by the same problem on half and on a quarter of them along each axis.
 
-With d_1 the greatest distance between u and what half of the particles make of it, and d_2 that between half and a
-quarter, both over the greatest |u|, the error is
+With d_1 the distance between u and what half of the particles make of it, and d_2 that between half and a quarter, the
+error is
 
     d_1 min(1, max(1/32, d_1 / d_2)),
 
 what is left of d_1 if half of the spacing leaves the same part again. So kinks and jumps of a coefficient or of the
 data, where the order is one or two whatever that of the kernels, have their own factor. The quarter is taken only where
 d_1 is large; else the error is d_1 / 4, as of the order two. Fields are compared where the fewer particles are, by
-splines between the others.
+splines between the others; their distance is the larger of the greatest difference over the greatest |u|, and of int
+|difference| over int |u|, which sees what is beside a peak at an end.
 """
 
 from __future__ import annotations
@@ -50,7 +51,6 @@ def space_errors(
     solve : callable
         From a problem and its initial data to such a list.
     """
-    sizes = np.array([float(np.abs(u).max()) or 1.0 for u in fields])
     apart: list[np.ndarray] = []
     for _ in range(_HALVINGS):
         try:
@@ -63,15 +63,13 @@ def space_errors(
         except Exception:  # of anything: a function that knows its own particles, a solution that so few do not have
             break
         pairs = zip(fields, coarse, strict=True)
-        apart.append(
-            np.array([np.abs(_among(problem, fewer, u) - v).max() for u, v in pairs]) / sizes
-        )
+        apart.append(np.array([_distance(fewer, _among(problem, fewer, u), v) for u, v in pairs]))
         if apart[0].max() <= SPACE_ERROR:
             break
         problem, fields = fewer, coarse
     if not apart:
         return None
-    factor = np.full(sizes.size, _UNKNOWN)
+    factor = np.full(len(fields), _UNKNOWN)
     if len(apart) > 1:
         factor = np.clip(apart[0] / np.maximum(apart[1], 1e-300), _LEAST, 1.0)
     return list(apart[0] * factor)
@@ -82,8 +80,16 @@ def with_space_error(found: Estimates, *given: Any) -> Estimates:
     errors = space_errors(*given)
     if errors is None:
         return found
-    meaning = "estimated error of a peak, from the same on half and a quarter of the particles"
+    meaning = "estimated relative error, from the same on half and a quarter of the particles"
     return found | {"space_error": (errors, meaning)}
+
+
+def _distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:
+    volumes = problem.bounded_domain.volumes if problem.is_bounded else 1.0
+    off, size = np.abs(u - v), np.abs(u)
+    greatest = float(size.max()) or 1.0
+    whole = float((volumes * (size / greatest)).sum()) or 1.0
+    return max(float(off.max()) / greatest, float((volumes * (off / greatest)).sum()) / whole)
 
 
 def _halved(problem: Problem) -> Problem:

@@ -99,7 +99,7 @@ def _warn(problem: Problem, found: Estimates) -> None:
     says = {
         "atol_share": "u has fallen, and the steps are accurate to {:.2g} of what is left at an output time. Take a "
         "smaller rtol, or atol, or an earlier end.",
-        "space_error": "the particles leave an error of about {:.1g} of a peak, by the same on half and a quarter of "
+        "space_error": "the particles leave an error of about {:.1g} of u, by the same on half and a quarter of "
         "them. Take more, or smoother coefficients.",
         "unresolved_share": "the particles do not resolve the solution: {:.2g} of it is in waves that they do not tell "
         "apart. Take more.",

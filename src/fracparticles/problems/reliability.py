@@ -19,7 +19,7 @@ coefficient_misfit
     less its least value. Of a source, c itself, and of the sum and that of 2 |u| / (t_final - t_initial) the larger.
     That of the worst coefficient: what the particles do not see of it.
 space_error
-    What the same on half and a quarter of the particles says of the error of a peak over it, see `fewer_particles`.
+    What the same on half and a quarter of the particles says of the error over u, see `fewer_particles`.
 atol_share
     The errors of early steps over the greatest |u|, see `time.fading`; or the absolute tolerance, if one was asked for.
 """
@@ -208,7 +208,7 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "smaller spacing, or a smoother coefficient",
         "atol_share": "the solution has fallen: errors of early steps, within rtol of what it was, or atol, are {:.2g} "
         "of its greatest value. Take a smaller rtol, or atol",
-        "space_error": "the particles leave an error of about {:.1g} of a peak, by the same on half and a quarter of "
+        "space_error": "the particles leave an error of about {:.1g} of u, by the same on half and a quarter of "
         "them. Take a smaller spacing, or smoother coefficients",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
