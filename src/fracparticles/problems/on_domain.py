@@ -45,7 +45,7 @@ _FAST, _FASTEST = 100.0, 2e4  # rates of a source times the time of the run
 _LIMITS = {"atol_share": FADED, "space_error": SPACE_ERROR, "unresolved_share": 0.02}
 
 
-def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
+def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Dataset:
     """Solve a problem on a bounded domain, see `solve.solve_problem`."""
     u0, origin = _initial(problem, initial)
     _look_at_coefficients(problem)
@@ -67,8 +67,9 @@ def solve_on_domain(problem: Problem, initial: Any) -> xr.Dataset:
             "errors of early steps, within their tolerance, over the greatest |u|",
         ),
     }  # fmt: skip
-    sampled = initial if callable(initial) else u0
-    found = with_space_error(found, problem, sampled, fields, _on_fewer)
+    if estimate:
+        sampled = initial if callable(initial) else u0
+        found = with_space_error(found, problem, sampled, fields, _on_fewer)
     _warn(problem, found)
     return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
 

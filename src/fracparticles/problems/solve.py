@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["solve_problem"]
 
 
-def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Dataset:
+def solve_problem(
+    problem: Problem, initial: Initial | None = None, *, estimate: bool = True
+) -> xr.Dataset:
     """Solve a problem.
 
     Parameters
@@ -33,6 +35,9 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
         Initial strengths, as those of `solve`: an array of shape `problem.case.shape`, or a function of x, of x and y;
         on a bounded domain these two alone, the array of the shape of `problem.bounded_domain.volumes`.
         Left out, the fundamental solution at `t_initial`, of a problem with a constant order and diffusivity.
+    estimate : bool
+        Whether to solve on fewer particles, too, for the error that the particles leave, `space_error`: see
+        `fewer_particles`. It takes some half as long again.
 
     Returns
     -------
@@ -56,8 +61,7 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
     -----
     What depends on t is looked at before the run at 1025 times, or at 65 and more if it is a function that takes the
     particles alone as its places, and the steps end where it jumps. A pulse that is on between two of these times is
-    not seen: let one of `times` be in it. The error that the particles leave is estimated from the same problem on half
-    and on a quarter of them along each axis, see `fewer_particles`.
+    not seen: let one of `times` be in it.
 
     Examples
     --------
@@ -66,7 +70,7 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
     """
     problem = check.instance("problem", problem, Problem)
     if problem.is_bounded:
-        return solve_on_domain(problem, initial)
+        return solve_on_domain(problem, initial, estimate)
     plain = problem.order_coefficient.constant is not None and problem.diffusion.constant
     if initial is None and not plain:
         given = "data of your own: there is no fundamental solution with these coefficients"
@@ -80,7 +84,8 @@ def solve_problem(problem: Problem, initial: Initial | None = None) -> xr.Datase
     fields = [one.reshape(u0.shape) for one in result.u]
     found = estimates(problem, [u0, *fields], initial)
     sampled = initial is None or callable(initial)
-    found = with_space_error(found, problem, initial if sampled else u0, fields, _on_fewer)
+    if estimate:
+        found = with_space_error(found, problem, initial if sampled else u0, fields, _on_fewer)
     warn_if_doubtful(problem, found)
     return to_dataset(problem, lattice_layout(problem), u0, result, found, origin)
 

@@ -32,14 +32,11 @@ class ShortWaves:
     ----------
     length : int
         The points L along each axis.
-    greatest : array, shape (data,)
-        The greatest |u^|.
     high, fall : tuple of arrays, shape (data, waves)
         a and min(1, a / b), an axis each.
     """
 
     length: int
-    greatest: np.ndarray
     high: tuple[np.ndarray, ...]
     fall: tuple[np.ndarray, ...]
 
@@ -51,61 +48,74 @@ class ShortWaves:
         half = length // 2
         found = []
         for axis in range(1, dim + 1):
-            along = np.moveaxis(each, axis, -1)
-            bands = []
-            for low, top in _BANDS:
-                first, last = int(low * half), int(top * half)
-                band = np.abs(along[..., first : last + 1]).max(axis=-1)
-                if axis < dim:  # and the waves on the other side of zero
-                    other = along[..., length - last : length - max(first, 1) + 1]
-                    band = np.maximum(band, np.abs(other).max(axis=-1, initial=0.0))
-                bands.append(band.reshape(len(each), math.prod(band.shape[1:])))
-            high, middle = bands
+            along = each if axis == dim else np.moveaxis(each, axis, -1)
+            high, middle = (
+                _greatest(along, int(low * half), int(top * half), both=axis < dim)
+                for low, top in _BANDS
+            )
             found.append((high, np.minimum(1.0, high / (middle + _TINY))))
-        lowest = each[(slice(None), *(slice(1 + half // 8),) * dim)]
-        greatest = np.abs(lowest).max(axis=tuple(range(1, dim + 1)), initial=0.0)
-        return cls(length, greatest, *zip(*found, strict=True))
+        return cls(length, *zip(*found, strict=True))
 
     @property
-    def of_the_integral(self) -> float:
-        """What the waves 2 K may be of it, of several data the most: over the greatest |u^|, at most 1."""
-        shares = sum(2.0 * self._beyond(axis, 1.0)[:, 0] for axis in range(len(self.high)))
-        return min(1.0, float((shares / (self.greatest + _TINY)).max(initial=0.0)))
+    def of_the_integral(self) -> np.ndarray:
+        """What the waves 2 K may add to the integral, shape (data,)."""
+        return np.asarray(
+            sum(2.0 * self._beyond(axis, 1.0)[:, 0] for axis in range(len(self.high)))
+        )
 
-    def _beyond(self, axis: int, part: float) -> np.ndarray:
-        """|u^(K + k)| for k / K, shape (data, waves)."""
-        return np.asarray(self.high[axis] * self.fall[axis] ** (2.5 * part))
+    def _beyond(self, axis: int, part: np.ndarray | float) -> np.ndarray:
+        """|u^(K + k)| for k / K, shape (data, waves), after that of the part."""
+        return np.asarray(self.high[axis] * self.fall[axis] ** (2.5 * np.asarray(part)))
 
     @property
     def most(self) -> np.ndarray:
-        """More than `of_a_peak` at any time, shape (data,): as if u^ did not fall beyond K at all."""
-        waves = float(self.length) ** (1 - len(self.high))  # the weight of one
-        return np.asarray(sum(4.0 * waves * high.sum(axis=1) for high in self.high))
+        """More than `of_a_peak` at any time, shape (data,), as int_0^2 r^(5 s / 2) ds < min(2, 0.4 / (1 - r))."""
+        waves = 2.0 * float(self.length) ** (1 - len(self.high))  # the weight of one
+        pairs = zip(self.high, self.fall, strict=True)
+        every = (np.add.reduce(high * 0.4 / np.maximum(0.2, 1.0 - fall), 1) for high, fall in pairs)
+        return np.asarray(waves * sum(every))
 
     def of_a_peak(self, alpha: float, tau: float) -> np.ndarray:
         """Return how far off a peak may be after the scaled time tau, shape (data,): if all waves are in phase."""
         dim = len(self.high)
+        # k / K up to which anything is left.
+        reach = min(1.0, (_GONE / tau) ** (1.0 / alpha) / np.pi)
+        parts = reach * _NODES[:, None]
+        wrong = np.zeros(len(self.high[0]))
+        for axis in range(dim):
+            square, weight = self._across(axis)
+            now, then = (
+                np.exp(-tau * (square + (np.pi * k) ** 2) ** (0.5 * alpha))
+                for k in (parts, 2.0 - parts)
+            )
+            each = parts[..., None]
+            aliases = self._beyond(axis, 1.0 - each) + self._beyond(axis, 1.0 + each)
+            wrong += np.einsum("pdw,pw->d", aliases, weight * (now - then))
+        return reach / _NODES.size * wrong
+
+    def _across(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
+        """The squares of the waves along the other axes, and their weights, shape (waves,)."""
+        dim = len(self.high)
         every = np.square(2.0 * np.pi * np.fft.fftfreq(self.length))
         half = every[: self.length // 2 + 1]
         twice = np.where((half > 0.0) & (half < np.pi**2), 2.0, 1.0)  # and their conjugates
-        reach = min(
-            1.0, (_GONE / tau) ** (1.0 / alpha) / np.pi
-        )  # k / K up to which anything is left
-        wrong = np.zeros(len(self.greatest))
-        for axis in range(dim):
-            square: np.ndarray = np.zeros(())
-            weight: np.ndarray = np.ones(())
-            for other in (k for k in range(dim) if k != axis):
-                last = other == dim - 1
-                square = np.add.outer(square, half if last else every)
-                own = twice if last else np.ones(self.length)
-                weight = np.multiply.outer(weight, own / self.length)
-            square, weight = square.ravel(), weight.ravel()
-            for part in reach * _NODES:
-                now, then = (
-                    np.exp(-tau * (square + (np.pi * k) ** 2) ** (0.5 * alpha))
-                    for k in (part, 2.0 - part)
-                )
-                aliases = self._beyond(axis, 1.0 - part) + self._beyond(axis, 1.0 + part)
-                wrong += reach / _NODES.size * (aliases @ (weight * (now - then)))
-        return wrong
+        square: np.ndarray = np.zeros(())
+        weight: np.ndarray = np.ones(())
+        for other in (k for k in range(dim) if k != axis):
+            last = other == dim - 1
+            square = np.add.outer(square, half if last else every)
+            own = twice if last else np.ones(self.length)
+            weight = np.multiply.outer(weight, own / self.length)
+        return square.ravel(), weight.ravel()
+
+
+def _greatest(along: np.ndarray, first: int, last: int, both: bool) -> np.ndarray:
+    """The greatest |u^| of the waves first .. last of the last axis, and of those on the other side of zero if `both`.
+
+    Shape (data, waves along the other axes).
+    """
+    band = np.maximum.reduce(np.abs(along[..., first : last + 1]), axis=-1)
+    if both:
+        other = along[..., along.shape[-1] - last : along.shape[-1] - max(first, 1) + 1]
+        band = np.maximum(band, np.abs(other).max(axis=-1, initial=0.0))
+    return band.reshape(len(along), math.prod(band.shape[1:]))

@@ -244,9 +244,10 @@ class WholeSpace:
     def _lacking(self, result: np.ndarray, waves: ShortWaves) -> float:
         """Return what the waves that the lattice does not hold may be of the greatest value."""
         of_each = _count(result, self._dim), self._points**self._dim
-        size = np.abs(result).reshape(of_each).max(axis=1) + _TINY
-        if (waves.most / size).max(initial=0.0) < _NOTICED:
-            return float((waves.most / size).max(initial=0.0))
+        size = np.maximum.reduce(np.abs(result).reshape(of_each), axis=1) + _TINY
+        most = float(np.maximum.reduce(waves.most / size, initial=0.0))
+        if most < _NOTICED:
+            return most
         return min(1.0, float((waves.of_a_peak(self._alpha, self._tau) / size).max(initial=0.0)))
 
     def _miss(self, result: np.ndarray, numbers: np.ndarray | None) -> float:

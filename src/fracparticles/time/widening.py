@@ -29,7 +29,6 @@ from fracparticles.arguments import finite_array, fractional_order, positive_rea
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import later_exponents, powers, tail_exponents
-from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["evolve_long"]
 
@@ -143,9 +142,14 @@ def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
 
 def _begun(step: Continued, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the result of the first step and the amplitudes of its tail; warn if the data are not what it takes."""
-    seen: list[ShortWaves] = []
-    result, numbers = step(u[None], look=lambda spectrum: seen.append(step.waves(spectrum)))
-    _warn_of_short_waves(seen[0].of_the_integral)
+    lacking: list[float] = []
+
+    def look(spectrum: np.ndarray) -> None:
+        missed = float(step.waves(spectrum).of_the_integral[0])
+        lacking.append(missed / (float(np.abs(spectrum).max()) + _TINY))
+
+    result, numbers = step(u[None], look=look)
+    _warn_of_short_waves(min(1.0, lacking[0]))
     _warn_of_tails(step, u)
     return result[0], step.amplitudes(numbers)
 

@@ -1,6 +1,7 @@
 """Transport of fractional diffusion: on the lattice and by moving particles, on the line and in the plane."""
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import Panels
 
+_solved = partial(solve_problem, estimate=False)  # the errors are measured
 _THETA = 1.0  # of the linear field
 _SPREAD = 0.2  # diffusivity in the plane
 _WIDE = 6.0  # scale to the power alpha from which the linear field is drawn
@@ -70,7 +72,7 @@ def _exact(field: str, fields: dict[str, Any], finest: float) -> Callable[[np.nd
         return lambda x: np.asarray(green(x - 1.0, 2.0, alpha))
     if field == "linear":
         return lambda x: _stable(x, 1.0, alpha)
-    fine = solve_problem(
+    fine = _solved(
         Problem(**fields, order=12, spacing=finest, rtol=1e-10), lambda x: green(x, 1.0, alpha)
     )
     return lambda x: fine["u"].sel(x=x, method="nearest").values
@@ -88,7 +90,7 @@ def _on_the_line(
     exact = _exact(field, fields, finest)
     for h in spacings:
         for order in orders:
-            run = solve_problem(Problem(**fields, order=order, spacing=h, rtol=1e-9))
+            run = _solved(Problem(**fields, order=order, spacing=h, rtol=1e-9))
             ours, known = run["u"].values, exact(run["x"].values)
             yield _row(field, f"lattice, order {order}", h, ours, known, run)
         problem = Problem(**fields, spacing=h)
@@ -125,7 +127,7 @@ def _linear_field(
     alpha, start = fields["alpha"], fields["t_initial"]
     longer = {name: value for name, value in fields.items() if name != "t_final"}
     at = tuple(start + time for time in times)
-    run = solve_problem(
+    run = _solved(
         Problem(**longer, velocity=_FIELDS["linear"], order=order, spacing=h, times=at),
         lambda x: green(x, _WIDE, alpha),
     )
@@ -151,19 +153,19 @@ def _in_the_plane(
 
     finest = 0.5 * spacings[-1]
     sheared = Problem(**plane, velocity=("sin(y)", 0.0), t_final=1.0, spacing=finest)
-    reference = solve_problem(sheared, blob)["u"]
+    reference = _solved(sheared, blob)["u"]
     for h in spacings:
         turned = Problem(
             **plane, velocity=("-y", "x"), times=(quarter / 3.0, quarter / 1.5, quarter), spacing=h
         )
-        run = solve_problem(turned, blob)
+        run = _solved(turned, blob)
         x, y = run["x"].values[:, None], run["y"].values
         end = run["u"].isel(t=-1)
         exact = np.asarray(green(np.hypot(x, y - _FROM), 1.0 + _SPREAD * quarter, alpha, 2))
         yield _row("rotation", "lattice, order 12", h, end.values, exact, run)
         if h == spacings[-1]:
             _contours(run["u"], panels)
-        run = solve_problem(sheared.model_copy(update={"spacing": h}), blob)
+        run = _solved(sheared.model_copy(update={"spacing": h}), blob)
         fine = reference.sel(x=run["x"], y=run["y"], method="nearest")
         yield _row("shear", "lattice, order 12", h, run["u"].values, fine.values, run)
 

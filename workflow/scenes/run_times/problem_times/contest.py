@@ -55,7 +55,9 @@ def on_lattices(
             "rtol": rtol,
             "overlap": overlap,
         }
-        run = solve_problem(Problem(form=form, order=order, **grid, **fields), start)
+        run = solve_problem(
+            Problem(form=form, order=order, **grid, **fields), start, estimate=False
+        )
         return run["u"].size, (run["x"].values, run["u"].values)
 
     return {f"{form} {order}": partial(solve, form, order) for form in forms for order in (4, 12)}
