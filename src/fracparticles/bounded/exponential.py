@@ -115,7 +115,8 @@ def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
 def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
     """Return I_m = int_0^1 e^(-z r) r^m dr for m = 0, .., degree, shape (degree + 1, ..).
 
-    For z <= 1 sum_k (-z)^k / (k! (m + 1 + k)), beyond I_0 = (1 - e^-z) / z and I_m = (m I_(m-1) - e^-z) / z.
+    For z <= 1 sum_k (-z)^k / (k! (m + 1 + k)), beyond I_0 = (1 - e^-z) / z and I_m = (m I_(m-1) - e^-z) / z,
+    which loses m! / z^m: it is for low degrees.
     """
     small, large = np.minimum(z, 1.0), np.maximum(z, 1.0)
     m, k = np.arange(degree + 1.0), np.arange(float(_TERMS))
