@@ -39,7 +39,10 @@ def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) 
     time : float
         Time of the run, t_f - t_0, times the diffusivity.
 
-    Raises `InvalidInput` if one of them is outside its range.
+    Raises
+    ------
+    InvalidInput
+        If one of them is outside its range.
     """
     half_width = check.within("half_width", half_width, *check.SIZES)
     return (

@@ -19,7 +19,7 @@ import numpy as np
 __all__ = ["ShortWaves"]
 
 _BANDS = (0.8, 1.0), (0.4, 0.5)  # of K: at one wave the aliases of some data cancel
-_NODES = (np.arange(8) + 0.5) / 8.0  # k / K
+_NODES = (np.arange(8.0)[:, None] + 0.5) / 8.0  # k / K
 _GONE = 8.0  # exp(-8)
 _TINY = float(np.finfo(float).tiny)
 
@@ -67,31 +67,32 @@ class ShortWaves:
         """|u^(K + k)| for k / K, shape (data, waves), after that of the part."""
         return np.asarray(self.high[axis] * self.fall[axis] ** (2.5 * np.asarray(part)))
 
-    @property
-    def most(self) -> np.ndarray:
-        """More than `of_a_peak` at any time, shape (data,), as int_0^2 r^(5 s / 2) ds < min(2, 0.4 / (1 - r))."""
-        waves = 2.0 * float(self.length) ** (1 - len(self.high))  # the weight of one
-        pairs = zip(self.high, self.fall, strict=True)
-        every = (np.add.reduce(high * 0.4 / np.maximum(0.2, 1.0 - fall), 1) for high, fall in pairs)
-        return np.asarray(waves * sum(every))
+    def at_most(self, alpha: float, tau: float) -> np.ndarray:
+        """Return a bound of `of_a_peak`, shape (data,); on the line it is that itself.
+
+        As if the other axes had no waves: f(k) - f(2 K - k) falls with theirs. With H_q = sum a (a / b)^q over them
+        log H_q is convex in q, so that H_q <= H_0 (H_5 / H_0)^(q / 5).
+        """
+        parts, change = _change(alpha, tau, np.zeros(1))
+        dim, wrong = len(self.high), np.zeros(len(self.high[0]))
+        for axis, (high, fall) in enumerate(zip(self.high, self.fall, strict=True)):
+            weight = 1.0 if axis == dim - 1 else 2.0  # of conjugates
+            h = np.add.reduce(high, 1)
+            r = fall[:, 0]
+            if dim > 1:
+                r = (np.add.reduce(high * fall**5, 1) / (h + _TINY)) ** 0.2
+            wrong += weight * h * (_aliases(r[:, None], parts[:, 0]) @ change[:, 0])
+        return np.asarray(wrong * float(self.length) ** (1 - dim))
 
     def of_a_peak(self, alpha: float, tau: float) -> np.ndarray:
         """Return how far off a peak may be after the scaled time tau, shape (data,): if all waves are in phase."""
-        dim = len(self.high)
-        # k / K up to which anything is left.
-        reach = min(1.0, (_GONE / tau) ** (1.0 / alpha) / np.pi)
-        parts = reach * _NODES[:, None]
         wrong = np.zeros(len(self.high[0]))
-        for axis in range(dim):
+        for axis, (high, fall) in enumerate(zip(self.high, self.fall, strict=True)):
             square, weight = self._across(axis)
-            now, then = (
-                np.exp(-tau * (square + (np.pi * k) ** 2) ** (0.5 * alpha))
-                for k in (parts, 2.0 - parts)
-            )
-            each = parts[..., None]
-            aliases = self._beyond(axis, 1.0 - each) + self._beyond(axis, 1.0 + each)
-            wrong += np.einsum("pdw,pw->d", aliases, weight * (now - then))
-        return reach / _NODES.size * wrong
+            parts, change = _change(alpha, tau, square)
+            aliases = high * _aliases(fall, parts[..., None])
+            wrong += np.einsum("pdw,pw->d", aliases, weight * change)
+        return wrong
 
     def _across(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
         """The squares of the waves along the other axes, and their weights, shape (waves,)."""
@@ -107,6 +108,21 @@ class ShortWaves:
             own = twice if last else np.ones(self.length)
             weight = np.multiply.outer(weight, own / self.length)
         return square.ravel(), weight.ravel()
+
+
+def _change(alpha: float, tau: float, square: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return k / K, shape (nodes, 1), and f(k) - f(2 K - k) there times the width of a node, shape (nodes, waves)."""
+    # Beyond this nothing is left.
+    reach = min(1.0, (_GONE / tau) ** (1.0 / alpha) / math.pi)
+    parts = reach * _NODES
+    both = np.square(math.pi * np.concatenate([parts, 2.0 - parts])) + square
+    f = np.exp(-tau * both ** (0.5 * alpha))
+    return parts, reach / len(_NODES) * (f[: len(_NODES)] - f[len(_NODES) :])
+
+
+def _aliases(fall: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Return |u^(2 K - k)| + |u^(2 K + k)| over a, by k / K."""
+    return np.asarray(fall ** (2.5 - 2.5 * parts) + fall ** (2.5 + 2.5 * parts))
 
 
 def _greatest(along: np.ndarray, first: int, last: int, both: bool) -> np.ndarray:
