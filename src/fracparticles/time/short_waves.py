@@ -12,6 +12,7 @@ lattice the data are right at the start: what is wrong later is the difference o
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,71 +33,85 @@ class ShortWaves:
     ----------
     length : int
         The points L along each axis.
-    high, fall : tuple of arrays, shape (data, waves)
-        a and min(1, a / b), an axis each.
+    high, middle : tuple of arrays, shape (data, waves)
+        a and b, an axis each.
     """
 
     length: int
     high: tuple[np.ndarray, ...]
-    fall: tuple[np.ndarray, ...]
+    middle: tuple[np.ndarray, ...]
 
     @classmethod
     def of(cls, spectrum: np.ndarray, dim: int, length: int) -> ShortWaves:
         """From u^, shape (.., L, .., L // 2 + 1), as of a real transform."""
-        data, own = spectrum.shape[: spectrum.ndim - dim], spectrum.shape[spectrum.ndim - dim :]
+        data, own = spectrum.shape[:-dim], spectrum.shape[-dim:]
         each = spectrum.reshape(math.prod(data), *own)
         half = length // 2
-        found = []
-        for axis in range(1, dim + 1):
-            along = each if axis == dim else np.moveaxis(each, axis, -1)
-            high, middle = (
-                _greatest(along, int(low * half), int(top * half), both=axis < dim)
-                for low, top in _BANDS
+        high, middle = (
+            tuple(
+                _greatest(each, axis, int(low * half), int(top * half), both=axis < dim)
+                for axis in range(1, dim + 1)
             )
-            found.append((high, np.minimum(1.0, high / (middle + _TINY))))
-        return cls(length, *zip(*found, strict=True))
+            for low, top in _BANDS
+        )
+        return cls(length, high, middle)
+
+    def _axes(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """For each axis a, and r = a / b, at most 1."""
+        for a, b in zip(self.high, self.middle, strict=True):
+            yield a, np.minimum(1.0, a / (b + _TINY))
 
     @property
     def of_the_integral(self) -> np.ndarray:
         """What the waves 2 K may add to the integral, shape (data,)."""
-        return np.asarray(
-            sum(2.0 * self._beyond(axis, 1.0)[:, 0] for axis in range(len(self.high)))
-        )
-
-    def _beyond(self, axis: int, part: np.ndarray | float) -> np.ndarray:
-        """|u^(K + k)| for k / K, shape (data, waves), after that of the part."""
-        return np.asarray(self.high[axis] * self.fall[axis] ** (2.5 * np.asarray(part)))
+        return np.asarray(sum(2.0 * a[:, 0] * r[:, 0] ** 2.5 for a, r in self._axes()))
 
     def at_most(self, alpha: float, tau: float) -> np.ndarray:
-        """Return a bound of `of_a_peak`, shape (data,); on the line it is that itself.
+        """Return a bound of `of_a_peak` as if u^ did not fall beyond K.
 
-        As if the other axes had no waves: f(k) - f(2 K - k) falls with theirs. With H_q = sum a (a / b)^q over them
-        log H_q is convex in q, so that H_q <= H_0 (H_5 / H_0)^(q / 5).
+        Of an axis 2 H_0 int_0^1 exp(-c s^alpha) ds < 2 H_0 min(1, c^(-1/alpha)), with s = k / K, c = tau pi^alpha, and
+        H_0 the sum of a over the waves along the other axes.
         """
-        parts, change = _change(alpha, tau, np.zeros(1))
-        dim, wrong = len(self.high), np.zeros(len(self.high[0]))
-        for axis, (high, fall) in enumerate(zip(self.high, self.fall, strict=True)):
-            weight = 1.0 if axis == dim - 1 else 2.0  # of conjugates
-            h = np.add.reduce(high, 1)
-            r = fall[:, 0]
-            if dim > 1:
-                r = (np.add.reduce(high * fall**5, 1) / (h + _TINY)) ** 0.2
-            wrong += weight * h * (_aliases(r[:, None], parts[:, 0]) @ change[:, 0])
+        dim, c = len(self.high), tau * math.pi**alpha
+        total = np.add.reduce(self.high[0], 1)
+        for a in self.high[1:]:
+            total += np.add.reduce(a, 1)
+        # The weight of a wave, with that of conjugates; on the line there are none.
+        weight = 2.0 if dim == 1 else 4.0 * float(self.length) ** (1 - dim)
+        return np.asarray(weight * min(1.0, c ** (-1.0 / alpha)) * total)
+
+    def nearly(self, alpha: float, tau: float) -> np.ndarray:
+        """Return a closer bound: H_q = sum a r^q, r = a / b, has a logarithm convex in q, so H_q <= H_0 R^q with
+
+            R = (H_5 / H_0)^(1/5),   2 H_0 max_s R^(5 (1 - s) / 2) exp(-c s^alpha),
+
+        the greatest where c alpha s^(alpha - 1) = -5/2 log R, or s = 1.
+        """
+        dim, c = len(self.high), tau * math.pi**alpha
+        wrong = np.zeros(len(self.high[0]))
+        for axis, (a, r) in enumerate(self._axes()):
+            h = np.add.reduce(a, 1)
+            steep = -0.5 * np.log(np.add.reduce(a * r**5, 1) / (h + _TINY) + _TINY)  # -5/2 log R
+            s = np.minimum(1.0, (steep / (c * alpha)) ** (1.0 / (alpha - 1.0)))
+            conjugates = 2.0 if axis == dim - 1 else 4.0
+            wrong += conjugates * h * np.exp(-steep * (1.0 - s) - c * s**alpha)
         return np.asarray(wrong * float(self.length) ** (1 - dim))
 
     def of_a_peak(self, alpha: float, tau: float) -> np.ndarray:
         """Return how far off a peak may be after the scaled time tau, shape (data,): if all waves are in phase."""
         wrong = np.zeros(len(self.high[0]))
-        for axis, (high, fall) in enumerate(zip(self.high, self.fall, strict=True)):
+        for axis, (a, r) in enumerate(self._axes()):
             square, weight = self._across(axis)
             parts, change = _change(alpha, tau, square)
-            aliases = high * _aliases(fall, parts[..., None])
+            aliases = a * _aliases(r, parts[..., None])
             wrong += np.einsum("pdw,pw->d", aliases, weight * change)
         return wrong
 
     def _across(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
         """The squares of the waves along the other axes, and their weights, shape (waves,)."""
         dim = len(self.high)
+        if dim == 1:
+            return np.zeros(1), np.ones(1)
         every = np.square(2.0 * np.pi * np.fft.fftfreq(self.length))
         half = every[: self.length // 2 + 1]
         twice = np.where((half > 0.0) & (half < np.pi**2), 2.0, 1.0)  # and their conjugates
@@ -120,18 +135,19 @@ def _change(alpha: float, tau: float, square: np.ndarray) -> tuple[np.ndarray, n
     return parts, reach / len(_NODES) * (f[: len(_NODES)] - f[len(_NODES) :])
 
 
-def _aliases(fall: np.ndarray, parts: np.ndarray) -> np.ndarray:
+def _aliases(r: np.ndarray, parts: np.ndarray) -> np.ndarray:
     """Return |u^(2 K - k)| + |u^(2 K + k)| over a, by k / K."""
-    return np.asarray(fall ** (2.5 - 2.5 * parts) + fall ** (2.5 + 2.5 * parts))
+    return np.asarray(r ** (2.5 - 2.5 * parts) + r ** (2.5 + 2.5 * parts))
 
 
-def _greatest(along: np.ndarray, first: int, last: int, both: bool) -> np.ndarray:
-    """The greatest |u^| of the waves first .. last of the last axis, and of those on the other side of zero if `both`.
+def _greatest(each: np.ndarray, axis: int, first: int, last: int, both: bool) -> np.ndarray:
+    """The greatest |u^| of the waves first .. last of an axis, and of those on the other side of zero if `both`.
 
     Shape (data, waves along the other axes).
     """
-    band = np.maximum.reduce(np.abs(along[..., first : last + 1]), axis=-1)
+    before, length = (slice(None),) * axis, each.shape[axis]
+    band = np.maximum.reduce(np.abs(each[(*before, slice(first, last + 1))]), axis=axis)
     if both:
-        other = along[..., along.shape[-1] - last : along.shape[-1] - max(first, 1) + 1]
-        band = np.maximum(band, np.abs(other).max(axis=-1, initial=0.0))
-    return band.reshape(len(along), math.prod(band.shape[1:]))
+        other = each[(*before, slice(length - last, length - max(first, 1) + 1))]
+        band = np.maximum(band, np.abs(other).max(axis=axis, initial=0.0))
+    return band.reshape(len(each), math.prod(band.shape[1:]))

@@ -245,10 +245,13 @@ class WholeSpace:
         """Return what the waves that the lattice does not hold may be of the greatest value."""
         of_each = _count(result, self._dim), self._points**self._dim
         size = np.maximum.reduce(np.abs(result).reshape(of_each), axis=1) + _TINY
-        wrong = waves.at_most(self._alpha, self._tau) / size
-        if self._dim > 1 and (wrong > _NOTICED).any():
-            wrong = waves.of_a_peak(self._alpha, self._tau) / size
-        return min(1.0, float(np.maximum.reduce(wrong, initial=0.0)))
+        worst = 0.0
+        for dearer in (waves.at_most, waves.nearly, waves.of_a_peak):
+            wrong = dearer(self._alpha, self._tau) / size
+            worst = float(np.maximum.reduce(wrong, initial=0.0))
+            if worst < _NOTICED:
+                break
+        return min(1.0, worst)
 
     def _miss(self, result: np.ndarray, numbers: np.ndarray | None) -> float:
         """Return how far the tail is from the result in the middles of the faces, over its maximum."""
