@@ -44,6 +44,16 @@ def test_nothing_lacks_nothing_and_one_point_lacks_all():
     assert of(np.eye(16)[8], 1).of_the_integral == 2.0  # u^ = 1: both 2 K and -2 K
 
 
+@pytest.mark.parametrize("alpha", [np.nextafter(1.0, 2.0), 1.0001, 1.5, np.nextafter(2.0, 1.0)])
+@pytest.mark.parametrize("tau", [1e-300, 1e-9, 1.0, 1e100])
+def test_the_bounds_are_ordered_at_the_ends_of_alpha_and_of_time(alpha, tau):
+    many = of(np.random.default_rng(5).standard_normal((3, 16)), 1)
+    with np.errstate(all="raise", under="ignore"):
+        wrong = many.of_a_peak(alpha, tau)
+        for bound in (many.nearly, many.at_most):
+            assert (wrong <= bound(alpha, tau) * (1.0 + 1e-12)).all()
+
+
 def spike(x: np.ndarray, width: float, alpha: float, time: float) -> np.ndarray:
     """exp(-x^2 / w^2) after a time, by the Fourier integral: 1e-12 by as many nodes."""
     k, weights = np.polynomial.legendre.leggauss(400)

@@ -60,7 +60,9 @@ def space_errors(
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 coarse = solve(fewer, initial)
-        except Exception:  # what a function of the user's raises that knows its own particles may be anything
+        except (
+            Exception
+        ):  # what a function of the user's raises that knows its own particles may be anything
             break
         pairs = zip(fields, coarse, strict=True)
         apart.append(np.array([_distance(fewer, _among(problem, fewer, u), v) for u, v in pairs]))

@@ -92,7 +92,7 @@ class ShortWaves:
         for axis, (a, r) in enumerate(self._axes()):
             h = np.add.reduce(a, 1)
             steep = -0.5 * np.log(np.add.reduce(a * r**5, 1) / (h + _TINY) + _TINY)  # -5/2 log R
-            s = np.minimum(1.0, (steep / (c * alpha)) ** (1.0 / (alpha - 1.0)))
+            s = np.minimum(1.0, steep / (c * alpha)) ** (1.0 / (alpha - 1.0))
             conjugates = 2.0 if axis == dim - 1 else 4.0
             wrong += conjugates * h * np.exp(-steep * (1.0 - s) - c * s**alpha)
         return np.asarray(wrong * float(self.length) ** (1 - dim))
