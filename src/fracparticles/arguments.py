@@ -32,6 +32,7 @@ Shape = tuple[int, ...]
 Kind = TypeVar("Kind")
 
 SIZES = 1e-100, 1e100  # of lengths and times: their squares and quotients are numbers too
+_SIZED = f"a number from {SIZES[0]:g} to {SIZES[1]:g}"
 MOST = 2**28  # numbers in one array, 2 GiB
 MOST_STEPS = 2**53  # more are not told apart in float64
 
@@ -236,8 +237,7 @@ def positive_real(field: str, value: Any) -> float:
 
 def scale(field: str, value: Any) -> float:
     """Return a length, a time or another positive size from 1e-100 to 1e100 as a float."""
-    allowed = f"a number from {SIZES[0]:g} to {SIZES[1]:g}"
-    return real_between(field, value, *SIZES, allowed=allowed, remedy="Change the value or units.")
+    return real_between(field, value, *SIZES, allowed=_SIZED, remedy="Change the value or units.")
 
 
 def place(field: str, value: Any) -> float:

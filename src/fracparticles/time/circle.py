@@ -71,14 +71,14 @@ class Circle:
         look(spectrum)
         if self._every > 1:
             spectrum = self._long_waves(spectrum)
-        spectrum *= self._amplification
+        spectrum = spectrum * self._amplification  # that of the data may have been kept
         if len(self._axes) == 1:
             return np.asarray(irfft(spectrum, self._shape[0]))
         return np.asarray(irfftn(spectrum, self._shape, axes=self._of(spectrum)))
 
     def waves(self, spectrum: np.ndarray) -> ShortWaves:
         """Return what u^ says about waves that are not on the circle."""
-        return ShortWaves.of(spectrum, len(self._axes), self._points)
+        return ShortWaves(spectrum, len(self._axes), self._points)
 
     def _of(self, u: np.ndarray) -> tuple[int, ...] | None:
         """The axes of space, None if they are all: then they need not be looked for."""

@@ -2,7 +2,7 @@
 
 u^ is known up to K = pi / h along each axis. Beyond, it is taken to fall on as it does from 0.4 K to 0.8 K,
 
-    |u^(K + k)| = a (a / b)^(5 k / 2 K),   a, b the greatest |u^| from 0.8 K to K, and from 0.4 K to K / 2,
+    |u^(K + k)| = a r^(5 k / 2 K),   r = a / b,   a, b the greatest |u^| from 0.8 K to K, and from 0.4 K to K / 2,
 
 which is so for an exponential; that of a Gaussian falls faster. It is the rate that counts, and not what is left at K
 of u^(0): of a spike on a wide hill the hill has all of that. The waves 2 K - k and 2 K + k look like the wave k. On the
@@ -13,141 +13,130 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from functools import cached_property, reduce
 
 import numpy as np
 
 __all__ = ["ShortWaves"]
 
-_BANDS = (0.8, 1.0), (0.4, 0.5)  # of K: at one wave the aliases of some data cancel
-_NODES = (np.arange(8.0)[:, None] + 0.5) / 8.0  # k / K
+_NODES = 8  # from 0 to K
 _GONE = 8.0  # exp(-8)
 _TINY = float(np.finfo(float).tiny)
 
 
-@dataclass(frozen=True)
 class ShortWaves:
     """How u^ falls along each axis, for each of the data and for each wave along the other axes.
 
-    Attributes
+    Parameters
     ----------
+    spectrum : array, shape (.., L, .., L // 2 + 1)
+        u^, as of a real transform.
+    dim : int
+        How many of its axes are space.
     length : int
-        The points L along each axis.
-    high, middle : tuple of arrays, shape (data, waves)
-        a and b, an axis each.
+        L.
     """
 
-    length: int
-    high: tuple[np.ndarray, ...]
-    middle: tuple[np.ndarray, ...]
+    def __init__(self, spectrum: np.ndarray, dim: int, length: int) -> None:
+        data, own = spectrum.shape[: spectrum.ndim - dim], spectrum.shape[spectrum.ndim - dim :]
+        self._each, self._dim, self._length = spectrum.reshape(math.prod(data), *own), dim, length
 
-    @classmethod
-    def of(cls, spectrum: np.ndarray, dim: int, length: int) -> ShortWaves:
-        """From u^, shape (.., L, .., L // 2 + 1), as of a real transform."""
-        data, own = spectrum.shape[:-dim], spectrum.shape[-dim:]
-        each = spectrum.reshape(math.prod(data), *own)
-        half = length // 2
-        high, middle = (
-            tuple(
-                _greatest(each, axis, int(low * half), int(top * half), both=axis < dim)
-                for axis in range(1, dim + 1)
-            )
-            for low, top in _BANDS
-        )
-        return cls(length, high, middle)
+    @cached_property
+    def _high(self) -> list[np.ndarray]:
+        """a of each axis, shape (data, waves)."""
+        return self._greatest(0.8, 1.0)
 
-    def _axes(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """For each axis a, and r = a / b, at most 1."""
-        for a, b in zip(self.high, self.middle, strict=True):
+    def _rates(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """For each axis a and r, shape (data, waves); r is at most 1."""
+        for a, b in zip(self._high, self._greatest(0.4, 0.5), strict=True):
             yield a, np.minimum(1.0, a / (b + _TINY))
+
+    def _greatest(self, low: float, top: float) -> list[np.ndarray]:
+        """The greatest |u^| from low K to top K, on both sides of zero: at one wave the aliases of some data cancel."""
+        length, half = self._length, self._length // 2
+        first, last = int(low * half), int(top * half)
+        above, below = range(first, last + 1), range(length - last, length + 1 - max(first, 1))
+        both = [*above, *below] if self._dim > 1 else []
+        greatest = []
+        for axis in range(1, self._dim + 1):
+            where = both if axis < self._dim else slice(first, last + 1)
+            waves = self._each[(*(slice(None),) * axis, where)]
+            band = np.maximum.reduce(np.abs(waves), axis)
+            greatest.append(band.reshape(len(band), math.prod(band.shape[1:])))
+        return greatest
 
     @property
     def of_the_integral(self) -> np.ndarray:
         """What the waves 2 K may add to the integral, shape (data,)."""
-        return np.asarray(sum(2.0 * a[:, 0] * r[:, 0] ** 2.5 for a, r in self._axes()))
+        return np.asarray(sum(2.0 * a[:, 0] * r[:, 0] ** 2.5 for a, r in self._rates()))
 
-    def at_most(self, alpha: float, tau: float) -> np.ndarray:
-        """Return a bound of `of_a_peak` as if u^ did not fall beyond K.
+    def at_most(self, alpha: float, tau: float) -> list[float]:
+        """Return a bound of `of_a_peak` as if u^ did not fall beyond K, nor faster for waves along the other axes.
 
-        Of an axis 2 H_0 int_0^1 exp(-c s^alpha) ds < 2 H_0 min(1, c^(-1/alpha)), with s = k / K, c = tau pi^alpha, and
-        H_0 the sum of a over the waves along the other axes.
+        Of an axis 2 H_0 int_0^1 exp(-kappa c s^alpha) ds < 2 H_0 min(1, (kappa c)^(-1/alpha)), with H_0 the sum of a
+        over the waves along the other axes, and c = tau pi^alpha.
         """
-        dim, c = len(self.high), tau * math.pi**alpha
-        total = np.add.reduce(self.high[0], 1)
-        for a in self.high[1:]:
-            total += np.add.reduce(a, 1)
-        # The weight of a wave, with that of conjugates; on the line there are none.
-        weight = 2.0 if dim == 1 else 4.0 * float(self.length) ** (1 - dim)
-        return np.asarray(weight * min(1.0, c ** (-1.0 / alpha)) * total)
+        dim, c = self._dim, _slowed(self._dim, alpha) * tau * math.pi**alpha
+        weight = 2.0 * min(1.0, c ** (-1.0 / alpha))
+        if dim == 1:
+            return [weight * a for a in self._high[0].ravel().tolist()]
+        weight *= 2.0 * float(self._length) ** (1 - dim)  # of a wave, with that of conjugates
+        return [weight * sum(h) for h in zip(*(a.sum(1).tolist() for a in self._high), strict=True)]
 
-    def nearly(self, alpha: float, tau: float) -> np.ndarray:
-        """Return a closer bound: H_q = sum a r^q, r = a / b, has a logarithm convex in q, so H_q <= H_0 R^q with
+    def of_a_peak(self, alpha: float, tau: float) -> list[float]:
+        """Return how far off a peak of each of the data may be after the scaled time tau: if all waves are in phase.
 
-            R = (H_5 / H_0)^(1/5),   2 H_0 max_s R^(5 (1 - s) / 2) exp(-c s^alpha),
+        For a wave of s K along an axis and of q along the others, with c = tau pi^alpha, kappa = 2^(alpha/2 - 1),
 
-        the greatest where c alpha s^(alpha - 1) = -5/2 log R, or s = 1.
+            f(s K, q) <= exp(-kappa tau q^alpha) exp(-kappa c s^alpha),
+            1 - f((2 - s) K, q) / f(s K, q) <= 1 - exp(-c ((2 - s)^alpha - s^alpha)).
+
+        On the line q = 0 and kappa = 1: both are equal. H_p, the sum of a r^p exp(-kappa tau q^alpha) over q, has a
+        logarithm that is convex in p: H_p <= H_0 R^p with R = (H_5 / H_0)^(1/5). An integral over s is left.
         """
-        dim, c = len(self.high), tau * math.pi**alpha
-        wrong = np.zeros(len(self.high[0]))
-        for axis, (a, r) in enumerate(self._axes()):
-            h = np.add.reduce(a, 1)
-            steep = -0.5 * np.log(np.add.reduce(a * r**5, 1) / (h + _TINY) + _TINY)  # -5/2 log R
-            s = np.minimum(1.0, steep / (c * alpha)) ** (1.0 / (alpha - 1.0))
-            conjugates = 2.0 if axis == dim - 1 else 4.0
-            wrong += conjugates * h * np.exp(-steep * (1.0 - s) - c * s**alpha)
-        return np.asarray(wrong * float(self.length) ** (1 - dim))
-
-    def of_a_peak(self, alpha: float, tau: float) -> np.ndarray:
-        """Return how far off a peak may be after the scaled time tau, shape (data,): if all waves are in phase."""
-        wrong = np.zeros(len(self.high[0]))
-        for axis, (a, r) in enumerate(self._axes()):
-            square, weight = self._across(axis)
-            parts, change = _change(alpha, tau, square)
-            aliases = a * _aliases(r, parts[..., None])
-            wrong += np.einsum("pdw,pw->d", aliases, weight * change)
+        dim = self._dim
+        kappa = _slowed(dim, alpha)
+        nodes = _nodes(alpha, tau * math.pi**alpha, kappa)
+        wrong = [0.0] * len(self._each)
+        across = {last: self._across(last, alpha, kappa * tau) for last in {True, dim == 1}}
+        for axis, (a, r) in enumerate(self._rates()):
+            square, weights = r * r, across[axis == dim - 1]
+            h_0, h_5 = a @ weights, (a * r * square * square) @ weights
+            for one, (h0, h5) in enumerate(zip(h_0.tolist(), h_5.tolist(), strict=True)):
+                if h5 > 0.0:
+                    wrong[one] += h0 * _integral(0.5 * math.log(h5 / h0), nodes)
         return wrong
 
-    def _across(self, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """The squares of the waves along the other axes, and their weights, shape (waves,)."""
-        dim = len(self.high)
+    def _across(self, last: bool, alpha: float, tau: float) -> np.ndarray:
+        """Return exp(-tau q^alpha) times the weight of a wave along the axes but one, the `last` or another."""
+        dim, length = self._dim, self._length
         if dim == 1:
-            return np.zeros(1), np.ones(1)
-        every = np.square(2.0 * np.pi * np.fft.fftfreq(self.length))
-        half = every[: self.length // 2 + 1]
-        twice = np.where((half > 0.0) & (half < np.pi**2), 2.0, 1.0)  # and their conjugates
-        square: np.ndarray = np.zeros(())
-        weight: np.ndarray = np.ones(())
-        for other in (k for k in range(dim) if k != axis):
-            last = other == dim - 1
-            square = np.add.outer(square, half if last else every)
-            own = twice if last else np.ones(self.length)
-            weight = np.multiply.outer(weight, own / self.length)
-        return square.ravel(), weight.ravel()
+            return np.ones(1)
+        every = np.square(2.0 * np.pi * np.fft.fftfreq(length))
+        half = every[: length // 2 + 1]
+        square = reduce(np.add.outer, [every] * (dim - 2) + [every if last else half])
+        weights = np.exp(-tau * square ** (0.5 * alpha))
+        weights *= float(length) ** (1 - dim)
+        if not last:
+            weights[..., 1 : (length + 1) // 2] *= 2.0  # and their conjugates
+        return np.asarray(weights.ravel())
 
 
-def _change(alpha: float, tau: float, square: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return k / K, shape (nodes, 1), and f(k) - f(2 K - k) there times the width of a node, shape (nodes, waves)."""
-    # Beyond this nothing is left.
-    reach = min(1.0, (_GONE / tau) ** (1.0 / alpha) / math.pi)
-    parts = reach * _NODES
-    both = np.square(math.pi * np.concatenate([parts, 2.0 - parts])) + square
-    f = np.exp(-tau * both ** (0.5 * alpha))
-    return parts, reach / len(_NODES) * (f[: len(_NODES)] - f[len(_NODES) :])
+def _slowed(dim: int, alpha: float) -> float:
+    """Return kappa: (x + y)^(alpha / 2) >= kappa (x^(alpha / 2) + y^(alpha / 2)), by concavity."""
+    return 1.0 if dim == 1 else 2.0 ** (0.5 * alpha - 1.0)
 
 
-def _aliases(r: np.ndarray, parts: np.ndarray) -> np.ndarray:
-    """Return |u^(2 K - k)| + |u^(2 K + k)| over a, by k / K."""
-    return np.asarray(r ** (2.5 - 2.5 * parts) + r ** (2.5 + 2.5 * parts))
+def _nodes(alpha: float, c: float, kappa: float) -> list[tuple[float, float]]:
+    """Return s, and what is wrong of a wave there, see `of_a_peak`, times the width of a node."""
+    reach = min(1.0, (_GONE / (kappa * c)) ** (1.0 / alpha))  # beyond nothing is left
+    nodes = []
+    for s in (reach * (j + 0.5) / _NODES for j in range(_NODES)):
+        left, change = s**alpha, (2.0 - s) ** alpha - s**alpha
+        nodes.append((s, -reach / _NODES * math.exp(-kappa * c * left) * math.expm1(-c * change)))
+    return nodes
 
 
-def _greatest(each: np.ndarray, axis: int, first: int, last: int, both: bool) -> np.ndarray:
-    """The greatest |u^| of the waves first .. last of an axis, and of those on the other side of zero if `both`.
-
-    Shape (data, waves along the other axes).
-    """
-    before, length = (slice(None),) * axis, each.shape[axis]
-    band = np.maximum.reduce(np.abs(each[(*before, slice(first, last + 1))]), axis=axis)
-    if both:
-        other = each[(*before, slice(length - last, length - max(first, 1) + 1))]
-        band = np.maximum(band, np.abs(other).max(axis=axis, initial=0.0))
-    return band.reshape(len(each), math.prod(band.shape[1:]))
+def _integral(steep: float, nodes: list[tuple[float, float]]) -> float:
+    """Return the integral of (|u^(2 K - k)| + |u^(2 K + k)|) / a with R^(5/2) = exp(steep)."""
+    return sum(w * (math.exp(steep * (1.0 - s)) + math.exp(steep * (1.0 + s))) for s, w in nodes)

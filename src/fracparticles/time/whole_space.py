@@ -29,9 +29,8 @@ from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["WholeSpace", "evolve", "tail_exponents"]
 
-_NOTICED = (
-    1e-3  # of the maximum: a tail that misses the solution by more, or waves that the lattice lacks
-)
+# Of the maximum: a tail that misses the solution by more, or waves that the lattice lacks.
+_NOTICED = 1e-3
 _FEWEST = 8  # points an axis: the tail meets the data at six depths
 _OUTGROWN = 0.9
 _TINY = float(np.finfo(float).tiny)
@@ -215,13 +214,15 @@ class WholeSpace:
         InvalidInput
             If u has another shape, or sums of it overflow.
         """
-        seen: list[ShortWaves] = []
+        seen: list[np.ndarray] = []
         with np.errstate(over="ignore", invalid="ignore"):
-            result, numbers = self._run(
-                u, lambda spectrum: seen.append(self._circle.waves(spectrum))
-            )
-        check.finite_result("u", result)
-        return result, self._changed * self._miss(result, numbers), self._lacking(result, seen[0])
+            result, numbers = self._run(u, seen.append)
+            each = result.reshape(_count(result, self._dim), self._points**self._dim)
+            peaks = np.maximum.reduce(np.abs(each), 1).tolist()
+            if not all(map(math.isfinite, peaks)):
+                check.finite_result("u", each)
+            miss = self._changed * self._miss(each, numbers, peaks)
+            return result, miss, self._lacking(self._circle.waves(seen[0]), peaks)
 
     def _run(self, u: np.ndarray, look: Look = unseen) -> tuple[np.ndarray, np.ndarray | None]:
         """Return the solution, and the numbers of its tail if it has one; show u^ of the data to `look`."""
@@ -241,38 +242,30 @@ class WholeSpace:
         longer[self._inside] = u
         return self._circle(longer, look)[self._inside], None
 
-    def _lacking(self, result: np.ndarray, waves: ShortWaves) -> float:
+    def _lacking(self, waves: ShortWaves, peaks: list[float]) -> float:
         """Return what the waves that the lattice does not hold may be of the greatest value."""
-        of_each = _count(result, self._dim), self._points**self._dim
-        size = np.maximum.reduce(np.abs(result).reshape(of_each), axis=1) + _TINY
-        worst = 0.0
-        for dearer in (waves.at_most, waves.nearly, waves.of_a_peak):
-            wrong = dearer(self._alpha, self._tau) / size
-            worst = float(np.maximum.reduce(wrong, initial=0.0))
-            if worst < _NOTICED:
-                break
+        worst = _worst(waves.at_most(self._alpha, self._tau), peaks)
+        if worst >= _NOTICED:
+            worst = _worst(waves.of_a_peak(self._alpha, self._tau), peaks)
         return min(1.0, worst)
 
-    def _miss(self, result: np.ndarray, numbers: np.ndarray | None) -> float:
+    def _miss(self, each: np.ndarray, numbers: np.ndarray | None, peaks: list[float]) -> float:
         """Return how far the tail is from the result in the middles of the faces, over its maximum."""
         points, dim = self._points, self._dim
         middle, steps = points // 2, [points**k for k in reversed(range(dim))]
-        centre = middle * sum(steps)
-        ends = [centre + by * step for by in (-middle, points - 1 - middle) for step in steps]
-        if numbers is None and result.size == points**dim:
-            # One datum: the value in the middle may do.
-            worst, peak = max(abs(result.item(k)) for k in ends), abs(result.item(centre))
-            if worst > _NOTICED * peak:
-                peak = max(result.max(), -result.min())
-            return float(worst / peak) if peak else 0.0
-        each = result.reshape(-1, points**dim)
-        size = np.maximum(each.max(axis=1), -each.min(axis=1))[:, None]
-        miss = each[:, ends]
+        ends = [
+            middle * (sum(steps) - step) + at * step for at in (0, points - 1) for step in steps
+        ]
+        miss = each.take(ends, 1)
         if isinstance(self._circle, Continued) and numbers is not None:
-            faces = np.unravel_index(ends, (points,) * dim)
-            miss = miss - self._circle.tails.result_at(np.transpose(faces) + self._start, numbers)
-        miss = np.abs(miss) / np.maximum(size, _TINY)
-        return float(miss.max(initial=0.0))
+            faces = np.transpose(np.unravel_index(ends, (points,) * dim)) + self._start
+            miss -= self._circle.tails.result_at(faces, numbers)
+        return _worst([max(map(abs, one)) for one in miss.tolist()], peaks)
+
+
+def _worst(wrong: list[float], peaks: list[float]) -> float:
+    """Return the greatest part that is wrong of the peak of one of the data."""
+    return max((w / (peak + _TINY) for w, peak in zip(wrong, peaks, strict=True)), default=0.0)
 
 
 def _dimension_of(u: np.ndarray) -> int:
