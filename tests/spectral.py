@@ -31,17 +31,27 @@ _APART = 1e-5  # of the places of a difference
 
 
 def circle(
-    alpha: float, initial: Any, time: float, d: Any, a: Any, f: Any
+    alpha: float, initial: Any, time: float, d: Any, a: Any, f: Any, pairs: bool = False
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return u of u_t + (a u)_x = (D grad^beta u)_x + f at a time, as a function of x; D(x, t), a(x, t), f(x, t, u)."""
+    """Return u of u_t + (a u)_x = (D grad^beta u)_x + f at a time, as a function of x; D(x, t), a(x, t), f(x, t, u).
+
+    With `pairs` the diffusion is (D L u + L(D u) - u L D) / 2.
+    """
     step = _LENGTH / _POINTS
     x = (np.arange(_POINTS) - _POINTS // 2) * step
     k = 2.0 * np.pi * rfftfreq(_POINTS, step)
     flux = 1j * np.append(0.0, k[1:] ** (alpha - 1.0))
 
+    def laplacian(u: np.ndarray) -> np.ndarray:
+        return irfft(-(k**alpha) * rfft(u), _POINTS)
+
     def rate(t: float, u: np.ndarray) -> np.ndarray:
-        gradient = irfft(flux * rfft(u), _POINTS)
-        return irfft(1j * k * rfft(d(x, t) * gradient - a(x, t) * u), _POINTS) + f(x, t, u)
+        now, left = d(x, t), -a(x, t) * u
+        if pairs:
+            spread = 0.5 * (now * laplacian(u) + laplacian(now * u) - u * laplacian(now))
+            return spread + irfft(1j * k * rfft(left), _POINTS) + f(x, t, u)
+        left += now * irfft(flux * rfft(u), _POINTS)
+        return irfft(1j * k * rfft(left), _POINTS) + f(x, t, u)
 
     u0 = initial(x)
     run = solve_ivp(rate, (0.0, time), u0, "DOP853", rtol=_TOLERANCE, atol=_TOLERANCE * u0.max())

@@ -53,6 +53,32 @@ def test_the_line(kind, alpha):
     assert error(run, exact) < 2.0 * float(run.space_error) + IN_TIME
 
 
+def test_a_barrier_between_the_particles_warns():
+    """A fifth of the spacing wide, with a tenth of D: u is off by a fifth of its greatest value."""
+
+    def d(x, t=0.0):
+        return 1.0 - 0.9 * np.exp(-(((x - 0.33) / 0.02) ** 2))
+
+    fields = {"alpha": 1.1, "half_width": 15.0, "spacing": 0.1, "t_final": 0.2, "diffusivity": d}
+    with pytest.warns(AccuracyWarning, match="coefficient differs between the particles"):
+        solve_problem(Problem(**fields), bell)
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.6])
+def test_the_exchange_across_a_layer_that_two_particles_span(alpha):
+    """e = 0.11: what a flux would have to warn of leaves an error of a fifth of one per cent here."""
+
+    def d(x, t=0.0):
+        return 1.0 + 0.8 * np.tanh((x - 0.33) / 0.2)
+
+    fields = {"alpha": alpha, "half_width": 15.0, "spacing": 0.1, "t_final": 0.2}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", AccuracyWarning)
+        run = solve_problem(Problem(**fields, diffusivity=d, form="exchange"), bell)
+    exact = circle(alpha, bell, 0.2, d, lambda x, t: 0.0 * x, lambda x, t, u: 0.0 * x, pairs=True)
+    assert error(run, exact(run.x.values)) < 2.0 * float(run.space_error)
+
+
 @pytest.mark.parametrize("alpha", [1.4, 1.8])
 @pytest.mark.parametrize("rate", [1.0, 10.0])
 def test_the_interval(alpha, rate):
