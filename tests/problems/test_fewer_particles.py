@@ -7,8 +7,9 @@ import warnings
 import numpy as np
 import pytest
 
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
+from fracparticles.problems.fewer_particles import _still_to_come, space_errors
 from fracparticles.special import green
 
 LINE = {"alpha": 1.5, "half_width": 20.0, "t_final": 0.5}
@@ -25,7 +26,7 @@ def tent(x):
 
 @pytest.mark.parametrize(("order", "spacing"), [(2, 0.1), (2, 0.2), (4, 0.1), (4, 0.2)])
 def test_it_is_the_error_of_a_known_solution(order, spacing):
-    """With d_2 it is (1 - 2^-p) of an error of order p, without (2^p - 1) / 4: from 3/4 to 15/4."""
+    """With d_2 it is that of the order p, without (2^p - 1) / 3 of it: from 1 to 5."""
     problem = Problem(
         **{**LINE, "t_initial": 1.0, "t_final": 1.5}, spacing=spacing, order=order, velocity=1.0
     )
@@ -94,6 +95,61 @@ def test_layers_that_the_particles_resolve_are_no_reason_to_warn():
 )
 def test_where_there_is_nothing_to_compare_it_is_left_out(fields):
     assert "space_error" not in solve_problem(Problem(**fields), bell)
+
+
+def test_data_that_know_their_own_particles_are_no_reason_to_fail():
+    """Whatever they raise at others; what the package raises is not hidden."""
+    problem = Problem(**ENDS, particles=64)
+
+    def own(x):
+        assert x.size != 32
+        return bell(x)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        assert "space_error" not in solve_problem(problem, own)
+
+    def broken(problem, initial):
+        raise RuntimeError
+
+    u = problem.bounded_domain.values("u", bell)
+    with pytest.raises(RuntimeError):
+        space_errors(problem, bell, [u], broken)
+
+
+def test_where_half_of_the_particles_make_something_infinite_nothing_is_known():
+    def blows_up(problem, initial):
+        raise NonFiniteSolution("the solution stops")
+
+    problem = Problem(**ENDS, particles=64)
+    u = problem.bounded_domain.values("u", bell)
+    assert space_errors(problem, bell, [u, u], blows_up) == [np.inf, np.inf]
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "factor"),
+    [
+        (1.0, 4.0, 1.0 / 3.0),
+        (1.0, 2.0, 1.0),
+        (1.0, 1.0, 1.0),
+        (1.0, 1e3, 1 / 32),
+        (0.0, 0.0, 1.0),
+        (1.0, np.inf, 1.0),
+    ],
+)
+def test_what_is_still_to_come_is_a_geometric_series(first, second, factor):
+    """Of the order p 1 / (2^p - 1): a third of the order two, all of the order one; where it does not fall, all."""
+    assert _still_to_come(np.array([first]), np.array([second])) == pytest.approx([factor])
+
+
+def test_a_far_field_of_more_terms_needs_no_lattice_that_fewer_particles_have_not():
+    """Seven smoothing lengths of half of the particles are too few for the powers, and not for a comparison."""
+    fields = {"alpha": 1.5, "half_width": 15.0, "spacing": 0.2, "order": 2, "far_terms": 3}
+    fields |= {"t_initial": 0.2, "t_final": 0.25, "velocity": 1.0}
+    run = solve_problem(Problem(**fields))
+    exact = green(run.x.values - 0.05, 0.25, 1.5)
+    error = np.abs(run.u.values - exact).max() / exact.max()
+    assert float(run.space_error) > 0.5 * error
 
 
 @pytest.mark.parametrize("fields", [{**LINE, "spacing": 0.1}, {**ENDS, "particles": 64}])

@@ -13,6 +13,7 @@ from scipy.special import eval_jacobi, gammaln, hyp2f1
 from fracparticles.bounded.interval import Interval
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems import Problem, solve_problem
+from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.run.dataset import write
 
 ALPHAS = (1.1, 1.5, 1.9)
@@ -286,6 +287,31 @@ def test_a_source_that_is_faster_than_all_else_is_taken_implicitly():
     assert np.abs(run.u.values[np.abs(run.x) < 0.5] - np.cos(1.0)).max() < 1e-5
     with pytest.raises(InvalidInput, match=r"^source = .*on the disc"):
         solve_problem(Problem(**DISC, source="-1e6*(u - cos(t))"), 1.0)
+
+
+@pytest.mark.parametrize("fields", [{**LINE, "particles": 60}, {**DISC, "particles": 16}])
+def test_a_source_that_takes_the_same_part_everywhere_costs_no_steps(fields):
+    """u = e^(-200 t) of that without, to round-off of an exponent of 600: in as many steps, and 3500 were taken."""
+    fields = {**fields, "t_final": 3.0}
+    plain, taken = (solve_problem(Problem(**fields, source=f), 1.0) for f in (None, "-200*u"))
+    assert taken.integrator == "exponential"
+    assert taken.accepted_steps == plain.accepted_steps < 10
+    scaled = taken.u.values * np.exp(300.0) * np.exp(300.0)
+    assert (
+        np.abs(scaled - plain.u.values).max()
+        < 1e3 * np.finfo(float).eps * np.abs(plain.u.values).max()
+    )
+
+
+@pytest.mark.parametrize(
+    ("source", "rate"),
+    [("-300*u", 300.0), ("1 - 3*u", 3.0), ("-u**2", 0.0), ("2*u", 0.0), ("-300*u*t", 0.0)],
+)
+def test_the_decay_of_a_source_is_known_where_it_is_one(source, rate):
+    rates = DomainRates(Problem(**LINE, source=source))
+    for v in (np.ones(rates.shape), np.cos(rates.domain.x), np.zeros(rates.shape)):
+        expected = rate if v.any() else 0.0
+        assert rates.decay(v) == pytest.approx(expected, rel=1e-9)
 
 
 # --- what warns, and what is refused --------------------------------------------------------------

@@ -28,6 +28,7 @@ from fracparticles.time.fading import slope_of
 __all__ = ["DomainRates"]
 
 _LOOKS = 33  # at a diffusivity that depends on time
+_UNIFORM = 1e-6  # of a rate, its round-off where g is greater
 _KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
 
 
@@ -135,6 +136,20 @@ class DomainRates:
         if self.source is None or self.problem.is_linear:
             return np.zeros(v.shape)
         return slope_of(self.source, t, v + self.lift(t).base)
+
+    def decay(self, v: np.ndarray) -> float:
+        """Return c >= 0 of a source -c u + g(x), by what it makes of u and of -u/2; 0 of any other."""
+        f, t, reaction = self.source, self.problem.t_initial, self.problem.reaction
+        if f is None or reaction is None or "t" in reaction.depends_on or self.problem.is_linear:
+            return 0.0
+        u = v + self.lift(t).base
+        with np.errstate(all="ignore"):
+            nothing = f(t, 0.0 * u)
+            c, half = ((nothing - f(t, part * u)) / (part * u) for part in (1.0, -0.5))
+        where = u != 0.0
+        greatest = float(c.flat[np.abs(u).argmax()])
+        off = np.abs(np.stack([c, half])[:, where] - greatest).max(initial=0.0)
+        return max(0.0, greatest) if off <= _UNIFORM * abs(greatest) else 0.0
 
     def slowest(self) -> float:
         """Return the lowest eigenvalue of -D A with the least D of the run."""

@@ -1,15 +1,16 @@
 """The error that the particles leave, by the same problem on half and on a quarter of them along each axis.
 
-With d_1 the distance between u and what half of the particles make of it, and d_2 that between half and a quarter, the
-error is
+With d_1 the distance between u and what half of the particles make of it, and d_2 that between half and a quarter, each
+half of the spacing leaves r = d_1 / d_2 of the distance before. All those that are still to come are the error,
 
-    d_1 min(1, max(1/32, d_1 / d_2)),
+    d_1 (r + r^2 + ..) = d_1 r / (1 - r),
 
-what is left of d_1 if half of the spacing leaves the same part again. So kinks and jumps of a coefficient or of the
-data, where the order is one or two whatever that of the kernels, have their own factor. The quarter is taken only where
-d_1 is large; else the error is d_1 / 4, as of the order two. Fields are compared where the fewer particles are, by
-splines between the others; their distance is the larger of the greatest difference over the greatest |u|, and of int
-|difference| over int |u|, which sees what is beside a peak at an end.
+of an order p d_1 / (2^p - 1), but at least d_1 / 32, and d_1 where r >= 1/2. So kinks and jumps of a coefficient or of
+the data, where the order is one or two whatever that of the kernels, have their own factor. The quarter is taken only
+where d_1 is large; else, or where a quarter is too few, the error is d_1 / 3, that of the order two. Where half of the
+particles make something infinite, nothing is known of the error: it is infinite. Fields are compared where the fewer
+particles are, by splines between the others; their distance is the larger of the greatest difference over the greatest
+|u|, and of int |difference| over int |u|, which sees what is beside a peak at an end.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems.problem import Problem
 
 __all__ = ["SPACE_ERROR", "Estimates", "space_errors", "with_space_error"]
@@ -29,7 +31,7 @@ SPACE_ERROR = 0.03
 """Of the greatest |u|, an error that is said."""
 
 _HALVINGS = 2
-_LEAST, _UNKNOWN = 1 / 32, 0.25  # the factor: at least, and where d_2 is not known
+_LEAST, _UNKNOWN = 1 / 32, 1 / 3  # the factor: at least, and where d_2 is not known
 _FEWEST = {"interval": 16, "square": 8, "disc": 8, None: 8}
 
 Estimates = dict[str, tuple[list[float], str]]
@@ -60,9 +62,10 @@ def space_errors(
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 coarse = solve(fewer, initial)
-        except (
-            Exception
-        ):  # what a function of the user's raises that knows its own particles may be anything
+        except InvalidInput:  # too few particles, or a function that knows its own alone
+            break
+        except NonFiniteSolution:
+            apart.append(np.full(len(fields), np.inf))
             break
         pairs = zip(fields, coarse, strict=True)
         apart.append(np.array([_distance(fewer, _among(problem, fewer, u), v) for u, v in pairs]))
@@ -73,8 +76,15 @@ def space_errors(
         return None
     factor = np.full(len(fields), _UNKNOWN)
     if len(apart) > 1:
-        factor = np.clip(apart[0] / np.maximum(apart[1], 1e-300), _LEAST, 1.0)
+        factor = _still_to_come(*apart)
     return list(apart[0] * factor)
+
+
+def _still_to_come(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """r / (1 - r), r = d_1 / d_2, of each output time; 1 where a quarter says nothing."""
+    known = np.isfinite(second) & (first < 0.5 * second)
+    factor = first / np.where(known, second - first, 1.0)
+    return np.where(known, np.maximum(factor, _LEAST), 1.0)
 
 
 def with_space_error(found: Estimates, *given: Any) -> Estimates:
@@ -95,13 +105,19 @@ def _distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:
 
 
 def _halved(problem: Problem) -> Problem:
-    """The problem on half as many particles along each axis; raises `ValueError` if these are too few."""
-    half = _count(problem) // 2
-    if half < _FEWEST[problem.domain]:
-        raise ValueError(half)
+    """The problem on half as many particles along each axis; raises `InvalidInput` if these are too few."""
+    half, least = _count(problem) // 2, _FEWEST[problem.domain]
+    if half < least:
+        raise InvalidInput("particles", half, f"at least {least}", "Take more.")
     if problem.is_bounded:
         return problem.model_copy(update={"particles": half})
-    return problem.model_copy(update={"spacing": problem.half_width / half})
+    spacing = problem.half_width / half
+    try:
+        return problem.model_copy(update={"spacing": spacing})
+    except InvalidInput as error:
+        if error.field != "far_terms":
+            raise
+    return problem.model_copy(update={"spacing": spacing, "far_terms": None})
 
 
 def _count(problem: Problem) -> int:

@@ -1,9 +1,9 @@
 """A problem on a bounded domain, and the way through time: see `domain_rates` for what is integrated.
 
-On the interval and the disc the diffusion is taken in its modes, and what is left is for the exponential integrator of
-`bounded.exponential`; with a velocity, a D that changes in time, or fast rates of a source, on the interval for the
-implicit one of `bounded.implicit`. On the square the lattice is not stiff, and the integrators of the whole space take
-it as it is.
+On the interval and the disc the diffusion is taken in its modes, and with it a source -c u, whose steps would be those
+of its decay. What is left is for the exponential integrator of `bounded.exponential`; with a velocity, a D that changes
+in time, or fast rates of a source, on the interval for the implicit one of `bounded.implicit`. On the square the
+lattice is not stiff, and the integrators of the whole space take it as it is.
 """
 
 from __future__ import annotations
@@ -75,7 +75,14 @@ def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Datase
 
 
 def _on_fewer(problem: Problem, initial: Any) -> list[np.ndarray]:
-    u0, rates = problem.bounded_domain.values("initial", initial), DomainRates(problem)
+    try:
+        u0 = problem.bounded_domain.values("initial", initial)
+    except Exception as error:  # whatever a function may raise that knows its own particles alone
+        what = "a function of the place"
+        raise InvalidInput(
+            "initial", initial, what, "Evaluate it where it is asked for."
+        ) from error
+    rates = DomainRates(problem)
     return _integrated(problem, rates, u0, _held(problem, rates, u0)).u
 
 
@@ -127,10 +134,16 @@ def _held(problem: Problem, rates: DomainRates, u0: np.ndarray) -> Held:
 def _in_modes(
     problem: Problem, rates: DomainRates, u0: np.ndarray, v0: np.ndarray, held: Held
 ) -> Integration:
-    modes = rates.modes
-    steps: Steps = ExponentialSteps(modes, rates.beside_modes, problem.rtol, held)
+    modes, decay = rates.modes, rates.decay(v0)
+
+    def beside(t: float, v: np.ndarray) -> np.ndarray:
+        return rates.beside_modes(t, v) + decay * v
+
+    decaying = modes._replace(rates=modes.rates + decay)
+    steps: Steps = ExponentialSteps(decaying, beside, problem.rtol, held)
     method = "exponential"
-    fastest = problem.span * float(np.abs(rates.source_slope(problem.t_initial, v0)).max())
+    slope = rates.source_slope(problem.t_initial, v0) + decay
+    fastest = problem.span * float(np.abs(slope).max())
     if fastest > _FASTEST and problem.domain == "disc":
         shown = f"a rate of {fastest / problem.span:.3g}"
         what = f"a source whose rates times the time of the run are below {_FASTEST:g} on the disc"

@@ -17,7 +17,8 @@ between_particles
 coefficient_misfit
     sum |c - I| / sum (|c| + |I|) between the particles, I the cubic through the four that are next, c the coefficient
     less its least value. Of a source, c itself, and of the sum and that of 2 |u| / (t_final - t_initial) the larger.
-    That of the worst coefficient: what the particles do not see of it.
+    That of the worst coefficient: what the particles do not see of it. Of a diffusivity in a flux that of 1 / D, too:
+    a barrier that no particle meets holds the flux back.
 space_error
     What the same on half and a quarter of the particles says of the error over u, see `fewer_particles`.
 atol_share
@@ -58,6 +59,7 @@ Estimates = dict[str, tuple[list[float], str]]
 _LEAST_SMOOTHING = 1.1  # as there
 _LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": FADED, "space_error": SPACE_ERROR}
 _MOST = 2.0  # of the error of a wave over it
+_BARRIER = 1e-4  # of the greatest D: below, it is nothing
 _CONSTANT = 1e-9  # of a coefficient, a variation that is round-off
 
 
@@ -165,12 +167,24 @@ def _coefficient_misfit(
         values, found = (one({name: each[name] for name in one.variables}) for each in every)
     except InvalidInput:  # a function that knows the particles alone
         return 0.0
-    guess = _between(np.asarray(np.broadcast_to(values, u.shape)), part)
-    is_source = one.field == "source"
-    least = 0.0 if is_source else min(guess.min(), found.min())
-    size = float((np.abs(found - least) + np.abs(guess - least)).sum())
-    if is_source:
-        size = max(size, 2.0 * float(np.abs(v).sum()) / problem.span)
+    values = np.broadcast_to(values, u.shape)
+    if one.field == "source":
+        return _missed(values, found, part, 0.0, 2.0 * float(np.abs(v).sum()) / problem.span)
+    missed = _missed(values, found, part)
+    floor = _BARRIER * float(max(values.max(), found.max()))
+    if one.field == "diffusivity" and problem.form == "FPSE" and floor > 0.0:
+        missed = max(missed, _missed(1.0 / (values + floor), 1.0 / (found + floor), part))
+    return missed
+
+
+def _missed(
+    values: np.ndarray, found: np.ndarray, part: float, least: float | None = None, size: float = 0
+) -> float:
+    """sum |c - I| / sum (|c| + |I|), c and I less the least of both if none is given; the sum is at least `size`."""
+    guess = _between(values, part)
+    if least is None:
+        least = min(guess.min(), found.min())
+    size = max(size, float((np.abs(found - least) + np.abs(guess - least)).sum()))
     greatest = float(np.abs(found).max()) * found.size
     if not _CONSTANT * greatest < size < np.inf:
         return 0.0

@@ -34,7 +34,12 @@ from fracparticles.schemes.base import OnePass
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable.exterior import tails_of
 from fracparticles.variable.gradient import ExchangeDivergence, FractionalGradient
-from fracparticles.variable.resolution import warn_unresolved, warn_unsettled
+from fracparticles.variable.resolution import (
+    UNRESOLVED,
+    UNRESOLVED_BY_PAIRS,
+    warn_unresolved,
+    warn_unsettled,
+)
 from fracparticles.variable.sums import EvenSum
 
 __all__ = ["FORMS", "VariableDiffusivity"]
@@ -148,7 +153,8 @@ class VariableDiffusivity:
         if self._settled:
             self._settled = not warn_unsettled("diffusivity", self._inner(d), self.setting.n)
         if self._resolved:
-            self._resolved = not warn_unresolved("diffusivity", d, self.setting)
+            most = UNRESOLVED_BY_PAIRS if self.form == "exchange" else UNRESOLVED
+            self._resolved = not warn_unresolved("diffusivity", d, self.setting, most)
 
     def _inner(self, d: np.ndarray) -> np.ndarray:
         """D at the particles."""

@@ -1,0 +1,122 @@
+"""Problems whose solution other methods know: Fourier series, and Jacobi and Zernike polynomials (`spectral`)."""
+
+from __future__ import annotations
+
+import warnings
+from functools import partial
+
+import numpy as np
+import pytest
+from spectral import Jacobi, Zernike, circle
+
+from fracparticles.errors import AccuracyWarning
+from fracparticles.problems import Problem, solve_problem
+
+IN_TIME = 1e-4  # of the greatest |u|: some hundred steps of the default tolerance, 1e-6
+
+LINES = {
+    "moving layers": (
+        {"diffusivity": lambda x, t: 0.6 + 0.5 * np.tanh(x - t), "spacing": 0.1, "order": 4},
+        {"velocity": lambda x, t: np.sin(x + 3.0 * t) * np.exp(-x * x / 30.0)},
+        {"source": lambda x, t, u: u * (1.0 - u)},
+    ),
+    "a contrast of fifty": (
+        {"diffusivity": lambda x, t: 0.02 + np.exp(-x * x / 4.0), "spacing": 0.1, "order": 8},
+        {"velocity": lambda x, t: 0.0 * x},
+        {"source": lambda x, t, u: -5.0 * u * u},
+    ),
+    "a stiff decay": (
+        {"diffusivity": lambda x, t: 1.0 - 0.98 * np.exp(-x * x), "spacing": 0.1, "order": 4},
+        {"velocity": lambda x, t: -x / (1.0 + x * x / 25.0)},
+        {"source": lambda x, t, u: -20.0 * u},
+    ),
+}
+
+
+def bell(*place, width=1.0, at=0.5):
+    return np.exp(-(((place[0] - at) / width) ** 2) - sum((y / width) ** 2 for y in place[1:]))
+
+
+def error(run, exact) -> float:
+    return float(np.abs(run.u.values - exact).max() / np.abs(exact).max())
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.8])
+@pytest.mark.parametrize("kind", LINES)
+def test_the_line(kind, alpha):
+    d, a, f = LINES[kind]
+    fields = {"alpha": alpha, "half_width": 30.0, "far_terms": 2, "t_final": 0.3}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", AccuracyWarning)
+        run = solve_problem(Problem(**fields, **d, **a, **f), bell)
+    exact = circle(alpha, bell, 0.3, d["diffusivity"], a["velocity"], f["source"])(run.x.values)
+    assert error(run, exact) < 2.0 * float(run.space_error) + IN_TIME
+
+
+def test_a_barrier_between_the_particles_warns():
+    """A fifth of the spacing wide, with a tenth of D: u is off by a fifth of its greatest value."""
+
+    def d(x, t=0.0):
+        return 1.0 - 0.9 * np.exp(-(((x - 0.33) / 0.02) ** 2))
+
+    fields = {"alpha": 1.1, "half_width": 15.0, "spacing": 0.1, "t_final": 0.2, "diffusivity": d}
+    with pytest.warns(AccuracyWarning, match="coefficient differs between the particles"):
+        solve_problem(Problem(**fields), bell)
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.6])
+def test_the_exchange_across_a_layer_that_two_particles_span(alpha):
+    """e = 0.11: what a flux would have to warn of leaves an error of a fifth of one per cent here."""
+
+    def d(x, t=0.0):
+        return 1.0 + 0.8 * np.tanh((x - 0.33) / 0.2)
+
+    fields = {"alpha": alpha, "half_width": 15.0, "spacing": 0.1, "t_final": 0.2}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", AccuracyWarning)
+        run = solve_problem(Problem(**fields, diffusivity=d, form="exchange"), bell)
+    exact = circle(alpha, bell, 0.2, d, lambda x, t: 0.0 * x, lambda x, t, u: 0.0 * x, pairs=True)
+    assert error(run, exact(run.x.values)) < 2.0 * float(run.space_error)
+
+
+@pytest.mark.parametrize("alpha", [1.4, 1.8])
+@pytest.mark.parametrize("rate", [1.0, 10.0])
+def test_the_interval(alpha, rate):
+    def d(x, t):
+        return 1.0 + 0.5 * x * np.cos(5.0 * t)
+
+    def a(x, t):
+        return 2.0 + np.sin(3.0 * x)
+
+    def f(x, t, u):
+        return rate * u * (1.0 - u)
+
+    initial = partial(bell, width=0.4, at=0.2)
+    fields = {"alpha": alpha, "half_width": 1.0, "exterior": "absorbing", "t_final": 0.2}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", AccuracyWarning)
+        run = solve_problem(Problem(**fields, diffusivity=d, velocity=a, source=f), initial)
+    exact = Jacobi(alpha, d, a).solve(initial, 0.2, f)(run.x.values)
+    # By int |error|: beside the end that u is carried to polynomials have a greater one than particles.
+    off, size = (float((run.volume * np.abs(u)).sum()) for u in (run.u - exact, exact))
+    assert off < (2.0 * float(run.space_error) + IN_TIME) * size
+
+
+@pytest.mark.parametrize("alpha", [1.5, 1.8])
+@pytest.mark.parametrize(
+    "velocity",
+    [lambda x, y: (-20.0 * y, 20.0 * x), lambda x, y: (5.0 + 0.0 * x, -2.0 * x)],
+    ids=["turned", "carried to the edge"],
+)
+def test_the_disc(alpha, velocity):
+    """Turned by a radian, or carried by half the radius."""
+    a = (lambda x, y: velocity(x, y)[0], lambda x, y: velocity(x, y)[1])
+    initial = partial(bell, width=0.5, at=0.2)
+    fields = {"alpha": alpha, "half_width": 1.0, "exterior": "absorbing", "domain": "disc"}
+    problem = Problem(
+        **fields, t_final=0.05, particles=32, velocity=a, source=lambda x, y, t, u: -u * u
+    )
+    run = solve_problem(problem, initial)
+    exact = Zernike(alpha, velocity).solve(initial, 0.05, lambda x, y, t, u: -u * u)
+    off = error(run, exact(run.x.values, run.y.values))
+    assert off < 2.0 * float(run.space_error) + 10.0 * IN_TIME
