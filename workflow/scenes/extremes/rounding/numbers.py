@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from itertools import product
 from math import fsum, log2
 from pathlib import Path
 from tempfile import TemporaryDirectory
