@@ -25,7 +25,7 @@ from copies import copy_folder
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "config", "profiles", "workflow", "report", "src")
 SMOKE = ("--configfile", "config/smoke.yaml")
-# A few of each kind, of the quickest: with runs, variants, tables of others, a benchmark, a study alone; one a document.
+# A few of each kind, the quickest: with runs, variants, tables of others, a benchmark, a study alone; one a document.
 KEPT = {
     "lucchesi": ("rejected_dpse", "lucchesi_table_1", "truncation", "truncation_claims"),
     "lewandowski": ("marker_shapes",),
