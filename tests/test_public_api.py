@@ -99,8 +99,8 @@ def test_a_run_loads_no_more_of_them_than_it_needs(case):
         "import fracparticles as fp\n"
         f"fp.solve(fp.Case(beta=0.5, half_width=40.0, spacing=0.4, {case}))"
     )
-    modules_of(program)  # compiles what is not yet in the cache
-    assert modules_of(program) & UNNEEDED == set()
+    # The first of two may compile what is not yet in the cache.
+    assert any(not modules_of(program) & UNNEEDED for _ in range(2))
 
 
 def test_the_help_of_the_command_line_is_light():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from math import fsum
 
 import mpmath as mp
 import numpy as np
@@ -103,7 +104,10 @@ def test_the_mapped_distance_is_that_of_many_digits(exponent, part, side):
 
 
 def reference(count, reach, scale, alpha, time, i, columns):
-    """Entries of a row by panels that double away from x_i, mapped with 60 digits; the kernel alone is ours."""
+    """Entries of a row by panels that double away from x_i, mapped with 60 digits; the kernel alone is ours.
+
+    The 16 nodes of a panel leave (3 + 8^(1/2))^-32 = 3e-25: it is as far from x_i, or from i times the scale, as long.
+    """
     x, volumes = graded_particles(count, reach, scale)
     ds = volumes[count // 2] / scale
     epsilon = time ** (1.0 / alpha)
@@ -113,7 +117,7 @@ def reference(count, reach, scale, alpha, time, i, columns):
         [-ends[::-1], [0.0], ends, scale * np.linspace(-8, 8, 33) - x[i], -x[i] + x]
     )
     ends = np.unique(np.clip(ends, x[0] - x[i], x[-1] - x[i]))
-    nodes, weights = np.polynomial.legendre.leggauss(24)
+    nodes, weights = np.polynomial.legendre.leggauss(16)
     halves = 0.5 * np.diff(ends)
     d = ((0.5 * (ends[1:] + ends[:-1]))[:, None] + halves[:, None] * nodes).ravel()
     kernel = fp.green(d, time, alpha) * np.outer(halves, weights).ravel()
@@ -123,10 +127,8 @@ def reference(count, reach, scale, alpha, time, i, columns):
             (mp.asinh((mp.mpf(x[i]) + mp.mpf(at)) / mp.mpf(scale)) - start) / mp.mpf(ds) + i
             for at in d
         ]
-        return [
-            float(mp.fsum(k * mp.sincpi(s - j) for k, s in zip(kernel, places, strict=True)))
-            for j in columns
-        ]
+        from_columns = [np.array([float(place - j) for place in places]) for j in columns]
+    return [fsum(kernel * np.sinc(place)) for place in from_columns]
 
 
 @pytest.mark.parametrize(("reach", "scale", "alpha", "time"), [

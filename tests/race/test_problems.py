@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -44,6 +46,7 @@ def test_the_quadrature_is_that_of_mpmath(name, transform):
     problem = PROBLEMS[name](0.5, 1)
     if transform is None:
 
+        @cache  # the nodes are the same at every place
         def transform(k):
             return 2 * mp.quad(lambda y: (1 - y * y) ** 3 * mp.cos(k * y), [0, 1])
 

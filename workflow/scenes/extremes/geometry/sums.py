@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -176,13 +176,15 @@ def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
 
 
 @cache
-def _weight(alpha: float, overlap: float, m: float) -> float:
-    """K(m / s), which takes long by mpmath and is asked for again by every end of every line."""
-    return Kernels(alpha).values("K", abs(m) / overlap)
+def _weight(alpha: float, r: float) -> float:
+    """K(r), which takes long by mpmath and is asked for again by both ends of every line."""
+    return Kernels(alpha).values("K", r)
 
 
 def _of_exterior(alpha: float, n: int, overlap: float) -> float:
-    weight = partial(_weight, alpha, overlap)
+    def weight(m: float) -> float:
+        return _weight(alpha, abs(m) / overlap)
+
     found = far_field(np.vectorize(weight), 1.0 + alpha, alpha, n).right[0]
     size, worst = float(np.abs(found).max()), 0.0
     for i in (-n, 0, n):
