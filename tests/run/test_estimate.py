@@ -94,7 +94,7 @@ BLOBS = st.lists(
 )  # fmt: skip
 
 
-@settings(max_examples=100)
+@settings(max_examples=180)
 @given(
     st.floats(0.05, 0.95),
     BLOBS,
