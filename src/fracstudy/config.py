@@ -25,6 +25,7 @@ __all__ = [
     "Document",
     "StudyConfig",
     "batches",
+    "benchmark_jobs",
     "jobs",
     "read_config",
     "read_project",
@@ -229,9 +230,17 @@ def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str
     waves: dict[tuple[int, bool], list[str]] = {}
     for name, scene in scenes.items():
         waves.setdefault((_depth(name, scenes), bool(scene.all_benchmarks)), []).append(name)
-    parts = [
-        names[k::_SMOKE_JOBS] for _, names in sorted(waves.items()) for k in range(_SMOKE_JOBS)
-    ]
+    return _parts(waves[wave] for wave in sorted(waves))
+
+
+def benchmark_jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str]]:
+    """Return the scenes whose benchmarks one job runs: one, but in a smoke run, which times nothing of use, half."""
+    timed = [name for name, scene in scenes.items() if scene.benchmark is not None]
+    return _parts([timed]) if smoke else {name: [name] for name in timed}
+
+
+def _parts(waves: Iterable[list[str]]) -> dict[str, list[str]]:
+    parts = [names[k::_SMOKE_JOBS] for names in waves for k in range(_SMOKE_JOBS)]
     return {f"part_{k}": names for k, names in enumerate(filter(None, parts), start=1)}
 
 

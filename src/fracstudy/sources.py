@@ -43,7 +43,7 @@ def _imports(module: Path, root: Path) -> tuple[Path, ...]:
 
 
 def _imported(module: Path, root: Path) -> Iterator[Path]:
-    for node in ast.walk(ast.parse(module.read_text("utf-8"))):
+    for node in _statements(ast.parse(module.read_text("utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module is not None:
             names = node.module.split(".")
             if names[0] in _HOMES:
@@ -55,6 +55,14 @@ def _imported(module: Path, root: Path) -> Iterator[Path]:
                 names = alias.name.split(".")
                 if names[0] in _HOMES:
                     yield from _files(root.joinpath(_HOMES[names[0]], *names), ())
+
+
+def _statements(node: ast.AST) -> Iterator[ast.AST]:
+    """All below a node but expressions, which are most of it and import nothing."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.expr | ast.arguments):
+            yield child
+            yield from _statements(child)
 
 
 def _files(place: Path, names: Iterable[str]) -> Iterator[Path]:

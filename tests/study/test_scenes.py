@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from fracparticles.errors import InvalidInput
-from fracstudy.config import batches, jobs, read_config
+from fracstudy.config import batches, benchmark_jobs, jobs, read_config
 from fracstudy.run_blocks import expand
 from fracstudy.scene import Scene
 from fracstudy.scene_files import merged, resolved
@@ -267,6 +267,8 @@ def test_a_job_takes_the_scene_as_it_is(ours):
 def test_each_scene_is_made_by_one_job(ours, smoke):
     made = [name for names in jobs(ours, smoke).values() for name in names]
     assert sorted(made) == sorted(ours)
+    timed = [name for names in benchmark_jobs(ours, smoke).values() for name in names]
+    assert sorted(timed) == sorted(name for name, scene in ours.items() if scene.benchmark)
 
 
 def test_every_scene_has_a_caption_and_its_items_are_its_own(ours):

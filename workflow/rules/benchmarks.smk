@@ -1,22 +1,26 @@
 # Run times: one file each. They differ from machine to machine; all else that is made is the same everywhere.
 
 
-rule benchmark:
-    input:
-        compiled=rules.compile.output,
-    output:
-        RESULTS / "benchmarks/{scene}.nc",
-    log:
-        RESULTS / "logs/benchmark_{scene}.log",
-    threads: 1 if STUDY.smoke else workflow.cores  # all: nothing else runs while the clock does
-    resources:
-        runtime=60,
-        mem_mb=4000,
-    params:
-        code=lambda wildcards: code(SCENES[wildcards.scene].file("benchmark.py")),
-        scene=lambda wildcards: SCENES[wildcards.scene].packed(),
-    script:
-        "../scripts/benchmark.py"
+for job, names in BENCHMARK_JOBS.items():
+
+    rule:
+        name:
+            f"benchmark_{job}"
+        input:
+            compiled=rules.compile.output,
+        output:
+            [RESULTS / f"benchmarks/{name}.nc" for name in names],
+        log:
+            RESULTS / f"logs/benchmark_{job}.log",
+        threads: 1 if STUDY.smoke else workflow.cores  # all: nothing else runs while the clock does
+        resources:
+            runtime=60,
+            mem_mb=4000,
+        params:
+            code=code(*(SCENES[name].file("benchmark.py") for name in names)),
+            scenes=[SCENES[name].packed() for name in names],
+        script:
+            "../scripts/benchmark.py"
 
 
 rule bench:

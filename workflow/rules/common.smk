@@ -18,7 +18,7 @@ if workflow.scheduling_settings:
     workflow.scheduling_settings.max_jobs_per_timespan = None
 
 from fracparticles.errors import InvalidInput
-from fracstudy.config import batches, jobs, read_config, targets
+from fracstudy.config import batches, benchmark_jobs, jobs, read_config, targets
 from fracstudy.criteria import CONVENTIONS
 from fracstudy.make import made
 from fracstudy.report import pages
@@ -38,7 +38,7 @@ SITE = Path(STUDY.site_dir)
 EXAMPLES = sorted(path.stem for path in Path("examples").glob("*.py"))
 SITE_SUFFIXES = (".md", ".yml", ".py", ".css", ".js")
 LEDGER = [RESULTS / "claims.csv", RESULTS / "claims.md"]
-TIMED = [name for name, scene in SCENES.items() if scene.benchmark is not None]
+BENCHMARK_JOBS = benchmark_jobs(SCENES, STUDY.smoke)
 FROM_TIMES = [name for name, scene in SCENES.items() if scene.all_benchmarks]
 # What a run depends on, and nothing else: editing a plot reruns no solver.
 SOLVER = Path("src/fracparticles/run/solve.py")

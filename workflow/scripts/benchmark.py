@@ -1,4 +1,4 @@
-"""Run the benchmark of a scene."""
+"""Run the benchmarks of scenes."""
 
 import sys
 from typing import Any
@@ -9,5 +9,6 @@ from fracstudy.scene import Scene
 snakemake: Any
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM115
 
-scene = Scene(**snakemake.params.scene)
-write(scene.function("benchmark")(**scene.benchmark), snakemake.output[0])
+for given, path in zip(snakemake.params.scenes, snakemake.output, strict=True):
+    scene = Scene(**given)
+    write(scene.function("benchmark")(**scene.benchmark), path)

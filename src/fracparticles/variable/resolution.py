@@ -7,7 +7,7 @@ that the kernels see, and s = 1, for waves of the lattice:
 
 At e = 0.1 a step of D leaves an error of one to three per cent of the peak of u, and more at larger ones
 (tests/variable/test_resolved_coefficients.py). The exchange takes the mean of a pair and no slope: of steps, bumps and
-dips it erred by 1.8 per cent at most up to e = 0.4. A single jump has at most 1/2, waves may have more. Where D is
+dips it erred by 1.2 per cent at most up to e = 0.4. A single jump has at most 1/2, waves may have more. Where D is
 below 1e-4 of its maximum nothing is asked of it.
 """
 
