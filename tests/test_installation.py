@@ -19,7 +19,7 @@ import pytest
 from numba.core.registry import CPUDispatcher
 
 import fracparticles
-from fracparticles import _compiled
+from fracparticles import _compiled, _compiler
 
 PACKAGE = Path(fracparticles.__file__).parent
 PEAK = math.gamma(1.0 + 1.0 / 1.5) / math.pi  # of the fundamental solution of alpha = 1.5 at t = 1
@@ -95,17 +95,37 @@ def test_importing_the_package_imports_no_compiler():
 def test_every_compiled_function_has_that_cache():
     """One way to compile: no module takes numba's own; and each function has a folder for its code."""
     direct = re.compile(r"\b(nb|numba)\.(njit|jit|vectorize|guvectorize|cfunc|stencil)\b")
-    others = [path for path in PACKAGE.rglob("*.py") if path.name != "_compiled.py"]
+    others = [path for path in PACKAGE.rglob("*.py") if path.name != "_compiler.py"]
     assert [path.name for path in others if direct.search(path.read_text())] == []
     modules = [
         importlib.import_module(found.name)
         for found in pkgutil.walk_packages(fracparticles.__path__, "fracparticles.")
     ]
-    compiled = [
-        one for module in modules for one in vars(module).values() if isinstance(one, CPUDispatcher)
-    ]
+    values = [one for module in modules for one in vars(module).values()]
+    compiled = [one for one in values if isinstance(one, (_compiled.Promise, CPUDispatcher))]
     assert compiled
-    assert {type(one._cache) for one in compiled} == {_compiled._Cache}
+    assert {type(one._cache) for one in compiled} == {_compiler._Cache}
+
+
+def test_a_function_is_numbas_once_it_was_called(module):
+    """So that a call costs no more than one of numba's; until then it is copied and pickled by its name."""
+    function = load(module)
+    space = function.__wrapped__.__globals__
+    assert space["total"] is function
+    assert function(np.arange(5.0)) == 10.0
+    assert isinstance(space["total"], CPUDispatcher)
+    assert function.compiled is space["total"]
+
+
+def test_a_promise_is_copied_by_name():
+    program = (
+        "import copy, pickle, sys\n"
+        "from fracparticles.time import stepping\n"
+        "function = stepping.all_finite\n"
+        "same = [copy.deepcopy(function), pickle.loads(pickle.dumps(function))]\n"
+        "assert all(one is function for one in same) and 'numba' not in sys.modules"
+    )
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
 
 
 CALLING = """\

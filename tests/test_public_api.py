@@ -77,6 +77,17 @@ def test_kernels_and_green_need_no_tables_and_no_figures():
     assert imported_by(program) <= {"numba", "scipy"}
 
 
+def test_the_exact_symbol_and_the_names_of_a_run_need_no_compiler():
+    """One process for all: numba takes longer to import than any of them."""
+    program = (
+        "import numpy as np, fracparticles as fp\n"
+        "x = np.linspace(-20.0, 20.0, 400, endpoint=False)\n"
+        "fp.evolve(1.0 / (1.0 + x**2), 0.1, 1.5, 1.0)\n"
+        "fp.Case, fp.solve, fp.prepare"
+    )
+    assert not {name.split(".")[0] for name in modules_of(program)} & {"numba", "xarray", "pandas"}
+
+
 def test_a_case_needs_no_tables_and_no_figures():
     program = (
         "import fracparticles as fp\n"

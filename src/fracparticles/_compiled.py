@@ -1,103 +1,71 @@
-"""numba's `njit`, with a cache that cannot stand in the way.
+"""Functions that are compiled: numba is imported when the first of them is called.
 
-Compiled functions are kept where numba keeps them: in the folder that NUMBA_CACHE_DIR names, in `__pycache__` beside
-the module, or in the cache folder of the user. Where none of these can be written, functions are compiled in each
-process. A cache that cannot be read, cut in half by a power cut say, is emptied and made again; one that cannot be
-written, on a full disk say, is left alone. numba compiles a function anew when its own file changes; here also when a
-file changes whose compiled functions it calls, since these are compiled into it.
-
-Code in which one byte has changed gives another number, or ends the process. So what is kept has a digest, and says
-what it was compiled from: the index may name code of another version, or for other arguments, if a process was killed
-between the two files, or if two processes wrote them at the same moment.
+A program that calls none does not pay for numba, which takes longer to import than most runs. Until its first call a
+function is a `Promise`. Then numba's own takes its place, in its module and where others that it calls are found.
 """
 
 from __future__ import annotations
 
-import pickle
-from collections.abc import Callable
-from contextlib import suppress
-from hashlib import sha256
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from functools import cached_property, update_wrapper
+from importlib import import_module
+from threading import RLock
 from types import ModuleType
 from typing import Any
 
-import numba
-from numba.core.caching import FunctionCache, IndexDataCacheFile
-from numba.core.registry import CPUDispatcher
-from numba.core.runtime.nrt import rtsys
+__all__ = ["njit", "prange"]
 
-__all__ = ["njit"]
+prange = range  # until a function that names it is compiled; then numba's
+_ONE_AT_A_TIME = RLock()
 
 
-class _Sealed:
-    """Pickled data, pickled once more with their digest: without it they are not unpickled."""
+class Promise:
+    """A function that is compiled at its first call. Its attributes are those of numba's function."""
 
-    def __init__(self, data: bytes) -> None:
-        self._data = data
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        self._function, self._options = function, options
+        update_wrapper(self, function)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _opened, (self._data, sha256(self._data).digest())
+    def __call__(self, *arguments: Any) -> Any:
+        return self.compiled(*arguments)
 
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):  # a protocol that is asked for, by `copy` say, compiles nothing
+            raise AttributeError(name)
+        return getattr(self.compiled, name)
 
-def _opened(data: bytes, digest: bytes) -> Any:
-    if sha256(data).digest() != digest:
-        raise pickle.UnpicklingError("the data have changed since they were written")
-    return pickle.loads(data)
+    def __reduce__(self) -> tuple[Any, ...]:  # copied and pickled by name, as numba's are
+        return _found, (self._function.__module__, self._function.__name__)
 
+    @cached_property
+    def compiled(self) -> Any:
+        """numba's function."""
+        from fracparticles import _compiler
 
-class _CacheFile(IndexDataCacheFile):
-    """The files of a function: an index, and the code for each kind of arguments with what it was compiled from."""
-
-    def save(self, key: Any, data: Any) -> None:
-        super().save(key, (self._source_stamp, key, data))
-
-    def load(self, key: Any) -> Any:
-        found = super().load(key)
-        return found[2] if found is not None and found[:2] == (self._source_stamp, key) else None
-
-    def _dump(self, obj: Any) -> bytes:
-        return pickle.dumps(_Sealed(super()._dump(obj)))
-
-
-class _Cache(FunctionCache):
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)
-        stamps = sorted((file.stat().st_mtime, file.stat().st_size) for file in _files(function))
-        self._cache_file = _CacheFile(
-            cache_path=self._cache_path,
-            filename_base=self._impl.filename_base,
-            source_stamp=tuple(stamps),
-        )
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        # numba's own first loads all that it can compile, 0.2 s. Code that is ready needs the run-time system only.
-        rtsys.initialize(target_context)
-        try:
-            return self._load_overload(sig, target_context)
-        except Exception:  # of a damaged file unpickling raises nearly anything
-            with suppress(OSError):
-                self.flush()
-            return None
-
-    def save_overload(self, sig: Any, data: Any) -> None:
-        with suppress(Exception):
-            super().save_overload(sig, data)
+        with _ONE_AT_A_TIME:
+            for space, name, value in _names(self._function):
+                if isinstance(value, Promise) and value is not self:
+                    space[name] = value.compiled
+                elif value is prange:
+                    space[name] = _compiler.prange
+            function = _compiler.compiled(self._function, self._options)
+            if self._function.__globals__.get(self._function.__name__) is self:
+                self._function.__globals__[self._function.__name__] = function
+            return function
 
 
-def _files(function: Callable[..., Any]) -> set[Path]:
-    """The files of a function and of the compiled functions that it calls, by name or of a module, directly or not."""
-    found: set[Callable[..., Any]] = set()
-    waiting = [function]
-    while waiting:
-        one = waiting.pop()
-        if one not in found:
-            found.add(one)
-            names = one.__code__.co_names  # those of attributes, too
-            called = [one.__globals__.get(name) for name in names]
-            modules = [module for module in called if isinstance(module, ModuleType)]
-            called += [vars(module).get(name) for module in modules for name in names]
-            waiting += [other.py_func for other in called if isinstance(other, CPUDispatcher)]
-    return {Path(one.__code__.co_filename) for one in found}
+def _found(module: str, name: str) -> Any:
+    return getattr(import_module(module), name)
+
+
+def _names(function: Callable[..., Any]) -> Iterator[tuple[dict[str, Any], str, Any]]:
+    """What a function may refer to: in which namespace, its own or that of a module, the name, and the value."""
+    names = function.__code__.co_names  # those of attributes, too
+    own = function.__globals__
+    modules = [own[name] for name in names if isinstance(own.get(name), ModuleType)]
+    spaces: list[dict[str, Any]] = [own, *(module.__dict__ for module in modules)]
+    for space in spaces:
+        yield from ((space, name, space[name]) for name in names if name in space)
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -106,13 +74,6 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     Parameters
     ----------
     options
-        Those of `numba.njit`; the global interpreter lock is released unless `nogil` says otherwise.
+        Those of numba's own `njit`; the global interpreter lock is released unless `nogil` says otherwise.
     """
-
-    def decorate(function: Callable[..., Any]) -> Any:
-        compiled = numba.njit(**{"nogil": True, **options})(function)
-        with suppress(RuntimeError):  # no folder that can be written
-            compiled._cache = _Cache(function)
-        return compiled
-
-    return decorate
+    return lambda function: Promise(function, options)

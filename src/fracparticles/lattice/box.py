@@ -12,12 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numba as nb
 import numpy as np
 import pyfftw
 from scipy.fft import dct, dst
 
-from fracparticles._compiled import njit
+from fracparticles._compiled import njit, prange
 from fracparticles.lattice.fourier import PLAN, line_plans, transform_length
 
 __all__ = ["BoxConvolution", "NaiveBoxConvolution"]
@@ -221,7 +220,7 @@ class NaiveBoxConvolution:
 @njit(parallel=True)
 def _sum_over_pairs(u, weights, odd, flat, shift, out):
     planes, rows, columns = out.shape
-    for line in nb.prange(planes * rows):
+    for line in prange(planes * rows):
         p = line // rows
         q = line % rows
         for r in range(columns):

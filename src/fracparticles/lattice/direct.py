@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import numba as nb
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from fracparticles._compiled import njit
+from fracparticles._compiled import njit, prange
 
 __all__ = ["MatrixConvolution", "NaiveConvolution", "matrix_product"]
 
@@ -61,7 +60,7 @@ def matrix_product(columns, u, y):
 
 @njit(parallel=True)
 def _sum_over_pairs(u, weights, parity, pad, out):
-    for row in nb.prange(out.size):
+    for row in prange(out.size):
         i = row - pad
         left = 0.0
         for j in range(min(max(i, 0), u.size)):
