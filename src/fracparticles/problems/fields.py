@@ -6,8 +6,9 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from fracparticles.arguments import SIZES
 from fracparticles.run.checked import Checked
-from fracparticles.run.parameters import OVERLAPS, SIZES
+from fracparticles.run.parameters import OVERLAPS
 
 __all__ = ["ProblemFields"]
 

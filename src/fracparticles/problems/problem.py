@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from pydantic import model_validator
 
+from fracparticles.arguments import SIZES
 from fracparticles.bounded.domain import Domain
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.coefficients import AXES, WithCoefficients
@@ -27,7 +28,6 @@ from fracparticles.problems.domains import (
 )
 from fracparticles.problems.order import with_any_order
 from fracparticles.run.case import Case
-from fracparticles.run.parameters import SIZES
 from fracparticles.run.times import with_times
 
 __all__ = ["FORMS", "Problem"]

@@ -11,8 +11,9 @@ from pydantic import model_validator
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.checks import check
+from fracparticles.run.derived import Derived
 from fracparticles.run.fractional_order import with_beta
-from fracparticles.run.parameters import FUNDAMENTAL, Parameters, fastest_evaluation
+from fracparticles.run.parameters import FUNDAMENTAL, fastest_evaluation
 from fracparticles.run.times import parts, with_times
 
 __all__ = ["FUNDAMENTAL", "Case"]
@@ -20,7 +21,7 @@ __all__ = ["FUNDAMENTAL", "Case"]
 _LONGEST_NAME = 240  # bytes; file systems take 255, suffix included
 
 
-class Case(Parameters):
+class Case(Derived):
     """One run of one scheme for u_t = -D (-Laplacian)^(alpha/2) u, alpha = 1 + beta, from particles on a lattice.
 
     `spacing` and `dt` are what is asked for; the lattice ends at the half-width exactly and the last step at

@@ -6,9 +6,11 @@ import os
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from fracparticles.arguments import SIZES
 from fracparticles.errors import InvalidInput, one_of, spelled
 from fracparticles.graded.particles import MOST
-from fracparticles.run.parameters import OVERLAPS, SIZES, Parameters
+from fracparticles.run.derived import Derived
+from fracparticles.run.parameters import OVERLAPS
 from fracparticles.schemes import ALL_SCHEMES
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import central_mass
@@ -33,7 +35,7 @@ _ONE_SUM = tuple(name for name in _OPEN if name not in _MOVING)
 _SELF_TIMED = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.self_timed)
 
 
-def check(case: Parameters) -> None:
+def check(case: Derived) -> None:
     """Check a case whose fields are valid each by itself.
 
     Raises
@@ -63,7 +65,7 @@ class Rule(NamedTuple):
     remedy: str = "Leave it out."
 
 
-def _rules(case: Parameters) -> Iterator[Rule]:
+def _rules(case: Derived) -> Iterator[Rule]:
     """The rules that hold for this case, of fields that go together."""
     scheme, kind, nothing = case.scheme, case.kind, (None,)
     closure = f"The far-field closure exists for {spelled(_OPEN, ' and ')}."
@@ -130,7 +132,7 @@ def _convolution_rules(self_timed: bool) -> Iterator[Rule]:
 # --- numbers ----------------------------------------------------------------------------------------------
 
 
-def _check_time(case: Parameters) -> None:
+def _check_time(case: Derived) -> None:
     if not 1.0 < case.alpha < 2.0:
         differs = "a number that makes 1 + beta differ from 1 and 2"
         raise InvalidInput("beta", case.beta, differs, "Move it inward.")
@@ -142,7 +144,7 @@ def _check_time(case: Parameters) -> None:
         raise InvalidInput("times", case.times, later, "Leave out the others: there are the data.")
 
 
-def _check_width(case: Parameters) -> None:
+def _check_width(case: Derived) -> None:
     if (case.truncation is None) == (case.half_width is None):
         remedy = "Give the factor C of Eq. (46) or the half-width itself."
         exactly = "exactly one of truncation and half_width"
@@ -157,7 +159,7 @@ def _check_width(case: Parameters) -> None:
         raise InvalidInput("spacing", case.spacing, most, remedy)
 
 
-def _check_size(case: Parameters) -> None:
+def _check_size(case: Derived) -> None:
     """The arrays of a lattice must fit into half of the memory, and so must the matrix of graded particles."""
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     is_open = case.exterior == "open"
@@ -182,7 +184,7 @@ def _check_size(case: Parameters) -> None:
         )
 
 
-def _check_step(case: Parameters) -> None:
+def _check_step(case: Derived) -> None:
     if case.kind.self_timed and not case.is_graded:
         _check_own_step(case)
     elif case.kind.moving and case.dt is None:
@@ -198,7 +200,7 @@ def _check_step(case: Parameters) -> None:
         raise InvalidInput("dt", None, stable, remedy)
 
 
-def _check_own_step(case: Parameters) -> None:
+def _check_own_step(case: Derived) -> None:
     """The step of GPSE is its smoothing length, within what a lattice can sum."""
     if case.dt is not None and case.overlap is not None:
         one = f"one of dt and overlap for {case.scheme}, since epsilon = (D dt)^(1/alpha), Eq. (40)"
@@ -218,7 +220,7 @@ def _check_own_step(case: Parameters) -> None:
         )
 
 
-def _check_far_field(case: Parameters) -> None:
+def _check_far_field(case: Derived) -> None:
     """The lattice must end in the tail of the solution; more than one term, used again and again, ask for more.
 
     Found by computation (tests/lattice/test_exterior.py): from n = 10 epsilon / h on, no eigenvalue leaves the range of
@@ -241,7 +243,7 @@ def _check_far_field(case: Parameters) -> None:
         raise InvalidInput("far_terms", case.far_terms, stiff, remedy)
 
 
-def _check_spread(case: Parameters) -> None:
+def _check_spread(case: Derived) -> None:
     """A point mass must not spread beyond the lattice: no power of |x| continues a solution that is flat there."""
     time = case.diffusivity * case.span
     inside = float(central_mass(case.reach, time, case.alpha, case.dim))
@@ -257,7 +259,7 @@ def _check_spread(case: Parameters) -> None:
         )
 
 
-def _check_work(case: Parameters) -> None:
+def _check_work(case: Derived) -> None:
     one_by_one = case.kind.moving and case.exterior == "open" and case.summation == "naive"
     if one_by_one and case.resolved_overlap > _NAIVE_OVERLAP:  # a second a step, like its cube
         most = f"at most {_NAIVE_OVERLAP:g} for naive sums with an open exterior"

@@ -1,29 +1,22 @@
-"""The parameters of a run, each with what it means, and what follows from them."""
+"""The parameters of a run, each with what it means; what follows from them is in `derived`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
 from pydantic import Field
 
+from fracparticles.arguments import SIZES
 from fracparticles.errors import spelled
-from fracparticles.graded.particles import graded_particles
 from fracparticles.moving.dvm import largest_gap
 from fracparticles.moving.lagrangian import REMESHING, THRESHOLD
 from fracparticles.run.checked import Checked
-from fracparticles.run.times import legs, steps_in
-from fracparticles.schemes import ALL_SCHEMES, Scheme, Setting
-from fracparticles.schemes.stability import stability_limit, symbol_range
-from fracparticles.special.stable import mean_radius
-from fracparticles.time import STEP_POLYNOMIALS
+from fracparticles.schemes import ALL_SCHEMES, Scheme
 
-__all__ = ["FUNDAMENTAL", "OVERLAPS", "SIZES", "Parameters"]
+__all__ = ["FUNDAMENTAL", "OVERLAPS", "Parameters", "fastest_evaluation"]
 
 FUNDAMENTAL = "fundamental"
-SIZES = 1e-100, 1e100  # lengths and times; nothing made of them overflows
 OVERLAPS = 0.25, 1000.0
 
 if TYPE_CHECKING:
@@ -202,215 +195,3 @@ class Parameters(Checked):
         description="What a data set keeps. field: u everywhere. profile: u for |x| <= 5 R_alpha, in the plane and in "
         "space along an axis and a diagonal. metrics: scalars only.",
     )
-
-    # --- what follows from the parameters -------------------------------------------------------------------
-
-    @property
-    def alpha(self) -> float:
-        """Fractional order alpha = 1 + beta."""
-        return 1.0 + self.beta
-
-    @property
-    def span(self) -> float:
-        """The time of the run, t_final - t_initial."""
-        return self.t_final - self.t_initial
-
-    @property
-    def reach(self) -> float:
-        """The half-width D, given or from C by Eq. (46): the outermost particles are at -D and D in each coordinate."""
-        if self.half_width is not None:
-            return self.half_width
-        assert self.truncation is not None
-        spread = (self.diffusivity * self.t_final) ** (1.0 / self.alpha)
-        return self.truncation * spread * mean_radius(self.alpha)
-
-    @property
-    def is_graded(self) -> bool:
-        """Whether the particles are graded like sinh, see `graded`, and not on a lattice."""
-        return self.graded_scale is not None
-
-    @property
-    def extent(self) -> float:
-        """What the spacing divides: the half-width D, or L arcsinh(D / L), the end of graded particles in L s."""
-        if self.graded_scale is None:
-            return self.reach
-        return float(self.graded_scale * np.arcsinh(self.reach / self.graded_scale))
-
-    @property
-    def n(self) -> int:
-        """Half the number of intervals: x_i = i h, or x_i = L sinh(i h / L), i = -n .. n in each coordinate."""
-        return max(1, round(self.extent / self.spacing))
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The shape of the lattice, 2 n + 1 particles in each coordinate."""
-        return (2 * self.n + 1,) * self.dim
-
-    @property
-    def particles(self) -> int:
-        """The number of particles."""
-        return int((2 * self.n + 1) ** self.dim)
-
-    @property
-    def particle_spacing(self) -> float:
-        """The realised spacing h = D / n, of graded particles that in the middle."""
-        return self.extent / self.n
-
-    @property
-    def x(self) -> np.ndarray:
-        """The particle positions along one axis, shape (2 n + 1,)."""
-        if self.graded_scale is not None:
-            return graded_particles(self.particles, self.reach, self.graded_scale)[0]
-        return np.arange(-self.n, self.n + 1) * self.particle_spacing
-
-    @property
-    def volumes(self) -> np.ndarray | float:
-        """The particle volumes V_i: h^n for all on a lattice, of graded particles one for each."""
-        if self.graded_scale is not None:
-            return graded_particles(self.particles, self.reach, self.graded_scale)[1]
-        return float(self.particle_spacing**self.dim)
-
-    def integral(self, values: np.ndarray) -> float:
-        """Return sum_i V_i f_i from the values at the particles; numpy sums pairwise: to a few ulp."""
-        volumes = self.volumes
-        with np.errstate(over="ignore"):  # it is infinite then
-            if isinstance(volumes, float):
-                return float(volumes * values.sum())
-            return float((volumes * values).sum())
-
-    @property
-    def positions(self) -> list[np.ndarray]:
-        """The coordinates of the particles, `dim` arrays that broadcast to `shape`."""
-        return list(np.meshgrid(*(self.x,) * self.dim, indexing="ij", sparse=True))
-
-    @property
-    def radius(self) -> np.ndarray:
-        """The distances |x| of the particles from the origin, of that shape."""
-        if self.dim == 1:
-            return np.abs(self.x)  # does not underflow
-        return np.sqrt(sum(np.square(part) for part in self.positions))
-
-    @property
-    def error_radius(self) -> float:
-        """The errors are taken over |x| <= 5 R_alpha (47) for dim = 1, over |x| <= 5 (59) otherwise, or the lattice.
-
-        That is for the papers' D t_f = 1.5; for another it grows with the solution, like (D t_f)^(1/alpha), so that
-        the error does not depend on the units.
-        """
-        half = 5.0 * mean_radius(self.alpha) if self.dim == 1 else 5.0
-        spread = (self.diffusivity * self.t_final / 1.5) ** (1.0 / self.alpha)
-        return min(half * spread, self.reach)
-
-    @property
-    def kind(self) -> Scheme:
-        """The scheme itself: what it is, and what it takes."""
-        return ALL_SCHEMES[self.scheme]
-
-    @property
-    def resolved_integrator(self) -> str:
-        """The integrator, the default resolved."""
-        if self.integrator is not None:
-            return self.integrator
-        return "euler" if self.kind.self_timed else "rk2"
-
-    @cached_property
-    def steps(self) -> int:
-        """The number of time steps; 0 for the exponential."""
-        if self.resolved_integrator == "exponential":
-            return 0
-        if self.times is None or self.kind.self_timed:
-            return steps_in(self.span, self.resolved_dt)
-        return sum(steps for _, steps in self.legs)
-
-    @property
-    def time_step(self) -> float:
-        """The realised step, (t_final - t_initial) / steps or the longest between `times`; 0 for the exponential."""
-        if self.times is None or self.kind.self_timed or not self.steps:
-            return self.span / self.steps if self.steps else 0.0
-        return max(dt for dt, _ in self.legs)
-
-    @property
-    def legs(self) -> list[tuple[float, int]]:
-        """The step from each output time to the next, and how many of them."""
-        return legs(self)
-
-    @property
-    def resolved_dt(self) -> float:
-        """The step asked for: dt, or for GPSE the one of its overlap, Eq. (40), on graded particles all of the time."""
-        if self.dt is not None:
-            return self.dt
-        if self.is_graded:
-            return self.span
-        return ((self.overlap or 2.0) * self.particle_spacing) ** self.alpha / self.diffusivity
-
-    @property
-    def resolved_overlap(self) -> float:
-        """The realised overlap s = epsilon / h; for GPSE from the realised step, Eq. (40)."""
-        if self.kind.self_timed:
-            epsilon = (self.diffusivity * self.time_step) ** (1.0 / self.alpha)
-            return epsilon / self.particle_spacing
-        return 2.0 if self.overlap is None else self.overlap
-
-    @property
-    def redistribution(self) -> dict[str, Any]:
-        """What DVM does with particles that are too far apart or too weak, the defaults resolved."""
-        return {
-            "remeshing": self.remeshing or REMESHING,
-            "remesh_above": self.remesh_above or largest_gap(self.exterior),
-            "threshold": self.threshold or THRESHOLD,
-        }
-
-    @property
-    def setting(self) -> Setting:
-        """The scheme on its lattice."""
-        return Setting(
-            n=self.n,
-            spacing=self.particle_spacing,
-            alpha=self.alpha,
-            order=self.order,
-            overlap=self.resolved_overlap,
-            diffusivity=self.diffusivity,
-            summation=self.summation,
-            exterior=self.exterior,
-            dim=self.dim,
-            kernel_table=self.kernel_table,
-            family=self.kernel_family,
-            far_terms=self.far_terms or 1,
-        )
-
-    @property
-    def is_one_step(self) -> bool:
-        """Whether the whole run is a single Euler step: one application of the operator."""
-        return self.resolved_integrator == "euler" and self.steps == 1
-
-    @property
-    def steps_taken(self) -> bool:
-        """Whether the steps are taken one by one; a single Euler step has nothing to gain from a series."""
-        if self.evaluation is None and self.is_one_step:
-            return True
-        return self.evaluation == "stepping" or self.kind.moving
-
-    @property
-    def _series_by_default(self) -> bool:
-        """Whether `evaluation` says "series" where it would be one anyway: but for a single Euler step."""
-        return self.evaluation == "series" and not self.is_one_step
-
-    @cached_property
-    def largest_stable_step(self) -> float:
-        """The largest dt inside the stability interval; infinite for the exponential and on graded particles."""
-        if self.resolved_integrator == "exponential" or self.is_graded:
-            return float("inf")
-        limit = stability_limit(*self._of_the_symbol)
-        longer = STEP_POLYNOMIALS[self.resolved_integrator].stability_interval / 2.0
-        return float(longer * limit * self.particle_spacing**self.alpha / self.diffusivity)
-
-    @property
-    def symbol_range(self) -> tuple[float, float]:
-        """The least and the greatest value of A(theta) h^alpha / D."""
-        return symbol_range(*self._of_the_symbol)
-
-    @property
-    def _of_the_symbol(self) -> tuple[str, float, int, float, int, str | None]:
-        scheme = self.kind.symbol_of or self.scheme
-        overlap = self.resolved_overlap
-        return scheme, self.beta, self.order, overlap, self.dim, self.kernel_family
