@@ -1,7 +1,7 @@
 """Functions that are compiled: numba is imported when the first of them is called.
 
 A program that calls none does not pay for numba, which takes longer to import than most runs. Until its first call a
-function is a `Promise`. Then that of numba takes its place in its module, and so do those of the functions that it calls.
+function is a `Promise`. Then numba's takes its place in its module, and so do those of the functions that it calls.
 """
 
 from __future__ import annotations
