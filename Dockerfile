@@ -3,8 +3,8 @@ FROM python:3.11-slim
 RUN apt-get update && apt-get install --yes --no-install-recommends make && rm -rf /var/lib/apt/lists/*
 WORKDIR /study
 COPY requirements.lock pyproject.toml Makefile ./
-RUN sed -n '/^setuptools==/,/[^\\]$/p' requirements.lock > setuptools.lock \
-    && pip install --no-cache-dir --require-hashes -r setuptools.lock \
+RUN sed -n '/^# The following packages/,$p' requirements.lock > first.lock \
+    && pip install --no-cache-dir --require-hashes -r first.lock \
     && pip install --no-cache-dir --require-hashes --no-build-isolation --use-pep517 -r requirements.lock
 COPY . .
 RUN pip install --no-cache-dir --no-deps --no-build-isolation -e .

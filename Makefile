@@ -90,16 +90,17 @@ clean: ## remove the environment, the caches and the smoke results; results/ sta
 	rm -rf build dist src/*.egg-info
 	find . -type d -name __pycache__ -prune -exec rm -rf {} +
 
-# The environment is made anew, so that it holds what the lock names and nothing else. setuptools goes
-# in first: it builds, without fetching anything unpinned, what comes as source only, and the package.
+# The environment is made anew, so that it holds what the lock names and nothing else. What the lock has at its end
+# goes in first: pip, which installs the rest, and setuptools, which builds, without fetching anything unpinned, what
+# comes as source only, and the package. Most modules are never imported: those that are get compiled then.
 $(LOCKED): requirements.lock
 	@found="$(call VERSION_OF,$(PYTHON))"; [ "$$found" = "$(PYTHON_VERSION)" ] || { \
 	    echo "setup needs Python $(PYTHON_VERSION); $(PYTHON) is $${found:-not there}:" \
 	         "make setup PYTHON=/path/to/python$(PYTHON_VERSION)" >&2; exit 1; }
 	$(PYTHON) -m venv --clear $(VENV)
-	sed -n '/^setuptools==/,/[^\\]$$/p' requirements.lock > $(VENV)/setuptools.lock
-	$(PIP) install --quiet --require-hashes -r $(VENV)/setuptools.lock
-	$(PIP) install --quiet --require-hashes --no-build-isolation --use-pep517 -r requirements.lock
+	sed -n '/^# The following packages/,$$p' requirements.lock > $(VENV)/first.lock
+	$(PIP) install --quiet --require-hashes -r $(VENV)/first.lock
+	$(PIP) install --quiet --no-compile --require-hashes --no-build-isolation --use-pep517 -r requirements.lock
 	@touch $@
 
 $(INSTALLED): $(LOCKED) pyproject.toml

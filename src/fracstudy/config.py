@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -78,6 +78,8 @@ class StudyConfig(_Strict):
         The documents by the name of their folder, in the order of the report.
     grids : str, optional
         The file that says on which grid the claims of an item can be judged.
+    figure_formats : list of str
+        What each figure is written as: "svg", "png" or both. The report shows the first of them that is there.
     smoke : bool
         Whether the scenes take their `smoke` values: tiny grids, too coarse to judge the claims.
     dvm_dt : float, optional
@@ -90,6 +92,7 @@ class StudyConfig(_Strict):
     scenes_dir: str = "workflow/scenes"
     documents: dict[str, Document] = Field(min_length=1)
     grids: str | None = None
+    figure_formats: list[Literal["svg", "png"]] = Field(default=["svg", "png"], min_length=1)
     smoke: bool = False
     dvm_dt: float | None = Field(default=None, gt=0.0)
 

@@ -17,15 +17,21 @@ from fracstudy.scene import Scene, call
 __all__ = ["made", "make"]
 
 
-def made(scene: Scene, results: Path) -> list[Path]:
-    """Return the files that a scene consists of, below the folder of the results."""
+def made(scene: Scene, results: Path, figure_formats: Sequence[str]) -> list[Path]:
+    """Return the files that a scene consists of, below the folder of the results: those of its figure come last."""
     kinds = ["tables/{}.csv", "tables/{}.md", "findings/{}.json", "series/{}.csv"]
     if scene.file("figure.py"):
-        kinds += ["figures/{}.svg", "figures/{}.png"]
+        kinds += [f"figures/{{}}.{suffix}" for suffix in figure_formats]
     return [results / kind.format(scene.name) for kind in kinds]
 
 
-def make(scene: Scene, results: Path, runs: Sequence[str], printed: Path | None) -> None:
+def make(
+    scene: Scene,
+    results: Path,
+    runs: Sequence[str],
+    printed: Path | None,
+    figure_formats: Sequence[str] = ("svg", "png"),
+) -> None:
     """Run the study of a scene, write what it gives, and draw its figure from what was written.
 
     Parameters
@@ -37,8 +43,10 @@ def make(scene: Scene, results: Path, runs: Sequence[str], printed: Path | None)
         Its run files, in the order of its cases.
     printed : Path, optional
         The file of what is printed that the scene measures.
+    figure_formats : sequence of str
+        What its figure is written as.
     """
-    csv, md, findings, series, *figures = made(scene, results)
+    csv, md, findings, series, *figures = made(scene, results, figure_formats)
     claims = [] if printed is None else read_claims(printed)
     inputs = Inputs(
         scene=scene.name,
@@ -59,7 +67,7 @@ def make(scene: Scene, results: Path, runs: Sequence[str], printed: Path | None)
         from fracstudy.style import save
 
         drawn = call(scene.function("figure"), _read(series), _read(csv), **scene.parameters)
-        save(drawn, figures[0].with_suffix(""))
+        save(drawn, figures[0].with_suffix(""), figure_formats)
 
 
 def _read(table: Path) -> pd.DataFrame:

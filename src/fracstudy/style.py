@@ -74,6 +74,7 @@ UNDERLAID: Look = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 
 _CURVES = "osD^vPX"
+_FORMATS: dict[str, dict[str, Any]] = {"svg": {"metadata": {"Date": None}}, "png": {"dpi": 160}}
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -259,8 +260,8 @@ def guide(
     note(ax, label, (ends[1], y[1]), (0, 4), ha="right")
 
 
-def save(figure: Figure, stem: str | Path) -> None:
-    """Write <stem>.svg and <stem>.png, each under a temporary name first."""
+def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) -> None:
+    """Write <stem>.svg and <stem>.png, or one of them, each under a temporary name first."""
     stem = Path(stem)
     for ax in figure.axes:
         _plain_powers(ax.xaxis)
@@ -270,9 +271,9 @@ def save(figure: Figure, stem: str | Path) -> None:
     if layout is not None:
         layout.execute(figure)
         figure.set_layout_engine(None)  # "none" does nothing, and has the figure drawn twice
-    for suffix, options in ((".svg", {"metadata": {"Date": None}}), (".png", {"dpi": 160})):
-        with replacing(stem.with_suffix(suffix)) as temporary:
-            figure.savefig(temporary, format=suffix[1:], **options)
+    for kind in formats:
+        with replacing(stem.with_suffix(f".{kind}")) as temporary:
+            figure.savefig(temporary, format=kind, **_FORMATS[kind])
 
 
 def _plain_powers(axis: Axis) -> None:

@@ -71,7 +71,7 @@ def claim_folder():
 onstart:
     claim_folder()
     runs = [[RESULTS / "runs" / case.path] for cases in BATCHES.values() for case in cases]
-    scenes = [made(scene, RESULTS) for scene in SCENES.values()]
+    scenes = [files_of(name) for name in SCENES]
     print(already(RESULTS, {"runs": runs, "scenes": scenes}), flush=True)
 
 
@@ -87,6 +87,11 @@ def code(*files):
     """
     made_of = {source for file in files if file for source in sources_of(Path(file), ends=[READER])}
     return sha256(b"".join(Path(source).read_bytes() for source in sorted(made_of))).hexdigest()
+
+
+def files_of(name):
+    """The files that a scene consists of."""
+    return made(SCENES[name], RESULTS, STUDY.figure_formats)
 
 
 def run_files(name):

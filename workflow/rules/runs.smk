@@ -48,6 +48,7 @@ rule collect:
         RESULTS / "runs.nc",
     log:
         RESULTS / "logs/collect.log",
+    priority: -1  # nothing waits for it: beside the site, the last of what takes one core
     resources:
         runtime=10,
         mem_mb=1500,

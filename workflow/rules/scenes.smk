@@ -21,7 +21,7 @@ for job, names in JOBS.items():
             [
                 report(file, category="Figures") if file.suffix == ".svg" else file
                 for name in names
-                for file in made(SCENES[name], RESULTS)
+                for file in files_of(name)
             ],
         log:
             RESULTS / f"logs/make_{job}.log",
@@ -33,6 +33,7 @@ for job, names in JOBS.items():
             scenes=[SCENES[name].packed() for name in names],
             runs=[list(map(str, run_files(name))) for name in names],
             printed=[str(STUDY.printed(SCENES[name]) or "") for name in names],
+            figure_formats=STUDY.figure_formats,
             code=code(
                 "src/fracstudy/make.py", *(SCENES[n].file(f) for n in names for f in FUNCTIONS)
             ),
@@ -47,7 +48,7 @@ for target, names in targets(SCENES).items():
         name:
             target
         input:
-            [made(SCENES[name], RESULTS) for name in names],
+            [files_of(name) for name in names],
 
 
 rule ledger:
@@ -79,9 +80,10 @@ rule tables:
 rule figures:
     input:
         [
-            RESULTS / f"figures/{name}.svg"
+            RESULTS / f"figures/{name}.{kind}"
             for name, scene in SCENES.items()
             if scene.file("figure.py")
+            for kind in STUDY.figure_formats
         ],
 
 

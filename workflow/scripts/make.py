@@ -12,4 +12,5 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)  # noqa: SIM1
 
 params = snakemake.params
 for scene, runs, printed in zip(params.scenes, params.runs, params.printed, strict=True):
-    make(Scene(**scene), Path(params.results), runs, Path(printed) if printed else None)
+    printed = Path(printed) if printed else None
+    make(Scene(**scene), Path(params.results), runs, printed, params.figure_formats)
