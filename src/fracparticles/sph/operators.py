@@ -16,12 +16,11 @@ The right-handed operators (2), (4), (6) are the left-handed ones of the mirrore
 is that of the mirrored derivative.
 
 The results are complex, see `integrals`; the value is the real part. At x = a the derivative of Riemann and Liouville
-is infinite unless f(a) = 0.
+is infinite unless f(a) = 0. Each result is compared with that of `comparison`.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -29,7 +28,7 @@ import numpy as np
 from scipy.special import gamma
 
 from fracparticles import arguments as check
-from fracparticles.errors import AccuracyWarning
+from fracparticles.sph import comparison
 from fracparticles.sph.derivatives import gradient, second_derivative
 from fracparticles.sph.integrals import COMPLETED, METHODS, power_integral
 from fracparticles.sph.particles import ParticleLine
@@ -37,9 +36,7 @@ from fracparticles.sph.particles import ParticleLine
 __all__ = ["caputo_derivative", "rl_derivative", "rl_integral", "singular_integral"]
 
 Left = Callable[[ParticleLine, np.ndarray, np.ndarray, str], np.ndarray]
-
-# (h/(b-a))^(1-alpha): beyond, ten times as many particles leave four fifths of the error.
-_SLOW = 0.6
+Other = Callable[[ParticleLine, np.ndarray, np.ndarray], np.ndarray]
 
 
 def rl_integral(
@@ -61,8 +58,13 @@ def rl_integral(
         From a, or up to b.
     method : {"standard", "halved", "modified", "completed"}
         How the integral is replaced by a sum, see `integrals`.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a value is wrong by more than 5 per cent of the largest, as far as the field shows it. So do the others.
     """
-    return _apply(_left_integral, line, f, order, side, method)[line.inside]
+    return _apply(_left_integral, comparison.rl_integral, line, f, order, side, method)
 
 
 def rl_derivative(
@@ -72,51 +74,37 @@ def rl_derivative(
 
     Within 2 h of the end where the integral stops (b, or a for the right-handed one) all methods except `completed`
     are wrong by about (h/(b-a))^(1-alpha) / 2 of f' there.
-
-    Warns
-    -----
-    AccuracyWarning
-        If (h/(b-a))^(1-alpha) is above 0.6 there, so that a finer line would hardly help.
     """
-    result = _apply(_left_rl_derivative, line, f, order, side, method)
-    alpha = _orders(line, order)[line.inside][-1 if side == "left" else 0]
-    share = (line.smoothing / (line.b - line.a)) ** (1.0 - alpha)
-    if method != COMPLETED and share > _SLOW:
-        warnings.warn(
-            f"order {alpha:g} at the end of the integral: the derivative is wrong there by about half of f' and falls "
-            f"like (h/(b-a))^(1-alpha) = {share:.3g}; use method='{COMPLETED}'",
-            AccuracyWarning,
-            stacklevel=2,
-        )
-    return result
+    return _apply(_left_rl_derivative, comparison.rl_derivative, line, f, order, side, method)
 
 
 def caputo_derivative(
     line: ParticleLine, f: Any, order: Any, *, side: str = "left", method: str = "standard"
 ) -> np.ndarray:
     """The Caputo derivative (36). Parameters as in `rl_integral`."""
-    return _apply(_left_caputo, line, f, order, side, method)
+    return _apply(_left_caputo, comparison.caputo_derivative, line, f, order, side, method)
 
 
 def singular_integral(
     line: ParticleLine, f: Any, order: Any, *, method: str = "standard"
 ) -> np.ndarray:
     """The left-handed integral by the singular sum (23), (24), whose infinite term j = i is left out."""
-    line = check.instance("line", line, ParticleLine)
-    f = line.field("f", f)[line.inside]
-    alpha = _orders(line, order)[line.inside]
-    return power_integral(line, f, line.x, alpha - 1.0, method) / gamma(alpha)
+    return _apply(_left_singular_integral, comparison.rl_integral, line, f, order, "left", method)
 
 
 def _apply(
-    left: Left, line: ParticleLine, f: Any, order: Any, side: str, method: str
+    left: Left, other: Other, line: ParticleLine, f: Any, order: Any, side: str, method: str
 ) -> np.ndarray:
     line = check.instance("line", line, ParticleLine)
     f, alpha = line.field("f", f), _orders(line, order)
     check.choice("method", method, (*METHODS, COMPLETED))
-    if check.choice("side", side, ("left", "right")) == "left":
-        return left(line, f, alpha, method)
-    return left(line, f[::-1], alpha[::-1], method)[::-1]
+    forward = slice(
+        None, None, 1 if check.choice("side", side, ("left", "right")) == "left" else -1
+    )
+    f, alpha = f[forward], alpha[forward]
+    result = left(line, f, alpha, method)[forward]
+    comparison.warn_of_difference(line, result, other(line, f, alpha)[forward], method)
+    return result
 
 
 def _orders(line: ParticleLine, order: Any) -> np.ndarray:
@@ -124,17 +112,31 @@ def _orders(line: ParticleLine, order: Any) -> np.ndarray:
 
 
 def _left_integral(line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str) -> np.ndarray:
+    """(33) on the real particles."""
+    return _integral_on_all(line, f, alpha, method)[line.inside]
+
+
+def _integral_on_all(
+    line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str
+) -> np.ndarray:
     """(33) on all particles: beyond a, the powers of the negative distances are complex."""
     boundary = f[line.inside.start] * (line.x_all - line.a + 0j) ** alpha
     integral = power_integral(line, _slope(line, f), line.x_all, alpha, method)
     return (boundary + integral) / gamma(1.0 + alpha)
 
 
+def _left_singular_integral(
+    line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str
+) -> np.ndarray:
+    alpha = alpha[line.inside]
+    return power_integral(line, f[line.inside], line.x, alpha - 1.0, method) / gamma(alpha)
+
+
 def _left_rl_derivative(
     line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: str
 ) -> np.ndarray:
     if alpha.min() < alpha.max():  # (34)
-        return _slope(line, _left_integral(line, f, 1.0 - alpha, method))
+        return _slope(line, _integral_on_all(line, f, 1.0 - alpha, method))
     integral = power_integral(line, _slope(line, f), line.x_all, 1.0 - alpha, method)
     derivative = _slope(line, integral / gamma(2.0 - alpha))
     at_a = f[line.inside.start]

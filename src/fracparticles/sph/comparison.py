@@ -1,0 +1,77 @@
+r"""The same operators without kernels, and a warning of what lies between the two.
+
+By product integration, and with the central difference of fourth order for f':
+
+    I^alpha f    = int_a^x (x-x')^(alpha-1) f(x') dx' / Gamma(alpha),
+    C D^alpha f  = int_a^x (x-x')^(-alpha) f'(x') dx' / Gamma(1-alpha),
+    RL D^alpha f = f(a) (x-a)^(-alpha) / Gamma(1-alpha) + C D^alpha f + alpha'(x) d/dalpha I^(1-alpha) f,
+
+the last term for a variable order alone. Where the particles resolve a field, these err far less than the sums over
+smooth particles, and the difference is the error of those. Where they do not, the two disagree.
+"""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+from scipy.special import gamma
+
+from fracparticles.errors import AccuracyWarning
+from fracparticles.sph.integrals import COMPLETED
+from fracparticles.sph.particles import ParticleLine
+from fracparticles.sph.product_integration import product_integral
+
+__all__ = ["caputo_derivative", "rl_derivative", "rl_integral", "warn_of_difference"]
+
+_WRONG = 0.05  # of the largest value
+_STEP = 1e-4  # of the order
+
+
+def rl_integral(line: ParticleLine, f: np.ndarray, alpha: np.ndarray) -> np.ndarray:
+    """I^alpha f on the real particles, shape (N,); the field and the order on all, as for the other operators."""
+    alpha = alpha[line.inside]
+    return product_integral(f[line.inside], line.spacing, alpha - 1.0) / gamma(alpha)
+
+
+def caputo_derivative(line: ParticleLine, f: np.ndarray, alpha: np.ndarray) -> np.ndarray:
+    """C D^alpha f."""
+    alpha = alpha[line.inside]
+    return product_integral(_slope(line, f), line.spacing, -alpha) / gamma(1.0 - alpha)
+
+
+def rl_derivative(line: ParticleLine, f: np.ndarray, alpha: np.ndarray) -> np.ndarray:
+    """RL D^alpha f, infinite at a unless f(a) = 0."""
+    derivative = caputo_derivative(line, f, alpha)
+    at_a, order = f[line.inside.start], alpha[line.inside]
+    if at_a != 0.0:
+        with np.errstate(divide="ignore"):
+            derivative += at_a * (line.x - line.a) ** -order / gamma(1.0 - order)
+    if alpha.min() < alpha.max():
+        higher, lower = (rl_integral(line, f, 1.0 - alpha - step) for step in (_STEP, -_STEP))
+        derivative += _slope(line, alpha) * (higher - lower) / (2.0 * _STEP)
+    return derivative
+
+
+def warn_of_difference(
+    line: ParticleLine, result: np.ndarray, other: np.ndarray, method: str
+) -> None:
+    """Warn if the real part of a result is wrong by more than a part of its largest value; infinite ones apart."""
+    finite = np.isfinite(other)
+    largest = np.abs(other[finite]).max(initial=0.0)
+    error = np.where(finite, np.abs(result.real - np.where(finite, other, 0.0)), 0.0)
+    if error.max() > _WRONG * largest:
+        instead = "" if method == COMPLETED else f", or method='{COMPLETED}'"
+        warnings.warn(
+            f"the result is wrong by about {error.max() / largest:.2g} of its largest value, most at x = "
+            f"{line.x[error.argmax()]:g}. Take more particles{instead}.",
+            AccuracyWarning,
+            stacklevel=4,
+        )
+
+
+def _slope(line: ParticleLine, f: np.ndarray) -> np.ndarray:
+    """[8 (f_{i+1} - f_{i-1}) - (f_{i+2} - f_{i-2})] / (12 s); two virtual particles are always there."""
+    first, end = line.inside.start, line.inside.stop
+    near, far = (f[first + k : end + k] - f[first - k : end - k] for k in (1, 2))
+    return np.asarray((8.0 * near - far) / (12.0 * line.spacing))
