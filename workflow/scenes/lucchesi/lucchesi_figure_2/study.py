@@ -157,6 +157,8 @@ def _errors_judged(main: Inputs, table: pd.DataFrame) -> Iterator[Finding]:
             error=here[boundary],
             largest=largest,
         )  # fmt: skip
+    beside = (here[boundary] / here.loc["FD", boundary]).drop("FD")
+    yield measured("L-C2.far_field", runs=main.runs, ratio=beside)
 
 
 def _truncation(main: Inputs, edge: float) -> list[Finding]:
