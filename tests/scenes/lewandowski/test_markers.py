@@ -16,6 +16,7 @@ from fracstudy.ledger import judge
 from fracstudy.printed import read_claims
 from fracstudy.verdicts import Status
 from scene_functions import figure, scenes, study
+from scenes.lewandowski.marker_claims.numbers import _parameters
 from scenes.lewandowski.marker_nonlinear.evolution import Evolution, Markers
 from scenes.lewandowski.square_profile import INFINITE, SquareRuns, Starts
 
@@ -265,6 +266,13 @@ def test_other_equations():
     # Flexible but for a source with a total.
     flexible = found["M-C6.flexible"]["error"]
     assert {case for case, error in flexible.items() if error > 0.05} == {"a source with a total"}
+
+
+def test_the_tails_do_not_ask_for_a_smaller_step():
+    """A quarter of the step moves no marker by a hundredth of eps, the outermost ones not more than the others."""
+    runs = SquareRuns(dt=0.05, t_final=2.0, markers=128, half_width=14.0, grid=200)
+    step = next(f for f in _parameters(runs, seed=1) if f.claim == "M-C5.step").numbers
+    assert 0.0 < step["tail"] < 3.0 * step["core"] < 0.01
 
 
 def test_plane():
