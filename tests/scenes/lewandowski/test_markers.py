@@ -18,6 +18,7 @@ from fracstudy.verdicts import Status
 from scene_functions import figure, scenes, study
 from scenes.lewandowski.marker_claims.numbers import _parameters
 from scenes.lewandowski.marker_nonlinear.evolution import Evolution, Markers
+from scenes.lewandowski.marker_square.study import _apart
 from scenes.lewandowski.square_profile import INFINITE, SquareRuns, Starts
 
 CLAIMS = {
@@ -193,6 +194,18 @@ def test_second_differences_are_more_accurate_than_markers():
     ratio = numbers("marker_square")["M-F7.accuracy"]["ratio"]
     assert min(ratio.values()) > 1.0
     assert numbers("marker_square")["M-F5.exact"]["gap"] < 1e-13
+
+
+def test_the_slope_of_the_large_scales_is_wrong_only_where_eps_is_large():
+    """Smoothed over the half-width 1, wiggles of eps = 0.2 are damped by exp(-(2 pi / 0.2)^2 / 2); eps = 2 is wider."""
+    excess = {}
+    for epsilon in (0.2, 2.0):
+        runs = SquareRuns(
+            dt=0.02, t_final=2.0, markers=128, half_width=14.0, grid=500, support=epsilon
+        )
+        trace = runs.trace("S8", "midpoints", follow=False)
+        excess[epsilon] = _apart(runs, trace, epsilon)["excess of the coarse slope"]
+    assert abs(excess[0.2]) < 0.05 < excess[2.0]
 
 
 def test_the_number_of_markers_in_a_support_parameter_is_what_counts():
