@@ -69,6 +69,7 @@ def study(
         *_equal_weight(ramp, markers),
         *_apart(ramp, markers),
         *_more(Ramp(best), support, markers),
+        _of_loading(errors.loc[best]),
     ]
     table = errors.loc[tabled].reset_index()
     return Result(table, inputs.judged(findings), panels.frame)
@@ -115,6 +116,14 @@ def _better(
     return measured(
         claim, ratio=ratio.loc[best], x0=best, least=ratio.min(), far=far, others=others
     )
+
+
+def _of_loading(errors: pd.Series) -> Finding:
+    """How much the loading changes the error of each figure."""
+    figures = ("Fig. 1", "Fig. 2", "Fig. 3", "Fig. 4")
+    ratio = {f: errors[f"{f}, equal"] / errors[f"{f}, uniform"] for f in figures}
+    change = {figure: abs(r - 1.0) for figure, r in ratio.items()}
+    return measured("M-F1.loading", change=change, ratio=ratio, x0=errors.name)
 
 
 def _in_gaps(figure: str, ramp: Ramp, support: float, count: int) -> float:
