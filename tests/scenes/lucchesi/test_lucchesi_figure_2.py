@@ -45,6 +45,9 @@ def test_the_reference_case_is_measured_in_both_windows(computed):
     changed = numbers["L-C2.truncation_at_edge"]["ratio"]
     assert changed["DD"] > 10.0 * changed["KPSE"] > 10.0
     assert max(numbers["L-C2.not_instability"]["step"].values()) < 1.0
+    # An even number of particles is printed.
+    particles = numbers["L-C1.particles"]
+    assert (particles["printed"], particles["ours"]) == (0, 1)
     # 1 - P(|X| <= 5 R_alpha) by the law at t = 1.5: of the printed 97 % only that at beta = 0.5 rounds to it.
     mass = [numbers[f"L-C1.mass.beta{beta}"]["mass"] for beta in (0.1, 0.5, 0.9)]
     assert [round(share) for share in mass] == [98, 97, 99]

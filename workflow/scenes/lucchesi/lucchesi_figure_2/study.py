@@ -207,6 +207,8 @@ def _setting(main: Inputs, table: pd.DataFrame, printed: int) -> list[Finding]:
     spacing = 2.0 * half / (printed - printed % 2)  # of the next odd number of particles
     peak, beside = np.asarray(green(np.array([0.0, 0.5 * spacing]), float(run["t_final"]), alpha))
     error = table.set_index(["scheme", "exterior"])[_PEAK]
+    ours = 2 * round(half / run["particle_spacing"]) + 1
+    change = abs(spacing * (printed - 1) / (2.0 * half) - 1.0)
     of = partial(measured, runs=[run["run"]])
     return [
         of("L-C1.D", ours=half),
@@ -214,11 +216,12 @@ def _setting(main: Inputs, table: pd.DataFrame, printed: int) -> list[Finding]:
         of(
             "L-C1.odd_number",
             printed=printed,
-            spacing=abs(spacing * (printed - 1) / (2.0 * half) - 1.0),
-            ours=2 * round(half / run["particle_spacing"]) + 1,
+            spacing=change,
+            ours=ours,
             missed=1.0 - beside / peak,
             share=(1.0 - beside / peak) / error["KPSE", "truncated"],
         ),
+        of("L-C1.particles", printed=printed % 2, ours=ours % 2, spacing=change),
         measured(
             "L-F2.gpse_epsilon",
             runs=[gpse["run"]],
