@@ -41,7 +41,8 @@ class Status(StrEnum):
             Status.PART: "A statement: it meets its criterion in some cases and not in others. A sentence: some of "
             "what it says holds.",
             Status.DEVIATES: "A number: ours is more than one unit of the last printed digit away.",
-            Status.REFUTED: "A statement: it meets its criterion in no case. A sentence: nothing that it says holds.",
+            Status.REFUTED: "A statement: it meets its criterion in no case. A sentence: nothing that it says and that "
+            "can be tested holds.",
             Status.MISPRINT: "A statement: as printed it fails its criterion, as it was plainly meant it meets it.",
             Status.NOT_TESTABLE: "The print leaves open what would have to be measured, or it cannot be measured.",
         }[self]

@@ -131,6 +131,18 @@ def letters(text: str) -> str:
     return re.sub(r"\W+", " ", text).strip().lower()
 
 
+def test_a_sentence_has_one_name_and_so_one_verdict():
+    """Under two names it counts twice, and one name can be reproduced where the other is refuted."""
+    quotes = {
+        record.sentence: f" {letters(record.words)} "
+        for path in FILES
+        for record in records(path)
+        if isinstance(record, Sentence)
+    }
+    twice = [(a, b) for a, x in quotes.items() for b, y in quotes.items() if a != b and x in y]
+    assert twice == []
+
+
 @each_file
 def test_a_quote_is_a_sentence_of_the_document_and_not_of_ours(path):
     for record in records(path):

@@ -51,9 +51,9 @@ def test_table_2_of_dvm_needs_its_three_levels(computed):
         "DVM, II, beta = 0.5": 0.0
     }
     rate = findings["L-T2.DVM.rate"]
-    assert rate.numbers["away"]["beta = 0.5"] < 0.16
+    assert rate.numbers["away"]["M4', beta = 0.5"] < 0.16
     # Lambda3 leaves a spike at x = 0 in the strengths.
-    assert rate.others["remeshing by Lambda3, strengths"]["away"]["beta = 0.5"] > 0.5
+    assert rate.numbers["away"]["Lambda3, beta = 0.5"] > 0.5
 
 
 def test_lattices_that_do_not_match_are_refused():

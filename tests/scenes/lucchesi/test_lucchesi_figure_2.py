@@ -28,7 +28,7 @@ def test_the_reference_case_is_measured_in_both_windows(computed):
         windows=[[0.0, 5.0], [40.0, 45.0]],
         shown_spacing=0.03,
         printed_particles=64000,
-        mass_beta=[0.5],
+        mass_beta=[0.1, 0.5, 0.9],
     )
     numbers = {finding.claim: finding.numbers for finding in result.findings}
     # A smoothing length of 0.06: its square, times half the curvature at the peak, is 1e-3.
@@ -45,6 +45,12 @@ def test_the_reference_case_is_measured_in_both_windows(computed):
     changed = numbers["L-C2.truncation_at_edge"]["ratio"]
     assert changed["DD"] > 10.0 * changed["KPSE"] > 10.0
     assert max(numbers["L-C2.not_instability"]["step"].values()) < 1.0
+    # An even number of particles is printed.
+    particles = numbers["L-C1.particles"]
+    assert (particles["printed"], particles["ours"]) == (0, 1)
+    # 1 - P(|X| <= 5 R_alpha) by the law at t = 1.5: of the printed 97 % only that at beta = 0.5 rounds to it.
+    mass = [numbers[f"L-C1.mass.beta{beta}"]["mass"] for beta in (0.1, 0.5, 0.9)]
+    assert [round(share) for share in mass] == [98, 97, 99]
     assert set(numbers["L-C2.fd_comparable"]["ratio"]) == {"DD", "FPSE", "KPSE", "GPSE"}
     assert set(result.series["panel"]) == {0, 1}
     assert isinstance(result.table, pd.DataFrame)

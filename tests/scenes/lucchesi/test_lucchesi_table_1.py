@@ -7,6 +7,7 @@ import pytest
 
 from fracparticles.moving.dvm import DiffusionVelocity
 from fracparticles.schemes import SCHEMES, Setting
+from fracparticles.variable.closed_forms import Cauchy, exchange_limit
 from fracstudy.inputs import Inputs
 from scenes.lucchesi.lucchesi_table_1.study import (
     PAIR_SUMS,
@@ -16,9 +17,13 @@ from scenes.lucchesi.lucchesi_table_1.study import (
     velocity_order,
 )
 
+_X = np.linspace(-20.0, 20.0, 3201)
+
 
 def test_every_scheme_is_listed_and_equals_its_sum():
-    result = study(Inputs("methods", ["L-T1", "L-COST"]), beta=[0.5], particles=11, spacing=0.3)
+    variable = {"alpha": 1.5, "amplitude": 2.0, "half_width": 20.0, "spacings": [0.025, 0.0125]}
+    inputs = Inputs("methods", ["L-T1", "L-COST"])
+    result = study(inputs, beta=[0.5], particles=11, spacing=0.3, variable=variable)
     assert list(result.table["referred"]) == [*SCHEMES, "DVM"]
     assert (result.table["equals the sum over pairs"] == "yes").all()
     found = {finding.claim: finding.numbers for finding in result.findings}
@@ -27,11 +32,23 @@ def test_every_scheme_is_listed_and_equals_its_sum():
         max(found[f"L-T1.{name}"]["difference"] for name in ("DD", "FPSE", "KPSE", "GPSE", "DVM"))
         < 1e-11
     )
-    # KPSE is one convolution sum, the schemes of two passes are none.
-    assert found["L-COST.KPSE"]["defect"]["beta = 0.5"] < 1e-12
+    # DD, KPSE and GPSE are one convolution sum each, the schemes of two passes are none.
+    assert (
+        max(found[f"L-COST.{name}"]["defect"]["beta = 0.5"] for name in ("DD", "KPSE", "GPSE"))
+        < 1e-12
+    )
     assert min(found[f"L-COST.{name}"]["defect"]["beta = 0.5"] for name in ("DPSE", "FPSE")) > 0.1
     # Beside the pairs of the flux, the divergence needs those within six smoothing lengths: 23 of 128001.
-    assert found["L-COST.cheaper"]["ratio"] == pytest.approx(1.0 + 23.0 / 128001.0, abs=5e-5)
+    assert found["L-COST.cheaper"]["localised"] == pytest.approx(23.0 / 128001.0, abs=5e-5)
+    # D in the flux, or by the product rule, keeps the second order, less h^2; the mean D of a pair is another equation,
+    # (D L u + L(D u) - u L D) / 2, whatever the spacing is.
+    assert max(found["L-COST.amenable"]["order"].values()) < 0.1
+    u, at = Cauchy.value([_X]), [_X]
+    slope = [2.0 * part for part in Cauchy.gradient(at, 2.0)]
+    exact = Cauchy.flux_divergence(at, 1.5, 1.0 + 2.0 * u, slope)
+    apart = np.abs(exchange_limit(_X, 1.5, 2.0) - exact).max() / np.abs(exact).max()
+    assert found["L-COST.complicated"]["error"] == pytest.approx(apart, rel=0.05)
+    assert found["L-COST.complicated"]["order"] < 0.2
 
 
 @pytest.mark.parametrize("name", SCHEMES)

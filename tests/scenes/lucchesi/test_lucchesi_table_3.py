@@ -38,6 +38,8 @@ def test_findings(result):
     assert found["L-T3.DD.beta0.1"]["ours"] == pytest.approx(4.8161, abs=5e-5)
     assert found["L-C12.symmetric.DD"]["asymmetry"] < 1e-12
     assert found["L-C12.symmetric.FPSE"]["asymmetry"] > 0.1
+    step = found["L-C12.polynomial"]["asymmetry"]
+    assert max(step["DD"], step["KPSE"]) < 1e-12 < 0.01 < step["FPSE"]
     # In closed form the limit of FPSE is 2^(alpha/2) times that of DD.
     ratio = [*found["L-T3.ordering"]["fpse_over_dd"].values()]
     np.testing.assert_allclose(ratio, 2.0 ** (0.5 * (1.0 + np.array(BETAS))), rtol=1e-4)

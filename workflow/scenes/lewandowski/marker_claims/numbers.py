@@ -103,7 +103,14 @@ def _parameters(square: SquareRuns, seed: int) -> Iterator[Finding]:
     f, v = end.field(), np.abs(end.velocity(end.x, end.weights))
     fast = v[f < 0.1 * f.max()].max(initial=0.0) / v[f > 0.5 * f.max()].max()
     yield measured("M-C5.velocity", ratio=fast)
-    yield measured("M-C5.step", change=abs(error(dt=0.25 * square.dt) / base - 1.0))
+    finer = square.having(dt=0.25 * square.dt).trace("S8", "midpoints", follow=False)
+    moved, low = np.abs(end.x - finer.end.x) / square.support, f < 0.1 * f.max()
+    yield measured(
+        "M-C5.step",
+        change=abs(finer.error[-1] / base - 1.0),
+        tail=moved[low].max(initial=0.0),
+        core=moved[~low].max(),
+    )
 
 
 def _euler(square: SquareRuns, name: str) -> float:

@@ -65,10 +65,11 @@ def study(
     ratios = {claim: _ratio(errors, *figures) for claim, figures in _BETTER.items()}
     best = sum(np.log(ratios[f"M-F{n}.better"]["uniform"]) for n in (2, 3, 4)).idxmin()
     findings = [
-        *(_better(claim, ratio, best, tabled) for claim, ratio in ratios.items()),
+        *(_better(claim, ratio, best, tabled, support, markers) for claim, ratio in ratios.items()),
         *_equal_weight(ramp, markers),
         *_apart(ramp, markers),
         *_more(Ramp(best), support, markers),
+        _of_loading(errors.loc[best]),
     ]
     table = errors.loc[tabled].reset_index()
     return Result(table, inputs.judged(findings), panels.frame)
@@ -107,9 +108,30 @@ def _ratio(errors: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
     return pd.DataFrame(ratio)
 
 
-def _better(claim: str, ratio: pd.DataFrame, best: float, tabled: list[float]) -> Finding:
+def _better(
+    claim: str, ratio: pd.DataFrame, best: float, tabled: list[float], support: float, count: int
+) -> Finding:
     others = {f"x_0 = {end:g}": {"ratio": ratio.loc[end]} for end in tabled}
-    return measured(claim, ratio=ratio.loc[best], x0=best, least=ratio.min(), others=others)
+    far = _in_gaps(_BETTER[claim][0], Ramp(best), support, count)
+    return measured(
+        claim, ratio=ratio.loc[best], x0=best, least=ratio.min(), far=far, others=others
+    )
+
+
+def _of_loading(errors: pd.Series) -> Finding:
+    """How much the loading changes the error of each figure."""
+    figures = ("Fig. 1", "Fig. 2", "Fig. 3", "Fig. 4")
+    ratio = {f: errors[f"{f}, equal"] / errors[f"{f}, uniform"] for f in figures}
+    change = {figure: abs(r - 1.0) for figure, r in ratio.items()}
+    return measured("M-F1.loading", change=change, ratio=ratio, x0=errors.name)
+
+
+def _in_gaps(figure: str, ramp: Ramp, support: float, count: int) -> float:
+    """The share of the squared error of markers of equal weight where they are farther apart than eps."""
+    z, (x, _) = np.linspace(0.0, ramp.end, _POINTS), _markers("equal", ramp, count)
+    error = (_field(figure, "equal", ramp, support, count, z) - ramp.value(z)) ** 2
+    wide = np.interp(z, 0.5 * (x[1:] + x[:-1]), np.diff(x)) > support
+    return float(error[wide].sum() / error.sum())
 
 
 def _equal_weight(ramp: Ramp, count: int) -> Iterator[Finding]:

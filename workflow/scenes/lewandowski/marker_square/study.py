@@ -71,20 +71,25 @@ def _measured(square: SquareRuns, trace: Trace) -> dict[str, Any]:
     }  # fmt: skip
 
 
-_UNTABLED = ("coarse error", "from the smoothed f")
+_UNTABLED = ("excess of the coarse slope", "from the smoothed f", "steepest at", "gap there / ε")
 
 
 def _apart(square: SquareRuns, trace: Trace, epsilon: float) -> dict[str, float]:
-    """The error of what is wider than the square in F, and the distance of F from S_eps * f over that from f."""
+    """The slope of what is wider than the square in F, the distance of F from S_eps * f, and where F is steepest."""
     z, f, exact = square.z, trace.end.field(square.z), square.exact
     step = z[1] - z[0]
     wide = partial(gaussian_filter1d, sigma=_COARSE / step, mode="constant")
-    coarse, coarse_exact = wide(f), wide(exact)
+    coarse, coarse_exact = (np.abs(np.gradient(wide(g), step)).max() for g in (f, exact))
+    steepest = z[np.abs(np.gradient(f, step)).argmax()]
+    x = np.sort(trace.end.x)
+    gap = np.interp(steepest, 0.5 * (x[1:] + x[:-1]), np.diff(x))
     kernel = shape_function("S8")((z[:, None] - z) / epsilon) / epsilon
     smoothed = step * kernel @ exact
     return {
-        "coarse error": float(np.linalg.norm(coarse - coarse_exact) / np.linalg.norm(coarse_exact)),
+        "excess of the coarse slope": float(coarse / coarse_exact - 1.0),
         "from the smoothed f": float(np.linalg.norm(f - smoothed) / np.linalg.norm(f - exact)),
+        "steepest at": float(abs(steepest)),
+        "gap there / ε": float(gap / epsilon),
     }
 
 
@@ -113,7 +118,8 @@ def _findings(
 
     yield measured("M-F5.exact", gap=_closed_form(square))
     yield found("M-F5.slope", small, 1.0, excess="largest slope / exact")
-    yield found("M-F5.cause", small, error="coarse error", whole="relative error")
+    coarse, gap = "excess of the coarse slope", "gap there / ε"
+    yield found("M-F5.cause", small, excess=coarse, place="steepest at", gap=gap)
     yield found("M-F5.oscillates", small, maxima="maxima")
     slope, left = "largest slope / exact", "error left by the delay"
     yield found("M-F6.slope", large, slope=slope, late="delay", left=left)

@@ -53,6 +53,7 @@ def study(
     errors = _Errors()
     findings = [*_burgers(errors, **burgers), *_kdv(errors, **kdv)]
     findings += [*_source(errors, **source), _carried()]
+    findings.append(_flexible(findings))
     return Result(pd.DataFrame(errors.rows), inputs.judged(findings), errors.panels.frame)
 
 
@@ -261,6 +262,17 @@ def _substituted(source: GaussianSource, t: float = 0.5) -> float:
 
     residual = rate + (flux(x + d) - flux(x - d)) / (2.0 * d)
     return float(np.abs(residual).max() / np.abs(rate).max())
+
+
+def _flexible(findings: list[Finding]) -> Finding:
+    """Where the markers go with another velocity and nothing else changed: the errors of all equations above."""
+    found = {finding.claim: finding.numbers for finding in findings}
+    error = {
+        "Burgers": max(found["M-C6.burgers"]["error"].values()),
+        **found["M-C6.kdv"]["error"],
+        **found["M-C6.source"]["error"],
+    }
+    return measured("M-C6.flexible", error=error, left=found["M-C6.kdv"]["left"])
 
 
 def _carried(t: float = 0.5) -> Finding:

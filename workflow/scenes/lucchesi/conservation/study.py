@@ -170,6 +170,4 @@ def _moments() -> Finding:
         off = [(moved * z**m).sum() - (strength * x**m).sum() for m in range(6)]
         # Sums of some hundred terms of modulus one.
         kept[name] = int(np.argmax(np.abs(off) > 1e-12 * np.array(scale)))
-    best = max(kept, key=kept.__getitem__)
-    others = {name: {"kept": count} for name, count in kept.items() if name != best}
-    return measured("L-C18.DVM_moments", kept=kept[best], others=others)
+    return measured("L-C18.DVM_moments", kept=kept)

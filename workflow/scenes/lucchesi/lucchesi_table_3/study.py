@@ -41,6 +41,7 @@ class _Growth(NamedTuple):
     flow: float  # greatest norm of exp(n dt A), the same times
     late: float  # change of the norm from n = 2^32 to 2^36, over the greatest
     above: float  # norm of p(A dt)^1024 above the limit
+    asymmetry: float  # |P - P^T| / |P|, P = p(A dt) below the limit
 
 
 def _growths(a: np.ndarray, lowest: float) -> dict[str, _Growth]:
@@ -49,10 +50,12 @@ def _growths(a: np.ndarray, lowest: float) -> dict[str, _Growth]:
     flow = max(norms_of_powers(expm(below), _SQUARINGS, _EVERY))
     growths = {}
     for integrator in _STEPS:
-        norms = norms_of_powers(_step(below, integrator), _SQUARINGS, _EVERY)
+        p = _step(below, integrator)
+        norms = norms_of_powers(p, _SQUARINGS, _EVERY)
         last = norms_of_powers(_step(above, integrator), _FEW_SQUARINGS, _FEW_SQUARINGS)[-1]
         late = (norms[-1] - norms[-2]) / max(norms)
-        growths[integrator] = _Growth(max(norms), flow, late, last)
+        asymmetry = np.linalg.norm(p - p.T) / np.linalg.norm(p)
+        growths[integrator] = _Growth(max(norms), flow, late, last, float(asymmetry))
     return growths
 
 
@@ -216,12 +219,14 @@ def _criterion(
             "above": min(g.above for g in parts),
         }
 
-    above = {}
+    above, asymmetry = {}, {}
     for scheme in _SCHEMES:
         parts = [g for (s, _), one in growths.items() if s == scheme for g in one.values()]
         yield measured(f"L-C12.criterion.{scheme}", particles=size, **numbers(parts))
         above[scheme] = min(g.above for g in parts)
+        asymmetry[scheme] = max(g.asymmetry for g in parts)
     yield measured("L-C12.constraint", above=above, particles=size)
+    yield measured("L-C12.polynomial", asymmetry=asymmetry)
     by_name = {name: [one[i] for one in growths.values()] for i, name in _STEPS.items()}
     yield measured(
         "L-T3.rk1_rk2",

@@ -18,6 +18,7 @@ NEEDS = {"scheme": ["DPSE", "FPSE", "KPSE"]}
 
 _LAYER = 0.1  # relative error that ends the layer at the edge
 _RATIO, _RATE, _TAIL = "u / exact at |x| = D", "error of du/dt at D", "predicted from the tail of κ"
+_WIDTH, _INSIDE = "error above 10 % within, in ε", "relative error at 0.9 D"
 _CONTINUED, _FPSE = "with v continued", "error of du/dt, FPSE"
 
 
@@ -46,8 +47,8 @@ def study(inputs: Inputs) -> Result:
             "C": run.truncation,
             _RATIO: u[-1] / exact[-1],
             "|error| at |x| = D / peak": abs(u[-1] - exact[-1]) / exact.max(),
-            "error above 10 % within, in ε": distance[right & (error > _LAYER)].max(initial=0.0),
-            "relative error at 0.9 D": float(np.interp(0.9 * run.half_width, x, error)),
+            _WIDTH: distance[right & (error > _LAYER)].max(initial=0.0),
+            _INSIDE: float(np.interp(0.9 * run.half_width, x, error)),
             "error (48)": run.relative_l1_error,
         }
         rows.append(row | (_rate_at_the_edge(run) if run.scheme == "DPSE" else {}))
@@ -107,6 +108,12 @@ def _findings(table: pd.DataFrame, files: list[str]) -> list[Finding]:
             difference=(ours[_TAIL] / error - 1.0).abs(),
             fpse=(ours[_FPSE] / error - 1.0).abs(),
         ),
-        measured("L-C14.mitigation", runs=files, ratio=edge["FPSE"] / edge["DPSE"]),
+        measured(
+            "L-C14.mitigation",
+            runs=files,
+            ratio=edge["FPSE"] / edge["DPSE"],
+            inside=by_case["FPSE"][_INSIDE] / ours[_INSIDE],
+            width=by_case["FPSE"][_WIDTH] / ours[_WIDTH],
+        ),
         measured("L-C14.remedy", runs=files, gain=(error / ours[_CONTINUED]).abs()),
     ]
