@@ -8,8 +8,6 @@ import pandas as pd
 
 from fracstudy.style import Axes, log_log, name_ticks
 
-__all__ = ["DISK", "particles_per_side", "spacing_axes", "stored_field"]
-
 DISK = 5.0  # radius of the disk of (59)
 
 

@@ -1,7 +1,5 @@
 """A run as one dense matrix: what its integrator makes of the strengths, whatever they are."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -12,8 +10,6 @@ from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS
-
-__all__ = ["matrix_of", "whole"]
 
 
 def matrix_of(case: Case, **setting: Any) -> np.ndarray:

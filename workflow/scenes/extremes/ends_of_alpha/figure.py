@@ -1,15 +1,11 @@
 """Relative errors against the distance to the ends of alpha."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, guide, legend_below, log_log, panel_title
-
-__all__ = ["figure"]
 
 _EVOLVE = "evolve, against Cauchy or Gauss"
 _LINES: dict[str, dict[str, Any]] = {

@@ -1,7 +1,5 @@
 """What holds of the fields of a case: it is whole, and known by its text and its path, or refused in a line."""
 
-from __future__ import annotations
-
 import json
 from math import isfinite
 from pathlib import PurePosixPath
@@ -14,8 +12,6 @@ from fracparticles.run.case import Case
 from scenes.extremes.fuzzing.cases import cases, changed
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import anything, fields_of, given_fields, texts
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 

@@ -1,7 +1,5 @@
 """What holds of the command line: done with a whole file, or a line on standard error and nothing else."""
 
-from __future__ import annotations
-
 import io
 import os
 import tempfile
@@ -20,8 +18,6 @@ from fracparticles.run.cli import main
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import chance, fields_of, texts
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 

@@ -1,7 +1,5 @@
 """What holds of the functions of the library, for arguments of all kinds."""
 
-from __future__ import annotations
-
 import inspect
 import math
 import pickle
@@ -25,8 +23,6 @@ from scenes.extremes.fuzzing.cases import cases, refuse_dear
 from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
 from scenes.extremes.fuzzing.strategies import among, anything, between, chance, numbers, texts
 from scenes.extremes.long_and_short_times.profile import solution
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 

@@ -1,7 +1,5 @@
 """The true error of each run over the estimate that is the worst for its limit."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, legend_below, log_log, note
 from scenes.extremes.geometry.lattices import OF_A_FUNCTION
-
-__all__ = ["figure"]
 
 _SAID = {"warned": "#D55E00", "silent": "#0072B2"}
 _NAMES = {"warned": "warned", "silent": "no warning"}

@@ -1,7 +1,5 @@
 """Sums over lattices of any size, and the matrices of the schemes, against sums term by term."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
@@ -20,8 +18,6 @@ from fracparticles.schemes.base import LatticeScheme
 from fracparticles.schemes.spectrum import dense_matrix
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.geometry.printed import Kernels, matrix, places, power_sum
-
-__all__ = ["exteriors", "lattice_sums", "matrices"]
 
 _KERNELS = 1e-11  # the accuracy that `kernels.kernel` promises
 _LINE: dict[str, Any] = {

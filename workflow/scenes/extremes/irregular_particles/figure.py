@@ -1,7 +1,5 @@
 """Errors of the exchange forms against the disorder of the particles and against their spacing."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -19,8 +17,6 @@ from fracstudy.style import (
     panel_title,
     slope_triangle,
 )
-
-__all__ = ["figure"]
 
 _FORMS = ("DD", "FPSE", "KPSE", "GPSE", "DPSE")
 _HOLLOW: dict[str, Any] = {"markerfacecolor": "none"}

@@ -7,15 +7,11 @@ DPSE  (13), (16)  (2 D / eps^2) sum_j V_j (v_j - v_i) Phi_eps(x_j - x_i),  v_i =
 DD    (10)  (D / eps^alpha) sum_j V_j u_j G_eps(x_i - x_j)
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from fracparticles.kernels.families import kernel
 from fracparticles.pse import cell_volumes
 from fracparticles.special import green
-
-__all__ = ["CONSERVATIVE", "FORMS", "arranged", "matrix", "rate_of_change", "weight"]
 
 FORMS = ("KPSE", "GPSE", "FPSE", "DPSE", "DD")
 CONSERVATIVE = ("KPSE", "GPSE", "FPSE", "DPSE")

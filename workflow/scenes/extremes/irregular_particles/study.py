@@ -1,7 +1,5 @@
 """Exchange forms on irregular particles: what they conserve, what accuracy they lose, and when they grow."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 
@@ -22,8 +20,6 @@ from scenes.extremes.irregular_particles.operators import (
     matrix,
     rate_of_change,
 )
-
-__all__ = ["study"]
 
 _ALPHA, _START = 1.5, 0.5
 _INNER = 0.5  # of the half-width: where errors are taken

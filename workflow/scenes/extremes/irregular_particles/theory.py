@@ -11,8 +11,6 @@ Places x_j = (j + xi_j) h, xi uniform in [-J, J], so that var xi = J^2 / 3:
 |.| is the 2-norm over y. With epsilon in a fixed ratio to h all of them leave an error of du/dt like h^(1 - alpha).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from math import sqrt
@@ -22,8 +20,6 @@ import numpy as np
 from fracparticles.special.stable import green
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.irregular_particles.operators import arranged, matrix, rate_of_change, weight
-
-__all__ = ["predicted", "probes", "volumes"]
 
 How = tuple[str, float, bool]
 """Kind of the places, the jitter of a lattice, and whether the volumes fit."""

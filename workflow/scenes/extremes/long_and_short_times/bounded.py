@@ -1,7 +1,5 @@
 """Probes of truncated lattices over long times, of the order of accuracy, of units, and of what is refused."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
@@ -14,8 +12,6 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix
 from fracstudy.probe import EPS, REFUSED, Kind, Probe, off
 from scenes.extremes.long_and_short_times.runs import run_of
-
-__all__ = ["probes"]
 
 _SMALL: dict[str, Any] = {"half_width": 10.0, "spacing": 0.2}
 _SERIES: dict[str, Any] = {"integrator": "exponential"}

@@ -1,7 +1,5 @@
 """The self-similar profile over many decades of time, from the same kind of particles."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, guide, legend_below, log_log, panel_title
-
-__all__ = ["figure"]
 
 _LOOKS = (("#0072B2", "o"), ("#D55E00", "s"), ("#009E73", "^"), ("#CC79A7", "D"))
 

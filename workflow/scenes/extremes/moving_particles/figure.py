@@ -1,7 +1,5 @@
 """Growth at the limit of a step, and errors of runs that speak or do not."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
@@ -9,8 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, entry, legend_below, log_log, panel_title
-
-__all__ = ["figure"]
 
 _LOOKS: dict[str, dict[str, Any]] = {
     "DVM 2": {"color": "#7F3C8D", "marker": "p"},

@@ -1,7 +1,5 @@
 """The diffusion velocity at its limits: of steps, of the overlap, of the lattice, of the order, of few particles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import product
@@ -22,8 +20,6 @@ from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe, off
 from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud, cauchy, gaussian
 from scenes.extremes.moving_particles.words import add_error, missed
 from scenes.lucchesi.dvm_stability.study import worst_wave
-
-__all__ = ["add_overlap_errors", "growth_of_a_wave", "probes"]
 
 _FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step
 _HALF, _STEPS = 300, 3  # particles on either side of a wave, steps

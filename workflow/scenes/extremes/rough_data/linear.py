@@ -1,7 +1,5 @@
 """What a linear equation does to any data: strengths of any size, sums, mirrors, shifts, other units."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -14,8 +12,6 @@ from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.dense import matrix_of, whole
 from scenes.extremes.rough_data.cases import case_of, cases_of, deviation, run
-
-__all__ = ["exact", "sizes", "symmetries", "units"]
 
 # A run is some hundred roundings of the largest strength: of each particle the sum of N, of a series a term a degree.
 _SAME = 1e-12

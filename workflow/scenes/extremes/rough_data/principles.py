@@ -1,7 +1,5 @@
 """Signs, bounds and totals: what the weights of a scheme say of any data, however rough; and one point's spreading."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -14,8 +12,6 @@ from fracstudy.probe import WARNED, Kind, Probe
 from scenes.extremes.dense import matrix_of
 from scenes.extremes.geometry.lattices import OF_A_FUNCTION
 from scenes.extremes.rough_data.cases import case_of, cases_of, point, run
-
-__all__ = ["bounds", "functions", "point_masses", "signs"]
 
 _ROUNDED = 1e-13
 _KERNELS = [("KPSE", 2, 0.5), ("KPSE", 4, 0.5), ("KPSE", 4, 0.9), ("KPSE", 12, 0.5)]

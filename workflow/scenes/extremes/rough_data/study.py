@@ -1,12 +1,8 @@
 """Rough and extreme data: pulses, noise, strengths at the ends of float64, other units, other kinds of arrays."""
 
-from __future__ import annotations
-
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import frame
 from scenes.extremes.rough_data import kinds, linear, principles
-
-__all__ = ["study"]
 
 
 def study(

@@ -1,15 +1,11 @@
 """How far the mass drifts."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from fracstudy.style import axes_row, legend_below, log_log
-
-__all__ = ["figure"]
 
 _LOOK: dict[str, dict[str, Any]] = {
     "float32": {"color": "#D55E00", "marker": "s"},

@@ -1,7 +1,5 @@
 """What a number goes through: kinds of input, sums, files, tables, the arithmetic itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import fsum, log2
 from pathlib import Path
@@ -20,8 +18,6 @@ from fracparticles.schemes import SCHEMES
 from fracstudy.inputs import write_table
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.dense import matrix_of, whole
-
-__all__ = ["probes"]
 
 _FIELDS: dict[str, Any] = {"beta": 0.5, "half_width": 5.0, "t_initial": 0.5}
 _FIELDS["integrator"] = "exponential"

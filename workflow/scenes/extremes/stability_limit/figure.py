@@ -1,7 +1,5 @@
 """The limit over fractional order and overlap, and the growth per step, measured against predicted."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl
@@ -13,8 +11,6 @@ from matplotlib.figure import Figure
 from fracstudy.inputs import NUMERALS
 from fracstudy.panels import pick
 from fracstudy.style import COLOURS
-
-__all__ = ["figure"]
 
 _LEVELS = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0]
 _INTEGRATORS = {"euler": "D", "rk2": "o", "rk4": "^"}

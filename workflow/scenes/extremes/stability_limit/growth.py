@@ -1,7 +1,5 @@
 """Runs that grow: whether they say so, at the predicted rate and, where they overflow, at the predicted step."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Iterator
@@ -16,8 +14,6 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import initial_strengths, prepare
 from fracstudy.probe import EPS, HELD, WARNED, Kind, Probe, quiet
 from scenes.extremes.dense import matrix_of, whole
-
-__all__ = ["hidden", "overflow", "words"]
 
 _EVALUATIONS = ("stepping", "series")
 

@@ -1,7 +1,5 @@
 """Eigenvalues, numerical range and transient growth of operators that are not normal."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
@@ -13,8 +11,6 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, eigenvalue_bounds
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.probe import EPS, HELD, Kind, Probe
-
-__all__ = ["eigenvalues", "transient_growth"]
 
 _TIMES = np.geomspace(1e-2, 1e6, 17)
 _STEPS = 2 ** np.arange(15)

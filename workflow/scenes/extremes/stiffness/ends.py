@@ -1,7 +1,5 @@
 """What is left at the end of a stiff run, and what is said or refused."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
@@ -15,9 +13,6 @@ from fracparticles.run.solver import compute, prepare
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe, off
 from scenes.extremes.stiffness.ways import Stiff, exact_modes, power_of_step, stiff
-
-__all__ = ["at_the_limit", "conservation", "decay", "refused", "spoken_of"]
-
 
 _MEAN = Kind("the end", "the mean of the data everywhere", source="closed form", must=HELD)
 

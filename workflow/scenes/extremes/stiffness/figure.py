@@ -1,7 +1,5 @@
 """Operator applications and error over the stiffness, for each way of the time integration."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from matplotlib.figure import Figure
 
 from fracstudy.panels import pick
 from fracstudy.style import axes_row, legend_below, log_log, panel_title
-
-__all__ = ["figure"]
 
 _HOLLOW = {"markerfacecolor": "none"}
 _LOOK: dict[str, dict[str, Any]] = {

@@ -1,7 +1,5 @@
 """The ways through a stiff run, each against the eigenvectors of the matrix in forty digits."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -22,8 +20,6 @@ from fracparticles.time import STEP_POLYNOMIALS
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, Kind, Probe, off
-
-__all__ = ["Stiff", "exact_modes", "power_of_step", "probes", "stiff"]
 
 # Measured, of a Chebyshev series: an application of A is exact to some ulps of |lambda|, and the recurrence adds to it.
 _ULPS = 64.0
