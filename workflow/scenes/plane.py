@@ -1,7 +1,5 @@
 """The two-dimensional problem of Sec. 5: what its scenes share."""
 
-from __future__ import annotations
-
 import netCDF4
 import numpy as np
 import pandas as pd
