@@ -6,8 +6,8 @@ from itertools import product
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes import Setting
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -62,7 +62,7 @@ def _off_lattice(form: str, overlap: float) -> float:
     setting = Setting(n=30, spacing=0.1, alpha=_ALPHA, overlap=overlap)
     x = 0.1 * np.arange(-30, 31)
     ours = matrix(form, x, np.full(x.size, 0.1), _ALPHA, 0.1 * overlap)
-    return off(ours, dense_matrix(SCHEMES[form].operator(setting)))
+    return off(ours, scheme_matrix(form, setting))
 
 
 def _conserved(x: np.ndarray, overlap: float) -> Iterator[Probe]:

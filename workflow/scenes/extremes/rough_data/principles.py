@@ -6,10 +6,10 @@ import numpy as np
 
 from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
 from fracparticles.time.whole_space import evolve
 from fracstudy.probe import WARNED, Kind, Probe
-from scenes.extremes.dense import matrix_of
 from scenes.extremes.geometry.lattices import OF_A_FUNCTION
 from scenes.extremes.rough_data.cases import case_of, cases_of, point, run
 
@@ -28,7 +28,7 @@ def signs(beta: float) -> Iterator[Probe]:
         # GPSE takes no short steps: they are its smoothing length.
         short = {} if scheme == "GPSE" else {"t_final": 1e-5}
         case = case_of(scheme, alpha_less_one, order=order, **short)
-        a = matrix_of(case)
+        a = scheme_matrix(case.scheme, case.setting)
         least = float((a - np.diag(np.diag(a)) + np.diag(np.full(len(a), np.inf))).min())
         positive = least >= 0.0
         expected = "stays positive" if positive else "turns negative"

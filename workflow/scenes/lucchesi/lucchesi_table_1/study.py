@@ -10,7 +10,7 @@ from fracparticles.kernels.families import kernel
 from fracparticles.moving.dvm import DiffusionVelocity
 from fracparticles.run.orders import observed_order
 from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Scheme, Setting, riesz
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
 from fracstudy.findings import each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
@@ -191,7 +191,7 @@ def _toeplitz_defect(name: str, s: Setting) -> float:
 
     It is zero exactly if the rate of change is one convolution sum and a multiple of u_i.
     """
-    a = dense_matrix(SCHEMES[name].operator(s))
+    a = scheme_matrix(name, s)
     np.fill_diagonal(a, 0.0)
     change = a[1:, 1:] - a[:-1, :-1]
     return float(np.abs(change).max() / np.abs(a).max())
