@@ -110,9 +110,14 @@ def refuse_dear(case: Case) -> Case:
     return case
 
 
+def as_given(case: Case) -> dict[str, Any]:
+    """Return the fields of the case that were given."""
+    return {name: getattr(case, name) for name in case.model_fields_set}
+
+
 def changed(case: Case, **fields: Any) -> Case:
     """Return the case with other values of some fields."""
-    return Case(**{name: getattr(case, name) for name in case.model_fields_set} | fields)
+    return Case(**as_given(case) | fields)
 
 
 KINDS = ("noise", "noise", "spike", "tiny", "huge", "constant", "zero")

@@ -9,8 +9,6 @@ import fracparticles as fp
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 
-EPS = float(np.finfo(float).eps)
-
 
 def case_of(scheme: str, beta: float, **given: Any) -> fp.Case:
     """Return a case of half-width 10, h = 1/4 and T = 1/2, if nothing else is given; GPSE takes it in one step."""

@@ -12,6 +12,7 @@ from fracparticles.run.orders import observed_order
 from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Scheme, Setting, riesz
 from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
+from fracstudy.errors import EPS
 from fracstudy.findings import each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 
@@ -206,6 +207,6 @@ def _pairs_ratio() -> float:
 
     def pairs(name: str) -> int:
         weights = np.abs(kernel(name, r, 1.5))
-        return int(np.count_nonzero(weights > np.finfo(float).eps * weights.max()))
+        return int(np.count_nonzero(weights > EPS * weights.max()))
 
     return (pairs("F") + pairs("eta1")) / pairs("K")

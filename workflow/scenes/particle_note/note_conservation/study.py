@@ -12,13 +12,13 @@ from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, construct, 
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.run.orders import observed_order
 from fracparticles.time import STEP_POLYNOMIALS, step
+from fracstudy.errors import EPS
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.particle_note import waves
 from scenes.particle_note.waves import SEED, Skewed, arranged, heat
 
-_EPS = float(np.finfo(float).eps)
 _START = 0.5
 _CENTRE = 4.0  # errors are measured for |x| < 4: the ends of the domain are no part of the question
 _ACCURACIES = (2, 4, 6)
@@ -100,7 +100,7 @@ def _run(
         "T": time,
         "|Σ dQ/dt| / Σ |dQ/dt| at t = 0": float(imbalance),
         _LOST: change[-1],
-        _BOUND: 4.0 * _EPS * np.log2(exchange.size) * exchange.rate * time,
+        _BOUND: 4.0 * EPS * np.log2(exchange.size) * exchange.rate * time,
     }
     times = np.linspace(0.0, time, parts + 1)
     return row, {"x": times, "y": np.abs(change)}, q

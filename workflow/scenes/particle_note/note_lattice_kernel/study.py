@@ -9,12 +9,12 @@ import pandas as pd
 from fracparticles import pse
 from fracparticles.pse import GAUSSIAN_20, TENT_27, Kernel, lattice_moment, moment, required_moments
 from fracparticles.run.orders import observed_order
+from fracstudy.errors import EPS
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.particle_note.waves import SEED, arranged, rms_error, second_derivative_error
 
-_EPS = float(np.finfo(float).eps)
 _WANTED = required_moments(2, 2)[2]
 _KERNELS: dict[str, Kernel] = {
     "(27)": TENT_27,
@@ -174,7 +174,7 @@ def _economy(accuracy: list[int]) -> Iterator[Finding]:
 
     def neighbours(kernel: Kernel, overlap: float) -> int:
         i = np.arange(-100.0, 101.0)
-        return int(np.count_nonzero(kernel(i / overlap) > _EPS * kernel(0.0))) - 1
+        return int(np.count_nonzero(kernel(i / overlap) > EPS * kernel(0.0))) - 1
 
     few, many = neighbours(TENT_27, 1.0), neighbours(GAUSSIAN_20, 2.0)
     close = {"the Gaussian at eps = h": {"ratio": neighbours(GAUSSIAN_20, 1.0) / few}}
