@@ -49,9 +49,8 @@ def _counted(run: Any) -> tuple[float, float, float]:
     """Operations of one application, bytes kept, and h^n sum_i G(x_i, t_f), the mass of the solution on the lattice."""
     n, alpha = run.N // 2, 1.0 + run.beta
     how = {"order": run.order, "overlap": run.overlap, "exterior": run.exterior}
-    setting = Setting(alpha=alpha, dim=run.dim, n=n, **how)
-    x = np.arange(-n, n + 1) * run.h
-    squares = sum(np.square(part) for part in np.meshgrid(*(x,) * run.dim, sparse=True))
+    setting = Setting(alpha=alpha, dim=run.dim, n=n, spacing=run.h, **how)
+    squares = sum(np.square(part) for part in setting.positions)
     u = green(np.sqrt(squares), run.diffusivity * run.t_final, alpha, run.dim)
     mass = float(run.h**run.dim * np.sum(u))
     return operations(run.scheme, setting), bytes_kept(run.scheme, setting), mass

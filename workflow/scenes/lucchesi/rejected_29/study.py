@@ -82,7 +82,7 @@ def _follow(panels: Panels, beta: float, growth: float, history: Mapping[str, An
         setting = Setting(n=n, spacing=half_width / n, alpha=1.0 + beta, overlap=_OVERLAP)
         rate, steps = growth * setting.rate, round(50.0 * history["foldings"])
         operator = SCHEMES["PSE29"].operator(setting)
-        u = np.asarray(green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta))
+        u = np.asarray(green(setting.x, 0.5, 1.0 + beta))
         edge = [u[-1]]
         for _ in range(steps):
             u = integrators.step(operator, rk2, 0.02 / rate, 1, u)
