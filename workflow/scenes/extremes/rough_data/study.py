@@ -14,7 +14,7 @@ def study(
         *linear.sizes(beta, schemes, dims),
         *linear.symmetries(beta, schemes),
         *linear.units(beta, schemes, dims),
-        *principles.signs(beta),
+        *principles.signs(),
         *principles.bounds(beta, dims),
         *principles.point_masses(beta, half_width),
         *principles.functions(beta, schemes),
