@@ -11,7 +11,10 @@ from numpy.typing import ArrayLike
 
 from fracparticles.errors import FracparticlesWarning
 
-__all__ = ["off", "power_of_ten", "quiet", "three_digits"]
+__all__ = ["EPS", "off", "power_of_ten", "quiet", "three_digits"]
+
+EPS = float(np.finfo(float).eps)
+"""The distance from one to the next number, by which round-off is measured."""
 
 _ROUNDING = 1e-13
 

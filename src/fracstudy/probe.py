@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.errors import FracparticlesError, FracparticlesWarning, reason_of
-from fracstudy.errors import off, quiet
+from fracstudy.errors import EPS, off, quiet
 
 __all__ = [
     "BAD",
@@ -33,9 +33,6 @@ __all__ = [
     "overheard",
     "quiet",
 ]
-
-EPS = float(np.finfo(float).eps)
-"""The distance from one to the next number, by which round-off is measured."""
 
 
 class Verdict(StrEnum):

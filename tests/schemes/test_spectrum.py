@@ -13,6 +13,7 @@ from fracparticles.schemes.spectrum import (
     dense_matrix,
     eigenvalue_bounds,
     power_iteration,
+    scheme_matrix,
     spectral_interval,
 )
 from fracparticles.schemes.stability import symbol_range
@@ -78,6 +79,15 @@ def test_dense_matrix_of_known_weights():
         None,
     )
     assert np.array_equal(dense_matrix(operator), w)
+
+
+def test_scheme_matrix_is_the_one_of_its_operator():
+    setting = Setting(n=5, spacing=0.3, alpha=1.5)
+    u = np.linspace(1.0, 2.0, 11)
+    expected = SCHEMES["DD"].operator(setting).apply(u)
+    assert np.allclose(scheme_matrix("DD", setting) @ u, expected, rtol=1e-13)
+    with pytest.raises(FracparticlesError):
+        scheme_matrix("none", setting)
 
 
 @pytest.mark.parametrize("scheme", ["DD", "KPSE", "FPSE"])

@@ -11,7 +11,7 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix
-from fracparticles.schemes.stability import stability_limit, symbol_range
+from fracparticles.schemes.stability import stability_limit, symbol_range, worst_wave
 from fracparticles.time import STEP_POLYNOMIALS
 
 # epsilon / h = 2, order II: the infinite lattice, to the digits given.
@@ -39,6 +39,15 @@ def test_closed_forms_neglect_the_aliases_only(scheme, beta, overlap):
     assert stability_limit(scheme, beta, 2, overlap) == pytest.approx(
         SCHEMES[scheme].closed_form_limit(beta, overlap), rel=rel
     )
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
+@pytest.mark.parametrize("overlap", [2.0, 5.0])
+def test_the_worst_wave(alpha, overlap):
+    """DD's symbol -theta^alpha exp(-(theta s)^2 / 4) is least at theta s = sqrt(2 alpha), FD's at pi."""
+    setting = Setting(alpha=alpha, overlap=overlap)
+    assert worst_wave("DD", setting) == pytest.approx(np.sqrt(2.0 * alpha) / overlap, abs=1e-3)
+    assert worst_wave("FD", setting) == np.pi
 
 
 def test_there_is_no_closed_form_for_the_others():

@@ -1,14 +1,10 @@
 """The two-dimensional problem of Sec. 5: what its scenes share."""
 
-from __future__ import annotations
-
 import netCDF4
 import numpy as np
 import pandas as pd
 
 from fracstudy.style import Axes, log_log, name_ticks
-
-__all__ = ["DISK", "particles_per_side", "spacing_axes", "stored_field"]
 
 DISK = 5.0  # radius of the disk of (59)
 

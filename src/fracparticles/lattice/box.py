@@ -19,11 +19,11 @@ from scipy.fft import dct, dst
 from fracparticles._compiled import njit, prange
 from fracparticles.lattice.fourier import PLAN, line_plans, transform_length
 
-__all__ = ["BoxConvolution", "NaiveBoxConvolution"]
+__all__ = ["COLUMNS", "ROWS", "BoxConvolution", "NaiveBoxConvolution"]
 
 # Lines that are transformed together: enough for whole cache lines to be copied, few enough to stay in the cache.
-_ROWS = 16
-_COLUMNS = 8
+ROWS = 16
+COLUMNS = 8
 _SHORTEST = 4  # so that an odd weight has a sine transform, of the one point between 0 and L / 2
 
 
@@ -61,16 +61,16 @@ class BoxConvolution:
         self._from = max(0, (targets - sources) // 2)
         self._to = max(0, (sources - targets) // 2)
 
-        self._line = pyfftw.zeros_aligned((_ROWS, length))
-        self._line_spectrum = pyfftw.empty_aligned((_ROWS, half), dtype=complex)
+        self._line = pyfftw.zeros_aligned((ROWS, length))
+        self._line_spectrum = pyfftw.empty_aligned((ROWS, half), dtype=complex)
         self._forward_line, self._backward_line = line_plans(self._line, self._line_spectrum)
         lines = (length,) * (dim - 1)
-        self._block = pyfftw.zeros_aligned((*lines, _COLUMNS), dtype=complex)
-        self._product = pyfftw.empty_aligned((*lines, _COLUMNS), dtype=complex)
+        self._block = pyfftw.zeros_aligned((*lines, COLUMNS), dtype=complex)
+        self._product = pyfftw.empty_aligned((*lines, COLUMNS), dtype=complex)
         self._forward_block = _plans(self._block, self._from, sources, "FFTW_FORWARD")
         self._backward_block = _plans(self._product, self._to, targets, "FFTW_BACKWARD")[::-1]
 
-        wave_numbers = -(-half // _COLUMNS) * _COLUMNS
+        wave_numbers = -(-half // COLUMNS) * COLUMNS
         self._spectrum = np.zeros((*(sources,) * (dim - 1), wave_numbers), dtype=complex)
         self._spectra = [
             np.zeros((*(targets,) * (dim - 1), wave_numbers), dtype=complex) for _ in weights
@@ -88,8 +88,8 @@ class BoxConvolution:
         self._transform_lines(u)
         held = (slice(self._from, self._from + self._sources),) * (self._dim - 1)
         wanted = (slice(self._to, self._to + self._targets),) * (self._dim - 1)
-        for first in range(0, self._half, _COLUMNS):
-            columns = slice(first, first + _COLUMNS)
+        for first in range(0, self._half, COLUMNS):
+            columns = slice(first, first + COLUMNS)
             self._block.fill(0.0)
             self._block[held] = self._spectrum[..., columns]
             for plan in self._forward_block:
@@ -114,18 +114,18 @@ class BoxConvolution:
         lines = u.reshape(-1, self._sources)
         spectrum = self._spectrum.reshape(-1, self._spectrum.shape[-1])
         self._line.fill(0.0)
-        for first in range(0, lines.shape[0], _ROWS):
-            some = lines[first : first + _ROWS]
+        for first in range(0, lines.shape[0], ROWS):
+            some = lines[first : first + ROWS]
             self._line[: some.shape[0], self._from : self._from + self._sources] = some
             self._forward_line.execute()
-            spectrum[first : first + _ROWS, : self._half] = self._line_spectrum[: some.shape[0]]
+            spectrum[first : first + ROWS, : self._half] = self._line_spectrum[: some.shape[0]]
 
     def _transform_back(self, spectrum: np.ndarray, out: np.ndarray) -> None:
         spectrum = spectrum.reshape(-1, spectrum.shape[-1])
         lines = out.reshape(-1, self._targets)
-        for first in range(0, lines.shape[0], _ROWS):
-            some = lines[first : first + _ROWS]
-            self._line_spectrum[: some.shape[0]] = spectrum[first : first + _ROWS, : self._half]
+        for first in range(0, lines.shape[0], ROWS):
+            some = lines[first : first + ROWS]
+            self._line_spectrum[: some.shape[0]] = spectrum[first : first + ROWS, : self._half]
             self._backward_line.execute()
             some[:] = self._line[: some.shape[0], self._to : self._to + self._targets]
 
@@ -159,7 +159,7 @@ def _symbol(weights: np.ndarray, odd: int | None, length: int) -> np.ndarray:
             w[inner] = sines
         else:
             w = dct(w, type=1, axis=axis, overwrite_x=True)
-    padded = -(-half // _COLUMNS) * _COLUMNS
+    padded = -(-half // COLUMNS) * COLUMNS
     symbol = np.zeros((*(half,) * (weights.ndim - 1), padded))
     symbol[..., :half] = w / float(length) ** weights.ndim
     return symbol

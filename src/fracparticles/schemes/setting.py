@@ -71,6 +71,16 @@ class Setting:
         return (self.size,) * self.dim
 
     @property
+    def x(self) -> np.ndarray:
+        """The coordinates of the particles along an axis, shape (N,)."""
+        return np.arange(-self.n, self.n + 1) * self.spacing
+
+    @property
+    def positions(self) -> list[np.ndarray]:
+        """The coordinates of the particles, `dim` arrays that broadcast to `shape`."""
+        return list(np.meshgrid(*(self.x,) * self.dim, indexing="ij", sparse=True))
+
+    @property
     def is_open(self) -> bool:
         """Whether the solution continues beyond the lattice."""
         return self.exterior == "open"

@@ -18,6 +18,7 @@ __all__ = [
     "eigenvalue_bounds",
     "largest_degree",
     "power_iteration",
+    "scheme_matrix",
     "spectral_interval",
 ]
 
@@ -145,6 +146,11 @@ def dense_matrix(operator: Operator) -> np.ndarray:
     return np.array([operator.apply(column) for column in np.eye(operator.size)]).T
 
 
+def scheme_matrix(name: str, setting: Setting) -> np.ndarray:
+    """Return A of a scheme in a setting as such an array."""
+    return dense_matrix(scheme(name).operator(setting))
+
+
 def _greatest_eigenvalue(operator: LatticeOperator, of_the_symbol: float) -> float:
     """The largest real part, or an upper bound of it where the iteration does not converge."""
     # 0.3 s, and hardly ever needed.
@@ -164,5 +170,4 @@ def _greatest_eigenvalue(operator: LatticeOperator, of_the_symbol: float) -> flo
 
 @lru_cache(maxsize=64)
 def _greatest_by_matrix(name: str, setting: Setting) -> float:
-    matrix = dense_matrix(scheme(name).operator(setting))
-    return float(np.linalg.eigvals(matrix).real.max())
+    return float(np.linalg.eigvals(scheme_matrix(name, setting)).real.max())

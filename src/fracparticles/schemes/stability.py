@@ -13,7 +13,7 @@ from fracparticles.schemes.base import is_number
 from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
 
-__all__ = ["grows", "range_in", "stability_limit", "symbol_range"]
+__all__ = ["grows", "range_in", "stability_limit", "symbol_range", "worst_wave"]
 
 Symbol = Callable[[np.ndarray], np.ndarray]  # of points, the last axis their coordinates
 
@@ -28,6 +28,7 @@ _SAMPLES_OF_A_LINE = 129  # of those in a box
 _NEARLY, _MOST_PEAKS = 0.02, 6
 _ROUND_OFF = 1e-13  # of a symbol, against its range
 _SLACK = 1e-9  # of a bound of the overlap, which may be a quotient
+_WAVES = np.linspace(0.0, np.pi, 4001)  # of which one is the worst
 
 
 def stability_limit(
@@ -93,6 +94,11 @@ def symbol_range(
     alpha, order, dim = 1.0 + float(beta), int(order), int(dim)
     kernels = Setting(alpha=alpha, order=order, overlap=float(overlap), dim=dim, family=family)
     return _symbol_range(name, kernels)
+
+
+def worst_wave(name: str, setting: Setting) -> float:
+    """Return k h of the wave on the line that a scheme damps the most, of 4000."""
+    return float(_WAVES[np.argmin(scheme(name).symbol(_WAVES, setting))])
 
 
 def range_in(name: str, setting: Setting) -> tuple[float, float]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes import Setting
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.inputs import Inputs
 from scenes.lucchesi.conservation.figure import figure
 from scenes.lucchesi.conservation.study import study, weight_sum
@@ -15,7 +15,7 @@ from scenes.lucchesi.conservation.study import study, weight_sum
 @pytest.mark.parametrize("scheme", ["DD", "DPSE", "FPSE", "KPSE", "GPSE", "FD"])
 def test_the_sum_of_absolute_weights_bounds_the_rows(scheme):
     n, h, alpha = 20, 0.2, 1.5
-    matrix = dense_matrix(SCHEMES[scheme].operator(Setting(n=n, spacing=h, alpha=alpha)))
+    matrix = scheme_matrix(scheme, Setting(n=n, spacing=h, alpha=alpha))
     rows = np.abs(matrix).sum(axis=1).max()
     assert rows <= weight_sum(scheme, n, h, alpha, 2, 2.0) * (1.0 + 1e-12)
 

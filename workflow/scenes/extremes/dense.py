@@ -1,7 +1,5 @@
 """A run as one dense matrix: what its integrator makes of the strengths, whatever they are."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -9,21 +7,13 @@ import numpy as np
 from scipy.linalg import expm
 
 from fracparticles.run.case import Case
-from fracparticles.schemes import SCHEMES
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.time import STEP_POLYNOMIALS
-
-__all__ = ["matrix_of", "whole"]
-
-
-def matrix_of(case: Case, **setting: Any) -> np.ndarray:
-    """Return A of du/dt = A u, dense; `setting` is changed in that of the case."""
-    return dense_matrix(SCHEMES[case.scheme].operator(replace(case.setting, **setting)))
 
 
 def whole(case: Case, **setting: Any) -> np.ndarray:
     """Return exp(A T), by scipy, or p(A dt)^n with the polynomial of the step, by Horner's rule."""
-    a = matrix_of(case, **setting)
+    a = scheme_matrix(case.scheme, replace(case.setting, **setting))
     if not case.steps:
         return expm(case.span * a)
     one = p = np.eye(len(a))

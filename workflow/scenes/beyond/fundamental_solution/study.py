@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.special import reduced_green
+from fracstudy.errors import power_of_ten
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 
@@ -24,8 +25,7 @@ def study(inputs: Inputs, *, reference: str) -> Result:
         row = {
             "alpha": alpha,
             "points": x.size,
-            # The next power of ten: of an error at round-off only its size is reproducible.
-            "ours, error below": 10.0 ** np.ceil(np.log10(max(ours.max(), 2.0**-53))),
+            "ours, error below": power_of_ten(ours.max()),
             "scipy, largest error": theirs.max(),
             "scipy's, at x": x[theirs.argmax()],
             "scipy, median error": np.median(theirs),

@@ -1,7 +1,5 @@
 """Probes of the fundamental solution and what is derived from it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
@@ -12,8 +10,6 @@ from fracparticles import special
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha import references
 from scenes.extremes.ends_of_alpha.names import distance, relative, written
-
-__all__ = ["FUNCTIONS", "errors", "probes"]
 
 _FAR = 1e6
 # Documented: 1e-13, 1e-12 for what has a derivative.

@@ -1,7 +1,5 @@
 """Probes of the kernels of every name, order and kernel family, exact and interpolated, and of their transforms."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from itertools import product
@@ -13,8 +11,6 @@ from fracparticles.kernels.families import PAPER_ORDERS, kernel, kernel_transfor
 from fracparticles.kernels.tabulated import tabulated
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha.names import written
-
-__all__ = ["NAMES", "exact", "exact_transform", "forms_of", "probes", "worst"]
 
 RADII = (0.0, 0.3, 1.7, 7.0, 100.0)
 WAVES = (0.01, 0.7, 3.0)

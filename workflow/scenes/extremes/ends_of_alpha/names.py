@@ -1,12 +1,8 @@
 """Fractional orders: how far from an end, how they are written in a table; and errors in many digits."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import mpmath as mp
-
-__all__ = ["distance", "relative", "written"]
 
 
 def distance(beta: float) -> float:

@@ -17,13 +17,9 @@ and, with L = ln k,
 so that the corrections are derivatives in s, at s = n + 1, n + 2 and n + 4.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import mpmath as mp
-
-__all__ = ["density", "mass_inside", "source_of", "tail_density", "tail_mass"]
 
 _NEAR = 1e-5  # distance to an end within which the limit and its corrections are the reference
 _LAST = 60  # of the quadrature: exp(-60) is 1e-26

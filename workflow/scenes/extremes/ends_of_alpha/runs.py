@@ -1,7 +1,5 @@
 """Probes of runs: on the whole space, and with the open exterior of the lattice."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
@@ -12,8 +10,6 @@ import fracparticles as fp
 from fracparticles.run.solver import compute
 from fracstudy.probe import HELD, Kind, Probe, off
 from scenes.extremes.ends_of_alpha.names import distance, written
-
-__all__ = ["TIME", "closed", "compute_at", "evolved", "probes"]
 
 TIME = 0.5
 

@@ -1,7 +1,5 @@
 """Probes of the schemes, of their limits, and of what is no order at all."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from itertools import product
 from typing import Any
@@ -15,8 +13,6 @@ from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.ends_of_alpha import kernels
 from scenes.extremes.ends_of_alpha.names import written
 from scenes.extremes.ends_of_alpha.runs import TIME, compute_at
-
-__all__ = ["probes"]
 
 _N, _H, _OVERLAP = 20, 0.25, 2.0  # 41 particles
 _ROUND_OFF = 64.0 * EPS  # of T |lambda|, measured, see `run.reliability`

@@ -1,7 +1,5 @@
 """The fractional orders next to 1 and to 2: densities, kernels, schemes and runs against their limits and mpmath."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 
@@ -11,8 +9,6 @@ from fracstudy.panels import Panels
 from fracstudy.probe import frame
 from scenes.extremes.ends_of_alpha import densities, kernels, runs, schemes
 from scenes.extremes.ends_of_alpha.names import distance
-
-__all__ = ["study"]
 
 _SHOWN = ("density", "rate", "tail mass")
 

@@ -1,7 +1,5 @@
 """Files that are damaged: a run that is read, initial data, the cache of compiled functions."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import sys
@@ -18,8 +16,6 @@ from fracparticles.run.solver import compute
 from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.faults.processes import counted, forked
 from scenes.extremes.faults.writing import Setup, one_line
-
-__all__ = ["of_the_cache", "of_the_run"]
 
 MODULE = """\
 from fracparticles._compiled import njit

@@ -1,7 +1,5 @@
 """Processes that are stopped, and the counts of what came of many."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys
@@ -10,8 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 
 import numpy as np
-
-__all__ = ["Ended", "begun", "counted", "ended", "forked", "moments"]
 
 Ended = tuple[int, str]
 """Exit status, or minus the signal that ended it, and what it printed."""

@@ -1,7 +1,5 @@
 """Faults: what is killed, full, read-only, damaged or changed, and what the next call makes of it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -9,8 +7,6 @@ from tempfile import TemporaryDirectory
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import Probe, frame
 from scenes.extremes.faults import damage, workflows, writing
-
-__all__ = ["study"]
 
 
 def study(

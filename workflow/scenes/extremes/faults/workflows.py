@@ -1,7 +1,5 @@
 """A workflow of two runs: killed, interrupted, begun twice, with another configuration meanwhile."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal
@@ -13,8 +11,6 @@ from pathlib import Path
 
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.faults.processes import counted
-
-__all__ = ["Project", "probes"]
 
 _SCENE = """\
 title: "Two runs"

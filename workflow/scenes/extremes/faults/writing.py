@@ -1,7 +1,5 @@
 """Faults while a run is solved and written: killed, interrupted, without room, without a folder, two at once."""
 
-from __future__ import annotations
-
 import os
 import resource
 import shutil
@@ -22,8 +20,6 @@ from fracparticles.run.program import app
 from fracparticles.run.solver import compute
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.faults.processes import begun, counted, ended, forked, moments
-
-__all__ = ["FLAGS", "Setup", "probes"]
 
 FIELDS = {"scheme": "KPSE", "order": 4, "beta": 0.5, "half_width": 10.0, "spacing": 0.25}
 FLAGS = ["solve", *(w for k, v in FIELDS.items() for w in (f"--{k.replace('_', '-')}", str(v)))]

@@ -7,8 +7,6 @@ With one number that is the case of a seed, drawn, shown and run with its traceb
 seeds from the first on, of which the bad ones are shown. "all" hunts in every property.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 import warnings

@@ -1,7 +1,5 @@
 """Cases that can be run: plausible ones, with whatever fields go with them, and data for them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -13,8 +11,6 @@ from fracparticles.run.case import Case
 from fracparticles.schemes import ALL_SCHEMES
 from scenes.extremes.fuzzing.harness import NotRun
 from scenes.extremes.fuzzing.strategies import among, between, chance, fields_of
-
-__all__ = ["cases", "changed", "refuse_dear", "rough", "runs"]
 
 _MOST_INTERVALS = {1: 30, 2: 9, 3: 8}  # half of them, on either side
 _DEAREST = 3e7  # additions of naive sums: a second
@@ -114,9 +110,14 @@ def refuse_dear(case: Case) -> Case:
     return case
 
 
+def as_given(case: Case) -> dict[str, Any]:
+    """Return the fields of the case that were given."""
+    return {name: getattr(case, name) for name in case.model_fields_set}
+
+
 def changed(case: Case, **fields: Any) -> Case:
     """Return the case with other values of some fields."""
-    return Case(**{name: getattr(case, name) for name in case.model_fields_set} | fields)
+    return Case(**as_given(case) | fields)
 
 
 KINDS = ("noise", "noise", "spike", "tiny", "huge", "constant", "zero")

@@ -1,7 +1,5 @@
 """What holds of the configuration: it is read, and its cases are those that it names, or it is refused in a line."""
 
-from __future__ import annotations
-
 import datetime
 import math
 import tempfile
@@ -22,8 +20,6 @@ from fracstudy.scene import Scene
 from fracstudy.scene_files import merged, resolved
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import among, chance, fields_of, numbers, texts
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 

@@ -1,7 +1,5 @@
 """What holds of operators that vary in space, of intervals, and of particles that follow the solution."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -18,8 +16,6 @@ from fracparticles.variable import FORMS, VariableDiffusivity, VariableOrder
 from fracstudy.probe import HELD
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import among, between
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 

@@ -1,7 +1,5 @@
 """What holds of the fields of a case: it is whole, and known by its text and its path, or refused in a line."""
 
-from __future__ import annotations
-
 import json
 from math import isfinite
 from pathlib import PurePosixPath
@@ -11,11 +9,9 @@ from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
-from scenes.extremes.fuzzing.cases import cases, changed
+from scenes.extremes.fuzzing.cases import as_given, cases, changed
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import anything, fields_of, given_fields, texts
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 
@@ -26,10 +22,10 @@ _LONGEST_NAME = 255  # bytes, of a file
 def _nearly(draw: st.DrawFn) -> dict[str, Any]:
     """Draw the fields of a case that is allowed, and change one or two."""
     case = draw(cases())
-    given = {name: getattr(case, name) for name in case.model_fields_set}
+    fields = as_given(case)
     for name in draw(st.lists(st.sampled_from(list(Case.model_fields)), min_size=1, max_size=2)):
-        given[name] = draw(st.one_of(fields_of(Case)[name], fields_of(Case)[name], anything()))
-    return given
+        fields[name] = draw(st.one_of(fields_of(Case)[name], fields_of(Case)[name], anything()))
+    return fields
 
 
 _JSON = st.recursive(

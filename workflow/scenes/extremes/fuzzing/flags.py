@@ -1,7 +1,5 @@
 """What holds of the command line: done with a whole file, or a line on standard error and nothing else."""
 
-from __future__ import annotations
-
 import io
 import os
 import tempfile
@@ -17,11 +15,9 @@ from hypothesis import strategies as st
 import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
-from scenes.extremes.fuzzing.cases import cases, refuse_dear
+from scenes.extremes.fuzzing.cases import as_given, cases, refuse_dear
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import chance, fields_of, texts
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 
@@ -55,9 +51,8 @@ def _text(value: Any) -> str:
 def _solving(draw: st.DrawFn) -> list[str]:
     """Draw the flags of a case that is allowed, some of them spoilt."""
     case = draw(cases())
-    given = {name: getattr(case, name) for name in case.model_fields_set}
     words = ["solve", "-o", draw(st.sampled_from(_FILES))]
-    for name, value in given.items():
+    for name, value in as_given(case).items():
         if value is not None and not draw(chance(2)):
             spoilt = draw(chance(4))
             one = draw(st.one_of(fields_of(fp.Case)[name], texts())) if spoilt else value
@@ -103,8 +98,7 @@ def _spoken(words: list[str]) -> float:
 def _same(case: fp.Case) -> float:
     """The flags of a case write the bits that Python writes, or refuse what it refuses."""
     refuse_dear(case)
-    given = {name: getattr(case, name) for name in case.model_fields_set}
-    words = ["solve", "--output=run.nc", *_flags(given)]
+    words = ["solve", "--output=run.nc", *_flags(as_given(case))]
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         status, _, err = _run(words)
         try:

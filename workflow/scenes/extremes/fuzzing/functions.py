@@ -1,7 +1,5 @@
 """What holds of the functions of the library, for arguments of all kinds."""
 
-from __future__ import annotations
-
 import inspect
 import math
 import pickle
@@ -19,14 +17,12 @@ import fracparticles as fp
 from fracparticles.graded.particles import FORMS
 from fracparticles.kernels.families import FAMILIES, KERNELS, kernel_transform
 from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.probe import EPS, HELD, off
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
 from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
 from scenes.extremes.fuzzing.strategies import among, anything, between, chance, numbers, texts
 from scenes.extremes.long_and_short_times.profile import solution
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 
@@ -263,7 +259,7 @@ def _limit(name: str, beta: float, overlap: float) -> float:
     """2 / a is the spectral radius of the matrix of many particles, from below."""
     overlap = overlap if SCHEMES[name].has_kernel else 2.0
     setting = Setting(alpha=1.0 + beta, overlap=overlap, n=24)
-    radius = float(np.abs(np.linalg.eigvals(dense_matrix(SCHEMES[name].operator(setting)))).max())
+    radius = float(np.abs(np.linalg.eigvals(scheme_matrix(name, setting))).max())
     a = fp.stability_limit(name, beta, overlap=overlap)
     low = 2.0 / a if a > 0.0 else math.inf
     return 0.0 if 0.8 * low <= radius <= 1.02 * low or not a else 2.0

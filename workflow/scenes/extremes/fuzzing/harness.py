@@ -4,8 +4,6 @@ A case is what a hypothesis strategy makes of random bytes, and these come from 
 each case stands for itself: it is the same in whatever order, on whatever machine, and can be drawn again.
 """
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,18 +16,6 @@ from hypothesis import given, settings
 from hypothesis.strategies import SearchStrategy, tuples
 
 from fracstudy.probe import BAD, Kind, Probe, Verdict
-
-__all__ = [
-    "NotRun",
-    "Outcome",
-    "Properties",
-    "Property",
-    "draw",
-    "drawn",
-    "judged",
-    "outcome",
-    "row",
-]
 
 _BYTES = 8192  # more than any case takes
 _TRIES = 100  # a strategy may refuse what it has drawn

@@ -1,7 +1,5 @@
 """What holds of problems whose coefficients vary, in space and in time."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -19,8 +17,6 @@ from fracparticles.problems.solve import solve_problem
 from fracparticles.variable import FORMS
 from scenes.extremes.fuzzing.harness import Properties, drawn
 from scenes.extremes.fuzzing.strategies import among, anything, between, given_fields, texts
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 

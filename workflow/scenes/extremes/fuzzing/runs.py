@@ -1,7 +1,5 @@
 """What holds of every run: it is right against something else that is the same, or refused."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -21,8 +19,6 @@ from fracstudy.probe import EPS, HELD
 from scenes.extremes.dense import whole
 from scenes.extremes.fuzzing.cases import cases, changed, refuse_dear, runs
 from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
-
-__all__ = ["PROPERTIES"]
 
 PROPERTIES = Properties()
 

@@ -3,8 +3,6 @@
 Nothing here names a field of `Case`: a new one is drawn from what its annotation and its constraints say.
 """
 
-from __future__ import annotations
-
 import datetime
 import math
 from collections.abc import Mapping
@@ -20,18 +18,6 @@ import numpy as np
 from hypothesis import strategies as st
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
-
-__all__ = [
-    "among",
-    "anything",
-    "between",
-    "chance",
-    "fields_of",
-    "given_fields",
-    "numbers",
-    "texts",
-    "value_of",
-]
 
 Strategy = st.SearchStrategy[Any]
 

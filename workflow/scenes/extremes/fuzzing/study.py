@@ -1,15 +1,11 @@
 """Fuzzing: what holds of whatever is given, tried on cases that a seed draws."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import frame
 from scenes.extremes.fuzzing import configuration, domains, fields, flags, functions, problems, runs
 from scenes.extremes.fuzzing.harness import row
-
-__all__ = ["PROPERTIES", "study"]
 
 _MODULES = (fields, runs, functions, problems, domains, flags, configuration)
 PROPERTIES = [one for module in _MODULES for one in module.PROPERTIES]

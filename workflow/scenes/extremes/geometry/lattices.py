@@ -1,7 +1,5 @@
 """Runs on lattices that do not suit the solution, against the exact one: what is right, spoken of, refused."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -16,8 +14,6 @@ from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off, overheard
-
-__all__ = ["OF_A_FUNCTION", "Errors", "counts", "evolved", "graded", "lattices"]
 
 _START, _SPAN = 0.5, 1.0
 # A share d of the strength that is where it must not be is missed elsewhere: 2 d in the 1-norm. Nothing is said of

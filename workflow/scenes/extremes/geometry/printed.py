@@ -7,8 +7,6 @@ QUADPACK, the sums are loops over pairs. With x = r^2, (a)_j Pochhammer's symbol
     gamma, order 2 m:   sum_{j<m} (a)_j / j! 1F1(a + j; b; -x),    eta1 = -2 r pi^(-n/2) e^-x L_{m-1}^(n/2+1)(x).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from math import cos, exp, factorial, gamma, inf, pi, sin, sqrt
@@ -17,8 +15,6 @@ import mpmath as mp
 import numpy as np
 from scipy.integrate import quad
 from scipy.special import eval_genlaguerre, j0
-
-__all__ = ["Kernels", "matrix", "places", "power_sum"]
 
 _EXACT = {"limit": 2000, "epsabs": 1e-15, "epsrel": 1e-13}
 

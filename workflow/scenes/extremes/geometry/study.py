@@ -1,12 +1,8 @@
 """Lattices that do not suit: of odd numbers of particles, too coarse, too narrow, beside the data."""
 
-from __future__ import annotations
-
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import frame
 from scenes.extremes.geometry import lattices, sums
-
-__all__ = ["study"]
 
 
 def study(

@@ -1,7 +1,5 @@
 """Sums over lattices of any size, and the matrices of the schemes, against sums term by term."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
@@ -17,11 +15,9 @@ from fracparticles.lattice.exterior import far_field
 from fracparticles.lattice.fourier import FourierConvolution
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.base import LatticeScheme
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.geometry.printed import Kernels, matrix, places, power_sum
-
-__all__ = ["exteriors", "lattice_sums", "matrices"]
 
 _KERNELS = 1e-11  # the accuracy that `kernels.kernel` promises
 _LINE: dict[str, Any] = {
@@ -150,7 +146,7 @@ def _of_matrices(
             exact = matrix(one.name, kernels, n, overlap)
             setting = Setting(alpha=1.0 + beta, order=order, overlap=overlap, dim=dim, n=n)
             for summation in ("fft", "naive"):
-                found = dense_matrix(one.operator(replace(setting, summation=summation)))
+                found = scheme_matrix(one.name, replace(setting, summation=summation))
                 difference, size = (np.abs(a).sum(axis=1).max() for a in (found - exact, exact))
                 worst = max(worst, float(difference / size) if size else float(difference))
     return worst

@@ -1,7 +1,5 @@
 """What the library offers for particles anywhere: strength exchange, Green steps, SPH derivatives."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -22,8 +20,6 @@ from fracparticles.pse import (
 from fracparticles.sph.derivatives import gradient, second_derivative
 from fracstudy.probe import EPS, HELD, REFUSED, WARNED, Kind, Probe, off, overheard, quiet
 from scenes.extremes.irregular_particles.theory import volumes
-
-__all__ = ["probes"]
 
 _N = 120
 _H = 10.0 / _N

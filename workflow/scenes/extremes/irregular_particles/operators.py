@@ -7,18 +7,15 @@ DPSE  (13), (16)  (2 D / eps^2) sum_j V_j (v_j - v_i) Phi_eps(x_j - x_i),  v_i =
 DD    (10)  (D / eps^alpha) sum_j V_j u_j G_eps(x_i - x_j)
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from fracparticles.kernels.families import kernel
 from fracparticles.pse import cell_volumes
 from fracparticles.special import green
 
-__all__ = ["CONSERVATIVE", "FORMS", "arranged", "matrix", "rate_of_change", "weight"]
-
 FORMS = ("KPSE", "GPSE", "FPSE", "DPSE", "DD")
 CONSERVATIVE = ("KPSE", "GPSE", "FPSE", "DPSE")
+ALPHA, START = 1.5, 0.5
 _STEP = 1e-4  # of a derivative in time, relative
 
 
@@ -42,34 +39,31 @@ def arranged(
     return places, cell_volumes(places) if right else np.full(x.size, h)
 
 
-def weight(form: str, r: np.ndarray, alpha: float, epsilon: float) -> np.ndarray:
+def weight(form: str, r: np.ndarray, epsilon: float) -> np.ndarray:
     """Return what a form weighs u_j - u_i with, per volume: KPSE and GPSE."""
     if form == "GPSE":
-        return np.asarray(green(r, epsilon**alpha, alpha)) / epsilon**alpha
-    return alpha * epsilon ** (-1.0 - alpha) * np.asarray(kernel("K", np.abs(r) / epsilon, alpha))
+        return np.asarray(green(r, epsilon**ALPHA, ALPHA)) / epsilon**ALPHA
+    return ALPHA * epsilon ** (-1.0 - ALPHA) * np.asarray(kernel("K", np.abs(r) / epsilon, ALPHA))
 
 
-def matrix(
-    form: str, x: np.ndarray, volumes: np.ndarray, alpha: float, epsilon: float
-) -> np.ndarray:
+def matrix(form: str, x: np.ndarray, volumes: np.ndarray, epsilon: float) -> np.ndarray:
     """Return A of du/dt = A u, D = 1, order II."""
     r = x[:, None] - x
 
     def summed(name: str) -> np.ndarray:
-        values = np.asarray(
-            kernel(name, r / epsilon if name in ("F", "eta1") else np.abs(r) / epsilon, alpha)
-        )
+        odd = name in ("F", "eta1")
+        values = np.asarray(kernel(name, (r if odd else np.abs(r)) / epsilon, ALPHA))
         return volumes * values / epsilon
 
     if form in ("KPSE", "GPSE"):
-        return _exchanged(volumes * weight(form, r, alpha, epsilon))
+        return _exchanged(volumes * weight(form, r, epsilon))
     if form == "DD":
-        return epsilon**-alpha * summed("G")
+        return epsilon**-ALPHA * summed("G")
     if form == "FPSE":
-        flux, divergence = -(epsilon ** (1.0 - alpha)) * summed("F"), summed("eta1")
+        flux, divergence = -(epsilon ** (1.0 - ALPHA)) * summed("F"), summed("eta1")
         both = divergence @ flux + divergence.sum(axis=1)[:, None] * flux
         return -both / epsilon
-    potential = epsilon ** (2.0 - alpha) * summed("kappa")
+    potential = epsilon ** (2.0 - ALPHA) * summed("kappa")
     return 2.0 / epsilon**2 * _exchanged(summed("Phi")) @ potential
 
 
@@ -77,7 +71,12 @@ def _exchanged(weights: np.ndarray) -> np.ndarray:
     return weights - np.diag(weights.sum(axis=1))
 
 
-def rate_of_change(x: np.ndarray, t: float, alpha: float) -> np.ndarray:
-    """Return du/dt of the fundamental solution, -(-Laplacian)^(alpha/2) u, by a central difference in time."""
-    later, sooner = (green(x, t * (1.0 + s * _STEP), alpha) for s in (1.0, -1.0))
-    return np.asarray((later - sooner) / (2.0 * _STEP * t))
+def solution(x: float | np.ndarray) -> np.ndarray:
+    """Return the fundamental solution u at the start."""
+    return np.asarray(green(x, START, ALPHA))
+
+
+def rate_of_change(x: np.ndarray) -> np.ndarray:
+    """Return du/dt there, -(-Laplacian)^(alpha/2) u, by a central difference in time."""
+    later, sooner = (green(x, START * (1.0 + s * _STEP), ALPHA) for s in (1.0, -1.0))
+    return np.asarray((later - sooner) / (2.0 * _STEP * START))

@@ -1,31 +1,27 @@
 """Exchange forms on irregular particles: what they conserve, what accuracy they lose, and when they grow."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix
-from fracparticles.special.stable import green
+from fracparticles.schemes import Setting
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, Kind, Probe, frame, off
 from scenes.extremes.irregular_particles import companions, theory
 from scenes.extremes.irregular_particles.operators import (
+    ALPHA,
     CONSERVATIVE,
     FORMS,
     arranged,
     matrix,
     rate_of_change,
+    solution,
 )
 
-__all__ = ["study"]
-
-_ALPHA, _START = 1.5, 0.5
 _INNER = 0.5  # of the half-width: where errors are taken
 _FINER = 4  # lattice of a reference
 _USUAL = 2.0  # epsilon / h
@@ -63,10 +59,10 @@ def _lattice(overlap: float) -> Iterator[Probe]:
 
 
 def _off_lattice(form: str, overlap: float) -> float:
-    setting = Setting(n=30, spacing=0.1, alpha=_ALPHA, overlap=overlap)
+    setting = Setting(n=30, spacing=0.1, alpha=ALPHA, overlap=overlap)
     x = 0.1 * np.arange(-30, 31)
-    ours = matrix(form, x, np.full(x.size, 0.1), _ALPHA, 0.1 * overlap)
-    return off(ours, dense_matrix(SCHEMES[form].operator(setting)))
+    ours = matrix(form, x, np.full(x.size, 0.1), 0.1 * overlap)
+    return off(ours, scheme_matrix(form, setting))
 
 
 def _conserved(x: np.ndarray, overlap: float) -> Iterator[Probe]:
@@ -85,8 +81,8 @@ def _lost(form: str, x: np.ndarray, overlap: float, kind: str, jitter: float, ri
     places, volumes = arranged(kind, x, jitter, seed=1)
     if not right:
         volumes = np.random.default_rng(2).exponential(h, x.size)
-    a = matrix(form, places, volumes, _ALPHA, overlap * h)
-    terms = volumes[:, None] * a * green(places, _START, _ALPHA)
+    a = matrix(form, places, volumes, overlap * h)
+    terms = volumes[:, None] * a * solution(places)
     return float(abs(terms.sum()) / np.abs(terms).sum())
 
 
@@ -101,7 +97,7 @@ def _add_jitter(
     fine = np.linspace(x[0], x[-1], _FINER * (x.size - 1) + 1)
     volumes = np.full(fine.size, float(fine[1] - fine[0]))
     for form in FORMS:
-        smooth = matrix(form, fine, volumes, _ALPHA, epsilon) @ green(fine, _START, _ALPHA)
+        smooth = matrix(form, fine, volumes, epsilon) @ solution(fine)
         reference = CubicSpline(fine, smooth)
         for jitter, right in product(jitters, (True, False)):
             y = _error(form, x, overlap, jitter, right, seeds, reference)
@@ -118,10 +114,10 @@ def _error(
     h, missed, size = float(x[1] - x[0]), 0.0, 0.0
     for seed in range(seeds):
         places, volumes = arranged("jittered", x, jitter, seed, right)
-        found = matrix(form, places, volumes, _ALPHA, overlap * h) @ green(places, _START, _ALPHA)
+        found = matrix(form, places, volumes, overlap * h) @ solution(places)
         inner = np.abs(places) < _INNER * x[-1]
         missed += float(((found - exact(places))[inner] ** 2).sum())
-        size += float((rate_of_change(places, _START, _ALPHA)[inner] ** 2).sum())
+        size += float((rate_of_change(places)[inner] ** 2).sum())
     return float(np.sqrt(missed / size))
 
 
@@ -129,10 +125,6 @@ def _add_spacing(panels: Panels, half_width: float, levels: Sequence[int], seeds
     """The whole error of KPSE, epsilon = 2 h."""
     for count, (jitter, right) in product(levels, ((0.0, True), (0.3, True), (0.3, False))):
         x = np.linspace(-half_width, half_width, count)
-        y = _error("KPSE", x, _USUAL, jitter, right, seeds, _solution)
+        y = _error("KPSE", x, _USUAL, jitter, right, seeds, rate_of_change)
         name = f"jitter 0.3, {theory.volumes(right)}" if jitter else "lattice"
         panels.add("spacing", name, float(x[1] - x[0]), y, right=right)
-
-
-def _solution(x: np.ndarray) -> np.ndarray:
-    return rate_of_change(x, _START, _ALPHA)

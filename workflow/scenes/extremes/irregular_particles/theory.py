@@ -11,24 +11,24 @@ Places x_j = (j + xi_j) h, xi uniform in [-J, J], so that var xi = J^2 / 3:
 |.| is the 2-norm over y. With epsilon in a fixed ratio to h all of them leave an error of du/dt like h^(1 - alpha).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from math import sqrt
 
 import numpy as np
 
-from fracparticles.special.stable import green
 from fracstudy.probe import HELD, Kind, Probe
-from scenes.extremes.irregular_particles.operators import arranged, matrix, rate_of_change, weight
-
-__all__ = ["predicted", "probes", "volumes"]
+from scenes.extremes.irregular_particles.operators import (
+    arranged,
+    matrix,
+    rate_of_change,
+    solution,
+    weight,
+)
 
 How = tuple[str, float, bool]
 """Kind of the places, the jitter of a lattice, and whether the volumes fit."""
 
-_ALPHA, _START = 1.5, 0.5
 _FINE = 8  # points of a reference integral for one particle
 _POINTS = 12  # x where |g|, |g'|, .. are taken
 
@@ -60,14 +60,14 @@ def volumes(right: bool) -> str:
 
 def predicted(form: str, x: np.ndarray, epsilon: float, jitter: float, right: bool) -> float:
     """Return the predicted rms error of du/dt over the rms of du/dt, for |x| < L/2."""
-    exact = rate_of_change(np.linspace(-0.5, 0.5, 201) * x[-1], _START, _ALPHA)
+    exact = rate_of_change(np.linspace(-0.5, 0.5, 201) * x[-1])
     error = _rms(form, x, epsilon, ("jittered", jitter, right))
     return error / float(np.sqrt((exact**2).mean()))
 
 
 def _g(form: str, centre: float, y: np.ndarray, epsilon: float) -> np.ndarray:
-    difference = green(y, _START, _ALPHA) - green(centre, _START, _ALPHA)
-    return np.asarray(difference * weight(form, centre - y, _ALPHA, epsilon))
+    difference = solution(y) - solution(centre)
+    return np.asarray(difference * weight(form, centre - y, epsilon))
 
 
 def _norms(form: str, x: np.ndarray, epsilon: float) -> np.ndarray:
@@ -112,7 +112,7 @@ def _errors(form: str, x: np.ndarray, overlap: float, how: How, seeds: int) -> f
     middle, step = 0.5 * (fine[1:] + fine[:-1]), float(fine[1] - fine[0])
     for seed in range(seeds):
         places, volumes = arranged(kind, x, jitter, seed, right)
-        sums = matrix(form, places, volumes, _ALPHA, epsilon) @ green(places, _START, _ALPHA)
+        sums = matrix(form, places, volumes, epsilon) @ solution(places)
         inner = np.abs(places) < 0.5 * x[-1]
         integrals = [step * float(_g(form, float(p), middle, epsilon).sum()) for p in places[inner]]
         found.append(sums[inner] - np.array(integrals))

@@ -1,7 +1,5 @@
 """Probes of truncated lattices over long times, of the order of accuracy, of units, and of what is refused."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
@@ -10,12 +8,9 @@ import numpy as np
 
 import fracparticles as fp
 from fracparticles.run.solution import relative_l1_error
-from fracparticles.schemes import SCHEMES
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.probe import EPS, REFUSED, Kind, Probe, off
 from scenes.extremes.long_and_short_times.runs import run_of
-
-__all__ = ["probes"]
 
 _SMALL: dict[str, Any] = {"half_width": 10.0, "spacing": 0.2}
 _SERIES: dict[str, Any] = {"integrator": "exponential"}
@@ -61,7 +56,7 @@ def _mean(scheme: str, beta: float, t: float) -> float:
 def _modes(beta: float, t: float) -> float:
     """DD leaks as its modes decay."""
     run = run_of(scheme="DD", beta=beta, t_final=t, **_SERIES, **_SMALL)
-    values, modes = np.linalg.eigh(dense_matrix(SCHEMES["DD"].operator(run.case.setting)))
+    values, modes = np.linalg.eigh(scheme_matrix("DD", run.case.setting))
     return off(run.u, modes @ (np.exp(run.case.span * values) * (modes.T @ run.u0)))
 
 

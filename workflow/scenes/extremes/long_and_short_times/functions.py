@@ -1,7 +1,5 @@
 """Probes of the fundamental solution over 150 decades of time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from itertools import product
 
@@ -11,8 +9,6 @@ import fracparticles as fp
 from fracparticles.special import central_mass, tail_mass
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.long_and_short_times.profile import profile, rate, tail_constant
-
-__all__ = ["probes"]
 
 _RADII = np.array([0.0, 0.3, 1.0, 3.0, 10.0, 1e3, 1e6])
 _NEAR = _RADII[:5]

@@ -6,14 +6,10 @@ w_1 = cos, w_2 = J_0, w_3 = sin(z) / z, S_n the surface of the unit sphere. Gaus
 integrand smooth at zero; beyond r = 20 the series, whose last term is 10^-13 there of the first.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
 from scipy.special import gamma, j0, roots_legendre
-
-__all__ = ["profile", "rate", "solution", "tail_constant"]
 
 _NODES = 600
 _LAST = 42.0  # exp(-42) is 6e-19

@@ -1,7 +1,5 @@
 """Probes of runs over long times, t_f = 10^3 to 10^12 t_0, and over short ones, t_f - t_0 = 10^-6 to 10^-12 t_0."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import lru_cache
 from itertools import product
@@ -15,8 +13,6 @@ from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, REFUSED, Kind, Probe, off
 from scenes.extremes.long_and_short_times.profile import rate, solution, tail_constant
-
-__all__ = ["add_profiles", "long_probes", "run_of", "short_probes"]
 
 _WIDTH = 4.0  # half-width in units of t_f^(1/alpha): the second term of the tail is 4^-alpha of the first there
 _SPACING = {1: 0.5, 2: 0.5, 3: 0.6}  # in units of t_0^(1/alpha)

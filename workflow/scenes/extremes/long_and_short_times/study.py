@@ -1,13 +1,9 @@
 """Very long and very short times: the fundamental solution, runs on lattices and graded particles, evolve."""
 
-from __future__ import annotations
-
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from fracstudy.probe import frame
 from scenes.extremes.long_and_short_times import bounded, functions, runs
-
-__all__ = ["study"]
 
 
 def study(

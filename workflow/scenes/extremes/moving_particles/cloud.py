@@ -1,7 +1,5 @@
 """Runs of the diffusion velocity method from the fundamental solution on a lattice, and their errors."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any
@@ -13,8 +11,6 @@ from fracparticles.moving import dvm
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import green
 from fracstudy.probe import off
-
-__all__ = ["ALPHA", "START", "TIME", "WORD", "Cloud", "cauchy", "gaussian"]
 
 START, TIME, ALPHA = 0.5, 0.5, 1.5
 WORD: tuple[str, float, str] = ("within 5 %, or a word", 0.05, "fundamental solution")

@@ -1,7 +1,5 @@
 """Markers of other equations: nonlinear diffusion to its end, Burgers' shocks, solitons, sources; exact solutions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from itertools import product
@@ -17,8 +15,6 @@ from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
 from fracparticles.markers.source import GaussianSource, advance_weights
 from fracparticles.markers.stability import extremes
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
-
-__all__ = ["probes"]
 
 _SPOKEN = 0.1  # error of a run that must be spoken of
 _ETA = extremes(SHAPES["S8"]).eta

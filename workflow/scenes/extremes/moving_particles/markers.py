@@ -1,7 +1,5 @@
 """Markers: shape functions, support, steps, signs, units and loads."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -29,8 +27,6 @@ from fracparticles.markers.stability import extremes, lattice_rate
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, REFUSED, WARNED, Kind, Probe, off, quiet
 from scenes.extremes.moving_particles.words import add_error, missed
-
-__all__ = ["SMOOTH", "add_support_errors", "probes", "wave_growth"]
 
 _SPOKEN = 0.05  # error of a run that must be spoken of
 _FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step

@@ -1,7 +1,5 @@
 """Moving particles: sums, remeshing, diffusion velocities, the random walk and markers, where they may go wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import product
 
@@ -18,8 +16,6 @@ from scenes.extremes.moving_particles import (
     walk,
 )
 from scenes.extremes.moving_particles.cloud import Cloud
-
-__all__ = ["study"]
 
 _FACTORS = (0.5, 0.8, 0.95, 1.05, 1.2, 1.5)  # of the limit of a step
 

@@ -1,7 +1,5 @@
 """Sums over scattered particles and their remeshing, at the ends of the numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -17,8 +15,6 @@ from fracparticles.moving.scattered import (
     smooth_kernel,
 )
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
-
-__all__ = ["probes"]
 
 _WIDTH, _EPSILON, _H = 5.0, 0.1, 0.1
 _REMESHED = 1000  # times

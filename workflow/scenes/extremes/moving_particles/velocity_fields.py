@@ -1,7 +1,5 @@
 """The diffusion velocity where a field is weak, of both signs, or remeshed; and where particles meet."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -14,8 +12,6 @@ from fracparticles.moving import dvm
 from fracparticles.special.tails import tail_constant
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud, gaussian
-
-__all__ = ["probes"]
 
 # The sums state 1e-11 of the peak; a velocity is a quotient of two of them, and u at the ends is 1e-3 of it.
 _SAME = 1e-7

@@ -1,7 +1,5 @@
 """The diffusion velocity at its limits: of steps, of the overlap, of the lattice, of the order, of few particles."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import product
@@ -14,16 +12,13 @@ from fracparticles.run.case import Case
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.stability import stability_limit
+from fracparticles.schemes.stability import stability_limit, worst_wave
 from fracparticles.special.stable import green
 from fracparticles.special.tails import tail_constant
 from fracstudy.panels import Panels
 from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe, off
 from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud, cauchy, gaussian
 from scenes.extremes.moving_particles.words import add_error, missed
-from scenes.lucchesi.dvm_stability.study import worst_wave
-
-__all__ = ["add_overlap_errors", "growth_of_a_wave", "probes"]
 
 _FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step
 _HALF, _STEPS = 300, 3  # particles on either side of a wave, steps
@@ -54,7 +49,8 @@ def _growth(orders: Sequence[int]) -> Iterator[Probe]:
 
 def growth_of_a_wave(order: int, factor: float) -> tuple[float, float]:
     """Return what a step of `factor` times the limit multiplies the fastest wave by, and the prediction."""
-    theta = worst_wave(ALPHA, order)
+    setting = Setting(alpha=ALPHA, order=order)
+    theta = worst_wave("DD", setting)
     dt = factor * stability_limit("DD", ALPHA - 1.0, order)
     x = np.arange(-_HALF, _HALF + 1.0)
     wave = np.cos(theta * x)
@@ -66,7 +62,7 @@ def growth_of_a_wave(order: int, factor: float) -> tuple[float, float]:
     change = (moved(x + _XI * wave) - moved(x)) / _XI
     middle = np.abs(x) < _HALF / 6.0
     ratio = float(change[middle] @ wave[middle] / (wave[middle] @ wave[middle]))
-    z = dt * float(SCHEMES["DD"].symbol(np.array([theta]), Setting(alpha=ALPHA, order=order))[0])
+    z = dt * float(SCHEMES["DD"].symbol(np.array([theta]), setting)[0])
     return float(np.copysign(abs(ratio) ** (1.0 / _STEPS), ratio)), 1.0 + z + 0.5 * z * z
 
 

@@ -1,7 +1,5 @@
 """The random walk at the ends of the order and of the numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from itertools import pairwise, product
@@ -20,8 +18,6 @@ from fracparticles.moving.random_walk import (
 )
 from fracparticles.moving.walkers import few_walkers_beyond, walkers_to_equal
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
-
-__all__ = ["probes"]
 
 # sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov).
 _SURE = 2.3

@@ -1,7 +1,5 @@
 """What probes of moving particles have in common: growth against its prediction, errors that must be spoken of."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -9,8 +7,6 @@ import numpy as np
 
 from fracstudy.panels import Panels
 from fracstudy.probe import overheard, quiet
-
-__all__ = ["add_error", "missed"]
 
 
 def missed(growth: Callable[..., tuple[float, float]], *arguments: Any) -> tuple[float, str]:

@@ -1,7 +1,5 @@
 """What the probes of rough data have in common: a case of each scheme."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,10 +8,6 @@ import numpy as np
 import fracparticles as fp
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
-
-__all__ = ["case_of", "cases_of", "deviation", "point", "run"]
-
-EPS = float(np.finfo(float).eps)
 
 
 def case_of(scheme: str, beta: float, **given: Any) -> fp.Case:

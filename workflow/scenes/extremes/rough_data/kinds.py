@@ -1,7 +1,5 @@
 """Data of every kind of array: what they hold is worked with, or refused in one line."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
@@ -12,8 +10,6 @@ import pandas as pd
 from fracparticles.run.solver import prepare
 from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.rough_data.cases import case_of, deviation, run
-
-__all__ = ["probes"]
 
 
 def probes(beta: float) -> Iterator[Probe]:

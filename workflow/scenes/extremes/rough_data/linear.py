@@ -1,7 +1,5 @@
 """What a linear equation does to any data: strengths of any size, sums, mirrors, shifts, other units."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -11,11 +9,10 @@ import numpy as np
 
 from fracparticles.run.solver import prepare
 from fracparticles.schemes import ALL_SCHEMES
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
-from scenes.extremes.dense import matrix_of, whole
+from scenes.extremes.dense import whole
 from scenes.extremes.rough_data.cases import case_of, cases_of, deviation, run
-
-__all__ = ["exact", "sizes", "symmetries", "units"]
 
 # A run is some hundred roundings of the largest strength: of each particle the sum of N, of a series a term a degree.
 _SAME = 1e-12
@@ -51,7 +48,9 @@ def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
         matrix = whole(case)
         # The series rounds T |lambda| 2^-52 of its terms some 64 times, which an open exterior may make larger than
         # their sum.
-        stiffness = case.span * float(np.abs(matrix_of(case)).sum(axis=1).max())
+        stiffness = case.span * float(
+            np.abs(scheme_matrix(case.scheme, case.setting)).sum(axis=1).max()
+        )
         bound = max(_SAME, 64.0 * EPS * stiffness)
         for words, u0 in _shapes(case.x).items():
             name = f"{case.scheme}, {case.exterior}, {words}"

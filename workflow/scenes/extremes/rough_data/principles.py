@@ -1,42 +1,38 @@
 """Signs, bounds and totals: what the weights of a scheme say of any data, however rough; and one point's spreading."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
 from fracparticles.time.whole_space import evolve
 from fracstudy.probe import WARNED, Kind, Probe
-from scenes.extremes.dense import matrix_of
 from scenes.extremes.geometry.lattices import OF_A_FUNCTION
 from scenes.extremes.rough_data.cases import case_of, cases_of, point, run
-
-__all__ = ["bounds", "functions", "point_masses", "signs"]
 
 _ROUNDED = 1e-13
 _KERNELS = [("KPSE", 2, 0.5), ("KPSE", 4, 0.5), ("KPSE", 4, 0.9), ("KPSE", 12, 0.5)]
 _KERNELS += [(scheme, 2, 0.5) for scheme in ("GPSE", "FD", "DD", "FPSE")]
 
 
-def signs(beta: float) -> Iterator[Probe]:
+def signs() -> Iterator[Probe]:
     """One particle for so short a time that u = u0 + T A u0: the sign of the weights, which the printed kernels give.
 
     K of order II is positive, that of order IV for beta = 0.9 not; G and the flux are not. A scheme with negative
     weights makes negative strengths: that is not an error of the code, and u says so.
     """
-    for scheme, order, alpha_less_one in _KERNELS:
+    for scheme, order, beta in _KERNELS:
         # GPSE takes no short steps: they are its smoothing length.
         short = {} if scheme == "GPSE" else {"t_final": 1e-5}
-        case = case_of(scheme, alpha_less_one, order=order, **short)
-        a = matrix_of(case)
+        case = case_of(scheme, beta, order=order, **short)
+        a = scheme_matrix(case.scheme, case.setting)
         least = float((a - np.diag(np.diag(a)) + np.diag(np.full(len(a), np.inf))).min())
         positive = least >= 0.0
         expected = "stays positive" if positive else "turns negative"
-        name = f"{scheme}, order {order}, beta = {alpha_less_one:g}, one particle"
+        name = f"{scheme}, order {order}, beta = {beta:g}, one particle"
         yield Kind("sign", expected, source="weights of the matrix")(name, _sign, case, positive)
 
 

@@ -1,12 +1,8 @@
 """Rough and extreme data: pulses, noise, strengths at the ends of float64, other units, other kinds of arrays."""
 
-from __future__ import annotations
-
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import frame
 from scenes.extremes.rough_data import kinds, linear, principles
-
-__all__ = ["study"]
 
 
 def study(
@@ -18,7 +14,7 @@ def study(
         *linear.sizes(beta, schemes, dims),
         *linear.symmetries(beta, schemes),
         *linear.units(beta, schemes, dims),
-        *principles.signs(beta),
+        *principles.signs(),
         *principles.bounds(beta, dims),
         *principles.point_masses(beta, half_width),
         *principles.functions(beta, schemes),

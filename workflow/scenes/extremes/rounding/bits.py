@@ -1,7 +1,5 @@
 """The same bits: from run to run, from process to process, from any number of threads, from one job or two at once."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import subprocess
@@ -14,8 +12,6 @@ from typing import Any
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute
 from fracstudy.probe import HELD, Kind, Probe
-
-__all__ = ["CASES", "digests", "probes"]
 
 _LINE = {"beta": 0.5, "half_width": 10.0, "spacing": 0.1}
 _OPEN = {**_LINE, "exterior": "open", "integrator": "exponential"}

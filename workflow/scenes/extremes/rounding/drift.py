@@ -1,7 +1,5 @@
 """The mass of a closed lattice over very many steps: single, double and compensated, and the library's."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from math import fsum, sqrt
 from typing import Any
@@ -15,8 +13,6 @@ from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.time import STEP_POLYNOMIALS, step
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, Kind, Probe, off
-
-__all__ = ["probes"]
 
 _SINGLE = float(np.finfo(np.float32).eps)
 _FIELDS = {"scheme": "KPSE", "beta": 0.5, "half_width": 5.0, "spacing": 0.5}

@@ -1,33 +1,26 @@
 """How far the mass drifts."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pandas as pd
-from matplotlib.figure import Figure
 
-from fracstudy.style import axes_row, legend_below, log_log
+from fracstudy import style
+from fracstudy.panels import pick
+from fracstudy.style import Figure, Look
 
-__all__ = ["figure"]
-
-_LOOK: dict[str, dict[str, Any]] = {
-    "float32": {"color": "#D55E00", "marker": "s"},
-    "float64, step by step": {"color": "#0072B2", "marker": "o"},
-    "float64, one series": {"color": "#009E73", "marker": "^"},
-    "float64, compensated": {"color": "#CC79A7", "marker": "D"},
-    "eps sqrt(n)": {"color": "0.5", "linestyle": ":"},
-    "eps n N": {"color": "0.5", "linestyle": "--"},
+_LOOK: dict[str, Look] = {
+    "float32": {"color": style.RED, "marker": "s"},
+    "float64, step by step": {"color": style.BLUE, "marker": "o"},
+    "float64, one series": {"color": style.GREEN, "marker": "^"},
+    "float64, compensated": {"color": style.PINK, "marker": "D"},
+    "eps sqrt(n)": {"color": "0.5", "linestyle": ":", "label": "ε √n"},
+    "eps n N": {"color": "0.5", "linestyle": "--", "label": "ε n N"},
 }
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw the relative drift of the mass against the number of steps, between the two laws."""
-    drawn, (ax,) = axes_row(1, height=3.8, width=5.4)
+    drawn, (ax,) = style.axes_row(1, height=3.8, width=5.4)
     for name, look in _LOOK.items():
-        points = series[series["series"] == name]
-        label = {"eps sqrt(n)": "ε √n", "eps n N": "ε n N"}.get(name, name)
-        ax.plot(points["x"], points["y"], label=label, **look)
-    log_log(ax, xlabel="number of steps, n", ylabel="relative drift of the mass")
-    legend_below(drawn, ax, columns=3)
+        style.draw(ax, pick(series, series=name), **{"label": name, **look})
+    style.log_log(ax, xlabel="number of steps, n", ylabel="relative drift of the mass")
+    style.legend_below(drawn, ax, columns=3)
     return drawn

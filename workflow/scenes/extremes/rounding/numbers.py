@@ -1,7 +1,5 @@
 """What a number goes through: kinds of input, sums, files, tables, the arithmetic itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from math import fsum, log2
 from pathlib import Path
@@ -17,11 +15,10 @@ from fracparticles.arguments import operand, real_array
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.inputs import write_table
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
-from scenes.extremes.dense import matrix_of, whole
-
-__all__ = ["probes"]
+from scenes.extremes.dense import whole
 
 _FIELDS: dict[str, Any] = {"beta": 0.5, "half_width": 5.0, "t_initial": 0.5}
 _FIELDS["integrator"] = "exponential"
@@ -145,7 +142,9 @@ def _series() -> Iterator[Probe]:
     fields = {"beta": 0.5, "half_width": 4.0, "spacing": 0.5, "integrator": "exponential"}
     for scheme in ("DD", "FPSE", "KPSE"):
         cases = [Case(scheme=scheme, t_final=0.5 + span, **fields) for span in (1.0, 1e3, 1e6)]
-        for case, flow in zip(cases, _exponentials(matrix_of(cases[0])), strict=True):
+        for case, flow in zip(
+            cases, _exponentials(scheme_matrix(cases[0].scheme, cases[0].setting)), strict=True
+        ):
             name = f"{scheme}, 17 particles, T = {case.span:.0e}"
             yield within(name, _of_series, case, flow)
 
@@ -159,7 +158,7 @@ def _exponentials(matrix: np.ndarray) -> list[mpmath.matrix]:
 
 
 def _of_series(case: Case, flow: mpmath.matrix) -> float:
-    u0, matrix = np.linspace(1.0, 2.0, 17), matrix_of(case)
+    u0, matrix = np.linspace(1.0, 2.0, 17), scheme_matrix(case.scheme, case.setting)
     with mpmath.workdps(50):
         exact = np.array([float(one) for one in flow * mpmath.matrix(u0.tolist())])
     condition = float(np.linalg.cond(np.linalg.eig(matrix)[1]))  # 1 if A is symmetric

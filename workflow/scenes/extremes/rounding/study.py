@@ -1,13 +1,9 @@
 """Rounding: kinds of numbers, sums, the drift of the mass over many steps, and whether the same bits come out."""
 
-from __future__ import annotations
-
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from fracstudy.probe import frame
 from scenes.extremes.rounding import bits, drift, numbers
-
-__all__ = ["study"]
 
 
 def study(

@@ -1,7 +1,5 @@
 """Amplification per step, measured from random strengths, against the spectral radius of the step polynomial."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,8 +11,6 @@ from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.time import STEP_POLYNOMIALS, step
 from fracstudy.probe import HELD, Kind, Probe
-
-__all__ = ["measured", "probes"]
 
 _STEPS, _LAST = 600, 50  # 1.5^600 does not overflow yet
 # Modes next to the greatest decay like 1 / n in the norm: 50 of 600 steps tell the factor to some 1e-3.

@@ -1,23 +1,18 @@
 """The limit over fractional order and overlap, and the growth per step, measured against predicted."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fracstudy.inputs import NUMERALS
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS
-
-__all__ = ["figure"]
+from fracstudy.style import COLOURS, Axes, Figure, Look, draw
 
 _LEVELS = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0]
 _INTEGRATORS = {"euler": "D", "rk2": "o", "rk4": "^"}
+_POINTS: Look = {"linestyle": "none", "markerfacecolor": "none", "markersize": 5.0}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -54,7 +49,7 @@ def _map(ax: Axes, points: pd.DataFrame, colours: Any) -> Any:
     ax.grid(visible=False)
     field = beta, overlap, np.where(limit > 0.0, limit, np.nan)
     shading = "gouraud" if (limit > 0.0).all() else "nearest"
-    how: dict[str, Any] = {"cmap": "viridis", "shading": shading, "rasterized": True}
+    how: Look = {"cmap": "viridis", "shading": shading, "rasterized": True}
     shown = ax.pcolormesh(*field, norm=colours, **how)
     if limit.shape[0] > 2 and limit.shape[1] > 2:
         lines = ax.contour(*field, levels=_LEVELS, colors="white", linewidths=0.7)
@@ -67,8 +62,6 @@ def _growth(ax: Axes, points: pd.DataFrame) -> None:
     ax.plot(ends, ends, color="0.5", linewidth=0.9)
     ax.axvline(1.0, color="0.6", linewidth=0.8, linestyle=":")
     for integrator, part in points.groupby("series"):
-        look: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "none", "markersize": 5.0}
-        marker = _INTEGRATORS[integrator]
-        ax.plot(part["x"], part["y"], label=integrator, marker=marker, **look)
+        draw(ax, part, label=integrator, marker=_INTEGRATORS[integrator], **_POINTS)
     ax.set(xlabel=r"spectral radius of $p(A \Delta t)$", ylabel="measured growth per step")
     ax.legend(loc="upper left")

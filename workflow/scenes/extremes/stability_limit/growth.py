@@ -1,7 +1,5 @@
 """Runs that grow: whether they say so, at the predicted rate and, where they overflow, at the predicted step."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Iterator
@@ -14,10 +12,9 @@ import numpy as np
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
 from fracparticles.run.case import Case
 from fracparticles.run.solver import initial_strengths, prepare
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.probe import EPS, HELD, WARNED, Kind, Probe, quiet
-from scenes.extremes.dense import matrix_of, whole
-
-__all__ = ["hidden", "overflow", "words"]
+from scenes.extremes.dense import whole
 
 _EVALUATIONS = ("stepping", "series")
 
@@ -100,7 +97,7 @@ def _against_the_matrix(case: Case) -> tuple[float, str]:
 
 
 def _step_of_overflow(case: Case) -> float:
-    values, modes = np.linalg.eig(matrix_of(case))
+    values, modes = np.linalg.eig(scheme_matrix(case.scheme, case.setting))
     z = values * case.time_step
     coefficients = np.linalg.solve(modes, initial_strengths(case)[0])
     amplitude = np.maximum(np.abs(coefficients) * np.abs(modes).max(axis=0), EPS * 1e-3)

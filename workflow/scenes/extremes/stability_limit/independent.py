@@ -1,13 +1,9 @@
 """The symbols of the schemes once more, from scipy's functions: sums over the aliases of the kernels' transforms."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
 from scipy.special import gamma, gammaincc
-
-__all__ = ["symbol"]
 
 
 def symbol(scheme: str, theta: np.ndarray, alpha: float, order: int, overlap: float) -> np.ndarray:

@@ -1,7 +1,5 @@
 """The limit a itself: against symbols from scipy, in boxes, where it is zero, and what it refuses."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from itertools import product
 from typing import Any
@@ -13,8 +11,6 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.probe import HELD, REFUSED, Kind, Probe
 from scenes.extremes.stability_limit.independent import symbol
-
-__all__ = ["against_an_independent_symbol", "in_boxes", "refused"]
 
 _POINTS = 4001
 

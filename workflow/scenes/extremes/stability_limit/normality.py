@@ -1,7 +1,5 @@
 """Eigenvalues, numerical range and transient growth of operators that are not normal."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
@@ -10,11 +8,9 @@ import numpy as np
 from scipy.linalg import eigh, expm
 
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix, eigenvalue_bounds
+from fracparticles.schemes.spectrum import dense_matrix, eigenvalue_bounds, scheme_matrix
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.probe import EPS, HELD, Kind, Probe
-
-__all__ = ["eigenvalues", "transient_growth"]
 
 _TIMES = np.geomspace(1e-2, 1e6, 17)
 _STEPS = 2 ** np.arange(15)
@@ -55,7 +51,7 @@ def transient_growth(half: int) -> Iterator[Probe]:
     for scheme, exterior, order in product(("DD", "FPSE", "KPSE"), ("truncated", "open"), (2, 4)):
         setting = Setting(alpha=1.5, n=half, order=order, exterior=exterior)
         name = f"{scheme}, order {order}, {exterior}"
-        matrix = dense_matrix(SCHEMES[scheme].operator(setting))
+        matrix = scheme_matrix(scheme, setting)
         reach = float(eigh(0.5 * (matrix + matrix.T), eigvals_only=True)[-1])
         normal = exterior == "truncated" and scheme != "FPSE"
         condition = 1.0 if normal else float(np.linalg.cond(np.linalg.eig(matrix)[1]))

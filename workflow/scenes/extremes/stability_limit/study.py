@@ -1,7 +1,5 @@
 """The limit of Eqs. (54)-(56): what grows beyond it, what does not below it, and who says so."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -11,8 +9,6 @@ from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from fracstudy.probe import frame
 from scenes.extremes.stability_limit import amplification, growth, limits, normality
-
-__all__ = ["SHOWN", "study"]
 
 SHOWN = tuple(product(("DD", "FPSE", "KPSE"), (2, 4, 8)))
 

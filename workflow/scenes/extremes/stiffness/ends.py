@@ -1,7 +1,5 @@
 """What is left at the end of a stiff run, and what is said or refused."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
@@ -14,10 +12,7 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, prepare
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe, off
-from scenes.extremes.stiffness.ways import Stiff, exact_modes, power_of_step, stiff
-
-__all__ = ["at_the_limit", "conservation", "decay", "refused", "spoken_of"]
-
+from scenes.extremes.stiffness.ways import Stiff, deviation_of, exact_modes, power_of_step, stiff
 
 _MEAN = Kind("the end", "the mean of the data everywhere", source="closed form", must=HELD)
 
@@ -86,12 +81,8 @@ def at_the_limit(half: int, stiffness: list[float]) -> Iterator[Probe]:
             bound, expected = 10.0 * one.bound(value), f"p(A dt)^n, n = {case.steps:.0e}"
             yield Kind("many steps", expected, bound, "mpmath", HELD)(
                 f"KPSE, {integrator}, dt = {share:g} a, T |lambda| = {value:.0e}",
-                lambda: _relative(prepare(case).solve(one.u0), of(power)),
+                lambda: deviation_of(prepare(case).solve(one.u0), of(power)),
             )
-
-
-def _relative(u: np.ndarray, exact: np.ndarray) -> tuple[float, str]:
-    return off(u, exact), f"{off(u, exact):.0e}"
 
 
 def spoken_of(half: int, stiffness: list[float]) -> Iterator[Probe]:

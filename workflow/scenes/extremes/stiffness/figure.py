@@ -1,39 +1,31 @@
 """Operator applications and error over the stiffness, for each way of the time integration."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
+from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import axes_row, legend_below, log_log, panel_title
+from fracstudy.probe import EPS
+from fracstudy.style import Figure, Look
 
-__all__ = ["figure"]
-
-_HOLLOW = {"markerfacecolor": "none"}
-_LOOK: dict[str, dict[str, Any]] = {
-    "rk2, stepping": {"color": "#D55E00", "marker": "s"},
-    "stabilised": {"color": "#CC79A7", "marker": "D"},
-    "rk2, series": {"color": "#009E73", "marker": "^", "markersize": 8.0, **_HOLLOW},
-    "exponential": {"color": "#0072B2", "marker": "o", "markersize": 3.5},
+_LARGE: Look = {"markersize": 8.0, "markerfacecolor": "none"}
+_LOOK: dict[str, Look] = {
+    "rk2, stepping": {"color": style.RED, "marker": "s"},
+    "stabilised": {"color": style.PINK, "marker": "D"},
+    "rk2, series": {"color": style.GREEN, "marker": "^", **_LARGE},
+    "exponential": {"color": style.BLUE, "marker": "o", "markersize": 3.5},
 }
-_TITLES = {"applications": ("operator applications", "work"), "error": ("relative error", "error")}
+_LABELS = {"applications": "operator applications", "error": "relative error"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     """Draw (a) applications and (b) errors of KPSE; ways that take too many applications have no error."""
-    drawn, axes = axes_row(2, height=3.6)
-    for ax, letter, (panel, (label, title)) in zip(axes, "ab", _TITLES.items(), strict=True):
-        points = pick(series, panel=panel)
+    drawn, axes = style.axes_row(("work", "error"), height=3.6)
+    for ax, (panel, label) in zip(axes, _LABELS.items(), strict=True):
         for way, look in _LOOK.items():
-            part = pick(points, series=way)
-            ax.plot(part["x"], part["y"], label=way, **look)
-        log_log(ax, xlabel=r"stiffness $T\,|\lambda|$", ylabel=label)
-        panel_title(ax, letter, title)
+            style.draw(ax, pick(series, panel=panel, series=way), label=way, **look)
+        style.log_log(ax, xlabel=r"stiffness $T\,|\lambda|$", ylabel=label)
     x = np.array([series["x"].min(), series["x"].max()])
-    axes[1].plot(x, 64.0 * np.finfo(float).eps * x, color="0.5", linewidth=0.9, linestyle=":")
-    legend_below(drawn, axes[0])
+    axes[1].plot(x, 64.0 * EPS * x, color="0.5", linewidth=0.9, linestyle=":")
+    style.legend_below(drawn, axes[0])
     return drawn

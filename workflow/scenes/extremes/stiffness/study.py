@@ -1,12 +1,8 @@
 """Stiff problems, T |lambda| up to 1e10: what each way of the time integration does, and whether it is right."""
 
-from __future__ import annotations
-
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import frame
 from scenes.extremes.stiffness import ends, ways
-
-__all__ = ["study"]
 
 
 def study(

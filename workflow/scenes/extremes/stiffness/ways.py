@@ -1,7 +1,5 @@
 """The ways through a stiff run, each against the eigenvectors of the matrix in forty digits."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -22,8 +20,6 @@ from fracparticles.time import STEP_POLYNOMIALS
 from fracparticles.time.rkc import ChebyshevStep, stages_for
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, Kind, Probe, off
-
-__all__ = ["Stiff", "exact_modes", "power_of_step", "probes", "stiff"]
 
 # Measured, of a Chebyshev series: an application of A is exact to some ulps of |lambda|, and the recurrence adds to it.
 _ULPS = 64.0
@@ -115,14 +111,14 @@ def probes(
                 continue
             right = Kind(way, "f(A) u in forty digits", one.bound(value) + extra, "mpmath", HELD)
             name = f"{scheme}, T |lambda| = {value:.0e}"
-            made.append(right(name, lambda: _deviation(run(), of(f))))
+            made.append(right(name, lambda: deviation_of(run(), of(f))))
             if scheme == "KPSE" and np.isfinite(made[-1].deviation):
                 panels.add("error", way, value, max(made[-1].deviation, EPS))
     return made, panels.frame
 
 
-def _deviation(u: np.ndarray, exact: np.ndarray) -> tuple[float, str]:
-    """Against the solution, or against 1e-280 where it has decayed to less."""
+def deviation_of(u: np.ndarray, exact: np.ndarray) -> tuple[float, str]:
+    """Return the deviation from the solution, or against 1e-280 where it has decayed to less, and in words."""
     deviation = off(u, exact, max(float(np.abs(exact).max()), 1e-280))
     return deviation, f"{deviation:.0e}"
 

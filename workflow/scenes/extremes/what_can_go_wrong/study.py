@@ -1,13 +1,9 @@
 """The probes of all families, counted by verdict."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import Verdict
-
-__all__ = ["study"]
 
 
 def study(inputs: Inputs, *, families: dict[str, dict[str, str]]) -> Result:

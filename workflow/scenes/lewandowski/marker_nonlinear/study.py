@@ -71,7 +71,7 @@ def study(
         *_set_up(setting, half_width, apart),
         *_time_stepping(setting, runs, scans, t_final),
         *_long_time(setting, stable, [lost, lost_coarse, place]),
-        _porous(128, max(t_final, 10.0)),
+        _porous(max(t_final, 10.0)),
     ]
     panels = _panels(setting, printed, stable)
     for scan in scans:
@@ -178,12 +178,13 @@ def _long_time(setting: Markers, stable: Evolution, lost: Sequence[float]) -> It
     )
 
 
-def _porous(markers: int, until: float) -> Finding:
+def _porous(until: float) -> Finding:
     """f_t = (f f_x)_x from t = 1 by markers, V = -f_x, beside f = t^(-1/3) (1 - x^2 t^(-2/3) / 6) > 0."""
 
     def exact(x: np.ndarray, t: float) -> np.ndarray:
         return t ** (-1.0 / 3.0) * np.maximum(0.0, 1.0 - x * x * t ** (-2.0 / 3.0) / 6.0)
 
+    markers = 128
     x, w = uniform(lambda x: exact(x, 1.0), (-math.sqrt(6.0), math.sqrt(6.0)), markers)
     velocity = MarkerVelocity(SHAPES["S8"], 0.5, lambda x, fields: -fields[0] * fields[1])
     steps = round((until - 1.0) / 0.05)

@@ -108,8 +108,9 @@ def _burgers(
 # --- Korteweg-de Vries --------------------------------------------------------------------------------
 
 
-def kdv_residual(soliton: Soliton, half: float = 8.0, points: int = 512) -> float:
+def kdv_residual(soliton: Soliton, half: float) -> float:
     """Return max |V f - (3 f^2 + f_xx)| relative to its maximum, f_xx by Fourier series, V by `Soliton.velocity`."""
+    points = 512
     x = half * (2.0 * np.arange(points) / points - 1.0)
     f = soliton.value(x)
     k = np.pi / half * np.fft.rfftfreq(points, 1.0 / points)
@@ -167,8 +168,9 @@ def _kdv(
     ]
 
 
-def _signed(count: int, epsilon: float = 0.3, until: float = 0.25) -> tuple[float, float]:
+def _signed(count: int) -> tuple[float, float]:
     """The relative L1 errors of exp(-x^2) and of x exp(-x^2) by markers that take (7) whatever the sign of F."""
+    epsilon, until = 0.3, 0.25
     errors, z, steps = [], np.linspace(-4.0, 4.0, 401), math.ceil(until / (0.25 * epsilon**2))
     velocity = MarkerVelocity(SHAPES["S8"], epsilon)
     for power in (0, 1):

@@ -11,6 +11,7 @@ from fracparticles.moving.remeshing import remesh
 from fracparticles.schemes import SCHEMES, Setting, Sum, dpse, fpse
 from fracparticles.schemes.base import OnePass
 from fracparticles.special.stable import central_mass
+from fracstudy.errors import EPS
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.panels import pick
@@ -23,7 +24,6 @@ NEEDS: dict[str, list[Any]] = {
     "remeshing": ["none", "M4'"],
 }
 
-_EPS = float(np.finfo(float).eps)
 _CLAIMED = ("DD", "DPSE", "FPSE", "GPSE", "KPSE")
 _TWO_PASSES = {
     "DPSE": (dpse.potential_weights, dpse.laplacian_weights),
@@ -60,7 +60,7 @@ def study(inputs: Inputs, *, shown_beta: float) -> Result:
         "beta": shown["beta"],
         "exterior": shown["exterior"],
         "M(t_f) / M(t_0) - 1": shown["change"],
-        "in ulp": (shown["change"] / _EPS).round(),
+        "in ulp": (shown["change"] / EPS).round(),
         "round-off, bound": shown["bound"],
         "exact outflow / M(t_0)": shown["outflow"],
         "change + exact outflow": shown["change"] + shown["outflow"],
@@ -108,10 +108,10 @@ def _both_sides(weights: np.ndarray) -> float:
 def _round_off(run: Any) -> float:
     n = round(run.half_width / run.particle_spacing)
     if run.scheme == "DVM":
-        return 4.0 * _EPS * np.log2(2.0 * n) * (1.0 + run.remeshings)
+        return 4.0 * EPS * np.log2(2.0 * n) * (1.0 + run.remeshings)
     lattice = (n, run.particle_spacing, 1.0 + run.beta, int(run.order), run.overlap)
     time = run.diffusivity * (run.t_final - run.t_initial)
-    return 4.0 * _EPS * np.log2(4.0 * n) * weight_sum(run.scheme, *lattice) * time
+    return 4.0 * EPS * np.log2(4.0 * n) * weight_sum(run.scheme, *lattice) * time
 
 
 def _lattice(runs: pd.DataFrame) -> Iterator[Finding]:

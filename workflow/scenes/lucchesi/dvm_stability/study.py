@@ -7,10 +7,7 @@ the rate -D |k|^alpha eta^(k epsilon) xi, which is DD's symbol: a midpoint step 
 z = dt A_DD(k h), and that exceeds one where D dt / h^alpha exceeds DD's limit a.
 """
 
-import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
-from functools import partial
 from itertools import product
 from typing import Any
 
@@ -18,19 +15,18 @@ import numpy as np
 import pandas as pd
 
 from fracparticles.errors import NonFiniteSolution, StabilityWarning
-from fracparticles.moving import dvm
-from fracparticles.moving.lagrangian import advance
+from fracparticles.moving.diffusion_velocity import DiffusionVelocity
+from fracparticles.moving.growth import displacement_growth
 from fracparticles.run.case import Case
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import advect, compute, initial_strengths
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.stability import stability_limit
+from fracparticles.schemes.stability import stability_limit, worst_wave
+from fracstudy.errors import quiet
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import pick
 
-_STEPS = 3  # of which a measured growth is the mean
-_XI = 1e-5  # displacement of a wave, in spacings: its square is what linearity neglects
 _SEED = 1e-6  # relative perturbation of a run's strengths, far above round-off: the same on every machine
 _RUINED = 10.0  # an error that has grown so many times is no longer that of the discretisation
 _WEAK = 1e-3  # of the peak: a very small strength
@@ -42,30 +38,6 @@ _RUNS: dict[str, dict[str, Any]] = {
     "DVM, M4'": {"scheme": "DVM", "remeshing": "M4'"},
     "GPSE, open exterior": {"scheme": "GPSE", "exterior": "open"},
 }
-
-
-def worst_wave(alpha: float, order: int, overlap: float = 2.0) -> float:
-    """Return k h of the wave that DD's operator damps the most."""
-    setting = Setting(alpha=alpha, order=order, overlap=overlap)
-    return float(_WAVES[np.argmin(SCHEMES["DD"].symbol(_WAVES, setting))])
-
-
-def displacement_growth(
-    alpha: float, order: int, step: float, theta: float, half: int, overlap: float = 2.0
-) -> float:
-    """Return what a midpoint step of DVM multiplies a displacement wave by, measured.
-
-    A uniform field on 2 `half` + 1 particles, h = 1, moves with and without the wave xi cos(theta i); their
-    distance in the middle, where the ends are not felt yet, against the wave. `step` is D dt / h^alpha.
-    """
-    x = np.arange(-half, half + 1.0)
-    wave = np.cos(theta * x)
-    velocity = dvm.DiffusionVelocity(alpha, order, overlap)
-    move = partial(advance, strength=np.ones(x.size), velocity=velocity, dt=step, steps=_STEPS)
-    change = (move(x + _XI * wave)[0] - move(x)[0]) / _XI
-    middle = np.abs(x) <= half / 6.0
-    ratio = float(change[middle] @ wave[middle] / (wave[middle] @ wave[middle]))
-    return float(np.copysign(np.abs(ratio) ** (1.0 / _STEPS), ratio))
 
 
 def gpse_factors(alpha: float, overlap: float) -> np.ndarray:
@@ -139,15 +111,16 @@ def _growth(alpha: float, factors: list[float], half: int) -> pd.DataFrame:
     """Factors of the worst displacement wave of DVM, measured and predicted; those of short waves of GPSE."""
     rows = []
     for order, factor in product((2, 4), factors):
-        theta = worst_wave(alpha, order)
-        step = factor * stability_limit("DD", alpha - 1.0, order)
         setting = Setting(alpha=alpha, order=order)
+        theta = worst_wave("DD", setting)
+        step = factor * stability_limit("DD", alpha - 1.0, order)
         lowest = float(SCHEMES["DD"].symbol(np.array([theta]), setting)[0])
         row = {"run": "DVM", "order": order, "factor": factor}
-        row["measured"] = displacement_growth(alpha, order, step, theta, half)
+        velocity = DiffusionVelocity(alpha, order, setting.overlap)
+        row["measured"] = displacement_growth(velocity, step, theta, half)
         rows.append({**row, "predicted": _midpoint(step * lowest)})
     limit = stability_limit("DD", alpha - 1.0)
-    short = worst_wave(alpha, 2) / 2.0 <= _WAVES
+    short = worst_wave("DD", Setting(alpha=alpha)) / 2.0 <= _WAVES
     for factor in np.geomspace(0.1 * min(factors), 1.5 * max(factors), 61):
         largest = np.abs(gpse_factors(alpha, (factor * limit) ** (1.0 / alpha))[short]).max()
         rows.append({"run": "GPSE", "order": 2, "factor": factor, "predicted": largest})
@@ -164,7 +137,8 @@ def _runs(
     for factor in factors:
         case = Case(**grid, **_RUNS[name], dt=factor * limit, t_initial=start)
         # With a trace of the worst wave, so that round-off need not provide it.
-        trace = seed * np.cos(worst_wave(case.alpha, 2) / case.particle_spacing * case.x)
+        worst = worst_wave("DD", Setting(alpha=case.alpha)) / case.particle_spacing
+        trace = seed * np.cos(worst * case.x)
         u, stopped, remeshings = _final_field(case, initial_strengths(case)[0] * (1.0 + trace))
         growth = _midpoint(-2.0 * case.time_step / limit) if case.scheme == "DVM" else np.nan
         row = {
@@ -193,17 +167,10 @@ def _unseeded(grid: dict[str, float], runs: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([_runs(name, grid, chosen, 0.0) for name in _RUNS if name.startswith("DVM")])
 
 
-@contextmanager
-def _no_warning() -> Iterator[None]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", StabilityWarning)
-        yield
-
-
 def _final_field(case: Case, u0: np.ndarray) -> tuple[np.ndarray | None, float, int]:
     """The field at the end, nan and the number of remeshings, or None and the time after which the run stopped."""
     times: list[float] = []
-    with _no_warning():
+    with quiet(StabilityWarning):
         if case.scheme != "DVM":
             return compute(case, u0).u, np.nan, 0
         try:
@@ -248,9 +215,9 @@ def _dvm(
     yield measured("L-C11.DVM_invariant", remeshed=least)
 
 
-def _velocity(case: Case) -> dvm.DiffusionVelocity:
+def _velocity(case: Case) -> DiffusionVelocity:
     epsilon = case.resolved_overlap * case.particle_spacing
-    return dvm.DiffusionVelocity(case.alpha, case.order, epsilon)
+    return DiffusionVelocity(case.alpha, case.order, epsilon)
 
 
 def _bounded(grid: dict[str, float], spacings: list[float]) -> Finding:
@@ -280,7 +247,7 @@ def _weak(cases: list[Case]) -> Iterator[Finding]:
         name, u0 = f"beta = {case.beta:g}", initial_strengths(case)[0]
         least[name] = u0.min() / u0.max()
         states: list[Any] = []
-        with _no_warning():
+        with quiet(StabilityWarning):
             try:
                 advect(case, u0, lambda *state, kept=states: kept.append(state))
             except NonFiniteSolution:

@@ -121,9 +121,9 @@ def _gains(reach: pd.Series) -> float:
     return float((reach.iloc[1:].to_numpy() / reach.iloc[:-1].to_numpy()).min())
 
 
-def _literal_series(x: np.ndarray, alpha: float, terms: int = 200) -> np.ndarray:
-    """(A.1) as printed: 1/(x pi) sum (-x)^m Gamma(1 + m/alpha) / m! sin(-m pi / 2)."""
-    m = np.arange(1.0, terms + 1.0)
+def _literal_series(x: np.ndarray, alpha: float) -> np.ndarray:
+    """200 terms of (A.1) as printed: 1/(x pi) sum (-x)^m Gamma(1 + m/alpha) / m! sin(-m pi / 2)."""
+    m = np.arange(1.0, 201.0)
     size = np.exp(gammaln(1.0 + m / alpha) - gammaln(m + 1.0))
     return ((-x[:, None]) ** m * size * np.sin(-0.5 * pi * m)).sum(axis=1) / (x * pi)
 

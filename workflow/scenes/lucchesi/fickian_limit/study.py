@@ -52,7 +52,7 @@ def fickian_error(
     operator = one_pass_operator(setting, lambda m: dpse.laplacian_weights(m, kernels), 0.0)
     at_zero, at_pi = lattice_transform("Phi", np.array([0.0, pi]), kernels)
     low = setting.rate * 2.0 / overlap**2 * (at_pi - at_zero)
-    x = np.arange(-n, n + 1) * setting.spacing
+    x = setting.x
     u = integrators.exponential(t_final - t_initial, low, 0.0)(operator, heat_kernel(x, t_initial))
     inside = np.abs(x) <= 5.0 * _FICKIAN_RADIUS
     deviation = np.abs(u - heat_kernel(x, t_final))[inside]

@@ -11,8 +11,9 @@ from fracparticles.kernels.families import kernel
 from fracparticles.moving.dvm import DiffusionVelocity
 from fracparticles.run.orders import observed_order
 from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Scheme, Setting, riesz
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
+from fracstudy.errors import EPS
 from fracstudy.findings import each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from scenes.lucchesi.lucchesi_table_1.extension import variable_diffusivity
@@ -198,7 +199,7 @@ def _toeplitz_defect(name: str, s: Setting) -> float:
 
     It is zero exactly if the rate of change is one convolution sum and a multiple of u_i.
     """
-    a = dense_matrix(SCHEMES[name].operator(s))
+    a = scheme_matrix(name, s)
     np.fill_diagonal(a, 0.0)
     change = a[1:, 1:] - a[:-1, :-1]
     return float(np.abs(change).max() / np.abs(a).max())
@@ -213,6 +214,6 @@ def _localised_pairs() -> float:
 
     def pairs(name: str) -> int:
         weights = np.abs(kernel(name, r, 1.5))
-        return int(np.count_nonzero(weights > np.finfo(float).eps * weights.max()))
+        return int(np.count_nonzero(weights > EPS * weights.max()))
 
     return (pairs("F") + pairs("eta1")) / pairs("K")

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from fracparticles.lattice.dense import Spectrum, norms_of_powers, spectrum
 from fracparticles.run.case import Case
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix, power_iteration
+from fracparticles.schemes.spectrum import power_iteration, scheme_matrix
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.findings import Finding, each, measured
@@ -33,7 +33,7 @@ _BETAS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
 def _matrix(scheme: str, alpha: float, order: int, particles: int) -> np.ndarray:
     setting = Setting(n=particles // 2, spacing=1.0, alpha=alpha, order=order, overlap=_OVERLAP)
-    return dense_matrix(SCHEMES[scheme].operator(setting))
+    return scheme_matrix(scheme, setting)
 
 
 class _Growth(NamedTuple):

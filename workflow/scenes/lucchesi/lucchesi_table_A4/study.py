@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from scipy.special import gammaln, roots_legendre
 
 from fracparticles.special import mean_radius, reduced_green
+from fracstudy.errors import power_of_ten
 from fracstudy.findings import each, measured
 from fracstudy.inputs import Inputs, Result
 
@@ -137,15 +138,13 @@ def _mass_error(alpha: float) -> float:
 def _row(alpha: float, printed: str | None) -> dict[str, float]:
     exact, split = mean_radius(alpha), split_radius(alpha)
     theirs = float(printed) if printed else np.nan
-    off = max(abs(split.radius - exact), _ROUNDING)
     return {
         "alpha": alpha,
         "printed": theirs,
         "closed form": exact,
         "deviation": exact / theirs - 1.0,
         "sums (A.7), (A.8)": round(split.radius, 5),
-        # The next power of ten: of an error at round-off only its size is reproducible.
-        "sums off by less than": float(10.0 ** np.ceil(np.log10(off))),
+        "sums off by less than": power_of_ten(split.radius - exact, _ROUNDING),
         "split M": split.m,
         "terms of (A.7)": split.inner_terms,
         "terms of (A.8)": split.outer_terms,

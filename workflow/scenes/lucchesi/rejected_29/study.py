@@ -13,7 +13,7 @@ from fracparticles.run.case import Case
 from fracparticles.run.dataset import read_run
 from fracparticles.run.solver import compute, initial_strengths
 from fracparticles.schemes import SCHEMES, Setting
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
@@ -66,7 +66,7 @@ def study(inputs: Inputs, *, shown_beta: float, dense: int, history: dict[str, A
 def _spectrum(name: str, beta: float, size: int) -> np.ndarray:
     """The eigenvalues of A h^alpha / D, ascending; A is symmetric."""
     setting = Setting(n=size // 2, spacing=1.0, alpha=1.0 + beta, overlap=_OVERLAP)
-    return np.linalg.eigvalsh(dense_matrix(SCHEMES[name].operator(setting)))
+    return np.linalg.eigvalsh(scheme_matrix(name, setting))
 
 
 def _follow(panels: Panels, beta: float, growth: float, history: Mapping[str, Any]) -> float:
@@ -82,7 +82,7 @@ def _follow(panels: Panels, beta: float, growth: float, history: Mapping[str, An
         setting = Setting(n=n, spacing=half_width / n, alpha=1.0 + beta, overlap=_OVERLAP)
         rate, steps = growth * setting.rate, round(50.0 * history["foldings"])
         operator = SCHEMES["PSE29"].operator(setting)
-        u = np.asarray(green(np.arange(-n, n + 1) * setting.spacing, 0.5, 1.0 + beta))
+        u = np.asarray(green(setting.x, 0.5, 1.0 + beta))
         edge = [u[-1]]
         for _ in range(steps):
             u = integrators.step(operator, rk2, 0.02 / rate, 1, u)
@@ -102,7 +102,7 @@ def _blow_up(beta: float) -> tuple[float, str]:
         scheme="PSE29", beta=beta, half_width=10.0, spacing=0.2, overlap=_OVERLAP, dt=0.02, t_final=1000.0,
         evaluation="stepping", store="metrics",
     )  # fmt: skip
-    values, modes = np.linalg.eigh(dense_matrix(SCHEMES["PSE29"].operator(case.setting)))
+    values, modes = np.linalg.eigh(scheme_matrix("PSE29", case.setting))
     amplitudes = modes.T @ initial_strengths(case)[0]
     factor = np.log(integrators.STEP_POLYNOMIALS["rk2"](values * case.time_step))
     largest = np.log(np.abs(amplitudes) * np.abs(modes).max(axis=0) + np.finfo(float).tiny)

@@ -68,7 +68,7 @@ def _rate_at_the_edge(run: Any) -> dict[str, float]:
     alpha, n = 1.0 + run.beta, round(run.half_width / run.particle_spacing)
     h, s, order = run.particle_spacing, run.overlap, int(run.order)
     setting = Setting(n=n, spacing=h, alpha=alpha, order=order, overlap=s)
-    u = np.asarray(green(np.arange(-n, n + 1) * h, run.t_initial, alpha))
+    u = np.asarray(green(setting.x, run.t_initial, alpha))
     # u_t = -Q_x at the end, from the exact flux one spacing to either side
     sides = np.asarray(green_flux(run.half_width + np.array([-h, h]), run.t_initial, alpha))
     exact = -(sides[1] - sides[0]) / (2.0 * h)

@@ -1,6 +1,5 @@
 """What Sec. 4.3 concludes from Figs. 3b, 4b and 5b, all beta together, and Sec. 6 of the domain that this takes."""
 
-import warnings
 from collections.abc import Iterator
 from functools import partial
 
@@ -9,6 +8,7 @@ import pandas as pd
 
 from fracparticles.errors import AccuracyWarning
 from fracparticles.kernels.families import kernel
+from fracstudy.errors import quiet
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_of
@@ -79,6 +79,5 @@ def _far_share(name: str, beta: float) -> float:
 def _order_on(scheme: str, truncation: float, spacing: list[float], beta: float) -> float:
     """The observed order of the error (48) at order IV, exact in time, on a truncated lattice."""
     grid = {"scheme": scheme, "order": 4, "beta": beta, "truncation": truncation}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)  # of the short domain, which is the point
+    with quiet(AccuracyWarning):  # of the short domain, which is the point
         return order_of_runs(spacing, integrator="exponential", **grid)

@@ -5,6 +5,7 @@ import pandas as pd
 
 from fracparticles.run.dataset import read_run
 from fracparticles.run.orders import observed_order, self_convergence_order
+from fracstudy.errors import EPS
 from fracstudy.findings import measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -15,7 +16,7 @@ NEEDS = {"integrator": ["exponential"]}
 _INTEGRATORS = {"euler": ("RK1", 1.0), "rk2": ("RK2", 2.0), "rk4": ("RK4", 4.0)}
 # n steps and a sum over N particles leave differences of about n eps |u|; below a hundred times that of 2000 steps
 # the difference of two solutions is noise.
-_NOISE = 100.0 * 2000.0 * np.finfo(float).eps
+_NOISE = 100.0 * 2000.0 * EPS
 _SETTLED = "order (49), smallest dt above round-off"
 
 

@@ -12,15 +12,21 @@ from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, construct, 
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.run.orders import observed_order
 from fracparticles.time import STEP_POLYNOMIALS, step
+from fracstudy.errors import EPS
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from scenes.particle_note import waves
-from scenes.particle_note.waves import SEED, Skewed, arranged, heat
+from scenes.particle_note.waves import (
+    CENTRE,
+    SEED,
+    START,
+    Skewed,
+    arranged,
+    heat,
+    rms_error,
+    second_derivative_error,
+)
 
-_EPS = float(np.finfo(float).eps)
-_START = 0.5
-_CENTRE = 4.0  # errors are measured for |x| < 4: the ends of the domain are no part of the question
 _ACCURACIES = (2, 4, 6)
 _WIDE = 0.4  # the power of h in eps with which the second order in eps is met on particles anywhere
 _MORE = 4  # times as many seeds
@@ -62,14 +68,14 @@ def study(
         x, v = arranged(kind, n, *domain)
         for name, kernel in kernels.items():
             exchange = StrengthExchange(x, v, epsilon, kernel)
-            row, history, q = _run(exchange, v * heat(x, _START), time)
+            row, history, q = _run(exchange, v * heat(x, START), time)
             row["error of f(x, T)"] = _solution_error(x, v, q, time)
             rows.append({"particles": kind, "kernel": name, **row})
             panels.add(**history, panel="mass", kind=kind, series=name)
             if name == "Gaussian (20)" and kind == "random":
                 panels.add("solution", x=x, y=q / v, volume=v)
     x = np.linspace(-5.0, 5.0, 301)
-    panels.add("exact", x=x, y=heat(x, _START + time))
+    panels.add("exact", x=x, y=heat(x, START + time))
     for (kind, name), exchange, q in (_any_volumes(n, half_width, epsilon), _two_dimensions(n)):
         rows.append({"particles": kind, "kernel": name, **_run(exchange, q, time)[0]})
     table = pd.DataFrame(rows)
@@ -100,15 +106,15 @@ def _run(
         "T": time,
         "|Σ dQ/dt| / Σ |dQ/dt| at t = 0": float(imbalance),
         _LOST: change[-1],
-        _BOUND: 4.0 * _EPS * np.log2(exchange.size) * exchange.rate * time,
+        _BOUND: 4.0 * EPS * np.log2(exchange.size) * exchange.rate * time,
     }
     times = np.linspace(0.0, time, parts + 1)
     return row, {"x": times, "y": np.abs(change)}, q
 
 
 def _solution_error(x: np.ndarray, v: np.ndarray, q: np.ndarray, time: float) -> float:
-    inside = np.abs(x) < _CENTRE
-    final = (v * heat(x, _START + time))[inside]
+    inside = np.abs(x) < CENTRE
+    final = (v * heat(x, START + time))[inside]
     return float(np.abs(q[inside] - final).sum() / final.sum())
 
 
@@ -146,7 +152,7 @@ def _accuracy(
         for seed in range(seeds if kind == "jittered" else 1):
             x, v, exchange, operator = _tried(kind, n, domain, seed, epsilon)
             steps = int(np.ceil(exchange.rate * time / (0.8 * _RK4.stability_interval)))
-            q = step(exchange, _RK4, time / steps, steps, v * heat(x, _START))
+            q = step(exchange, _RK4, time / steps, steps, v * heat(x, START))
             errors.append((operator, _solution_error(x, v, q, time)))
         where = {"kind": kind, "power": power, "x": h}
         for panel, error in zip(("operator", "solution error"), np.transpose(errors), strict=True):
@@ -160,7 +166,7 @@ def _tried(
     """Particles, their volumes, the exchange with (20), and its root mean square error of f'' for |x| < 4."""
     x, v = arranged(kind, n, *domain, seed)
     exchange = StrengthExchange(x, v, epsilon, GAUSSIAN_20)
-    return x, v, exchange, waves.rms_error(exchange, x, v, _START, _CENTRE)
+    return x, v, exchange, rms_error(exchange, x, v)
 
 
 def _conserved(table: pd.DataFrame) -> Finding:
@@ -186,7 +192,7 @@ def _same_as_21(n: int, domain: tuple[float, float], epsilon: float) -> Finding:
     deviation = {}
     for kind in _KINDS:
         x, v = arranged(kind, n, *domain)
-        f = heat(x, _START)
+        f = heat(x, START)
         direct = v * derivative_by_sum(x, f, x, f, v, epsilon, GAUSSIAN_20, 2)
         exchanged = StrengthExchange(x, v, epsilon, GAUSSIAN_20).apply(v * f)
         deviation[kind] = np.abs(exchanged - direct).max() / np.abs(direct).max()
@@ -198,7 +204,7 @@ def _high_order(numbers: list[int], half_width: float, overlap: float) -> Findin
     spacing = 2.0 * half_width / np.array(sorted(numbers)[:2])
     power = {}
     for r in _ACCURACIES:
-        error = [waves.second_derivative_error(construct(2, r), h, overlap) for h in spacing]
+        error = [second_derivative_error(construct(2, r), h, overlap) for h in spacing]
         power[f"r = {r}"] = abs(float(observed_order(spacing, error)[-1]) - r)
     return measured("P-C3.high_order", deviation=power)
 

@@ -9,12 +9,12 @@ import pandas as pd
 from fracparticles import pse
 from fracparticles.pse import GAUSSIAN_20, TENT_27, Kernel, lattice_moment, moment, required_moments
 from fracparticles.run.orders import observed_order
+from fracstudy.errors import EPS
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
 from scenes.particle_note.waves import SEED, arranged, rms_error, second_derivative_error
 
-_EPS = float(np.finfo(float).eps)
 _WANTED = required_moments(2, 2)[2]
 _KERNELS: dict[str, Kernel] = {
     "(27)": TENT_27,
@@ -24,7 +24,7 @@ _KERNELS: dict[str, Kernel] = {
 
 _WIDE = 3.0  # eps / h
 # Particles off the lattice: numbers, domain, by how much of h; the time of the heat kernel, and where it is judged.
-_NUMBERS, _HALF_WIDTH, _JITTER, _START, _CENTRE = (160, 320), 8.0, 0.1, 0.5, 4.0
+_NUMBERS, _HALF_WIDTH, _JITTER = (160, 320), 8.0, 0.1
 _PERIOD = 64  # the weights of the compact scheme fall like 0.101^|j|
 
 
@@ -118,7 +118,7 @@ def _elsewhere(spacing: list[float]) -> Iterator[Finding]:
     for n in _NUMBERS:
         x, v = arranged("jittered", n, _HALF_WIDTH, _JITTER)
         exchange = pse.StrengthExchange(x, v, 2.0 * _HALF_WIDTH / n, TENT_27)
-        errors.append(rms_error(exchange, x, v, _START, _CENTRE))
+        errors.append(rms_error(exchange, x, v))
     power = observed_order(1.0 / np.array(_NUMBERS), errors)[-1]
     yield measured("P-C4.regular_only", error=errors[-1], power=power, jitter=_JITTER)
 
@@ -174,7 +174,7 @@ def _economy(accuracy: list[int]) -> Iterator[Finding]:
 
     def neighbours(kernel: Kernel, overlap: float) -> int:
         i = np.arange(-100.0, 101.0)
-        return int(np.count_nonzero(kernel(i / overlap) > _EPS * kernel(0.0))) - 1
+        return int(np.count_nonzero(kernel(i / overlap) > EPS * kernel(0.0))) - 1
 
     few, many = neighbours(TENT_27, 1.0), neighbours(GAUSSIAN_20, 2.0)
     close = {"the Gaussian at eps = h": {"ratio": neighbours(GAUSSIAN_20, 1.0) / few}}

@@ -12,9 +12,8 @@ from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.interval_jacobi import jacobi_eigenvalues
 from fracparticles.bounded.interval_no_flux import no_flux_state
 from fracparticles.run.orders import observed_order
-from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.variable.closed_forms import Cauchy
 from fracstudy.errors import off, three_digits
 from fracstudy.inputs import Inputs, Result
@@ -144,7 +143,7 @@ def _truncated(
         ours = []
         for n, h in zip(halves, spacings, strict=True):
             setting = Setting(alpha=alpha, overlap=overlap, n=n, spacing=h)
-            ours.append(measured(dense_matrix(scheme(name).operator(setting)), h))
+            ours.append(measured(scheme_matrix(name, setting), h))
         errors = np.abs(np.array(ours) / exact - 1.0)
         panels.add("truncated", name, spacings, errors, ends=ends)
         order = float(observed_order(spacings, errors)[-1])

@@ -10,9 +10,8 @@ import pandas as pd
 from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.disc_polynomials import AbsorbingDisc
 from fracparticles.bounded.square import Square
-from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.setting import Setting
-from fracparticles.schemes.spectrum import dense_matrix
+from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.errors import power_of_ten
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import observed
@@ -131,7 +130,7 @@ def _truncated(alpha: float, box: list[int], finest: int, panels: Panels) -> lis
         found = []
         for n in box:
             setting = Setting(alpha=alpha, dim=2, n=n, spacing=2.0 / (2 * n + 1))
-            matrix = dense_matrix(SCHEMES[name].operator(setting)).T
+            matrix = scheme_matrix(name, setting).T
             kept = float(np.abs(matrix.sum(axis=0)).max())
             found.append(_longest(-matrix, n, even=exterior == "absorbing"))
             row = {"part": "greatest rate of a constant", "case": name, "alpha": alpha, "count": n}

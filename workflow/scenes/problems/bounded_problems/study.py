@@ -1,7 +1,5 @@
 """Problems with exact solutions on bounded domains, what they conserve, and a profile that is carried."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from math import gamma

@@ -110,7 +110,7 @@ def _field(setting: Setting) -> type[KnownField]:
 
 def _given(setting: Setting, equation: str, c: float) -> tuple[np.ndarray, np.ndarray]:
     """u at the particles, and the right-hand side of an equation there."""
-    at, field, alpha = _particles(setting), _field(setting), setting.alpha
+    at, field, alpha = setting.positions, _field(setting), setting.alpha
     u = field.value(at)
     if equation == _MEAN:
         return u, exchange_limit(at[0], alpha, c)
@@ -124,14 +124,9 @@ def _drift(form: str, setting: Setting, c: float) -> float:
     truncated = replace(setting, n=n, exterior="truncated", far_terms=1)
     operator = VariableDiffusivity(form, truncated)
     field = _field(truncated)
-    u, d = field.value(_particles(truncated)), 1.0 + c * field.value(operator.points)
+    u, d = field.value(truncated.positions), 1.0 + c * field.value(operator.points)
     rate = operator.apply(u, d)
     return float(abs(rate.sum()) / np.abs(rate).sum())
-
-
-def _particles(setting: Setting) -> list[np.ndarray]:
-    x = setting.spacing * np.arange(-setting.n, setting.n + 1.0)
-    return list(np.meshgrid(*(x,) * setting.dim, indexing="ij", sparse=True))
 
 
 def _run(alpha: float, form: str, dim: int, order: int, h: float) -> dict[str, Any]:
@@ -153,7 +148,7 @@ def _run(alpha: float, form: str, dim: int, order: int, h: float) -> dict[str, A
         diffusivity=diffusivity, source=source, alpha=alpha, dim=dim, form=form, order=order, spacing=h,
         half_width=_FAR, t_final=1.0, rtol=1e-8,
     )  # fmt: skip
-    at = _particles(problem.case.setting)
+    at = problem.case.setting.positions
     start = Gaussian.value(at)
     run = _solved(problem, start)
     error = off(run["u"].values, np.exp(-1.0) * start)
@@ -163,12 +158,12 @@ def _run(alpha: float, form: str, dim: int, order: int, h: float) -> dict[str, A
 def _two_equations(alpha: float, c: float, alphas: Sequence[float], panels: Panels) -> None:
     """The two right-hand sides, and how far apart they are for other alpha; both closed forms."""
     fine = Setting(alpha=alpha, n=400, spacing=_SHOWN / 400.0)
-    (x,) = _particles(fine)
+    x = fine.x
     for equation in (_FLUX, _MEAN):
         panels.add("right-hand side", equation, x, _given(fine, equation, c)[1])
     ours = replace(fine, order=4, n=1600, exterior="open", far_terms=3)
     operator = VariableDiffusivity("exchange", ours, tail=2.0)
-    (at,) = _particles(ours)
+    at = ours.x
     rate = operator.apply(Cauchy.value([at]), 1.0 + c * Cauchy.value(operator.points))
     near = np.flatnonzero(np.abs(at) <= _SHOWN)[::10]
     panels.add("right-hand side", "exchange", at[near], rate[near])

@@ -73,16 +73,11 @@ def study(
     return Result(pd.DataFrame(rows, columns=columns), (), panels.frame)
 
 
-def _particles(setting: Setting) -> list[np.ndarray]:
-    x = setting.spacing * np.arange(-setting.n, setting.n + 1.0)
-    return list(np.meshgrid(*(x,) * setting.dim, indexing="ij", sparse=True))
-
-
 def _levels(settings: Sequence[Setting], change: float, panels: Panels) -> Iterator[dict[str, Any]]:
     """The error for each spacing, against the closed form with the order of each place."""
     errors = []
     for setting in settings:
-        at = _particles(setting)
+        at = setting.positions
         field = Cauchy if setting.dim == 1 else Gaussian
         varied = np.tanh(at[0]) if setting.dim == 1 else Gaussian.value(at)
         alpha = setting.alpha + change * varied
@@ -133,7 +128,7 @@ def _interpolation(
 def _constant(alpha: float, overlap: float) -> dict[str, Any]:
     """A constant order against the operator of DD."""
     setting = Setting(alpha=alpha, overlap=overlap, order=4, n=400, spacing=0.1, exterior="open")
-    u = Cauchy.value(_particles(setting))
+    u = Cauchy.value(setting.positions)
     plain = SCHEMES["DD"].operator(setting).apply(u)
     ours = VariableOrder(setting, alpha).apply(u)
     return _row("constant order", "line", np.nan, off(ours, plain), 0.0)

@@ -11,8 +11,6 @@ long as there are enough for a width of one. With a velocity the steps are Lawso
 Linear elements on a mesh given once, zero beyond it: the exponential is by the eigenvectors of stiffness and mass.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
