@@ -13,6 +13,7 @@ from fracparticles.moving import dvm
 from fracparticles.moving.lagrangian import FieldNotPositive, Remeshing, advance, quotient_velocity
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.special.stable import green, mean_radius
+from fracparticles.time.whole_space import evolve
 
 START = 0.5
 
@@ -256,6 +257,20 @@ def test_a_field_below_the_accuracy_of_the_sum_needs_a_threshold():
     with pytest.raises(FieldNotPositive, match=r"step 1 of 2, from t = 0 .*threshold"):
         dvm.run(x, np.exp(-x * x), **options)
     assert dvm.run(x, np.exp(-x * x), threshold=1e-6, **options).history.eliminated_count > 0
+
+
+@pytest.mark.parametrize(("order", "later"), [(2, 0.5), (4, 0.5), (4, 2.0)])
+def test_a_gaussian_is_carried_with_the_threshold_that_the_message_names(order, later):
+    x = lattice(20.0, 0.1)
+    options = {"spacing": 0.1, "alpha": 1.5, "dt": 2e-3, "steps": round(later / 2e-3)}
+    with pytest.raises(FieldNotPositive, match=r"takes a threshold of 1e-4\.") as refused:
+        dvm.run(x, np.exp(-x * x), order=order, **options)
+    named = float(str(refused.value).split()[-1].rstrip("."))
+    run = dvm.run(x, np.exp(-x * x), order=order, threshold=named, **options)
+    exact = evolve(np.exp(-x * x), 0.1, 1.5, later, tail=())
+    inner = np.abs(x) <= 15.0
+    # Less than that of the peak is left out, on a lattice of the length 40: of the mass at most 40 times as much.
+    assert np.abs(run.field(x) - exact)[inner].max() <= 40.0 * named
 
 
 def test_a_field_that_changes_sign_stops_the_run():

@@ -201,6 +201,7 @@ def test_outputs_that_cannot_be_written_are_refused_before_any_work(cli, tmp_pat
     given = (*SMALL, "--dt", 0.05, "-o")
     assert refused(cli("solve", *given, "none/run.nc"), "none/run.nc", "a directory that exists")
     assert refused(cli("solve", *given, tmp_path), "this is a directory")
+    assert refused(cli("solve", *given, "run.csv"), "output = 'run.csv'", "Name it run.nc.")
     os.mkfifo("pipe")
     os.symlink("/dev/null", "null")
     os.symlink("none.nc", "dangling")

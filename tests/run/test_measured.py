@@ -277,6 +277,17 @@ def test_any_text_is_refused_or_a_table(tmp_path_factory, text):
         assert fp.measured(path).values.size >= 4
 
 
+@pytest.mark.parametrize("width", [1.0, 1.3])
+def test_data_that_underflow_far_out_are_read_in_silence(width):
+    """exp(-x^2) has slopes below 1e-308 there, whose harmonic mean is zero."""
+    x = np.linspace(-50.0, 50.0, 1001)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        data = fp.measured((x, np.exp(-((x / width) ** 2))))
+        assert data.interpolation_error < 1e-3
+        assert data(np.array([45.0]))[0] == 0.0
+
+
 # --- runs -----------------------------------------------------------------------------------------
 
 

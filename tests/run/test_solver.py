@@ -295,6 +295,18 @@ def test_what_is_no_case_is_refused(junk):
             takes(junk)
 
 
+def test_who_passes_a_problem_is_sent_on():
+    problem = fp.Problem(alpha=1.5, half_width=10.0, spacing=0.1, t_final=1.0)
+    for call in (fp.solve, fp.prepare, fp.estimate_error):
+        with pytest.raises(InvalidInput, match=r"is for fp\.solve_problem"):
+            call(problem)
+
+
+def test_a_word_is_no_flag():
+    with pytest.raises(InvalidInput, match="estimate = 'no'"):
+        fp.solve(case(), estimate="no")
+
+
 def test_an_operator_of_another_lattice_is_refused():
     other = fp.prepare(case(half_width=5.0)).operator
     with pytest.raises(InvalidInput, match=r"^operator = 'one of 41' .* the 81 particles"):

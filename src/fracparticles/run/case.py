@@ -9,6 +9,7 @@ from urllib.parse import quote
 
 from pydantic import model_validator
 
+from fracparticles.arguments import instance
 from fracparticles.errors import InvalidInput
 from fracparticles.run.checks import check
 from fracparticles.run.derived import Derived
@@ -16,7 +17,7 @@ from fracparticles.run.fractional_order import with_beta
 from fracparticles.run.parameters import FUNDAMENTAL, fastest_evaluation
 from fracparticles.run.times import parts, with_times
 
-__all__ = ["FUNDAMENTAL", "Case"]
+__all__ = ["FUNDAMENTAL", "Case", "a_case"]
 
 _LONGEST_NAME = 240  # bytes; file systems take 255, suffix included
 
@@ -133,6 +134,12 @@ class Case(Derived):
             name = f"{name[: _LONGEST_NAME - len(digest) - 8]}_sha256-{digest}"
         kind = f"{self.scheme}-{self.order}" + ("" if self.dim == 1 else f"-{self.dim}d")
         return f"{kind}/beta{_digits(self.beta)}/{name}.nc"
+
+
+def a_case(value: Any) -> Case:
+    """Return what is a case; raises `InvalidInput` for anything else."""
+    remedy = "Make one: fp.Case(scheme='KPSE', ...). A fp.Problem is for fp.solve_problem."
+    return instance("case", value, Case, "a fp.Case", remedy)
 
 
 def _said(word: str, number: float | None, default: float | None = None) -> str:

@@ -16,6 +16,7 @@ from fracparticles.files import replaceable
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import choices_of, takes_lists, takes_numbers
 from fracparticles.run.fractional_order import ALPHA, with_beta
+from fracparticles.run.tables import not_a_table
 from fracparticles.schemes import scheme as find_scheme
 from fracparticles.schemes.stability import stability_limit
 
@@ -164,6 +165,7 @@ def _writable(output: str | None) -> Path:
     if output is None:
         raise InvalidInput("output", None, "the path of the file to write", "Give -o run.nc.")
     folder, where = replaceable(output, "output").parent, "a file in a directory that"
+    not_a_table(output, "output")
     if not folder.is_dir():
         raise InvalidInput("output", output, f"{where} exists", f"Make {str(folder)!r} first.")
     if not os.access(folder, os.W_OK | os.X_OK):

@@ -21,6 +21,7 @@ from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.complaints import label_of
 from fracparticles.run.initial import case_of_run
 from fracparticles.run.solution import Solution, relative_l1_error
+from fracparticles.run.tables import not_a_table
 from fracparticles.special.stable import mean_radius
 
 if TYPE_CHECKING:
@@ -202,7 +203,8 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
     Raises
     ------
     InvalidInput
-        If `path` is there and not a regular file, or the data set holds what NetCDF cannot hold.
+        If `path` is there and not a regular file, or has the name of a table, or the data set holds what NetCDF cannot
+        hold.
     OSError
         If the file cannot be written: a folder without permission, a full disk.
     """
@@ -211,6 +213,7 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
     if not isinstance(dataset, xr.Dataset):
         raise InvalidInput("dataset", type(dataset).__name__, "a Dataset", "Give what solve gives.")
     with replacing(path) as temporary:
+        not_a_table(path, "path")
         try:
             _to_netcdf(dataset, temporary)
             seal(temporary)

@@ -24,9 +24,8 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
-from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.case import FUNDAMENTAL, Case, a_case
 from fracparticles.run.initial import Initial, resolved
 from fracparticles.run.interpolated import Measured
 from fracparticles.run.prepared import scheme_amplification
@@ -125,7 +124,7 @@ def estimate_error(
     InvalidInput
         As `solve`.
     """
-    source = resolved(check.instance("case", case, Case), initial)
+    source = resolved(a_case(case), initial)
     return estimate_of(compute(case, source), source, within)
 
 

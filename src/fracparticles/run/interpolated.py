@@ -181,7 +181,10 @@ def _spline(axes: Sequence[np.ndarray], values: np.ndarray, x: list[np.ndarray])
 def _monotone(axes: Sequence[np.ndarray], values: np.ndarray, x: list[np.ndarray]) -> np.ndarray:
     from scipy.interpolate import PchipInterpolator
 
-    return _by_axes(PchipInterpolator, axes, values, x)
+    with np.errstate(
+        over="ignore"
+    ):  # 1 / slope of data that have underflown: the slope is zero then
+        return _by_axes(PchipInterpolator, axes, values, x)
 
 
 _INTERPOLANTS: dict[str, Interpolant] = {"monotone cubic": _monotone, "cubic spline": _spline}

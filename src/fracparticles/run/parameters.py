@@ -188,7 +188,7 @@ class Parameters(Checked):
         ge=0.0,
         lt=1.0,
         description="Share of the greatest strength up to which DVM leaves a particle out when it remeshes. "
-        f"{THRESHOLD:g} if left out.",
+        f"{THRESHOLD:g} if left out; a Gaussian, which falls faster than the solution, takes 1e-4.",
     )
     store: Literal["field", "profile", "metrics"] = Field(
         default="field",

@@ -13,7 +13,7 @@ from fracparticles.errors import FracparticlesError, InvalidInput, NonFiniteSolu
 from fracparticles.graded.field import INTERPOLATED, graded_step
 from fracparticles.lattice.operators import LatticeOperator, MatrixOperator
 from fracparticles.run.advection import named
-from fracparticles.run.case import Case
+from fracparticles.run.case import Case, a_case
 from fracparticles.run.initial import bare_strengths, refuse_non_finite
 from fracparticles.run.stability import warn_if_unstable
 from fracparticles.run.times import parts
@@ -176,7 +176,7 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     NonFiniteSolution
         If the time steps would overflow.
     """
-    check.instance("case", case, Case)
+    a_case(case)
     if case.kind.moving:
         resting = "a scheme whose particles stay on the lattice"
         remedy = f"Use solve: the operator of {case.scheme} depends on the solution."

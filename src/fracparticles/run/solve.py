@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fracparticles import arguments as check
-from fracparticles.run.case import Case
+from fracparticles.run.case import Case, a_case
 from fracparticles.run.dataset import to_dataset
 from fracparticles.run.initial import Initial, resolved
 from fracparticles.run.solver import Progress, compute
@@ -63,7 +63,7 @@ def solve(
         If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
         have no time, and t_initial was not given.
     """
-    source = resolved(check.instance("case", case, Case), initial)
+    source, estimate = resolved(a_case(case), initial), check.flag("estimate", estimate)
     units = units_of(source, units)
     solution = compute(case, source, progress)
     if estimate:

@@ -10,7 +10,7 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.moving.lagrangian import Observer
 from fracparticles.run.advection import advect, advect_to_outputs
-from fracparticles.run.case import Case
+from fracparticles.run.case import Case, a_case
 from fracparticles.run.doubts import warn_if_doubtful
 from fracparticles.run.initial import Initial, initial_strengths, resolved
 from fracparticles.run.interpolated import Measured
@@ -37,7 +37,7 @@ def compute(
     case: Case, initial: Initial | None = None, progress: Progress | None = None
 ) -> Solution:
     """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
-    check.instance("case", case, Case)
+    a_case(case)
     if progress is not None:
         check.function("progress", progress)
     source = resolved(case, initial)

@@ -11,7 +11,7 @@ import numpy as np
 
 from fracparticles.errors import InvalidInput, spelled
 
-__all__ = ["is_table", "name_and_unit", "read_table"]
+__all__ = ["is_table", "name_and_unit", "not_a_table", "read_table"]
 
 _KNOWN = ("x", "y", "z", "u")
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
@@ -22,6 +22,19 @@ def is_table(path: str | os.PathLike[str]) -> bool:
     return Path(path).suffix.lower() in _TABLES
 
 
+def not_a_table(path: str | os.PathLike[str], field: str) -> None:
+    """Refuse the name of a table for a NetCDF file: nothing would read it again.
+
+    Raises
+    ------
+    InvalidInput
+        If the name ends in one of these.
+    """
+    if is_table(path):
+        allowed = f"a NetCDF file, and none that ends in {spelled(_TABLES)} like a table"
+        raise InvalidInput(field, str(path), allowed, "Name it run.nc.")
+
+
 def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """Return the columns of a table by name, and the units in their headings."""
     try:
@@ -29,9 +42,8 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     except FileNotFoundError:
         raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
     except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput(
-            "file", str(path), f"a readable table ({error})", "Write it as UTF-8."
-        ) from None
+        allowed, remedy = f"a readable table ({error})", "Write it as UTF-8."
+        raise InvalidInput("file", str(path), allowed, remedy) from None
     lines: list[str] = []
     remark = ""  # the last one before the numbers
     for line in map(str.strip, text.splitlines()):

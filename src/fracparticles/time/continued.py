@@ -38,6 +38,8 @@ class Continued:
     Attributes
     ----------
     tails : Tails
+    length : int
+        L.
     waves : callable
         See `Circle`.
     """
@@ -68,6 +70,7 @@ class Continued:
             self._shown = (..., *(slice(first // every, first // every + points),) * dim)
         time = scaled_time * float(length) ** -alpha
         self.tails = Tails(inside, shown, length, alpha, time, before, after, moved, outer)
+        self.length = length
         circle = Circle(length, dim, alpha, scaled_time, amplification, every, moved)
         self._circle, self._every, self.waves = circle, every, circle.waves
 

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from fracparticles.special.images import outside_integrals
-from fracparticles.time.multipoles import Terms, values_of
+from fracparticles.time.multipoles import HARMONICS, Terms, values_of
 
 __all__ = ["Meeting"]
 
@@ -44,7 +44,6 @@ class Meeting:
         places = (depths.reshape(-1, 1, 1) * reach).astype(int).reshape(-1, self._dim) + middle
         self._samples = places.T - np.array([[at.start] for at in inside])
         self._nearest = float(min(*low, *high)) / x.size
-        self._cell = float(x.size) ** -self._dim
         self._columns = values_of(terms, x[places.T], odd[places.T]).T
         self._weight = np.ones((len(places), 1))
         if outer and terms:
@@ -55,32 +54,40 @@ class Meeting:
         """Return the amplitudes of the terms, shape (data, terms), from data of shape (data, N, .., N)."""
         return np.asarray(u[(slice(None), *self._samples)] @ self._fit.T)
 
-    def doubt(self, u: np.ndarray) -> float:
-        """Return what the last gamma changes of int u beyond the lattice, over int |u|: those left out may as much.
+    def left_open(self, u: np.ndarray) -> tuple[float, float]:
+        """Return what the last gamma changes of int u and of int x u beyond the lattice: those left out may as much.
 
-        Without terms, where nothing is to be beyond, what is there if u falls like |x|^(-n-1).
+        The period is the unit of length. Without terms, where nothing is to be beyond, what is there if u falls like
+        |x|^(-n-1) up to twice the distance.
         """
-        size = float(np.abs(u).sum()) * self._cell
-        if size == 0.0:
-            return 0.0
-        found = u[tuple(self._samples)]
+        found, reach = u[tuple(self._samples)], 2.0 * self._nearest
         if not self._terms:
-            return float(
-                np.abs(found).mean() * self._dim * (2.0 * self._nearest) ** self._dim / size
-            )
+            beyond = float(np.abs(found).mean()) * self._dim * reach**self._dim
+            return beyond, beyond * reach
         change = self._fit @ found
         last = max(gamma for _, gamma in self._terms)
         fewer = np.array([gamma < last for _, gamma in self._terms])
         change[fewer] -= _least_squares(self._columns[:, fewer], self._weight) @ found
-        # The others leave nothing beyond a cube.
-        alone = [row for row, (harmonic, _) in enumerate(self._terms) if harmonic.degree == 0]
-        gamma = np.array([self._terms[row][1] for row in alone])
+        most = [0.0, 0.0]
+        for harmonic in HARMONICS[
+            self._dim
+        ]:  # the moment of one has nothing of the others beyond a cube
+            own = [row for row, (other, _) in enumerate(self._terms) if other is harmonic]
+            if harmonic.degree < len(most) and own:
+                lacking = abs(float(self._beyond(own) @ change[own]))
+                most[harmonic.degree] = max(most[harmonic.degree], lacking)
+        return most[0], most[1]
+
+    def _beyond(self, rows: list[int]) -> np.ndarray:
+        """Return int H u beyond the lattice for each of some terms of one H."""
+        terms = [self._terms[row] for row in rows]
+        harmonic, gamma = terms[0][0], np.array([gamma for _, gamma in terms])
         beyond = outside_integrals(
-            lambda x: values_of([self._terms[row] for row in alone], x, x),
+            lambda x: harmonic.moment_at(0, x) * values_of(terms, x, x),
             -self._dim - gamma,
             self._dim,
         )
-        return abs(float((beyond * (2.0 * self._nearest) ** -gamma) @ change[alone])) / size
+        return np.asarray(beyond * (2.0 * self._nearest) ** -gamma)
 
 
 def _least_squares(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:

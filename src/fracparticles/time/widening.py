@@ -16,6 +16,7 @@ moments: one that meets the solution anew after each doubling grows with them, n
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Sequence
 from functools import partial
@@ -40,6 +41,7 @@ _DOUBTFUL = 2e-6  # likewise; measured, at least the error
 _GREATEST = 5.0  # of the gamma, once the tail is known
 _SHORTEST = 1e-12  # scaled time of a step that only moves the solution
 _TINY = float(np.finfo(float).tiny)
+_ROUND_OFF = float(np.finfo(float).eps)
 _NARROW = (
     10.0  # half the lattice over the spread at a doubling: measured, less loses the sixth digit
 )
@@ -87,7 +89,8 @@ def evolve_long(
     Warns
     -----
     AccuracyWarning
-        If six digits may be lost: the powers do not say what lies beyond the lattice, or it does not resolve the data.
+        If six digits may be lost: the powers do not say what lies beyond the lattice, or it does not resolve the data;
+        or data of both signs have cancelled down to what is not known of their integral and their first moment.
 
     Examples
     --------
@@ -111,6 +114,7 @@ def evolve_long(
     )
     if left <= doubling * h**alpha:
         return _begun(first(left * h**-alpha, moved=None), u)[0], h
+    spread = left + (0.5 * points * h) ** alpha  # of what lies beyond the lattice, which widens
     if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
         least = int(np.ceil(2.0 * _NARROW * doubling ** (1.0 / alpha)))
         warnings.warn(
@@ -119,7 +123,8 @@ def evolve_long(
             AccuracyWarning,
             stacklevel=2,
         )
-    u, b = _begun(first(doubling, every=2), u)
+    u, b, unknown = _begun(first(doubling, every=2), u)
+    unknown = unknown[0] * h**dim, unknown[1] * h ** (dim + 1)
     moved = -h * np.array(middle)  # back to the middle of the lattice that was given
     left, h = left - doubling * h**alpha, 2.0 * h
     between = doubling * (1.0 - 2.0**-alpha)
@@ -130,7 +135,9 @@ def evolve_long(
             u, b = _onward(widen, u, b)
             left, h = left - between * h**alpha, 2.0 * h
     last = later(max(left * h**-alpha, _SHORTEST), moved=(moved / h).tolist())
-    return _onward(last, u, b)[0], h
+    u = _onward(last, u, b)[0]
+    _warn_of_what_cancels(u, unknown, spread, alpha)
+    return u, h
 
 
 def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
@@ -140,18 +147,26 @@ def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
     return Continued(points, length, *given, every=every, **more)
 
 
-def _begun(step: Continued, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the result of the first step and the amplitudes of its tail; warn if the data are not what it takes."""
+def _begun(step: Continued, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[float, float]]:
+    """Return the result of the first step, the amplitudes of its tail, and what is not known of int u and int x u.
+
+    In units of the spacing. Warns if the data are not what the step takes.
+    """
     lacking: list[float] = []
 
     def look(spectrum: np.ndarray) -> None:
-        missed = float(step.waves(spectrum).of_the_integral[0])
-        lacking.append(missed / (float(np.abs(spectrum).max()) + _TINY))
+        lacking.append(float(step.waves(spectrum).of_the_integral[0]))
+        lacking.append(float(np.abs(spectrum).max()))
 
     result, numbers = step(u[None], look=look)
-    _warn_of_short_waves(min(1.0, lacking[0]))
-    _warn_of_tails(step, u)
-    return result[0], step.amplitudes(numbers)
+    missed, greatest = lacking
+    _warn_of_short_waves(min(1.0, missed / (greatest + _TINY)))
+    size, length = float(np.abs(u).sum()), float(step.length)
+    of_mass, of_first = step.tails.meeting.left_open(u)
+    of_mass, of_first = of_mass * length**u.ndim, of_first * length ** (u.ndim + 1)
+    _warn_of_tails(of_mass / (size + _TINY), len(u))
+    of_mass += missed * (_DOUBTFUL / _SHORT_WAVES) + _ROUND_OFF * size
+    return result[0], step.amplitudes(numbers), (of_mass, of_first)
 
 
 def _onward(step: Continued, u: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -171,16 +186,44 @@ def _warn_of_short_waves(lacking: float) -> None:
         )
 
 
-def _warn_of_tails(step: Continued, u: np.ndarray) -> None:
+def _warn_of_tails(doubt: float, points: int) -> None:
     """Warn if the powers do not say what lies beyond the lattice."""
-    doubt = step.tails.meeting.doubt(u)
     if doubt > _DOUBTFUL:
         warnings.warn(
-            f"the powers that continue the data beyond the lattice of {len(u)} points an axis leave up to {doubt:.2g} "
+            f"the powers that continue the data beyond the lattice of {points} points an axis leave up to {doubt:.2g} "
             "of their integral open. Take a wider lattice, with the same spacing; or say by which powers they fall: "
             "tail=() for data that end.",
             AccuracyWarning,
             stacklevel=4,
+        )
+
+
+def _warn_of_what_cancels(
+    u: np.ndarray, unknown: tuple[float, float], spread: float, alpha: float
+) -> None:
+    """Warn if the data have cancelled down to what is not known of their integral or of their first moment.
+
+    An integral m spreads to m G <= m P_0, a first moment to its product with the gradient of G, at most m P_1;
+    P_l = (2 pi)^-n int |k|^l exp(-t |k|^alpha) dk = S_n Gamma((n + l) / alpha) t^(-(n + l) / alpha) / (alpha (2 pi)^n).
+    """
+    n = u.ndim
+    surface = 2.0 * math.pi ** (0.5 * n) / math.gamma(0.5 * n)
+    wrong = sum(
+        moment
+        * math.gamma((n + degree) / alpha)
+        * spread ** (-(n + degree) / alpha)
+        * surface
+        / (alpha * (2.0 * math.pi) ** n)
+        for degree, moment in enumerate(unknown)
+    )
+    doubt = min(1.0, wrong / (float(np.abs(u).max()) + _TINY))
+    if doubt > _DOUBTFUL:
+        warnings.warn(
+            f"the data cancel: what is left of them may be off by {doubt:.2g} of its greatest value, since the lattice "
+            "and the powers beyond it do not say their integral and their first moment any better. Take a wider "
+            "lattice, with the same spacing; or tail=() for data that end.",
+            AccuracyWarning,
+            stacklevel=3,
         )
 
 
