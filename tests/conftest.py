@@ -1,4 +1,4 @@
-"""What the tests share: a fixed hypothesis profile, and every scheme in every variant that the paper has."""
+"""What the tests share: the profiles of hypothesis, and every scheme in every variant that the paper has."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 from combinations import COMBINATIONS  # noqa: E402
 
-settings.register_profile("fracparticles", deadline=None, derandomize=True)
-settings.load_profile("fracparticles")
+# The same examples each time; `--hypothesis-profile=thorough` takes ten times as many.
+settings.register_profile("quick", deadline=None, derandomize=True, max_examples=30)
+settings.register_profile("thorough", settings.get_profile("quick"), max_examples=300)
+settings.load_profile("quick")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

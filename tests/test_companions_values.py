@@ -13,7 +13,7 @@ from math import factorial, pi, sqrt
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution, StabilityWarning
@@ -460,7 +460,6 @@ def test_quantiles_of_the_gaussian(part):
     st.lists(st.floats(1e-300, 1.0 - 1e-15), min_size=2, max_size=20, unique=True),
     st.floats(0.0, 1e6),
 )
-@settings(max_examples=50)
 def test_quantiles_are_finite_and_rise(parts, t):
     parts = np.sort(parts)
     for profile, times in (
@@ -593,7 +592,6 @@ def counted(x, after):
     return advance(x, np.ones(len(x)), velocity, dt=1.0, steps=len(after))[2]
 
 
-@settings(max_examples=60)
 @given(st.lists(st.permutations([0, 1, 2, 3]), min_size=2, max_size=9))
 def test_overtaking_counts_the_steps_that_changed_the_order(places):
     """Against the ranks before and after each step, whatever the order in which the particles are given."""

@@ -21,6 +21,7 @@ import pytest
 import yaml
 
 from copies import copy_folder
+from test_contributing import FILES
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "config", "profiles", "workflow", "report", "src")
@@ -236,9 +237,9 @@ def figure(series, table):
 
 def test_a_new_scheme_and_a_new_scene_run_to_a_figure_and_nothing_else_is_touched(finished):
     """One module, one folder."""
-    from test_new_scheme import MODULE
-
-    (finished / "src/fracparticles/schemes/smear.py").write_text(MODULE)
+    (finished / "src/fracparticles/schemes/smear.py").write_text(
+        FILES["src/fracparticles/schemes/smear.py"]
+    )
     folder = finished / "workflow/scenes/beyond/of_my_own"
     folder.mkdir()
     (folder / "scene.yaml").write_text(NEW_SCENE)

@@ -9,7 +9,7 @@ from functools import cache
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import j0, j1
 
@@ -223,7 +223,6 @@ def test_gaussian_kernels_have_no_power_law():
     assert all(KERNELS[name].decay(1.5) == math.inf for name in ("eta", "eta1", "Phi"))
 
 
-@settings(deadline=None, max_examples=50)
 @given(
     key=st.sampled_from(ALL),
     alpha=st.floats(1.001, 1.999),

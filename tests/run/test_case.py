@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fracparticles.errors import InvalidInput, one_of, spelled
@@ -357,13 +357,11 @@ def valid_or_refused(given_):
     assert Case.from_json(c.to_json()) == c
 
 
-@settings(max_examples=200)
 @given(st.dictionaries(st.sampled_from([*Case.model_fields, "x", "H"]), JUNK, max_size=6))
 def test_any_junk_is_refused_or_a_case(changes):
     valid_or_refused({**GIVEN, **changes})
 
 
-@settings(max_examples=300)
 @given(
     st.fixed_dictionaries(
         {name: PLAUSIBLE[name] for name in ("scheme", "beta", "spacing")},

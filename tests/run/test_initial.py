@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import fracparticles as fp
@@ -211,7 +211,6 @@ def test_what_a_callable_raises_goes_through_with_a_note():
 # --- labels ---------------------------------------------------------------------------------------
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.permutations(range(81)), st.sampled_from([np.float64, np.float32]), st.booleans())
 def test_data_are_taken_by_their_labels(order, kind, as_dataset):
     c, order = case(), np.array(order)

@@ -382,7 +382,7 @@ def halved(case: Case) -> Case:
     return Case(**{**case.model_dump(exclude_none=True), "t_final": 0.5 * case.t_final})
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=settings.default.max_examples * 2 // 3)
 @given(case=cases())
 def test_one_run_is_two_runs_of_half_the_time(case):
     u0 = data(case)
@@ -391,7 +391,7 @@ def test_one_run_is_two_runs_of_half_the_time(case):
     assert np.abs(whole - again).max() <= room(case) * max(np.abs(u0).max(), np.abs(whole).max())
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=settings.default.max_examples * 2 // 3)
 @given(case=cases(one_sum=True), factor=st.sampled_from([1e-200, 2.0, -3.0, 1e200]))
 def test_a_run_is_linear_and_mirrors(case, factor):
     u0 = data(case)
@@ -405,7 +405,7 @@ def test_a_run_is_linear_and_mirrors(case, factor):
     assert np.abs(run(case, factor * u0) / factor - u).max() <= room(case) * size
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=settings.default.max_examples * 2 // 3)
 @given(
     case=cases(one_sum=True),
     length=st.sampled_from([1e-6, 0.3, 1e4]),

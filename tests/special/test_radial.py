@@ -8,7 +8,7 @@ from functools import cache
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import gamma, gammainc, gammaincc, j0, j1
 
@@ -171,7 +171,6 @@ def test_each_is_the_marginal_of_the_next(alpha):
         np.testing.assert_allclose(marginal, reduced_green(r[:, 0], alpha, n), rtol=2 * TOLERANCE)
 
 
-@settings(deadline=None, max_examples=60)
 @given(
     alpha=st.floats(1.0001, 1.9999),
     dim=st.integers(1, 3),
@@ -189,7 +188,6 @@ def test_even_positive_decreasing(alpha, dim, r, factor):
     assert abs(inside + outside - 1.0) <= 2 * EPSILON
 
 
-@settings(deadline=None, max_examples=60)
 @given(alpha=st.floats(1.001, 1.999), n=st.integers(2, 5), border=st.integers(1, 44))
 def test_no_jump_between_pieces(alpha, n, border):
     r = 0.5 * border

@@ -7,7 +7,7 @@ import contextlib
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import erf, erfc
 
@@ -116,7 +116,6 @@ def test_the_ends_of_the_open_interval(alpha):
     assert (np.diff(density) < 0.0).all()
 
 
-@settings(deadline=None, max_examples=60)
 @given(
     alpha=st.floats(1.0001, 1.9999),
     x=st.floats(0.0, 1e9),
@@ -133,7 +132,6 @@ def test_even_positive_decreasing(alpha, x, factor):
     assert abs(inside + outside - 1.0) <= 2 * EPSILON
 
 
-@settings(deadline=None, max_examples=60)
 @given(alpha=st.floats(1.001, 1.999), border=st.integers(1, 44))
 def test_no_jump_between_pieces(alpha, border):
     x = 0.5 * border

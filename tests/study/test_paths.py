@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fracparticles.run.case import Case
@@ -148,7 +148,6 @@ def case_and_neighbour(draw) -> tuple[Case, Case]:
     return Case(**fields), Case(**other)
 
 
-@settings(max_examples=300, deadline=None)
 @given(case_and_neighbour())
 @example((case(), case()))
 @example((case(evaluation="series"), case()))
@@ -157,7 +156,6 @@ def test_equal_cases_equal_paths_and_only_they(pair):
     check(*pair)
 
 
-@settings(max_examples=300, deadline=None)
 @given(NAMES, NAMES)
 def test_names_of_files_are_told_apart(one, other):
     one, other = (case(initial=name) for name in (one, other))

@@ -107,7 +107,7 @@ def test_two_halves_of_the_time_are_the_whole():
     assert np.abs(once - twice).max() <= 1e-7 * once.max()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=settings.default.max_examples * 2 // 3)
 @given(
     alpha=st.floats(1.05, 1.95),
     time=st.floats(1e-3, 2.0),

@@ -157,7 +157,7 @@ def test_a_short_time_is_that_of_evolve_and_leaves_the_lattice_alone():
     assert np.abs(u - fp.evolve(np.exp(-x * x), 0.1, 1.5, 0.1, tail=(), terms=5)).max() < 1e-9
 
 
-@settings(max_examples=20)
+@settings(max_examples=settings.default.max_examples * 2 // 3)
 @given(st.floats(1.1, 1.9), st.floats(1.0, 1e8), st.floats(0.01, 100.0), st.floats(0.01, 100.0))
 def test_units_do_not_matter(alpha, later, length, diffusivity):
     u, h = evolve_long(blob(400, 0.1, 1.0, alpha, 1, 0.0), 0.1, alpha, later)

@@ -21,7 +21,11 @@ NAMES = [one.name for one in PROPERTIES]
 
 @pytest.mark.parametrize("one", PROPERTIES, ids=NAMES)
 def test_no_case_that_hypothesis_finds_is_bad(one):
-    @settings(max_examples=8, database=None, suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=settings.default.max_examples // 5,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
     @given(one.cases)
     def holds(case):
         found = judged(one, lambda: case)
@@ -118,14 +122,14 @@ def test_a_new_field_is_drawn_by_its_type_and_bounds():
         times: tuple[float, ...] | None = None
         count: int = Field(default=1, ge=4)
 
-    @settings(max_examples=50, database=None)
+    @settings(database=None)
     @given(fields_of(Model)["size"], fields_of(Model)["times"], fields_of(Model)["count"])
     def allowed(size, times, count):
         Model(size=size, times=times, count=count)
 
     allowed()
 
-    @settings(max_examples=50, database=None)
+    @settings(database=None)
     @given(given_fields(Model, wrong=0))
     def given_together(fields):
         assert "size" in fields
