@@ -17,7 +17,7 @@ def one_sided_differences(count: int) -> FloatArray:
     for i in range(count):
         first = min(max(i - _POINTS // 2, 0), count - _POINTS)
         at = np.arange(first, first + _POINTS)
-        d[i, at] = _weights(at - float(i))
+        d[i, at] = _weights((at - i).astype(float))
     return d
 
 
