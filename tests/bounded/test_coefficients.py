@@ -151,6 +151,35 @@ def test_transport_of_what_vanishes_at_the_edge(kind):
     assert orders(errors)[0] > 5.0
 
 
+@pytest.mark.parametrize("angles", [15, 16])
+def test_transport_through_the_centre_of_a_disc(angles):
+    """u = sin(2 x + y), a = (1, 0), at the three innermost rings: seven radii that reach to 6 xi^2, a polynomial each.
+
+    Its error in f' is r^6 f^(7) / 7! or so, and f = r cos(angle) u, which is divided by r: 2^6 for each 2 of xi^2.
+    """
+    errors = []
+    for count in (24, 48):
+        one = Disc(1.5, count, angles, "given")
+        x, y = one.points
+        ours = one.carried(0.0 * x, np.sin(2.0 * x + y), (np.ones_like(x), np.zeros_like(x)))
+        errors.append(np.abs(ours + 2.0 * np.cos(2.0 * x + y))[:3].max())
+    assert errors[-1] < 1e-7
+    assert orders(errors)[0] > 6.0
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.3])
+def test_a_wind_across_the_centre_of_a_disc_lets_no_wave_grow(alpha):
+    """div a = 0: int u^2 falls. One-sided differences at the centre made a wave grow, at a rate of some hundred."""
+    one = Disc(alpha, 24, 12)
+    x = one.x
+    wind = 5.0 * np.ones_like(x), -2.0 * x
+    rates = [
+        (one.applied(u) + one.carried(u, 0.0 * u, wind)).ravel()
+        for u in np.eye(x.size).reshape(-1, *x.shape)
+    ]
+    assert np.linalg.eigvals(np.array(rates)).real.max() < 0.0
+
+
 def test_a_rotation_of_the_disc_is_the_derivative_along_its_rings():
     one = Disc(1.5, 12, 8)
     x, y = one.points

@@ -30,7 +30,10 @@ from fracparticles.bounded.domain import EXTERIORS
 from fracparticles.bounded.given import Lift
 from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Modes
-from fracparticles.bounded.plane_differences import one_sided_differences
+from fracparticles.bounded.plane_differences import (
+    differences_through_centre,
+    one_sided_differences,
+)
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 
 __all__ = ["Disc"]
@@ -122,26 +125,36 @@ class Disc(ModalDomain):
     ) -> FloatArray:
         """Return -div(a u) = -((r a_r u)_r + (a_theta u)_theta) / r, u = v + base.
 
-        Across rings by differences in the variable of the map, after (1 - r^2)^(alpha/2), as v is at the edge; along
-        them by the Fourier transform. Where nothing leaves, what the sum of all is off by is taken off evenly.
+        Across rings by differences in the variable of the map, after (1 - r^2)^(alpha/2), as v is at the edge, and
+        through the centre; along them by the Fourier transform. Where nothing leaves, what the sum of all is off by is
+        taken off evenly.
         """
         (across, vanishing), r = self._slopes, self.radius * self._rings.r[:, None]
         a_x, a_y = velocity
         cos, sin = self._direction
         outwards, around = a_x * cos + a_y * sin, a_y * cos - a_x * sin
         bent = across if self.exterior == "reflecting" else vanishing
-        turned = 1j * np.arange(self.angular // 2 + 1) * self._transformed(around * (v + base))
+        waves = np.arange(self.angular // 2 + 1)
+        turned = 1j * waves * self._transformed(around * (v + base))
         if self.angular % 2 == 0:
             turned[:, -1] = 0.0
-        out = bent @ (r * outwards * v) + across @ (r * outwards * base) + self._back(turned)
-        out = -out / r
+        for slopes, part in ((bent, v), (across, base)):
+            flux = self._transformed(r * outwards * part)
+            for odd in (0, 1):
+                turned[:, odd::2] += slopes[odd] @ flux[:, odd::2]
+        out = -self._back(turned) / r
         return np.asarray(out - self._mean(out) if self.exterior == "reflecting" else out)
 
     @cached_property
     def _slopes(self) -> tuple[FloatArray, FloatArray]:
-        """d/dr of what is smooth, and of what is like (1 - r^2)^(alpha/2) at the edge, both of shape (N, N)."""
+        """d/dr of what is smooth, and of what is like (1 - r^2)^(alpha/2) at the edge, both of shape (2, N, N).
+
+        The first of two is for the even waves along a ring, the other for the odd ones.
+        """
         rings, power = self._rings, 0.5 * self.alpha
-        along = one_sided_differences(self.radial) / rings.slope[:, None]
+        along = np.stack(2 * [one_sided_differences(self.radial) / rings.slope[:, None]])
+        through = differences_through_centre(rings.r)
+        along[:, : through.shape[1]] = through
         depth = rings.edge * (1.0 + rings.r)
         bent = depth[:, None] ** power * along / depth**power
         bent -= np.diag(self.alpha * rings.r / depth)

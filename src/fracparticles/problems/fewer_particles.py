@@ -1,16 +1,18 @@
-"""The error that the particles leave, by the same problem on half and on a quarter of them along each axis.
+"""The error that the particles leave: what is known of it, and the rest by the problem on half and a quarter of them.
 
-With d_1 the distance between u and what half of the particles make of it, and d_2 that between half and a quarter, each
-half of the spacing leaves r = d_1 / d_2 of the distance before. All those that are still to come are the error,
+Known is what they make of the initial data alone, see `frozen`; it is taken off each u before they are compared, where
+that brings these together. With d_1 the distance between u and what half of the particles along each axis make of it,
+and d_2 that between half and a quarter, each half of the spacing leaves r = d_1 / d_2 of the distance before. All those
+that are still to come are the rest of the error,
 
     d_1 (r + r^2 + ..) = d_1 r / (1 - r),
 
-of an order p d_1 / (2^p - 1), but at least d_1 / 32, and d_1 where r >= 1/2. So kinks and jumps of a coefficient or of
-the data, where the order is one or two whatever that of the kernels, have their own factor. The quarter is taken only
-where d_1 is large; else, or where a quarter is too few, the error is d_1 / 3, that of the order two. Where half of the
-particles make something infinite, nothing is known of the error: it is infinite. Fields are compared where the fewer
-particles are, by splines between the others; their distance is the larger of the greatest difference over the greatest
-|u|, and of int |difference| over int |u|, which sees what is beside a peak at an end.
+of an order p d_1 / (2^p - 1), but at least d_1 / 32, and d_1 where r >= 1/2. So kinks and jumps of a coefficient, where
+the order is one or two whatever that of the kernels, have their own factor. The quarter is taken only where d_1 is
+large; else, or where a quarter is too few, the rest is d_1 / 3, that of the order two. Where half of the particles make
+something infinite, nothing is known of the error: it is infinite. Fields are compared where the fewer particles are, by
+splines between the others; their distance is the larger of the greatest difference over the greatest |u|, and of
+int |difference| over int |u|, which sees what is beside a peak at an end.
 """
 
 from __future__ import annotations
@@ -36,10 +38,19 @@ _FEWEST = {"interval": 16, "square": 8, "disc": 8, None: 8}
 
 Estimates = dict[str, tuple[list[float], str]]
 Solve = Callable[[Problem, Any], list[np.ndarray]]
+Known = Callable[[Problem, Any, list[np.ndarray]], list[np.ndarray]]
+
+
+def _nothing(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[np.ndarray]:
+    return [np.zeros_like(u) for u in fields]
 
 
 def space_errors(
-    problem: Problem, initial: Any, fields: list[np.ndarray], solve: Solve
+    problem: Problem,
+    initial: Any,
+    fields: list[np.ndarray],
+    solve: Solve,
+    known: Known = _nothing,
 ) -> list[float] | None:
     """Return the error at each output time; None if there are too few particles, or a function is for these alone.
 
@@ -52,8 +63,12 @@ def space_errors(
         u at each output time.
     solve : callable
         From a problem and its initial data to such a list.
+    known : callable
+        From these and such a list to the errors at the particles that are known beforehand, see `frozen`.
     """
     apart: list[np.ndarray] = []
+    errors = known(problem, initial, fields)
+    least = np.array([_distance(problem, u, u - e) for u, e in zip(fields, errors, strict=True)])
     for _ in range(_HALVINGS):
         try:
             fewer = _halved(problem)
@@ -67,17 +82,20 @@ def space_errors(
         except NonFiniteSolution:
             apart.append(np.full(len(fields), np.inf))
             break
-        pairs = zip(fields, coarse, strict=True)
-        apart.append(np.array([_distance(fewer, _among(problem, fewer, u), v) for u, v in pairs]))
+        coarse_errors = known(fewer, initial, coarse)
+        apart.append(np.array([
+            min(_distance(fewer, _among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
+            for u, e, v, f in zip(fields, errors, coarse, coarse_errors, strict=True)
+        ]))  # fmt: skip
         if apart[0].max() <= SPACE_ERROR:
             break
-        problem, fields = fewer, coarse
+        problem, fields, errors = fewer, coarse, coarse_errors
     if not apart:
         return None
     factor = np.full(len(fields), _UNKNOWN)
     if len(apart) > 1:
         factor = _still_to_come(*apart)
-    return list(apart[0] * factor)
+    return list(least + apart[0] * factor)
 
 
 def _still_to_come(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -92,7 +110,7 @@ def with_space_error(found: Estimates, *given: Any) -> Estimates:
     errors = space_errors(*given)
     if errors is None:
         return found
-    meaning = "estimated relative error, from the same on half and a quarter of the particles"
+    meaning = "estimated relative error, from the waves of the data, and half and a quarter of the particles"
     return found | {"space_error": (errors, meaning)}
 
 

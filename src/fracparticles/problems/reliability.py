@@ -20,7 +20,8 @@ coefficient_misfit
     That of the worst coefficient: what the particles do not see of it. Of a diffusivity in a flux that of 1 / D, too:
     a barrier that no particle meets holds the flux back.
 space_error
-    What the same on half and a quarter of the particles says of the error over u, see `fewer_particles`.
+    The error over u that the particles leave, by what they see of the data, see `frozen`, and by the same on half and a
+    quarter of them, see `fewer_particles`.
 atol_share
     The errors of early steps over the greatest |u|, see `time.fading`; or the absolute tolerance, if one was asked for.
 """
@@ -222,8 +223,8 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "smaller spacing, or a smoother coefficient",
         "atol_share": "the solution has fallen: errors of early steps, within rtol of what it was, or atol, are {:.2g} "
         "of its greatest value. Take a smaller rtol, or atol",
-        "space_error": "the particles leave an error of about {:.1g} of u, by the same on half and a quarter of "
-        "them. Take a smaller spacing, or smoother coefficients",
+        "space_error": "the particles leave an error of about {:.1g} of u, by the waves of the data, and by half and "
+        "a quarter of them. Take a smaller spacing, or smoother data and coefficients",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
     }

@@ -10,6 +10,7 @@ from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.dataset import lattice_layout, to_dataset
 from fracparticles.problems.fewer_particles import with_space_error
+from fracparticles.problems.frozen import frozen_errors
 from fracparticles.problems.integrate import integrate
 from fracparticles.problems.on_domain import solve_on_domain
 from fracparticles.problems.problem import Problem
@@ -85,7 +86,9 @@ def solve_problem(
     found = estimates(problem, [u0, *fields], initial)
     sampled = initial is None or callable(initial)
     if estimate:
-        found = with_space_error(found, problem, initial if sampled else u0, fields, _on_fewer)
+        found = with_space_error(
+            found, problem, initial if sampled else u0, fields, _on_fewer, _known
+        )
     warn_if_doubtful(problem, found)
     return to_dataset(problem, lattice_layout(problem), u0, result, found, origin)
 
@@ -93,3 +96,7 @@ def solve_problem(
 def _on_fewer(problem: Problem, initial: Initial | None) -> list[np.ndarray]:
     u0, _ = initial_strengths(problem.case, initial)
     return [u.reshape(u0.shape) for u in integrate(problem, Rates(problem), u0.reshape(-1)).u]
+
+
+def _known(problem: Problem, initial: Initial | None, fields: list[np.ndarray]) -> list[np.ndarray]:
+    return frozen_errors(problem, initial, initial_strengths(problem.case, initial)[0], fields)

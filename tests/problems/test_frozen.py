@@ -1,0 +1,154 @@
+"""The error of kinks and jumps from the first moment on, against Fourier integrals and series."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+import spectral
+from scipy.integrate import quad
+
+from fracparticles.errors import AccuracyWarning
+from fracparticles.problems import Problem, solve_problem
+
+H = 0.1
+SAID = 0.03  # an error that must not be silent
+TIMES = (0.03, 0.3, 3.0)  # h^alpha
+
+# Each of a width 1: itself and its Fourier transform.
+KINKS = {
+    "tent": (lambda s: np.maximum(0.0, 1.0 - np.abs(s)), lambda k: np.sinc(0.5 * k / np.pi) ** 2),
+    "cusp": (lambda s: np.exp(-np.abs(s)), lambda k: 2.0 / (1.0 + k * k)),
+    "box": (lambda s: 1.0 * (np.abs(s) < 0.5), lambda k: np.sinc(0.5 * k / np.pi)),
+}
+
+
+def bell(s):
+    return np.exp(-s * s)
+
+
+def bell_waves(k):
+    return np.sqrt(np.pi) * np.exp(-0.25 * k * k)
+
+
+def solution(transform, x, t, alpha):
+    """Return int u^(k) cos(k x) e^(-t k^alpha) dk / pi on a circle so long that its other turns are not felt."""
+    length, finer = 200.0, 32
+    k = 2.0 * np.pi * np.fft.rfftfreq(round(length * finer / H), H / finer)
+    waves = transform(k) * np.exp(-t * k**alpha)
+    u = np.fft.fftshift(np.fft.irfft(waves)) * finer / H
+    at = (np.arange(u.size) - u.size // 2) * H / finer
+    return np.interp(x, at, u)
+
+
+def solved(initial, **fields):
+    """Return the run, and whether there was a warning."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", AccuracyWarning)
+        run = solve_problem(Problem(**{"half_width": 10.0, "spacing": H, **fields}), initial)
+    return run, bool(caught)
+
+
+def error(u, exact) -> float:
+    """Over the greatest u, as `space_error`."""
+    return float(np.abs(u - exact).max() / np.abs(u).max())
+
+
+@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
+@pytest.mark.parametrize(
+    ("kind", "width", "order"), [("tent", 0.5, 4), ("cusp", 0.4, 8), ("box", 1.43, 2)]
+)
+@pytest.mark.parametrize("at", [0.0, 0.3, 0.5])
+def test_a_kink_on_and_between_the_particles(alpha, kind, width, order, at):
+    """Half of the particles alone said a tenth of it, and less: of the box a hundredth."""
+    given, transform = KINKS[kind]
+    # Before, a jump is thinner than what is between two of the samples.
+    first = 0.1 if kind == "box" else 0.0
+    times = tuple(max(tau, first) * H**alpha for tau in TIMES)
+    run, warned = solved(
+        lambda x: given((x - at * H) / width), alpha=alpha, order=order, times=times
+    )
+    errors = [
+        error(u, solution(lambda k: width * transform(width * k), run.x.values - at * H, t, alpha))
+        for u, t in zip(run.u.values, times, strict=True)
+    ]
+    said = run.space_error.values
+    # 16 samples between two particles leave the ripple of a jump, a tenth of it, in a sixteenth of the spacing.
+    assert (np.array(errors) < 3.0 * said).all()
+    assert (said < 3.0 * np.array(errors) + 0.1 / 16.0).all()
+    assert warned or max(errors) < SAID
+
+
+@pytest.mark.parametrize("alpha", [1.2, 1.8])
+@pytest.mark.parametrize("order", [2, 4, 8, 12])
+@pytest.mark.parametrize("velocity", [0.0, 3.0])
+def test_smooth_data_have_their_own_error(alpha, order, velocity):
+    times, width = tuple(tau * H**alpha for tau in TIMES), 0.4
+    run, _ = solved(
+        lambda x: bell(x / width),
+        alpha=alpha,
+        order=order,
+        times=times,
+        velocity=velocity,
+        rtol=1e-9,
+    )
+    for u, t, said in zip(run.u.values, times, run.space_error.values, strict=True):
+        x = run.x.values - velocity * t
+        exact = solution(lambda k: width * bell_waves(width * k), x, t, alpha)
+        # The interpolation between 32 places of a particle: h^2 u'' / 8.
+        assert error(u, exact) < 1.1 * said + (H / 32.0 / width) ** 2
+        assert said < 1.5 * error(u, exact) + (H / 32.0 / width) ** 2
+
+
+def test_each_place_has_its_own_diffusivity(monkeypatch):
+    """A kink where D is a twentieth of the greatest: with the mean of D it would be off by far."""
+    monkeypatch.setattr(spectral, "_LENGTH", 64.0)
+
+    def d(x, t=0.0):
+        return 1.0 - 0.95 * np.exp(-x * x)
+
+    def tent(x):
+        return np.maximum(0.0, 1.0 - np.abs(x) / 0.5)
+
+    t = 0.02
+    run, warned = solved(tent, alpha=1.5, diffusivity=d, t_final=t)
+    exact = spectral.circle(1.5, tent, t, d, lambda x, t: 0.0 * x, lambda x, t, u: 0.0 * x)
+    off = error(run.u.values, exact(run.x.values))
+    assert off / 2.0 < float(run.space_error) < 2.0 * off
+    assert warned == (float(run.space_error) > SAID)
+
+
+def test_values_are_a_spline_that_rounds_the_kink():
+    given, transform = KINKS["tent"]
+    x = Problem(alpha=1.5, half_width=10.0, spacing=H, t_final=1.0).case.x
+    t = 0.2 * H**1.5
+    run, _ = solved(given(x / 0.5), alpha=1.5, t_final=t)
+    off = error(run.u.values, solution(lambda k: 0.5 * transform(0.5 * k), x, t, 1.5))
+    assert off / 3.0 < float(run.space_error) < 3.0 * off
+
+
+@pytest.mark.parametrize("alpha", [1.3, 1.7])
+def test_a_cusp_in_the_plane(alpha):
+    """e^-r, whose transform is 2 pi (1 + k^2)^(-3/2); at its tip, where the error is greatest."""
+    width = 0.4
+    t = 0.3 * H**alpha
+    run, warned = solved(
+        lambda x, y: np.exp(-np.hypot(x, y) / width), alpha=alpha, dim=2, half_width=3.0, t_final=t
+    )
+    tip = quad(
+        lambda k: k * (1.0 + k * k) ** -1.5 * np.exp(-t * (k / width) ** alpha), 0.0, np.inf
+    )[0]
+    off = abs(float(run.u.max()) - tip) / tip
+    assert off / 2.0 < float(run.space_error) < 2.0 * off
+    assert warned
+
+
+def test_a_source_that_adds_to_nothing_has_no_error_of_the_data():
+    """Tiny data with a kink, and a smooth source that makes all of u: the kink is no matter."""
+    run, warned = solved(
+        lambda x: 1e-3 * np.maximum(0.0, 1.0 - np.abs(x) / 0.4),
+        alpha=1.5, t_final=0.1, source="10*exp(-x**2)", order=8,
+    )  # fmt: skip
+    assert float(run.space_error) < 1e-2
+    assert not warned
