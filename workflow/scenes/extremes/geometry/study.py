@@ -13,20 +13,22 @@ def study(
     orders: list[int],
     overlaps: list[float],
     half: dict[int, list[int]],
+    beyond: list[int],
     points: dict[int, list[int]],
     schemes: dict[int, list[str]],
     half_widths: dict[int, float],
 ) -> Result:
     """One row a probe; the series are true errors of runs over the estimate that is the worst for its limit.
 
-    `sizes` are those of the sums, by what they are; `half` the intervals on either side, by dimension, of the matrices;
-    `points` an axis those of `evolve`; `schemes`, by dimension, those whose lattices are made unsuitable.
+    `sizes` are those of the sums, by what they are; `half` the intervals on either side, by dimension, of the matrices,
+    `beyond` those of the sums beyond the ends; `points` an axis those of `evolve`; `schemes`, by dimension, those whose
+    lattices are made unsuitable.
     """
     errors = lattices.Errors()
     probes = [
         *sums.lattice_sums(sizes, list(half)),
         *sums.matrices(beta, orders, overlaps, half),
-        *sums.exteriors(beta, overlaps),
+        *sums.exteriors(beta, overlaps, beyond),
         *lattices.counts(beta),
         *lattices.lattices(errors, beta, schemes, half_widths),
         *lattices.graded(errors, beta),

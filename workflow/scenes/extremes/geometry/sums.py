@@ -152,7 +152,7 @@ def _of_matrices(
     return worst
 
 
-def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
+def exteriors(beta: float, overlaps: list[float], half: list[int]) -> Iterator[Probe]:
     """The sums beyond the ends of the line, S_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j}, term by term and an integral.
 
     The library sums f = j^-(1+alpha) w_{i-j} to 4 n, and from there by the formula of Euler and Maclaurin, whose next
@@ -160,7 +160,7 @@ def exteriors(beta: float, overlaps: list[float]) -> Iterator[Probe]:
     """
     alpha = 1.0 + beta
     power = 1.0 + alpha
-    for n, overlap in product((1, 2, 8, 53), overlaps):
+    for n, overlap in product(half, overlaps):
         right = Kind("exterior", "the sum to infinity", (3.0 * n) ** -4.0, "mpmath, QUADPACK")
         yield right(f"KPSE's kernel, n = {n}, overlap {overlap:g}", _of_exterior, alpha, n, overlap)
     refused = Kind("exterior", "refused: too few particles to fit", must=REFUSED)
