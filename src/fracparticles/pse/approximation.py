@@ -1,8 +1,13 @@
-"""Smooth particles (9), the derivative as an integral operator (18), and its sum over particles (21)."""
+"""Smooth particles (9), the derivative as an integral operator (18), and its sum over particles (21).
+
+A kernel of twice the radius errs at least four times as much where it errs like eps^2, and more for a higher order. So
+a third of what it changes bounds what the smoothing does, and is warned of where it is large.
+"""
 
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -10,9 +15,9 @@ from numpy.typing import ArrayLike
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.pse.moments import nodes_and_weights, warn_of_moment
-from fracparticles.pse.shapes import Kernel, kernel_of
+from fracparticles.pse.shapes import Kernel, Stencil, kernel_of
 
 __all__ = ["derivative", "lattice", "reconstruct", "regularised"]
 
@@ -20,6 +25,9 @@ _MOST_PARTICLES = 2**26
 _FARTHEST = 2.0**31  # lattice points from the origin
 _MOST_PAIRS = 2**25  # of points and particles
 _HIGHEST = 24  # order of a derivative
+_WRONG = 0.05  # of the largest value, by the smoothing
+_SEEN = 3.0  # radii: what lies farther counts little in any kernel
+_WHOLE = 0.75, 1.5  # of its moment, what twice the radius leaves where there are no gaps
 
 
 def lattice(low: float, high: float, h: float) -> FloatArray:
@@ -47,6 +55,8 @@ def reconstruct(
 
     Raises `InvalidInput` if the arrays do not fit together or are not finite, or epsilon or the kernel is not allowed.
 
+    Warns with `AccuracyWarning` if epsilon is too large for the field.
+
     Parameters
     ----------
     x : array_like, shape (M,)
@@ -60,10 +70,19 @@ def reconstruct(
     kernel : Kernel
         eta, of one dimension.
     """
-    weights = _matrix(x, particles, volumes, epsilon, kernel)
-    values = check.vector("values", values, weights.shape[1], complex_too=True)
+    values = check.vector("values", values, np.size(particles), complex_too=True)
+
+    def sums(radius: float) -> tuple[FloatArray, FloatArray]:
+        weights = _matrix(x, particles, volumes, radius, kernel)
+        return weights @ values, weights.sum(axis=1)
+
     with np.errstate(all="ignore"):
-        return check.finite_result("values", weights @ values)
+        result, mass = sums(epsilon)
+        result = check.finite_result("values", result)
+        if not isinstance(kernel, Stencil):
+            inside = _inside(x, particles, epsilon, kernel)
+            _warn_of_smoothing(result, mass, *sums(2.0 * epsilon), inside)
+    return result
 
 
 def derivative(
@@ -81,7 +100,8 @@ def derivative(
     Errors as for `reconstruct`; also if the order is not a whole number from 1 to 24.
 
     Warns with `AccuracyWarning` if the particles near some of the points give far less or far more than one for the
-    moment that this needs, sum_p V_p (x_p - x)^beta eta_eps(x - x_p) / (beta! eps^beta).
+    moment that this needs, sum_p V_p (x_p - x)^beta eta_eps(x - x_p) / (beta! eps^beta), or if epsilon is too large for
+    the field; of that nothing is known for a stencil.
 
     Parameters
     ----------
@@ -92,19 +112,25 @@ def derivative(
     particles, values, volumes, epsilon, kernel
         As in `reconstruct`.
     """
-    divisor = _power(epsilon, check.whole_number("order", order, least=1, most=_HIGHEST))
-    weights = _matrix(x, particles, volumes, epsilon, kernel)
-    values = check.vector("values", values, weights.shape[1], complex_too=True)
-    at = check.vector("at", at, weights.shape[0], least=0, complex_too=True)
+    order = check.whole_number("order", order, least=1, most=_HIGHEST)
+    values = check.vector("values", values, np.size(particles), complex_too=True)
+    at = check.vector("at", at, np.size(x), least=0, complex_too=True)
+
+    def sums(radius: float) -> tuple[FloatArray, FloatArray]:
+        divisor = _power(radius, order)
+        weights = _matrix(x, particles, volumes, radius, kernel)
+        found = (weights * (values - at[:, None])).sum(axis=1) / divisor
+        z = np.where(weights == 0.0, 0.0, (np.asarray(particles) - np.asarray(x)[:, None]) / radius)
+        return found, np.einsum("ij,ij->i", weights, z**order) / math.factorial(order)
+
     with np.errstate(all="ignore"):
-        differences = values - at[:, None]
-        result = check.finite_result("values", (weights * differences).sum(axis=1) / divisor)
-        z = np.where(
-            weights == 0.0, 0.0, (np.asarray(particles) - np.asarray(x)[:, None]) / epsilon
-        )
-        moments = np.einsum("ij,ij->i", weights, z**order) / math.factorial(order)
-    warn_of_moment(moments, "points", stacklevel=2)
-    return np.asarray(result)
+        result, moments = sums(epsilon)
+        result = check.finite_result("values", result)
+        warn_of_moment(moments, "points", stacklevel=2)
+        if not isinstance(kernel, Stencil):
+            inside = _inside(x, particles, epsilon, kernel)
+            _warn_of_smoothing(result, moments, *sums(2.0 * epsilon), inside)
+    return result
 
 
 def regularised(
@@ -125,6 +151,33 @@ def regularised(
         if order > 0:
             shifted = shifted - check.sampled("f", f, x)[:, None]
         return check.finite_result("f", shifted @ (w * kernel(z)) / divisor)
+
+
+def _inside(x: ArrayLike, particles: ArrayLike, epsilon: float, kernel: Kernel) -> np.ndarray:
+    """Whether the particles go on beyond each point as far as a kernel of twice the radius sees."""
+    seen = 2.0 * epsilon * min(kernel.reach, _SEEN)
+    return (np.asarray(x) - seen >= np.min(particles)) & (np.asarray(x) + seen <= np.max(particles))
+
+
+def _warn_of_smoothing(
+    result: FloatArray,
+    moment: FloatArray,
+    wider: FloatArray,
+    wider_moment: FloatArray,
+    inside: np.ndarray,
+) -> None:
+    """Warn if twice the radius changes a result, over its moment, by more than three times what is allowed."""
+    ratio = wider_moment / moment
+    whole = inside & (ratio > _WHOLE[0]) & (ratio < _WHOLE[1])
+    change = np.where(whole, np.abs(wider / ratio - result), 0.0) / 3.0
+    largest = float(np.abs(result).max(initial=0.0))
+    if change.max(initial=0.0) > _WRONG * largest:
+        warnings.warn(
+            "epsilon is too large for the field: the smoothing changes the result by about "
+            f"{change.max() / largest:.2g} of its largest value. Take a smaller epsilon, or a kernel of higher order.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def _matrix(

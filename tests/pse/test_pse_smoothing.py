@@ -1,0 +1,78 @@
+"""A radius that is too large for the field is warned of, and one that is not is not."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from fracparticles import pse
+from fracparticles.errors import AccuracyWarning
+
+KERNELS = {
+    "Gaussian": (pse.GAUSSIAN_20, 2),
+    "spline": (pse.SplineKernel(5), 2),
+    "slope": (pse.construct(1, 2), 1),
+    "slope, order 4": (pse.construct(1, 4), 1),
+    "curvature, order 4": (pse.construct(2, 4), 2),
+}
+
+
+def warned(call, *arguments) -> tuple[np.ndarray, bool]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", AccuracyWarning)
+        return call(*arguments), any("too large for the field" in str(w.message) for w in caught)
+
+
+@pytest.mark.parametrize("name", list(KERNELS))
+def test_the_derivative_of_a_wave(name):
+    """sin(k x + 1/2) for k epsilon from 0.02 to 4. The limit is 5 per cent with order two, and lower with more."""
+    kernel, order = KERNELS[name]
+    x, verdicts = np.linspace(-1.0, 1.0, 41), set()
+    for epsilon in (0.02, 0.1, 0.4):
+        particles = np.arange(-6.0, 6.0, epsilon / 2.0)
+        for k in (1.0, 3.0, 10.0):
+
+            def f(y, d=0):
+                return k**d * np.sin(k * y + 0.5 + 0.5 * np.pi * d)  # noqa: B023
+
+            found, spoken = warned(
+                pse.derivative,
+                x,
+                f(x),
+                particles,
+                f(particles),
+                epsilon / 2.0,
+                epsilon,
+                kernel,
+                order,
+            )
+            error = np.abs(found - f(x, order)).max() / np.abs(f(x, order)).max()
+            if error > 0.1:
+                assert spoken, (epsilon, k, error)
+            if error < 0.01:
+                assert not spoken, (epsilon, k, error)
+            verdicts.add(spoken)
+    assert verdicts == {True, False}
+
+
+def test_smooth_particles():
+    """By (9) the wave becomes exp(-(k epsilon)^2 / 4) of itself with a Gaussian: 0.4 of it is lost at 1.43."""
+    x, particles, gaussian = (
+        np.linspace(-1.0, 1.0, 9),
+        np.arange(-6.0, 6.0, 0.1),
+        pse.construct(0, 2),
+    )
+    for k, lost in ((7.15, True), (0.5, False)):
+        found, spoken = warned(
+            pse.reconstruct, x, particles, np.cos(k * particles), 0.1, 0.2, gaussian
+        )
+        assert found == pytest.approx(np.exp(-((0.2 * k) ** 2) / 4.0) * np.cos(k * x), abs=1e-10)
+        assert spoken is lost
+
+
+def test_where_the_particles_end_nothing_is_said_of_the_radius():
+    x = np.linspace(-1.0, 1.0, 21)
+    _, spoken = warned(pse.reconstruct, x, x, np.exp(x), 0.1, 0.2, pse.construct(0, 2))
+    assert not spoken
