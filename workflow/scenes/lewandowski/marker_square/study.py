@@ -10,6 +10,7 @@ from scipy.linalg import expm
 from scipy.ndimage import gaussian_filter1d
 
 from fracparticles.markers import shape_function
+from fracstudy.errors import off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -133,7 +134,7 @@ def _closed_form(square: SquareRuns) -> float:
     nodes, weights = np.polynomial.legendre.leggauss(64)
     t = square.t_final
     heat = np.exp(-((square.z[:, None] - nodes) ** 2) / (4.0 * t)) / np.sqrt(4.0 * np.pi * t)
-    return float(np.abs(heat @ weights - square.exact).max() / square.exact.max())
+    return off(heat @ weights, square.exact)
 
 
 def _lines(square: SquareRuns) -> float:

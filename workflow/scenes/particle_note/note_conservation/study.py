@@ -12,7 +12,7 @@ from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, construct, 
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.run.orders import observed_order
 from fracparticles.time import STEP_POLYNOMIALS, step
-from fracstudy.errors import EPS
+from fracstudy.errors import EPS, off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -195,7 +195,7 @@ def _same_as_21(n: int, domain: tuple[float, float], epsilon: float) -> Finding:
         f = heat(x, START)
         direct = v * derivative_by_sum(x, f, x, f, v, epsilon, GAUSSIAN_20, 2)
         exchanged = StrengthExchange(x, v, epsilon, GAUSSIAN_20).apply(v * f)
-        deviation[kind] = np.abs(exchanged - direct).max() / np.abs(direct).max()
+        deviation[kind] = off(exchanged, direct)
     return measured("P-C3.from_21", deviation=deviation)
 
 
