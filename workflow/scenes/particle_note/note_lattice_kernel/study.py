@@ -23,7 +23,7 @@ _KERNELS: dict[str, Kernel] = {
 }
 
 _WIDE = 3.0  # eps / h
-# Particles off the lattice: numbers, domain, by how much of h; the time of the heat kernel, and where it is judged.
+# Particles off the lattice: numbers, domain, by how much of h.
 _NUMBERS, _HALF_WIDTH, _JITTER = (160, 320), 8.0, 0.1
 _PERIOD = 64  # the weights of the compact scheme fall like 0.101^|j|
 
