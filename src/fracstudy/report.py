@@ -117,15 +117,11 @@ def build(
     look_ups = LookUps(results)
     df = look_ups.ledger
     sections = {scene.name: _section(scene, look_ups, results, out) for scene in scenes}
-    parts = [
-        _Page(
-            name,
-            document.title,
-            [sections[scene.name] for scene in scenes if scene.document == name],
-            _summary_of(document, [scene for scene in scenes if scene.document == name], df),
-        )
-        for name, document in documents.items()
-    ]
+    parts = []
+    for name, document in documents.items():
+        own = [scene for scene in scenes if scene.document == name]
+        summary = _summary_of(document, own, df)
+        parts.append(_Page(name, document.title, [sections[scene.name] for scene in own], summary))
     templates = _templates(Path(template_dir))
     words = read_conventions() if conventions is None else conventions
     texts = [

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from fracparticles.kernels.families import kernel
+from fracparticles.special.ends import heat_kernel
 from fracstudy.inputs import Inputs
 from scenes.lucchesi.fickian_limit.figure import figure
 from scenes.lucchesi.fickian_limit.study import (
     decade_moments,
     fickian_error,
-    heat_kernel,
     kernel_distance,
     study,
 )

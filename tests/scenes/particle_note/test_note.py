@@ -16,13 +16,14 @@ from fracparticles.pse import (
     moment,
     regularised,
 )
+from fracparticles.special.ends import heat_kernel
 from fracstudy.inputs import Inputs
 from fracstudy.ledger import judge
 from fracstudy.printed import read_claims
 from fracstudy.verdicts import Status
 from scene_functions import figure, scenes, study
 from scenes.particle_note.note_lattice_kernel.study import SCHEMES
-from scenes.particle_note.waves import Skewed, arranged, heat, heat_second, wave
+from scenes.particle_note.waves import Skewed, arranged, heat_second, wave
 
 PRINTED = Path(__file__).resolve().parents[3] / "report/printed/particle_note"
 CLAIMS = {claim.id: claim for claim in read_claims(PRINTED)}
@@ -136,7 +137,7 @@ def test_waves_and_the_heat_kernel_have_their_derivatives():
 
     # The difference has the error h^2 / 12 times a fourth derivative of at most 16.
     assert wave(x, 2.0, 2) == pytest.approx(second(lambda y: wave(y, 2.0)), abs=2e-6)
-    assert heat_second(x, 0.5) == pytest.approx(second(lambda y: heat(y, 0.5)), abs=2e-6)
+    assert heat_second(x, 0.5) == pytest.approx(second(lambda y: heat_kernel(y, 0.5)), abs=2e-6)
 
 
 def test_the_skewed_kernel_differs_by_its_third_moment_only():
@@ -163,8 +164,10 @@ def test_the_random_error_of_jittered_particles_falls_with_the_power_five_halves
             x, v = arranged("jittered", n, 8.0, 0.3, seed)
             inside = np.abs(x) < 4.0
             exchange = StrengthExchange(x, v, epsilon, GAUSSIAN_20)
-            rate = exchange.apply(v * heat(x, 0.5)) / v
-            integral = regularised(lambda y: heat(y, 0.5), x[inside], epsilon, GAUSSIAN_20, 2)
+            rate = exchange.apply(v * heat_kernel(x, 0.5)) / v
+            integral = regularised(
+                lambda y: heat_kernel(y, 0.5), x[inside], epsilon, GAUSSIAN_20, 2
+            )
             squares.append(np.mean((rate[inside] - integral) ** 2))
         errors.append(np.sqrt(np.mean(squares)))
     # About 6 * 20 independent radii within |x| < 4: each mean is good to 10 %, the power to 0.1.

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from fracparticles import pse
 from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, cell_volumes, derivative
+from fracparticles.special.ends import heat_kernel
 
 SEED = 20  # of particles at random
 START = 0.5  # of the heat kernel
@@ -51,14 +52,9 @@ class Skewed:
         return GAUSSIAN_20(z) * (1.0 + self.amount * z * (z * z - 1.5))
 
 
-def heat(x: np.ndarray, t: float) -> np.ndarray:
-    """The solution of (24) with D = 1 that starts from a unit mass at x = 0."""
-    return np.exp(-x * x / (4.0 * t)) / np.sqrt(4.0 * np.pi * t)
-
-
 def heat_second(x: np.ndarray, t: float) -> np.ndarray:
-    """Its second derivative."""
-    return heat(x, t) * (x * x / (2.0 * t) - 1.0) / (2.0 * t)
+    """The second derivative of the heat kernel, the solution of (24) with D = 1 from a unit mass at x = 0."""
+    return heat_kernel(x, t) * (x * x / (2.0 * t) - 1.0) / (2.0 * t)
 
 
 def arranged(
@@ -92,5 +88,5 @@ def rms_error(exchange: StrengthExchange, x: np.ndarray, v: np.ndarray) -> float
     """Return the root mean square error of f'' by (26), for the heat kernel at the start, |x| < 4, relative."""
     inside = np.abs(x) < CENTRE
     exact = heat_second(x, START)[inside]
-    off = (exchange.apply(v * heat(x, START)) / v)[inside] - exact
+    off = (exchange.apply(v * heat_kernel(x, START)) / v)[inside] - exact
     return np.sqrt((off**2).mean() / (exact**2).mean())

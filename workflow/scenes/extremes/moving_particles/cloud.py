@@ -17,16 +17,6 @@ WORD: tuple[str, float, str] = ("within 5 %, or a word", 0.05, "fundamental solu
 """An error that must be spoken of: what is expected, its bound, where that is known from."""
 
 
-def gaussian(z: np.ndarray, t: float) -> np.ndarray:
-    """Return the fundamental solution of alpha = 2."""
-    return np.exp(-z * z / (4.0 * t)) / math.sqrt(4.0 * math.pi * t)
-
-
-def cauchy(z: np.ndarray, t: float) -> np.ndarray:
-    """Return the fundamental solution of alpha = 1."""
-    return t / (math.pi * (z * z + t * t))
-
-
 class Cloud:
     """Particles on a lattice of |x| <= `half_width`."""
 

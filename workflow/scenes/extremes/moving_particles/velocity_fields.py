@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from fracparticles.moving import dvm
+from fracparticles.special.ends import heat_kernel
 from fracparticles.special.tails import tail_constant
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
-from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud, gaussian
+from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud
 
 # The sums state 1e-11 of the peak; a velocity is a quotient of two of them, and u at the ends is 1e-3 of it.
 _SAME = 1e-7
@@ -28,7 +29,7 @@ def probes(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
 def _weak(cloud: Cloud) -> Iterator[Probe]:
     """A field below the round-off of the sums at the ends, beta near one; pairs, or a threshold, carry it."""
     wide, refused = Cloud(20.0, 2.0 * cloud.h), Kind("weak field", must=REFUSED)
-    error = partial(wide.error, gaussian, alpha=2.0 - 1e-9)
+    error = partial(wide.error, heat_kernel, alpha=2.0 - 1e-9)
     case = "β = 1 - 1e-9, tail 1e-14 of the peak"
     yield refused(f"{case}, transforms", error)
     right = Kind("weak field", "the Gaussian", wide.smoothing(2.0), "closed form", HELD)

@@ -13,11 +13,12 @@ from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.stability import stability_limit, worst_wave
+from fracparticles.special.ends import cauchy, heat_kernel
 from fracparticles.special.stable import green
 from fracparticles.special.tails import tail_constant
 from fracstudy.panels import Panels
 from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe, off
-from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud, cauchy, gaussian
+from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud
 from scenes.extremes.moving_particles.words import add_error, missed
 
 _FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step
@@ -117,7 +118,7 @@ def _orders_of_the_equation(cloud: Cloud) -> Iterator[Probe]:
         bound = cloud.smoothing(float(nearest)) + 2.0 * abs(alpha - nearest)
         # Transforms end at 1e-11 of the peak, where the Gaussian is below.
         narrow = Cloud(min(cloud.half_width, 6.0), cloud.h) if nearest == 2 else cloud
-        exact = gaussian if nearest == 2 else cauchy
+        exact = heat_kernel if nearest == 2 else cauchy
         written = f"{beta:.0e}" if beta < 0.5 else f"1 - {1.0 - beta:.0e}"
         right = Kind("order", "the limit", bound, "closed form", HELD)
         run = partial(narrow.error, exact, alpha=alpha, exterior=exterior, steps=20)

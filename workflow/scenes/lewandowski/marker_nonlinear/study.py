@@ -10,6 +10,7 @@ import pandas as pd
 from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, run, uniform
 from fracparticles.markers.nonlinear import Lines, NonlinearDiffusion
 from fracparticles.time.rkc import stages_for
+from fracstudy.errors import off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -66,7 +67,7 @@ def study(
     rows += [scan.row("scan of the step", scan.last) for scan in scans]
     x = stable.at(compared_at)
     exact = np.interp(x, reference.x, reference.solve(start, [compared_at])[0])
-    apart = np.abs(setting.field(x) - exact).max() / np.abs(exact).max()
+    apart = off(setting.field(x), exact)
     findings = [
         *_set_up(setting, half_width, apart),
         *_time_stepping(setting, runs, scans, t_final),
@@ -102,7 +103,7 @@ def _panels(setting: Markers, printed: Evolution, stable: Evolution) -> Panels:
     return panels
 
 
-def _set_up(setting: Markers, half_width: float, off: float) -> Iterator[Finding]:
+def _set_up(setting: Markers, half_width: float, apart: float) -> Iterator[Finding]:
     p, z = setting.problem, np.linspace(-half_width, half_width, 2001)
     nodes, gauss = np.polynomial.legendre.leggauss(8)
     middle, width = 0.5 * (z[:-1] + z[1:]), 0.5 * (z[1] - z[0])
@@ -110,7 +111,7 @@ def _set_up(setting: Markers, half_width: float, off: float) -> Iterator[Finding
     closed = p.cumulative_source(z)
     gap = float(np.abs(np.cumsum(integral - np.diff(closed))).max()) / float(np.abs(closed).max())
     yield measured("M-F17.steady", gap=gap)
-    yield measured("M-F17.velocity", apart=off)
+    yield measured("M-F17.velocity", apart=apart)
     points, markers = _quadrature(p, setting.x), setting.x.size
     work = {"by quadrature from far left": points / markers, "in closed form": 1.0 / markers}
     yield measured("M-F17.integral", work=work, gap=gap, points=points, markers=markers)
@@ -155,10 +156,10 @@ def _time_stepping(
         "midpoint rule at a smaller step": small,
         "stabilised integrator": stable,
     }
-    off = {name: setting.deviation(e.end, everywhere=True) / peak for name, e in titled.items()}
+    apart = {name: setting.deviation(e.end, everywhere=True) / peak for name, e in titled.items()}
     last = {name: e.last for name, e in titled.items()}
     more: dict[str, Any] = {"stages": stable.stages, "dt": small.dt, "same": same}
-    yield measured("M-F18.agreement", apart=off, last=last, **more)
+    yield measured("M-F18.agreement", apart=apart, last=last, **more)
 
 
 def _long_time(setting: Markers, stable: Evolution, lost: Sequence[float]) -> Iterator[Finding]:
@@ -190,6 +191,5 @@ def _porous(until: float) -> Finding:
     steps = round((until - 1.0) / 0.05)
     x = run(x, w, velocity, dt=(until - 1.0) / steps, steps=steps, start=1.0).x
     z = np.linspace(-1.5, 1.5, 801) * math.sqrt(6.0) * until ** (1.0 / 3.0)
-    f = exact(z, until)
-    gap = np.abs(velocity.fields(x, w, z)[0] - f)
-    return measured("M-F18.shown", apart=gap.max() / f.max(), markers=markers, until=until)
+    apart = off(velocity.fields(x, w, z)[0], exact(z, until))
+    return measured("M-F18.shown", apart=apart, markers=markers, until=until)

@@ -10,6 +10,8 @@ from scipy.linalg import expm
 from scipy.ndimage import gaussian_filter1d
 
 from fracparticles.markers import shape_function
+from fracparticles.special.ends import heat_kernel
+from fracstudy.errors import off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -137,9 +139,8 @@ def _findings(
 def _closed_form(square: SquareRuns) -> float:
     """The difference of the two erf from the integral over the square, by Gauss's rule, relative to the maximum."""
     nodes, weights = np.polynomial.legendre.leggauss(64)
-    t = square.t_final
-    heat = np.exp(-((square.z[:, None] - nodes) ** 2) / (4.0 * t)) / np.sqrt(4.0 * np.pi * t)
-    return float(np.abs(heat @ weights - square.exact).max() / square.exact.max())
+    heat = heat_kernel(square.z[:, None] - nodes, square.t_final)
+    return off(heat @ weights, square.exact)
 
 
 def _lines(square: SquareRuns) -> float:

@@ -14,6 +14,7 @@ from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.profiles import Square
 from fracparticles.markers.source import GaussianSource, advance_weights, source_flux
+from fracstudy.errors import off
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -115,7 +116,7 @@ def kdv_residual(soliton: Soliton, half: float) -> float:
     f = soliton.value(x)
     k = np.pi / half * np.fft.rfftfreq(points, 1.0 / points)
     flux = 3.0 * f * f + np.fft.irfft(-k * k * np.fft.rfft(f), points)
-    return float(np.abs(soliton.velocity(f) * f - flux).max() / np.abs(flux).max())
+    return off(soliton.velocity(f) * f, flux)
 
 
 def _kdv(
@@ -283,4 +284,4 @@ def _carried(t: float = 0.5) -> Finding:
     x = square.quantile(g, t)
     moved = (square.quantile(g, t + _STEP) - square.quantile(g, t - _STEP)) / (2.0 * _STEP)
     velocity = -square.slope(x, t) / square.value(x, t)
-    return measured("M-C6.diffusion", miss=np.abs(moved - velocity).max() / np.abs(velocity).max())
+    return measured("M-C6.diffusion", miss=off(moved, velocity))

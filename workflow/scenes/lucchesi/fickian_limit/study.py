@@ -14,6 +14,7 @@ from fracparticles.schemes import Setting, dpse
 from fracparticles.schemes.base import one_pass_operator
 from fracparticles.schemes.transform import lattice_transform
 from fracparticles.special import mean_radius
+from fracparticles.special.ends import heat_kernel
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
@@ -30,11 +31,6 @@ _FARTHER = (1.1, 1.5)  # where the moments are looked at, besides near 2
 _ANY = 1.5  # Phi does not depend on alpha: any below 2 will do
 _DISTANCE, _SLOPE = "max |K - Φ|", "max |K - Φ| / (2 - alpha)"
 _SECOND = {exponent: f"second moment to r = 1e{exponent}" for exponent in (1, 3, 6)}
-
-
-def heat_kernel(x: np.ndarray, t: float) -> np.ndarray:
-    """Return the fundamental solution at alpha = 2, exp(-x^2 / 4t) / sqrt(4 pi t)."""
-    return np.exp(-x * x / (4.0 * t)) / sqrt(4.0 * pi * t)
 
 
 def fickian_error(

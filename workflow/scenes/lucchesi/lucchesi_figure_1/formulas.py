@@ -12,6 +12,7 @@ from scipy.special import hyp1f1
 
 from fracparticles.kernels.families import kernel
 from fracparticles.special.stable import green
+from fracstudy.errors import off
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS
 from scenes.lucchesi.lucchesi_figure_1 import integrals
@@ -25,11 +26,6 @@ _EPSILON = 0.5  # at which powers of epsilon are told from one another
 _FAR, _SMALL = 1e5, 1e-3
 _STEP = 1e-2  # of the differences of sixth order, exact to 1e-12 for functions of scale 1
 _SIXTH = {1: 45.0 / 60.0, 2: -9.0 / 60.0, 3: 1.0 / 60.0}
-
-
-def _off(ours: np.ndarray, theirs: np.ndarray) -> float:
-    """The largest difference, over the largest value."""
-    return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
 
 
 def _slope(f: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
@@ -105,13 +101,13 @@ def _laplacian_of_potential(n: int, alpha: float) -> float:
     """The Laplacian of the potential, f' + (n - 1) f / r with f the slope of (14), against G of (11)."""
     f = printed_kernel("F", _RADII, alpha, n)
     laplacian = _slope(lambda r: printed_kernel("F", r, alpha, n)) + (n - 1.0) * f / _RADII
-    return _off(laplacian, printed_kernel("G", _RADII, alpha, n))
+    return off(laplacian, printed_kernel("G", _RADII, alpha, n))
 
 
 def _gradient(n: int, alpha: float, order: int) -> float:
     wide = None if order == 2 else 0.5
     slope = _slope(lambda r: printed_kernel("kappa", r, alpha, n, wide))
-    return _off(slope, printed_kernel("F", _RADII, alpha, n, wide))
+    return off(slope, printed_kernel("F", _RADII, alpha, n, wide))
 
 
 def _integral_of_g(n: int, alpha: float) -> float:
@@ -185,11 +181,11 @@ def _gaussians() -> Iterator[Finding]:
         return np.exp(-r * r) / pi ** (0.5 * n)
 
     def phi(n: int) -> float:
-        return _off(-_slope(partial(eta, n=n)) / _RADII, 2.0 * eta(_RADII, n))
+        return off(-_slope(partial(eta, n=n)) / _RADII, 2.0 * eta(_RADII, n))
 
     def of_order_iv(n: int) -> float:
         ours = 2.0 * eta(_RADII, n) - 2.0 ** (-0.5 * n) * eta(_RADII / sqrt(2.0), n)
-        return _off(ours, np.asarray(kernel("eta", _RADII, 1.5, n, 4)))
+        return off(ours, np.asarray(kernel("eta", _RADII, 1.5, n, 4)))
 
     pairs = product(("(8)", "(9)"), _DIMS)
     mass = {f"{name}, n = {n}": abs(_at_origin(name, n, 0.0) - 1.0) for name, n in pairs}
@@ -206,10 +202,10 @@ def _gaussians() -> Iterator[Finding]:
 def _appendix(alphas: Sequence[float]) -> Iterator[Finding]:
     """(B.5), (B.6), the kernels against their transforms, and the powers of epsilon that go with them."""
 
-    def off(name: str, order: int, wide: float | None = None) -> float:
+    def worst(name: str, order: int, wide: float | None = None) -> float:
         """Of a printed kernel from the inverse transform, the worst over n and beta."""
         return max(
-            _off(printed_kernel(name, _RADII, *of, wide), from_transform(name, _RADII, *of, order))
+            off(printed_kernel(name, _RADII, *of, wide), from_transform(name, _RADII, *of, order))
             for of in product(alphas, _DIMS)
         )
 
@@ -217,14 +213,14 @@ def _appendix(alphas: Sequence[float]) -> Iterator[Finding]:
     four = {"15": "kappa", "21": "F", "12": "G"}
     yield measured("L-FORMULAS.B5", difference=each(partial(_general, slope=False), n=_DIMS))
     yield measured("L-FORMULAS.B6", difference=each(partial(_general, slope=True), n=_DIMS))
-    inverse = {name: off(kind, 2) for name, kind in two.items()}
+    inverse = {name: worst(kind, 2) for name, kind in two.items()}
     yield measured("L-FORMULAS.inverse", difference=inverse)
-    meant = {name: off(kind, 4, 0.5) for name, kind in four.items()}
+    meant = {name: worst(kind, 4, 0.5) for name, kind in four.items()}
     for name, difference in meant.items():
         yield measured(f"L-FORMULAS.{name}", difference=difference)
     yield measured(
         "L-FORMULAS.B18",
-        difference={f"({name})": off(kind, 4, sqrt(0.5)) for name, kind in four.items()},
+        difference={f"({name})": worst(kind, 4, sqrt(0.5)) for name, kind in four.items()},
         intended={f"({name})": difference for name, difference in meant.items()},
     )
     middle = alphas[len(alphas) // 2]
@@ -240,7 +236,7 @@ def _general(n: int, slope: bool) -> float:
     value = value * hyp1f1(top, below, -((b * _RADII) ** 2) / (4.0 * a))
     # int y |y|^mu exp(-a |y|^2 + i b x.y) dV = -i times the gradient of the integral without y; 2! is a factor below.
     value = -0.5 * b * _RADII * value if slope else value
-    return _off(value, integrals.gaussian_integral(mu, b * _RADII, n, a, slope))
+    return off(value, integrals.gaussian_integral(mu, b * _RADII, n, a, slope))
 
 
 def _powers(claim: str, equations: Mapping[str, str], alpha: float) -> Finding:
@@ -252,5 +248,5 @@ def _powers(claim: str, equations: Mapping[str, str], alpha: float) -> Finding:
         exact = from_transform(name, x, alpha, n, epsilon=_EPSILON)
         scaled = _EPSILON**-n * printed_kernel(name, x / _EPSILON, alpha, n)
         printed[case] = float((_EPSILON**-n * scaled / exact)[0])
-        intended[case] = _off(_EPSILON ** right[name] * scaled, exact)
+        intended[case] = off(_EPSILON ** right[name] * scaled, exact)
     return measured(claim, printed=printed, intended=intended)

@@ -8,6 +8,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from fracparticles.kernels.families import kernel
+from fracstudy.errors import off
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.panels import Panels
@@ -85,8 +86,8 @@ def _figure(table: pd.DataFrame, r: np.ndarray, betas: list[float]) -> Iterator[
         return each(lambda b: abs(_values("kappa", x, b) / at_zero[b] - 1.0) / x, beta=betas)
 
     def decay(claim: str, name: str) -> Finding:
-        off = (by[name, order] for order in ORDERS.values())
-        two, four = (part["tail exponent"] - part["expected exponent"] for part in off)
+        both = (by[name, order] for order in ORDERS.values())
+        two, four = (part["tail exponent"] - part["expected exponent"] for part in both)
         return measured(claim, difference=two, others={_MEANT: {"difference": four}})
 
     rises = {_MEANT: {"rise": rise("kappa", 4)}}
@@ -105,8 +106,7 @@ def _of_f(betas: list[float]) -> Iterator[Finding]:
     """What Sec. 3.2.2 says of F, n = 1: odd, a single minimum, the tail."""
 
     def odd(b: float) -> float:
-        f = _values("F", _NEAR, b)
-        return np.abs(_values("F", -_NEAR, b) + f).max() / np.abs(f).max()
+        return off(-_values("F", -_NEAR, b), _values("F", _NEAR, b))
 
     def extrema(order: int) -> pd.Series:
         values = each(lambda b: _values("F", _NEAR, b, order), beta=betas)
@@ -119,8 +119,8 @@ def _of_f(betas: list[float]) -> Iterator[Finding]:
         place=each(lambda b: _NEAR[_values("F", _NEAR, b).argmin()], beta=betas),
         others={_MEANT: {"extrema": extrema(4)}},
     )
-    off = each(lambda b: tail_exponent("F", 1.0 + b, 2) + b + 1.0, beta=betas)
-    yield measured("L-KERNELS.F_decay", difference=off)
+    difference = each(lambda b: tail_exponent("F", 1.0 + b, 2) + b + 1.0, beta=betas)
+    yield measured("L-KERNELS.F_decay", difference=difference)
 
 
 def _of_g(betas: list[float]) -> Iterator[Finding]:
@@ -136,7 +136,9 @@ def _of_g(betas: list[float]) -> Iterator[Finding]:
         return {"origin": values.map(lambda g: g[0])}
 
     two, four = values(2), values(4)
-    off = each(lambda n, b: tail_exponent("G", 1.0 + b, 2, n) + n + 1.0 + b, n=_DIMS, beta=betas)
+    difference = each(
+        lambda n, b: tail_exponent("G", 1.0 + b, 2, n) + n + 1.0 + b, n=_DIMS, beta=betas
+    )
     yield measured("L-KERNELS.G_origin", others={_MEANT: origin(four)}, **origin(two))
     yield measured("L-KERNELS.G_maximum", others={_MEANT: maximum(four)}, **maximum(two))
-    yield measured("L-KERNELS.G_decay", difference=off)
+    yield measured("L-KERNELS.G_decay", difference=difference)

@@ -9,6 +9,7 @@ from scipy.special import gamma, roots_legendre
 
 from fracparticles.special.plane import planar_asymptotic, planar_integral, planar_series
 from fracparticles.special.stable import reduced_green, tail_mass
+from fracstudy.errors import off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 
@@ -64,7 +65,7 @@ def _fundamental(alpha: float) -> Finding:
     inside = float(20.0 * pi * weight @ (s * planar_integral(s, alpha)))
     return measured(
         "L-F6.fundamental",
-        equation=np.abs(rate - laplacian).max() / np.abs(rate).max(),
+        equation=off(laplacian, rate),
         mass=abs(inside + float(tail_mass(20.0, 1.0, alpha, 2)) - 1.0),
         integral=gap / float(reduced_green(0.0, alpha, 2)),
         rate=rate[0],

@@ -13,7 +13,7 @@ from fracparticles.run.orders import observed_order
 from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Scheme, Setting, riesz
 from fracparticles.schemes.spectrum import scheme_matrix
 from fracparticles.special.stable import green
-from fracstudy.errors import EPS
+from fracstudy.errors import EPS, off
 from fracstudy.findings import each, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from scenes.lucchesi.lucchesi_table_1.extension import variable_diffusivity
@@ -174,7 +174,7 @@ def _difference(name: str, s: Setting) -> float:
         u = random.standard_normal(i.size)
         ours = SCHEMES[name].operator(s).apply(u)
         sums = PAIR_SUMS[name](u, (i[:, None] - i[None, :]) * s.spacing, s)
-    return float(np.abs(ours - sums).max() / np.abs(sums).max())
+    return off(ours, sums)
 
 
 def velocity_order(alpha: float) -> float:

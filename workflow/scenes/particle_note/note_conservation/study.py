@@ -11,8 +11,9 @@ from fracparticles import pse
 from fracparticles.pse import GAUSSIAN_20, Kernel, StrengthExchange, construct, moment
 from fracparticles.pse import derivative as derivative_by_sum
 from fracparticles.run.orders import observed_order
+from fracparticles.special.ends import heat_kernel
 from fracparticles.time import STEP_POLYNOMIALS, step
-from fracstudy.errors import EPS
+from fracstudy.errors import EPS, off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -22,7 +23,6 @@ from scenes.particle_note.waves import (
     START,
     Skewed,
     arranged,
-    heat,
     rms_error,
     second_derivative_error,
 )
@@ -68,14 +68,14 @@ def study(
         x, v = arranged(kind, n, *domain)
         for name, kernel in kernels.items():
             exchange = StrengthExchange(x, v, epsilon, kernel)
-            row, history, q = _run(exchange, v * heat(x, START), time)
+            row, history, q = _run(exchange, v * heat_kernel(x, START), time)
             row["error of f(x, T)"] = _solution_error(x, v, q, time)
             rows.append({"particles": kind, "kernel": name, **row})
             panels.add(**history, panel="mass", kind=kind, series=name)
             if name == "Gaussian (20)" and kind == "random":
                 panels.add("solution", x=x, y=q / v, volume=v)
     x = np.linspace(-5.0, 5.0, 301)
-    panels.add("exact", x=x, y=heat(x, START + time))
+    panels.add("exact", x=x, y=heat_kernel(x, START + time))
     for (kind, name), exchange, q in (_any_volumes(n, half_width, epsilon), _two_dimensions(n)):
         rows.append({"particles": kind, "kernel": name, **_run(exchange, q, time)[0]})
     table = pd.DataFrame(rows)
@@ -114,7 +114,7 @@ def _run(
 
 def _solution_error(x: np.ndarray, v: np.ndarray, q: np.ndarray, time: float) -> float:
     inside = np.abs(x) < CENTRE
-    final = (v * heat(x, START + time))[inside]
+    final = (v * heat_kernel(x, START + time))[inside]
     return float(np.abs(q[inside] - final).sum() / final.sum())
 
 
@@ -152,7 +152,7 @@ def _accuracy(
         for seed in range(seeds if kind == "jittered" else 1):
             x, v, exchange, operator = _tried(kind, n, domain, seed, epsilon)
             steps = int(np.ceil(exchange.rate * time / (0.8 * _RK4.stability_interval)))
-            q = step(exchange, _RK4, time / steps, steps, v * heat(x, START))
+            q = step(exchange, _RK4, time / steps, steps, v * heat_kernel(x, START))
             errors.append((operator, _solution_error(x, v, q, time)))
         where = {"kind": kind, "power": power, "x": h}
         for panel, error in zip(("operator", "solution error"), np.transpose(errors), strict=True):
@@ -192,10 +192,10 @@ def _same_as_21(n: int, domain: tuple[float, float], epsilon: float) -> Finding:
     deviation = {}
     for kind in _KINDS:
         x, v = arranged(kind, n, *domain)
-        f = heat(x, START)
+        f = heat_kernel(x, START)
         direct = v * derivative_by_sum(x, f, x, f, v, epsilon, GAUSSIAN_20, 2)
         exchanged = StrengthExchange(x, v, epsilon, GAUSSIAN_20).apply(v * f)
-        deviation[kind] = np.abs(exchanged - direct).max() / np.abs(direct).max()
+        deviation[kind] = off(exchanged, direct)
     return measured("P-C3.from_21", deviation=deviation)
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 from fracparticles import pse
 from fracparticles.pse import GAUSSIAN_20, TENT_27, Kernel, lattice_moment, moment, required_moments
 from fracparticles.run.orders import observed_order
-from fracstudy.errors import EPS
+from fracstudy.errors import EPS, off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -23,7 +23,7 @@ _KERNELS: dict[str, Kernel] = {
 }
 
 _WIDE = 3.0  # eps / h
-# Particles off the lattice: numbers, domain, by how much of h; the time of the heat kernel, and where it is judged.
+# Particles off the lattice: numbers, domain, by how much of h.
 _NUMBERS, _HALF_WIDTH, _JITTER = (160, 320), 8.0, 0.1
 _PERIOD = 64  # the weights of the compact scheme fall like 0.101^|j|
 
@@ -98,8 +98,10 @@ def _moments(claimed: float) -> Iterator[Finding]:
         mass=moment(TENT_27, 0),
     )
     second, required = moment(TENT_27, 2), required_moments(2, 2)
-    off, missed = abs(second / claimed - 1.0), abs(second / _WANTED - 1.0)
-    yield measured("P-C4.second_moment", off=off, missed=missed, second=second)
+    missed = abs(second / _WANTED - 1.0)
+    yield measured(
+        "P-C4.second_moment", off=abs(second / claimed - 1.0), missed=missed, second=second
+    )
     discrete = {f"M̂_{k}": abs(float(lattice_moment(TENT_27, k)) - m) for k, m in required.items()}
     yield measured("P-C4.discrete_moment", off=discrete)
 
@@ -130,8 +132,8 @@ def _centred(spacing: list[float]) -> Finding:
     centred = sum(c * np.eye(n - 2, n, j) for j, c in enumerate((1.0, -2.0, 1.0)))
     error = [second_derivative_error(TENT_27, h, 1.0) for h in spacing]
     power, difference = float(observed_order(spacing, error)[0]), np.abs(matrix - centred).max()
-    off = abs(power - 2.0)
-    return measured("P-C4.centred_differences", difference=difference, off=off, power=power)
+    numbers = {"difference": difference, "off": abs(power - 2.0), "power": power}
+    return measured("P-C4.centred_differences", **numbers)
 
 
 def _compact() -> dict[int, float]:
@@ -156,15 +158,15 @@ def _schemes(orders: dict[int, float]) -> Iterator[Finding]:
         scheme = np.zeros(n)
         for j, weight in weights.items():
             scheme += float(weight) * np.roll(f, -j) / h**beta
-        difference[name] = np.abs(ours - scheme[inside]).max() / np.abs(scheme).max()
+        difference[name] = off(ours, scheme[inside], np.abs(scheme).max())
     yield measured("P-C4.any_stencil", difference=difference)
     coefficient = {}
     for r in orders:
         found = enumerate(pse.construct_stencil(2, r).values, start=-r // 2)
         weights = SCHEMES[_CENTRED[r]][1]
         coefficient[f"r = {r}"] = max(abs(float(eta - weights[j])) for j, eta in found if j)
-    off = {f"r = {r}": abs(power - r) for r, power in orders.items()}
-    yield measured("P-C4.from_moments", coefficient=coefficient, off=off)
+    away = {f"r = {r}": abs(power - r) for r, power in orders.items()}
+    yield measured("P-C4.from_moments", coefficient=coefficient, off=away)
 
 
 def _economy(accuracy: list[int]) -> Iterator[Finding]:

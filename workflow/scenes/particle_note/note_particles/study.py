@@ -8,6 +8,7 @@ import pandas as pd
 
 from fracparticles.pse import GaussianKernel, cell_volumes, lattice, reconstruct
 from fracparticles.run.orders import observed_order
+from fracstudy.errors import off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
@@ -97,7 +98,7 @@ def _superposed(spacing: float, half_width: float) -> Finding:
     for h in spacings:
         particles = lattice(-half_width, half_width, h)
         found = reconstruct(x, particles, two_bumps(particles), h, np.sqrt(2.0) * h, _UNIT)
-        errors.append(np.abs(found - two_bumps(x)).max() / two_bumps(x).max())
+        errors.append(off(found, two_bumps(x)))
     order = observed_order(spacings, errors)[-1]
     return measured("P-F1.smooth", order=order, error=errors[-1])
 

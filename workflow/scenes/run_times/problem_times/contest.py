@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fracparticles.problems import Problem, solve_problem
+from fracstudy.errors import off
 
 OURS, PEER = "ours", "peer"
 
@@ -35,8 +36,7 @@ def greatest_error(exact: Callable[[np.ndarray], np.ndarray]) -> Callable[[Point
 
     def error(answer: Points) -> float:
         x, u = answer
-        known = exact(x)
-        return float(np.abs(u - known).max() / np.abs(known).max())
+        return off(u, exact(x))
 
     return error
 

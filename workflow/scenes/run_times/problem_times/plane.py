@@ -16,6 +16,7 @@ import numpy as np
 from scipy.fft import irfft2, rfft2
 
 from fracparticles.special import green
+from fracstudy.errors import off
 from scenes.run_times.problem_times.contest import Contest, Points, on_lattices
 from scenes.run_times.problem_times.waves import lawson, mended
 
@@ -35,7 +36,7 @@ def carried_round(alpha: float) -> Contest:
         near = np.abs(x) <= _SEEN
         at = x[near]
         exact = np.asarray(green(np.hypot(at[:, None] + _FROM, at), 1.0 + _TIME, alpha, 2))
-        return float(np.abs(u[np.ix_(near, near)] - exact).max() / exact.max())
+        return off(u[np.ix_(near, near)], exact)
 
     fields: dict[str, Any] = {"alpha": alpha, "dim": 2, "velocity": ("-y", "x"), "t_final": _TIME}
     symbols = {"Fourier, circle": _waves, "differences": _differences}

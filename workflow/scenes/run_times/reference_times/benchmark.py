@@ -25,6 +25,7 @@ import scipy.fft
 from fracparticles.lattice.fourier import complex_length
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, initial_strengths, prepare
+from fracstudy.errors import off
 from fracstudy.race import clock
 from fracstudy.race.contenders.schemes import few_steps
 
@@ -207,7 +208,7 @@ def _time_steps(case: Case, name: str, summation: str, most: int) -> dict[str, f
         f"{name}_step_time": time.minimum / steps,
         f"{name}_time": time.minimum / steps * case.steps,
         f"{name}_applications": stepped.operator_applications / steps * case.steps,
-        f"{name}_deviation": float(np.abs(u - series).max() / np.abs(u).max()),
+        f"{name}_deviation": off(series, u),
     }
 
 
