@@ -112,6 +112,14 @@ def test_of_data_that_cancel_what_is_not_known_is_stated(alpha, points, h, width
     assert error / 2.0 <= stated <= 100.0 * error
 
 
+def test_what_does_not_cancel_is_not_said_to():
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        evolve_long(np.ones(8), 0.1, 1.5, 1e3)
+    assert said
+    assert not any("cancel" in str(one.message) for one in said)
+
+
 @pytest.mark.parametrize("alpha", [1.05, 1.5, 1.95])
 def test_data_that_cancel_on_a_wide_lattice_keep_six_digits_in_silence(alpha):
     with warnings.catch_warnings():
@@ -167,6 +175,24 @@ def test_units_do_not_matter(alpha, later, length, diffusivity):
     assert min(abs(H / (h * length) - ratio) for ratio in (0.5, 1.0, 2.0)) < 1e-9
     if abs(H / (h * length) - 1.0) < 1e-9:
         assert np.abs(u - v).max() <= 1e-9 * u.max()
+
+
+@pytest.mark.parametrize("later", [0.1, 1e6])
+@pytest.mark.parametrize("size", [2.0**1022, 2.0**-900])
+def test_the_size_of_the_data_does_not_matter(size, later):
+    """What the sums of the greatest numbers overflowed to was nan."""
+    u0 = blob(400, 0.1, 1.0, 1.5, 1, 0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        u, _ = evolve_long(size * u0, 0.1, 1.5, later)
+    assert (u == size * evolve_long(u0, 0.1, 1.5, later)[0]).all()
+
+
+def test_lengths_and_times_at_the_ends_of_their_range():
+    u0 = blob(400, 1.0, 10.0, 1.5, 1, 0.0)
+    for h in (1e-60, 1e60):
+        u, _ = evolve_long(u0, h, 1.5, 1e3 * h**1.5)
+        assert u == pytest.approx(evolve_long(u0, 1.0, 1.5, 1e3)[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("h", [1e-3, 1e3])
@@ -229,7 +255,11 @@ def test_what_keeps_them_is_not():
         ({"u": np.ones((20, 30))}, "u"),
         ({"u": 1.0}, "u"),
         ({"u": [np.nan] * 40}, "u"),
+        ({"u": []}, "points"),
+        ({"u": np.ones(7)}, "points"),
+        ({"u": np.ones((3, 3))}, "points"),
         ({"spacing": 0.0}, "spacing"),
+        ({"spacing": 1e-101}, "spacing"),
         ({"alpha": 2.0}, "alpha"),
         ({"time": -1.0}, "time"),
         ({"diffusivity": 0.0}, "diffusivity"),
