@@ -242,6 +242,19 @@ def test_what_loses_digits_is_warned_of(u, h, tail, match, later):
         evolve_long(u, h, 1.5, later * h**1.5 / 0.1**1.5, tail=tail)
 
 
+@pytest.mark.parametrize(
+    ("data", "width", "later"),
+    [(fp.green_rate, 2.8, 0.15), (fp.green_rate, 2.8, 0.4), (fp.green_slope, 2.5, 0.15)],
+)
+def test_a_peak_of_waves_that_the_lattice_lacks_is_warned_of(data, width, later):
+    """Near alpha = 1 the waves of two spacings are exp(-pi width) at the start; the integral does not feel them."""
+    alpha, x = 1.001, line(756, 1.0)
+    with pytest.warns(AccuracyWarning, match="of the greatest value may be missed"):
+        u, _ = evolve_long(data(x, width**alpha, alpha), 1.0, alpha, later)
+    exact = data(x, width**alpha + later, alpha)
+    assert 1e-5 < np.abs(u - exact).max() / np.abs(exact).max() < 1e-3
+
+
 def test_what_keeps_them_is_not():
     with warnings.catch_warnings():
         warnings.simplefilter("error")

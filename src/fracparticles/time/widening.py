@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -30,6 +30,7 @@ from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import later_exponents, powers, tail_exponents
+from fracparticles.time.short_waves import ShortWaves
 from fracparticles.time.whole_space import FEWEST
 
 __all__ = ["evolve_long"]
@@ -38,6 +39,9 @@ _LET_GO = 20.0  # E: 2e-9
 _STRETCH = 2.1  # the circle of the transforms over the lattice; twice the lattice is wanted of it
 _TERMS = {1: 5, 2: 4, 3: 2}
 _SHORT_WAVES = 1e-5  # of the integral; measured, the estimate is two to a hundred times too large
+_OF_A_PEAK = (
+    5e-5  # of the greatest value, before the first doubling; measured, two to fifty times too large
+)
 _DOUBTFUL = 2e-6  # likewise; measured, at least the error
 _GREATEST = 5.0  # of the gamma, once the tail is known
 _SHORTEST = 1e-12  # scaled time of a step that only moves the solution
@@ -116,7 +120,9 @@ def evolve_long(
         )
     points, dim = check.whole_number("points", u.shape[0], FEWEST), u.ndim
     exponent = int(np.frexp(np.abs(u).max(initial=0.0))[1])
-    u = np.ldexp(u, -exponent)  # of order one: sums of the greatest numbers would overflow
+    u = np.asarray(
+        np.ldexp(u, -exponent)
+    )  # of order one: sums of the greatest numbers would overflow
     doubling = _LET_GO * (2.0 / np.pi) ** alpha  # D t / h^alpha at which the spacing doubles
     middle = _middle(u)
     before = tail_exponents(alpha, _TERMS[dim]) if tail is None else powers(tail, dim)
@@ -125,7 +131,8 @@ def evolve_long(
         _step, points, dim, alpha, before=before, after=after, middle=middle, outer=True
     )
     if left <= doubling * h**alpha:
-        u = _begun(first(left * h**-alpha, moved=None), u)[0]
+        time = left * h**-alpha
+        u = _begun(first(time, moved=None), u, lambda waves: waves.of_a_peak(alpha, time)[0])[0]
         return np.ldexp(u, exponent), h
     spread = left / h**alpha + (0.5 * points) ** alpha  # of what lies beyond the lattice
     if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
@@ -159,20 +166,21 @@ def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
     return Continued(points, length, *given, every=every, **more)
 
 
-def _begun(step: Continued, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, Moments]:
+def _begun(
+    step: Continued, u: np.ndarray, of_a_peak: Callable[[ShortWaves], float] | None = None
+) -> tuple[np.ndarray, np.ndarray, Moments]:
     """Return the result of the first step, the amplitudes of its tail, and what is not known of the moments.
 
-    Warns if the data are not what the step takes.
+    Warns if the data are not what the step takes; with `of_a_peak` also if waves that the lattice lacks are there yet.
     """
-    lacking: list[float] = []
-
-    def look(spectrum: np.ndarray) -> None:
-        lacking.append(float(step.waves(spectrum).of_the_integral[0]))
-        lacking.append(float(np.abs(spectrum).max()))
-
-    result, numbers = step(u[None], look=look)
-    missed, greatest = lacking
-    _warn_of_short_waves(min(1.0, missed / (greatest + _TINY)))
+    seen: list[np.ndarray] = []
+    result, numbers = step(u[None], look=seen.append)
+    waves, greatest = step.waves(seen[0]), float(np.abs(seen[0]).max())
+    missed = float(waves.of_the_integral[0])
+    _warn_of_short_waves(missed / (greatest + _TINY), "their integral", _SHORT_WAVES)
+    if of_a_peak is not None:
+        peak = float(np.abs(result).max()) + _TINY
+        _warn_of_short_waves(of_a_peak(waves) / peak, "the greatest value", _OF_A_PEAK)
     size, length = float(np.abs(u).sum()), float(step.length)
     of_mass, of_first = step.tails.meeting.left_open(u)
     of_mass, of_first = of_mass * length**u.ndim, of_first * length ** (u.ndim + 1)
@@ -187,11 +195,11 @@ def _onward(step: Continued, u: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, 
     return result[0], step.amplitudes(numbers)
 
 
-def _warn_of_short_waves(lacking: float) -> None:
-    """Warn if the lattice does not hold the data: then their sum is not their integral, for ever."""
-    if lacking > _SHORT_WAVES:
+def _warn_of_short_waves(lacking: float, what: str, limit: float) -> None:
+    """Warn if the lattice does not hold the data: then their sum is not their integral, for ever, or a peak is off."""
+    if lacking > limit:
         warnings.warn(
-            f"the lattice does not resolve the data: up to {lacking:.2g} of their integral may be missed. Take a "
+            f"the lattice does not resolve the data: up to {min(1.0, lacking):.2g} of {what} may be missed. Take a "
             "smaller spacing, if they are samples of something finer.",
             AccuracyWarning,
             stacklevel=4,
