@@ -112,6 +112,14 @@ def test_of_data_that_cancel_what_is_not_known_is_stated(alpha, points, h, width
     assert error / 2.0 <= stated <= 100.0 * error
 
 
+def test_what_does_not_cancel_is_not_said_to():
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        evolve_long(np.ones(8), 0.1, 1.5, 1e3)
+    assert said
+    assert not any("cancel" in str(one.message) for one in said)
+
+
 @pytest.mark.parametrize("alpha", [1.05, 1.5, 1.95])
 def test_data_that_cancel_on_a_wide_lattice_keep_six_digits_in_silence(alpha):
     with warnings.catch_warnings():
@@ -169,6 +177,24 @@ def test_units_do_not_matter(alpha, later, length, diffusivity):
         assert np.abs(u - v).max() <= 1e-9 * u.max()
 
 
+@pytest.mark.parametrize("later", [0.1, 1e6])
+@pytest.mark.parametrize("size", [2.0**1022, 2.0**-900])
+def test_the_size_of_the_data_does_not_matter(size, later):
+    """What the sums of the greatest numbers overflowed to was nan."""
+    u0 = blob(400, 0.1, 1.0, 1.5, 1, 0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        u, _ = evolve_long(size * u0, 0.1, 1.5, later)
+    assert (u == size * evolve_long(u0, 0.1, 1.5, later)[0]).all()
+
+
+def test_lengths_and_times_at_the_ends_of_their_range():
+    u0 = blob(400, 1.0, 10.0, 1.5, 1, 0.0)
+    for h in (1e-60, 1e60):
+        u, _ = evolve_long(u0, h, 1.5, 1e3 * h**1.5)
+        assert u == pytest.approx(evolve_long(u0, 1.0, 1.5, 1e3)[0], rel=1e-9)
+
+
 @pytest.mark.parametrize("h", [1e-3, 1e3])
 def test_the_lattice_widens_as_often_in_any_unit(h):
     u = blob(400, 1.0, 30.0, 1.5, 1, 0.0)
@@ -216,6 +242,19 @@ def test_what_loses_digits_is_warned_of(u, h, tail, match, later):
         evolve_long(u, h, 1.5, later * h**1.5 / 0.1**1.5, tail=tail)
 
 
+@pytest.mark.parametrize(
+    ("data", "width", "later"),
+    [(fp.green_rate, 2.8, 0.15), (fp.green_rate, 2.8, 0.4), (fp.green_slope, 2.5, 0.15)],
+)
+def test_a_peak_of_waves_that_the_lattice_lacks_is_warned_of(data, width, later):
+    """Near alpha = 1 the waves of two spacings are exp(-pi width) at the start; the integral does not feel them."""
+    alpha, x = 1.001, line(756, 1.0)
+    with pytest.warns(AccuracyWarning, match="of the greatest value may be missed"):
+        u, _ = evolve_long(data(x, width**alpha, alpha), 1.0, alpha, later)
+    exact = data(x, width**alpha + later, alpha)
+    assert 1e-5 < np.abs(u - exact).max() / np.abs(exact).max() < 1e-3
+
+
 def test_what_keeps_them_is_not():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -229,7 +268,11 @@ def test_what_keeps_them_is_not():
         ({"u": np.ones((20, 30))}, "u"),
         ({"u": 1.0}, "u"),
         ({"u": [np.nan] * 40}, "u"),
+        ({"u": []}, "points"),
+        ({"u": np.ones(7)}, "points"),
+        ({"u": np.ones((3, 3))}, "points"),
         ({"spacing": 0.0}, "spacing"),
+        ({"spacing": 1e-101}, "spacing"),
         ({"alpha": 2.0}, "alpha"),
         ({"time": -1.0}, "time"),
         ({"diffusivity": 0.0}, "diffusivity"),

@@ -31,7 +31,7 @@ __all__ = ["WholeSpace", "evolve", "tail_exponents"]
 
 # Of the maximum: a tail that misses the solution by more, or waves that the lattice lacks.
 _NOTICED = 1e-3
-_FEWEST = 8  # points an axis: the tail meets the data at six depths
+FEWEST = 8  # points an axis: the tail meets the data at six depths
 _OUTGROWN = 0.9
 _TINY = float(np.finfo(float).tiny)
 _TIMES = 1e-300, 1e300  # scaled: beyond, all stays as it is, or has outgrown the lattice
@@ -161,7 +161,7 @@ class WholeSpace:
         tail: Sequence[float] | None = None,
         stretch: float | None = None,
     ) -> None:
-        points, dim = check.whole_number("points", points, _FEWEST), check.dimension(dim)
+        points, dim = check.whole_number("points", points, FEWEST), check.dimension(dim)
         alpha = check.fractional_order(alpha)
         scaled_time = check.positive_real("scaled_time", scaled_time)
         terms = check.whole_number("terms", terms, 0, MOST_TERMS)

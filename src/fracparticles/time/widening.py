@@ -18,18 +18,20 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import next_fast_len
 
-from fracparticles.arguments import finite_array, fractional_order, positive_real
+from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import later_exponents, powers, tail_exponents
+from fracparticles.time.short_waves import ShortWaves
+from fracparticles.time.whole_space import FEWEST
 
 __all__ = ["evolve_long"]
 
@@ -37,14 +39,26 @@ _LET_GO = 20.0  # E: 2e-9
 _STRETCH = 2.1  # the circle of the transforms over the lattice; twice the lattice is wanted of it
 _TERMS = {1: 5, 2: 4, 3: 2}
 _SHORT_WAVES = 1e-5  # of the integral; measured, the estimate is two to a hundred times too large
+_OF_A_PEAK = (
+    5e-5  # of the greatest value, before the first doubling; measured, two to fifty times too large
+)
 _DOUBTFUL = 2e-6  # likewise; measured, at least the error
 _GREATEST = 5.0  # of the gamma, once the tail is known
 _SHORTEST = 1e-12  # scaled time of a step that only moves the solution
 _TINY = float(np.finfo(float).tiny)
 _ROUND_OFF = float(np.finfo(float).eps)
+_CANCELLED = 10.0  # int |u| over what is left of it: less is no cancellation
 _NARROW = (
     10.0  # half the lattice over the spread at a doubling: measured, less loses the sixth digit
 )
+
+
+class Moments(NamedTuple):
+    """int |u|, and what is not known of int u and int x u, in units of the spacing."""
+
+    size: float
+    of_mass: float
+    of_first: float
 
 
 def evolve_long(
@@ -97,14 +111,18 @@ def evolve_long(
     >>> x = (np.arange(800) - 400) * 0.1
     >>> u, h = evolve_long(np.exp(-x * x), 0.1, alpha=1.5, time=1.0e6, tail=())
     """
-    u = finite_array("u", u)
-    alpha, h = fractional_order(alpha), positive_real("spacing", spacing)
-    left = positive_real("time", time) * positive_real("diffusivity", diffusivity)  # D t
+    u = check.finite_array("u", u)
+    alpha, h = check.fractional_order(alpha), check.scale("spacing", spacing)
+    left = check.scale("time", time) * check.scale("diffusivity", diffusivity)  # D t
     if u.ndim not in (1, 2, 3) or len(set(u.shape)) != 1:
         raise InvalidInput(
             "u", u.shape, "as many points along each of one to three axes", "Pad it."
         )
-    points, dim = u.shape[0], u.ndim
+    points, dim = check.whole_number("points", u.shape[0], FEWEST), u.ndim
+    exponent = int(np.frexp(np.abs(u).max(initial=0.0))[1])
+    u = np.asarray(
+        np.ldexp(u, -exponent)
+    )  # of order one: sums of the greatest numbers would overflow
     doubling = _LET_GO * (2.0 / np.pi) ** alpha  # D t / h^alpha at which the spacing doubles
     middle = _middle(u)
     before = tail_exponents(alpha, _TERMS[dim]) if tail is None else powers(tail, dim)
@@ -113,8 +131,10 @@ def evolve_long(
         _step, points, dim, alpha, before=before, after=after, middle=middle, outer=True
     )
     if left <= doubling * h**alpha:
-        return _begun(first(left * h**-alpha, moved=None), u)[0], h
-    spread = left + (0.5 * points * h) ** alpha  # of what lies beyond the lattice, which widens
+        time = left * h**-alpha
+        u = _begun(first(time, moved=None), u, lambda waves: waves.of_a_peak(alpha, time)[0])[0]
+        return np.ldexp(u, exponent), h
+    spread = left / h**alpha + (0.5 * points) ** alpha  # of what lies beyond the lattice
     if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
         least = int(np.ceil(2.0 * _NARROW * doubling ** (1.0 / alpha)))
         warnings.warn(
@@ -124,7 +144,6 @@ def evolve_long(
             stacklevel=2,
         )
     u, b, unknown = _begun(first(doubling, every=2), u)
-    unknown = unknown[0] * h**dim, unknown[1] * h ** (dim + 1)
     moved = -h * np.array(middle)  # back to the middle of the lattice that was given
     left, h = left - doubling * h**alpha, 2.0 * h
     between = doubling * (1.0 - 2.0**-alpha)
@@ -137,7 +156,7 @@ def evolve_long(
     last = later(max(left * h**-alpha, _SHORTEST), moved=(moved / h).tolist())
     u = _onward(last, u, b)[0]
     _warn_of_what_cancels(u, unknown, spread, alpha)
-    return u, h
+    return np.ldexp(u, exponent), h
 
 
 def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
@@ -147,26 +166,27 @@ def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
     return Continued(points, length, *given, every=every, **more)
 
 
-def _begun(step: Continued, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[float, float]]:
-    """Return the result of the first step, the amplitudes of its tail, and what is not known of int u and int x u.
+def _begun(
+    step: Continued, u: np.ndarray, of_a_peak: Callable[[ShortWaves], float] | None = None
+) -> tuple[np.ndarray, np.ndarray, Moments]:
+    """Return the result of the first step, the amplitudes of its tail, and what is not known of the moments.
 
-    In units of the spacing. Warns if the data are not what the step takes.
+    Warns if the data are not what the step takes; with `of_a_peak` also if waves that the lattice lacks are there yet.
     """
-    lacking: list[float] = []
-
-    def look(spectrum: np.ndarray) -> None:
-        lacking.append(float(step.waves(spectrum).of_the_integral[0]))
-        lacking.append(float(np.abs(spectrum).max()))
-
-    result, numbers = step(u[None], look=look)
-    missed, greatest = lacking
-    _warn_of_short_waves(min(1.0, missed / (greatest + _TINY)))
+    seen: list[np.ndarray] = []
+    result, numbers = step(u[None], look=seen.append)
+    waves, greatest = step.waves(seen[0]), float(np.abs(seen[0]).max())
+    missed = float(waves.of_the_integral[0])
+    _warn_of_short_waves(missed / (greatest + _TINY), "their integral", _SHORT_WAVES)
+    if of_a_peak is not None:
+        peak = float(np.abs(result).max()) + _TINY
+        _warn_of_short_waves(of_a_peak(waves) / peak, "the greatest value", _OF_A_PEAK)
     size, length = float(np.abs(u).sum()), float(step.length)
     of_mass, of_first = step.tails.meeting.left_open(u)
     of_mass, of_first = of_mass * length**u.ndim, of_first * length ** (u.ndim + 1)
     _warn_of_tails(of_mass / (size + _TINY), len(u))
     of_mass += missed * (_DOUBTFUL / _SHORT_WAVES) + _ROUND_OFF * size
-    return result[0], step.amplitudes(numbers), (of_mass, of_first)
+    return result[0], step.amplitudes(numbers), Moments(size, of_mass, of_first)
 
 
 def _onward(step: Continued, u: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -175,11 +195,11 @@ def _onward(step: Continued, u: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, 
     return result[0], step.amplitudes(numbers)
 
 
-def _warn_of_short_waves(lacking: float) -> None:
-    """Warn if the lattice does not hold the data: then their sum is not their integral, for ever."""
-    if lacking > _SHORT_WAVES:
+def _warn_of_short_waves(lacking: float, what: str, limit: float) -> None:
+    """Warn if the lattice does not hold the data: then their sum is not their integral, for ever, or a peak is off."""
+    if lacking > limit:
         warnings.warn(
-            f"the lattice does not resolve the data: up to {lacking:.2g} of their integral may be missed. Take a "
+            f"the lattice does not resolve the data: up to {min(1.0, lacking):.2g} of {what} may be missed. Take a "
             "smaller spacing, if they are samples of something finer.",
             AccuracyWarning,
             stacklevel=4,
@@ -198,12 +218,11 @@ def _warn_of_tails(doubt: float, points: int) -> None:
         )
 
 
-def _warn_of_what_cancels(
-    u: np.ndarray, unknown: tuple[float, float], spread: float, alpha: float
-) -> None:
+def _warn_of_what_cancels(u: np.ndarray, unknown: Moments, spread: float, alpha: float) -> None:
     """Warn if the data have cancelled down to what is not known of their integral or of their first moment.
 
-    An integral m spreads to m G <= m P_0, a first moment to its product with the gradient of G, at most m P_1;
+    In units of the first spacing. An integral m spreads to m G <= m P_0, a first moment to its product with the
+    gradient of G, at most m P_1;
     P_l = (2 pi)^-n int |k|^l exp(-t |k|^alpha) dk = S_n Gamma((n + l) / alpha) t^(-(n + l) / alpha) / (alpha (2 pi)^n).
     """
     n = u.ndim
@@ -214,10 +233,11 @@ def _warn_of_what_cancels(
         * spread ** (-(n + degree) / alpha)
         * surface
         / (alpha * (2.0 * math.pi) ** n)
-        for degree, moment in enumerate(unknown)
+        for degree, moment in enumerate((unknown.of_mass, unknown.of_first))
     )
     doubt = min(1.0, wrong / (float(np.abs(u).max()) + _TINY))
-    if doubt > _DOUBTFUL:
+    before = unknown.of_mass / (unknown.size + _TINY)  # which has been said
+    if doubt > max(_DOUBTFUL, _CANCELLED * before):
         warnings.warn(
             f"the data cancel: what is left of them may be off by {doubt:.2g} of its greatest value, since the lattice "
             "and the powers beyond it do not say their integral and their first moment any better. Take a wider "
