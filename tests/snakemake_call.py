@@ -13,10 +13,10 @@ _CONTEXT.set_forkserver_preload(
 )
 
 
-def call(folder: Path, arguments: list[str]) -> tuple[bool, str]:
+def call(folder: Path, *arguments: str) -> tuple[bool, str]:
     """Return whether a call in this folder succeeds, and what it says; the packages are those of the folder."""
     said = folder / ".said"
-    process = _CONTEXT.Process(target=_main, args=(folder, arguments, said), daemon=True)
+    process = _CONTEXT.Process(target=_main, args=(folder, ["-j2", *arguments], said), daemon=True)
     process.start()
     process.join(600)
     return process.exitcode == 0, said.read_text()
