@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 import yaml
 
+from fracstudy.config import StudyConfig, read_config
 from fracstudy.inputs import Result
 from fracstudy.scene import Scene, call
 from fracstudy.scene_files import read_scenes
@@ -21,6 +22,13 @@ ROOT = Path(__file__).resolve().parents[1]
 def scenes() -> dict[str, Scene]:
     documents = yaml.safe_load((ROOT / "config/study.yaml").read_text())["documents"]
     return read_scenes(ROOT / "workflow/scenes", list(documents), smoke=True)
+
+
+@cache
+def configured() -> tuple[StudyConfig, dict[str, Scene]]:
+    """The study and its scenes on their full grids."""
+    given = yaml.safe_load((ROOT / "config/study.yaml").read_text())
+    return read_config(given | {"scenes_dir": str(ROOT / "workflow/scenes"), "grids": None})
 
 
 def measured(benchmark: Any) -> pd.DataFrame:

@@ -210,15 +210,25 @@ def hits(function) -> int:
     return sum(function.stats.cache_hits.values())
 
 
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory) -> Path:
+    """A folder with the module and its cache."""
+    folder = tmp_path_factory.mktemp("compiled")
+    (folder / "summing.py").write_text(MODULE)
+    function = load(folder / "summing.py")
+    assert function(np.arange(5.0)) == 10.0
+    assert hits(function) == 0
+    return folder
+
+
 @pytest.fixture
-def module(tmp_path) -> Path:
-    path = tmp_path / "summing.py"
-    path.write_text(MODULE)
-    for cached in (0, 1):
-        function = load(path)
-        assert function(np.arange(5.0)) == 10.0
-        assert hits(function) == cached
-    return path
+def module(compiled, tmp_path) -> Path:
+    """A copy of the module, with a cache that is taken."""
+    shutil.copytree(compiled, tmp_path, dirs_exist_ok=True)
+    function = load(tmp_path / "summing.py")
+    assert function(np.arange(5.0)) == 10.0
+    assert hits(function) == 1
+    return tmp_path / "summing.py"
 
 
 @pytest.mark.parametrize("damage", DAMAGES)

@@ -96,22 +96,39 @@ def test_a_case_needs_no_tables_and_no_figures():
     assert imported_by(program) <= {"numba", "pydantic", "pyfftw", "scipy"}
 
 
-def test_a_run_needs_no_figures_and_no_command_line():
-    program = (
-        "import fracparticles as fp\n"
-        "fp.solve(fp.Case(scheme='KPSE', beta=0.5, half_width=4.0, spacing=0.1, dt=0.001))"
-    )
-    assert not imported_by(program) & {"cyclopts", "finufft", "matplotlib", "netCDF4"}
+FORKED = """
+import json, os, sys
+import fracparticles as fp
+import numba, pydantic  # what every run needs
+
+cases, unneeded = json.loads(sys.argv[1])
+for name, case in cases.items():
+    for _ in range(2):  # the first may compile what is not yet in the cache
+        if not os.fork():
+            fp.solve(eval(f"fp.Case(beta=0.5, half_width=40.0, spacing=0.4, {case})"))
+            print(json.dumps([name, sorted(sys.modules)]), flush=True)
+            os._exit(not set(unneeded).isdisjoint(sys.modules))
+        if os.wait()[1] == 0:
+            break
+"""
 
 
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
-def test_a_run_loads_no_more_of_them_than_it_needs(case):
-    program = (
-        "import fracparticles as fp\n"
-        f"fp.solve(fp.Case(beta=0.5, half_width=40.0, spacing=0.4, {case}))"
-    )
-    # The first of two may compile what is not yet in the cache.
-    assert any(not modules_of(program) & UNNEEDED for _ in range(2))
+@pytest.fixture(scope="module")
+def loaded():
+    """What a run has imported, by the case; each in a process of its own."""
+    words = [sys.executable, "-c", FORKED, json.dumps([CASES, sorted(UNNEEDED)])]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    return {name: set(modules) for name, modules in map(json.loads, done.stdout.splitlines())}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_run_loads_no_more_of_them_than_it_needs(case, loaded):
+    assert not loaded[case] & UNNEEDED
+
+
+def test_a_run_needs_no_figures_and_no_command_line(loaded):
+    for modules in loaded.values():
+        assert not modules & {"cyclopts", "finufft", "matplotlib", "netCDF4"}
 
 
 def test_the_help_of_the_command_line_is_light():

@@ -9,20 +9,25 @@ from string import Formatter
 
 import pandas as pd
 import pytest
-import yaml
 
 from fracstudy.claims import Statement, Value
-from fracstudy.config import read_config
 from fracstudy.findings import read_findings
 from fracstudy.ledger import ledger as made_ledger
 from fracstudy.ledger_text import read_ledger, summary_line
 from fracstudy.printed import read_claims, read_printed
+from fracstudy.scene import Scene
 from fracstudy.verdicts import Status
+from scene_functions import configured
 
 ROOT = Path(__file__).resolve().parents[1]
-CONFIG = yaml.safe_load((ROOT / "config/study.yaml").read_text())
-STUDY, SCENES = read_config(CONFIG | {"scenes_dir": str(ROOT / "workflow/scenes"), "grids": None})
-PRINTED = [ROOT / path for path in STUDY.all_printed(SCENES.values())]
+
+
+def scenes() -> dict[str, Scene]:
+    return configured()[1]
+
+
+def printed() -> list[Path]:
+    return [ROOT / path for path in configured()[0].all_printed(scenes().values())]
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +36,7 @@ def ledger():
 
 
 def test_every_printed_claim_has_its_row(ledger):
-    assert list(ledger["id"]) == [claim.id for claim in read_claims(*PRINTED)]
+    assert list(ledger["id"]) == [claim.id for claim in read_claims(*printed())]
 
 
 def test_the_rows_quote_what_is_printed_and_name_what_made_the_numbers(ledger):
@@ -39,7 +44,7 @@ def test_the_rows_quote_what_is_printed_and_name_what_made_the_numbers(ledger):
     rows = list(ledger[columns].itertuples(index=False, name=None))
     assert rows == [
         (record.name, record.words, record.where, claim.what, "; ".join(claim.by or record.by))
-        for record in read_printed(*PRINTED)
+        for record in read_printed(*printed())
         for claim in record.claims
     ]
 
@@ -70,7 +75,7 @@ def asked_for(claim: Value | Statement) -> set[str]:
 
 def findings_in(results):
     """The findings of each scene that judges claims; they are not tracked."""
-    files = [ROOT / results / f"findings/{n}.json" for n, scene in SCENES.items() if scene.items]
+    files = [ROOT / results / f"findings/{n}.json" for n, scene in scenes().items() if scene.items]
     if not all(file.exists() for file in files):
         return {}
     return {file.stem: read_findings([file]) for file in files}
@@ -82,7 +87,7 @@ def findings():
 
 
 def test_the_ledger_is_what_the_findings_give(ledger, findings):
-    made = made_ledger(read_printed(*PRINTED), [f for found in findings.values() for f in found])
+    made = made_ledger(read_printed(*printed()), [f for found in findings.values() for f in found])
     pd.testing.assert_frame_equal(ledger, made, check_exact=False, rtol=1e-15)
 
 
@@ -91,10 +96,10 @@ def test_no_study_measures_what_none_of_its_claims_asks_for():
     found = findings_in("results") or findings_in("results-smoke")
     if not found:
         pytest.skip("neither the study nor a smoke run has been made here")
-    claims = {claim.id: claim for claim in read_claims(*PRINTED)}
+    claims = {claim.id: claim for claim in read_claims(*printed())}
     unasked, asked = defaultdict(set), defaultdict(set)
     for scene, findings in found.items():
-        study = SCENES[scene].folder.name
+        study = scenes()[scene].folder.name
         unasked[study].update(name for finding in findings for name in finding.numbers)
         asked[study].update(*(asked_for(claims[finding.claim]) for finding in findings))
     assert {
@@ -110,13 +115,13 @@ def test_a_deviation_has_a_reason_of_its_own(ledger):
 
 
 def test_a_claim_is_judged_by_one_scene_only():
-    items = [item for scene in SCENES.values() for item in scene.items]
+    items = [item for scene in scenes().values() for item in scene.items]
     assert len(items) == len(set(items))
-    assert set(items) == {claim.item for claim in read_claims(*PRINTED)}
+    assert set(items) == {claim.item for claim in read_claims(*printed())}
 
 
 def test_every_scene_has_its_table_and_figure():
-    for name, scene in SCENES.items():
+    for name, scene in scenes().items():
         assert (ROOT / f"results/tables/{name}.csv").exists()
         assert (ROOT / f"results/tables/{name}.md").exists()
         for suffix in ("svg", "png"):
@@ -164,7 +169,7 @@ def test_every_row_of_a_markdown_table_has_the_cells_of_its_header(path):
 
 
 def test_the_tables_of_the_report_are_those_of_the_results():
-    for name, scene in SCENES.items():
+    for name, scene in scenes().items():
         text = (ROOT / f"report/{scene.document}.md").read_text("utf-8")
         table = (ROOT / f"results/tables/{name}.md").read_text("utf-8").strip()
         assert table in text or f"rows](../results/tables/{name}.md)" in text, name

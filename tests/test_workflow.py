@@ -21,6 +21,7 @@ import pytest
 import yaml
 
 from copies import copy_folder
+from snakemake_call import call
 from test_contributing import FILES
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -40,18 +41,6 @@ KEPT = {
 TARGETS = tuple(name for names in KEPT.values() for name in names)
 
 
-def snakemake(project: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "snakemake", "-j2", *arguments],
-        cwd=project,
-        env=environment(project),
-        capture_output=True,
-        text=True,
-        timeout=600,
-        check=False,
-    )
-
-
 def environment(project: Path) -> dict[str, str]:
     paths = [str(project / "src"), os.environ.get("PYTHONPATH", "")]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))}
@@ -59,9 +48,9 @@ def environment(project: Path) -> dict[str, str]:
 
 def planned(project: Path, *arguments: str) -> str:
     """The rules that a call would run, from a dry run."""
-    done = snakemake(project, *arguments, "--dry-run")
-    assert done.returncode == 0, done.stderr
-    return done.stdout + done.stderr
+    succeeded, said = call(project, *arguments, "--dry-run")
+    assert succeeded, said
+    return said
 
 
 def copy(target: Path) -> Path:
@@ -87,16 +76,25 @@ def project(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def finished(project):
-    done = snakemake(project, *TARGETS, *SMOKE)
+    """By the command itself, in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-m", "snakemake", "-j2", *TARGETS, *SMOKE],
+        cwd=project,
+        env=environment(project),
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr[-4000:]
     return project
 
 
 def test_a_misspelt_key_is_refused_before_any_work(project):
-    done = snakemake(project, "rejected_dpse", "--config", "result_dir=elsewhere")
-    assert done.returncode != 0
-    assert "result_dir" in done.stderr
-    assert "Did you mean 'results_dir'?" in done.stderr
+    succeeded, said = call(project, "rejected_dpse", "--config", "result_dir=elsewhere")
+    assert not succeeded
+    assert "result_dir" in said
+    assert "Did you mean 'results_dir'?" in said
     assert not (project / "results").exists()
 
 
@@ -120,8 +118,8 @@ def test_every_scene_has_its_table_findings_and_figure(finished):
 
 @pytest.fixture(scope="module")
 def reported(finished):
-    done = snakemake(finished, "report", *SMOKE)
-    assert done.returncode == 0, done.stderr[-4000:]
+    succeeded, said = call(finished, "report", *SMOKE)
+    assert succeeded, said[-4000:]
     return finished
 
 
@@ -174,17 +172,18 @@ def test_editing_a_solver_reruns_its_runs(finished):
 
 def test_a_second_workflow_in_the_same_folder_is_refused_in_one_line(finished):
     with claimed(finished):
-        done = snakemake(finished, "lucchesi_table_1", *SMOKE, "--forcerun", "lucchesi_table_1")
-    assert done.returncode != 0
-    assert "a workflow runs in this folder already" in done.stderr
+        name = "lucchesi_table_1"
+        succeeded, said = call(finished, name, *SMOKE, "--forcerun", name)
+    assert not succeeded
+    assert "a workflow runs in this folder already" in said
 
 
 @pytest.mark.parametrize("folder", ["with a blank", "with'quote"])
 def test_a_folder_that_jobs_cannot_take_is_refused_in_one_line(tmp_path, folder):
     project = copy(tmp_path / folder)
-    done = snakemake(project, "lucchesi_table_1")
-    assert done.returncode != 0
-    assert "in its path" in done.stderr
+    succeeded, said = call(project, "lucchesi_table_1")
+    assert not succeeded
+    assert "in its path" in said
     assert not (project / "results").exists()
 
 
@@ -195,9 +194,9 @@ def test_a_killed_workflow_carries_on(finished):
     runs = finished / "results-killed/runs"
     runs.mkdir(parents=True)
     shutil.copy2(finished / "results-smoke/runs/.compiled", runs)  # what is compiled is there
-    call = ["solve_part_1", *SMOKE, "--config", "results_dir=results-killed"]
+    words = ["solve_part_1", *SMOKE, "--config", "results_dir=results-killed"]
     process = subprocess.Popen(
-        [sys.executable, "-m", "snakemake", "-j1", *call],
+        [sys.executable, "-m", "snakemake", "-j1", *words],
         cwd=finished,
         env=environment(finished),
         stdout=subprocess.DEVNULL,
@@ -212,8 +211,8 @@ def test_a_killed_workflow_carries_on(finished):
     process.wait()
     for path in runs.rglob("[!.]*.nc"):
         assert "mass_final" in read_run(path)
-    done = snakemake(finished, *call)
-    assert done.returncode == 0, done.stderr[-4000:]
+    succeeded, said = call(finished, *words)
+    assert succeeded, said[-4000:]
 
 
 # --- nothing to register ------------------------------------------------------------------------------------------
@@ -244,8 +243,8 @@ def test_a_new_scheme_and_a_new_scene_run_to_a_figure_and_nothing_else_is_touche
     folder.mkdir()
     (folder / "scene.yaml").write_text(NEW_SCENE)
     (folder / "figure.py").write_text(NEW_FIGURE)
-    done = snakemake(finished, "of_my_own", "--config", "results_dir=mine")
-    assert done.returncode == 0, done.stderr[-4000:]
+    succeeded, said = call(finished, "of_my_own", "--config", "results_dir=mine")
+    assert succeeded, said[-4000:]
     table = pd.read_csv(finished / "mine/tables/of_my_own.csv")
     assert set(table["scheme"]) == {"KPSE", "SMEAR"}
     assert len(table) == 4

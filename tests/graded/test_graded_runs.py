@@ -49,7 +49,7 @@ def test_where_the_scale_is_large_the_particles_are_a_lattice():
 @pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
 @pytest.mark.parametrize("form", GRADED_FORMS)
 def test_a_run_is_the_direct_function(beta, form):
-    c = case(beta, graded_form=form, diffusivity=2.0, t_final=1.0)
+    c = case(beta, graded_form=form, spacing=0.5, diffusivity=2.0, t_final=1.0)
     alpha = 1.0 + beta
     if form == "interpolated":
         matrix = fp.green_step_of_field(c.particles, c.half_width, SCALE, alpha, 1.0)

@@ -9,6 +9,7 @@ import socket
 import stat
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -55,10 +56,16 @@ def case(**changes) -> Case:
     return Case(**{**GIVEN, **changes})
 
 
+@cache
+def solved() -> xr.Dataset:
+    """The run of the case, not to be changed."""
+    return fp.solve(case())
+
+
 @pytest.fixture
 def run_file(tmp_path) -> Path:
     path = tmp_path / "run.nc"
-    fp.write(fp.solve(case()), path)
+    fp.write(solved(), path)
     return path
 
 
@@ -249,7 +256,7 @@ CANNOT_BE_HELD = [
 @pytest.mark.parametrize("value", CANNOT_BE_HELD, ids=range(len(CANNOT_BE_HELD)))
 @pytest.mark.parametrize("holder", ["run", "u", "x", "beta"])
 def test_an_attribute_that_cannot_be_written_is_named_and_leaves_nothing(tmp_path, value, holder):
-    run = fp.solve(case())
+    run = solved().copy(deep=True)
     (run if holder == "run" else run[holder]).attrs["broken"] = value
     of = "" if holder == "run" else f" of {holder},"
     with pytest.raises(InvalidInput, match=f"^attribute{of} 'broken' = ") as refused:

@@ -48,7 +48,7 @@ def estimated_and_true(problem, half_width, spacing, **given):
 
 
 @pytest.mark.parametrize("way", LINE)
-@pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("beta", [0.1, 0.9])  # in the plane 0.5, of mixtures any
 @pytest.mark.parametrize("name", ROUGH)
 def test_on_the_line_it_is_within_a_factor_of_three(name, beta, way):
     problem = PROBLEMS[name](beta)

@@ -24,7 +24,7 @@ def asked_and_met(problem, error, **more):
     return case, problem.error(tuple(case.positions), case.volumes, u)
 
 
-@pytest.mark.parametrize("error", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("error", [1e-3, 1e-9])
 @pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
 @pytest.mark.parametrize("name", ["fundamental", "mixture", "other tail"])
 def test_met_on_the_line(name, beta, error):

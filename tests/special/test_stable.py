@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from functools import cache
 
 import mpmath as mp
 import numpy as np
@@ -36,6 +37,10 @@ MIDDLE = (1.4, 2.2, 3.2, 3.99, 5.1, 6.2, 7.1, 8.3, 9.9, 12.4, 14.7, 16.0, 17.5)
 FAR = (25.0, 1e2, 1e4, 1e6, 1e10, 1e100)
 
 
+# Of the same numbers at every distance, with 120 digits each.
+precise_gamma = cache(mp.gamma)
+
+
 def exact(x: float, alpha: float) -> tuple[mp.mpf, mp.mpf]:
     """Density at x and mass outside [-x, x] from (A.2), if it converges to 25 digits, or (A.1)."""
     with mp.workdps(120):
@@ -43,7 +48,7 @@ def exact(x: float, alpha: float) -> tuple[mp.mpf, mp.mpf]:
         if x > 1:
             density, tail, previous = mp.mpf(0), mp.mpf(0), mp.inf
             for m in range(1, 500):
-                size = mp.gamma(1 + alpha * m) / mp.factorial(m) * x ** (-alpha * m - 1)
+                size = precise_gamma(1 + alpha * m) / mp.factorial(m) * x ** (-alpha * m - 1)
                 if size > previous or size < mp.mpf(10) ** -30 * abs(density) * (2 - alpha):
                     break
                 previous = size
@@ -57,7 +62,7 @@ def exact(x: float, alpha: float) -> tuple[mp.mpf, mp.mpf]:
         density, central, j = mp.mpf(0), mp.mpf(0), 0
         while True:
             m = 2 * j + 1
-            term = (-1) ** j * mp.gamma(1 + m / alpha) / mp.factorial(m) * x ** (m - 1) / mp.pi
+            term = (-1) ** j * precise_gamma(1 + m / alpha) / mp.factorial(m) * x ** (m - 1) / mp.pi
             density += term
             central += 2 * term * x / m
             if j > 2 and abs(term) < mp.mpf(10) ** -40 * abs(density):

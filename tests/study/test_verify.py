@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
-import yaml
 
-from fracstudy.config import read_config
 from fracstudy.verify import CLOSE, DIFFERS, SAME, agreement, compare, sample
-
-ROOT = Path(__file__).resolve().parents[2]
-CONFIG = yaml.safe_load((ROOT / "config/study.yaml").read_text())
-_, SCENES = read_config(CONFIG | {"scenes_dir": str(ROOT / "workflow/scenes"), "grids": None})
+from scene_functions import configured
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_sample_has_a_scene_of_each_document_and_no_run_times(seed):
-    names = sample(SCENES, 10, seed)
+    scenes = configured()[1]
+    names = sample(scenes, 10, seed)
     assert len(set(names)) == 10
-    alone = [s for s in SCENES.values() if not s.all_benchmarks and not s.tables]
-    assert {scene.document for scene in alone} == {SCENES[name].document for name in names}
-    assert not any(SCENES[name].all_benchmarks for name in names)
-    assert sample(SCENES, 10, seed) == names
+    alone = [s for s in scenes.values() if not s.all_benchmarks and not s.tables]
+    assert {scene.document for scene in alone} == {scenes[name].document for name in names}
+    assert not any(scenes[name].all_benchmarks for name in names)
+    assert sample(scenes, 10, seed) == names
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -218,6 +219,7 @@ def test_small_data_beside_large_ones_are_warned_of():
 # --- the ends of alpha -----------------------------------------------------------------------------
 
 
+@lru_cache(maxsize=6)
 def bump(dim: int, alpha: float, t: float) -> tuple[np.ndarray, float]:
     """The fundamental solution on a lattice that holds and resolves it."""
     points, half_width = {1: (1024, 64.0), 2: (96, 16.0), 3: (40, 10.0)}[dim]
@@ -241,16 +243,17 @@ def test_the_tails_near_alpha_two(dim, terms, distance):
 
 
 @pytest.mark.parametrize("dim", [1, 2, 3])
-@pytest.mark.parametrize("terms", range(1, 7))
 @pytest.mark.parametrize("alpha", [1.0 + 1e-9, 1.0 + 1e-6, 1.33333333, 1.5 + 1e-8])
-def test_terms_that_nearly_belong_to_no_tail_cost_no_digits(dim, terms, alpha):
+def test_terms_that_nearly_belong_to_no_tail_cost_no_digits(dim, alpha):
     """More terms are no worse than the first alone: they do not magnify the round-off, 1e-16 over their distance."""
     (start, h), (end, _) = bump(dim, alpha, 1.0), bump(dim, alpha, 2.0)
 
     def error(terms: int) -> float:
         return float(np.abs(evolve(start, h, alpha, 1.0, terms=terms) - end).max() / end.max())
 
-    assert error(terms) <= 1.1 * error(1) + 1e-9
+    most = 1.1 * error(1) + 1e-9
+    for terms in range(2, 7):
+        assert error(terms) <= most, terms
 
 
 def test_no_exponent_is_nearly_even_but_alpha():
