@@ -37,27 +37,46 @@ def field_error(markers, t, shape):
 
 
 @pytest.mark.parametrize("shape", ["S2", "S4", "S8"])
-@pytest.mark.parametrize("t", [0.003, 0.01, 0.03])
+@pytest.mark.parametrize("t", [0.003, 0.01, 0.03, 0.1, 0.3])
 def test_the_error_next_to_a_jump_is_the_estimated_one(shape, t):
-    """Linear waves leave out that F spreads the markers by itself: a tenth of the error."""
+    """Of a square, which is so wide that its two edges do not feel each other."""
     error, told = field_error(SQUARE, t, shape)
     found = edge_error(MarkerVelocity(SHAPES[shape], EPSILON), *SQUARE, steps_to(t, shape))
     assert told
     assert found == pytest.approx(error, rel=0.12)
 
 
-@pytest.mark.parametrize("t", [0.1, 1.0])
+@pytest.mark.parametrize("t", [2.0, 5.0])
 def test_what_diffusion_has_smoothed_is_not_warned_of(t):
     error, told = field_error(SQUARE, t, "S8")
-    assert error < 0.1
+    assert error < 0.03
     assert not told
+
+
+def test_growing_waves_are_not_the_error_of_an_edge():
+    """S6 has a transform that is negative somewhere: F is off by a hundredth, and the edge is not to blame."""
+    found = edge_error(MarkerVelocity(SHAPES["S6"], EPSILON), *SQUARE, steps_to(4.8, "S6"))
+    assert 0.0 < found < 0.03
+
+
+@pytest.mark.parametrize("markers", [100, 400])
+def test_a_shock_of_the_width_of_epsilon_is_warned_of(markers):
+    """Burgers' equation at R = 50, epsilon = 0.05: F is off by 8 per cent of the peak at the shock."""
+    source = PointSource(0.01, 1.0)
+    x = source.quantile((np.arange(markers) + 0.5) / markers, 0.5)
+    velocity, z = MarkerVelocity(SHAPES["S8"], 0.05, burgers(0.01)), np.linspace(-1.0, 3.0, 2001)
+    with pytest.warns(AccuracyWarning, match="the field jumps where the markers end"):
+        end = run(x, np.full(markers, 1.0 / markers), velocity, dt=1.25e-3, steps=400, start=0.5)
+    exact = source.value(z, 1.0)
+    assert np.abs(end.field(z) - exact).max() > 0.05 * exact.max()
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_random_markers_of_a_square_are_warned_of(seed):
-    error, told = field_error(random(Square(), 2000, np.random.default_rng(seed)), 0.02, "S8")
-    assert error > 0.15
-    assert told
+    for t, least in ((0.02, 0.15), (0.3, 0.03)):
+        error, told = field_error(random(Square(), 2000, np.random.default_rng(seed)), t, "S8")
+        assert error > least
+        assert told
 
 
 def test_a_shock_that_epsilon_does_not_hold_is_warned_of():

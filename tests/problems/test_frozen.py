@@ -128,6 +128,28 @@ def test_values_are_a_spline_that_rounds_the_kink():
     assert off / 3.0 < float(run.space_error) < 3.0 * off
 
 
+@pytest.mark.parametrize("alpha", [1.2, 1.8])
+@pytest.mark.parametrize("velocity", [None, 2.0])
+@pytest.mark.parametrize(
+    ("kind", "width", "at"), [("tent", 0.15, 0.0), ("tent", 0.15, 0.013), ("box", 0.4, 0.013)]
+)
+def test_a_kink_in_an_interval(alpha, velocity, kind, width, at):
+    """Before the ends are felt. Half of the particles alone said 0.8 per cent of the box, which is off by a tenth."""
+    given, transform = KINKS[kind]
+    t = (2.0 / 64) ** alpha
+    run, warned = solved(
+        lambda x: given((x - at) / width), alpha=alpha, half_width=1.0, exterior="absorbing",
+        spacing=None, particles=64, t_final=t, velocity=velocity,
+    )  # fmt: skip
+    moved = run.x.values - at - t * (velocity or 0.0)
+    exact = solution(lambda k: width * transform(width * k), moved, t, alpha)
+    inside = np.abs(run.x.values) < 0.5
+    off = np.abs(run.u.values - exact)[inside].max() / float(run.u.max())
+    # Splines between the particles of half of them miss the kink, too.
+    assert off / 1.5 < float(run.space_error) < 4.0 * off
+    assert warned or off < SAID
+
+
 @pytest.mark.parametrize("alpha", [1.3, 1.7])
 def test_a_cusp_in_the_plane(alpha):
     """e^-r, whose transform is 2 pi (1 + k^2)^(-3/2); at its tip, where the error is greatest."""

@@ -1,9 +1,9 @@
 """The error that the particles leave: what is known of it, and the rest by the problem on half and a quarter of them.
 
-Known is what they make of the initial data alone, see `frozen`; it is taken off each u before they are compared, where
-that brings these together. With d_1 the distance between u and what half of the particles along each axis make of it,
-and d_2 that between half and a quarter, each half of the spacing leaves r = d_1 / d_2 of the distance before. All those
-that are still to come are the rest of the error,
+Known is what they make of the initial data alone, see `frozen` and `finer_particles`; it is taken off each u before
+they are compared, where that brings these together. With d_1 the distance between u and what half of the particles
+along each axis make of it, and d_2 that between half and a quarter, each half of the spacing leaves r = d_1 / d_2 of
+the distance before. All those that are still to come are the rest of the error,
 
     d_1 (r + r^2 + ..) = d_1 r / (1 - r),
 
@@ -27,7 +27,7 @@ from scipy.interpolate import CubicSpline
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems.problem import Problem
 
-__all__ = ["SPACE_ERROR", "Estimates", "space_errors", "with_space_error"]
+__all__ = ["SPACE_ERROR", "Estimates", "Solve", "among", "space_errors", "with_space_error"]
 
 SPACE_ERROR = 0.03
 """Of the greatest |u|, an error that is said."""
@@ -73,7 +73,7 @@ def space_errors(
         try:
             fewer = _halved(problem)
             if not (initial is None or callable(initial)):
-                initial = _among(problem, fewer, initial)
+                initial = among(problem, fewer, initial)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 coarse = solve(fewer, initial)
@@ -84,7 +84,7 @@ def space_errors(
             break
         coarse_errors = known(fewer, initial, coarse)
         apart.append(np.array([
-            min(_distance(fewer, _among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
+            min(_distance(fewer, among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
             for u, e, v, f in zip(fields, errors, coarse, coarse_errors, strict=True)
         ]))  # fmt: skip
         if apart[0].max() <= SPACE_ERROR:
@@ -157,7 +157,7 @@ def _axes(problem: Problem) -> list[tuple[np.ndarray, bool]]:
     ]
 
 
-def _among(problem: Problem, fewer: Problem, u: np.ndarray) -> np.ndarray:
+def among(problem: Problem, fewer: Problem, u: np.ndarray) -> np.ndarray:
     """Return a field of the problem where the fewer particles are, by splines along each axis."""
     for axis, ((s, turns), (at, _)) in enumerate(zip(_axes(problem), _axes(fewer), strict=True)):
         if turns:

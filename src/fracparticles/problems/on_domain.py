@@ -23,6 +23,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
 from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.problems.fewer_particles import SPACE_ERROR, Estimates, with_space_error
+from fracparticles.problems.finer_particles import errors_of_diffusion
 from fracparticles.problems.integrate import (
     Integration,
     advanced,
@@ -69,7 +70,7 @@ def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Datase
     }  # fmt: skip
     if estimate:
         sampled = initial if callable(initial) else u0
-        found = with_space_error(found, problem, sampled, fields, _on_fewer)
+        found = with_space_error(found, problem, sampled, fields, _on_fewer, _known)
     _warn(problem, found)
     return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
 
@@ -84,6 +85,10 @@ def _on_fewer(problem: Problem, initial: Any) -> list[np.ndarray]:
         ) from error
     rates = DomainRates(problem)
     return _integrated(problem, rates, u0, _held(problem, rates, u0)).u
+
+
+def _known(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[np.ndarray]:
+    return errors_of_diffusion(problem, initial, fields, _on_fewer)
 
 
 def _integrated(problem: Problem, rates: DomainRates, u0: np.ndarray, held: Held) -> Integration:
@@ -107,8 +112,8 @@ def _warn(problem: Problem, found: Estimates) -> None:
     says = {
         "atol_share": "u has fallen, and the steps are accurate to {:.2g} of what is left at an output time. Take a "
         "smaller rtol, or atol, or an earlier end.",
-        "space_error": "the particles leave an error of about {:.1g} of u, by the same on half and a quarter of "
-        "them. Take more, or smoother coefficients.",
+        "space_error": "the particles leave an error of about {:.1g} of u, by the diffusion of the data on more of "
+        "them, and the same on half and a quarter. Take more, or smoother data and coefficients.",
         "unresolved_share": "the particles do not resolve the solution: {:.2g} of it is in waves that they do not tell "
         "apart. Take more.",
     }
