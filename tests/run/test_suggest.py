@@ -156,6 +156,16 @@ def test_a_narrow_blob_far_from_the_rest_is_on_the_lattice():
     assert case.reach > 300.0
 
 
+def test_data_far_narrower_than_they_spread_are_sent_on_at_once():
+    """A lattice of 1e8 particles was looked for, for hours."""
+    for dim, width in ((1, 1e-6), (2, 1e-3)):
+        with pytest.raises(InvalidInput, match=r"spread over .* = 1\. Take fp\.follow"):
+            fp.suggest(
+                lambda *x, w=width: np.exp(-sum(one * one for one in x) / w**2),
+                error=1e-4, alpha=1.5, t_final=1.0, dim=dim,
+            )  # fmt: skip
+
+
 @pytest.mark.parametrize("width", [1e3, 1e7, 1e11])
 def test_data_far_wider_than_they_spread_take_few_particles(width):
     case = fp.suggest(lambda x: np.exp(-((x / width) ** 2)), error=1e-3, alpha=1.5, t_final=1.0)

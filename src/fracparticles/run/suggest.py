@@ -46,6 +46,7 @@ _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
 _LOWER, _MOST_IN_VAIN = 0.9, 5  # trials one after the other that do not lower the error
 _HELD = 0.97  # of the mass of a point, where no radius is given
 _WIDE = 100.0  # radii of interest over (D T)^(1/alpha): beyond, the kernel of GPSE asks for more particles than data
+_MOST_SPREAD = 1e4  # (D T)^(1/alpha) over the radius, to the power of the dimension: some 2e6 particles, two minutes
 _POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate: many are made
 _TERMS = {1: 3, 2: 3, 3: 2}
 _SMALLEST = 1e-11
@@ -86,7 +87,8 @@ def suggest(
     Raises
     ------
     InvalidInput
-        If the problem is not one, or the error cannot be reached on this machine.
+        If the problem is not one, or the error cannot be reached on this machine; if the data are ten thousand times
+        narrower than they spread, which asks for other particles than those of a lattice.
 
     Warns
     -----
@@ -115,6 +117,7 @@ def suggest(
     least = 0.0
     if within is None:
         radius = radius_of(initial, problem, dim)
+        _refuse_narrow(initial, radius, spread, dim)
         within = radius + 2.0 * spread
         least = radius + spread  # and more, until the lattice holds the solution
         while central_mass(least, spread**problem.alpha, problem.alpha, dim) < _HELD:
@@ -137,6 +140,17 @@ def suggest(
             return _widened(whole, initial, way | fields | more, spread)
     best = f"an error that can be reached: the best found is {min(reached):.2g}"
     raise InvalidInput("error", error, best, "Ask for less, or for less of the space.")
+
+
+def _refuse_narrow(initial: Initial, radius: float, spread: float, dim: int) -> None:
+    """Refuse data so narrow for their spread that a lattice which holds both takes minutes to find, or hours."""
+    if (spread / radius) ** dim > _MOST_SPREAD:
+        allowed = (
+            f"data that spread to at most {_MOST_SPREAD ** (1.0 / dim):.3g} times their radius on a lattice: they hold "
+            f"within {radius:.2g} and spread over (D T)^(1/alpha) = {spread:.2g}"
+        )
+        remedy = "Take fp.follow, whose particles are placed by the data; or fp.green times their integral."
+        raise InvalidInput("initial", initial, allowed, remedy)
 
 
 def _search(
