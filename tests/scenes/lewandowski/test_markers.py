@@ -61,7 +61,7 @@ PARAMETERS = {
         "counts": [16, 64],
         "shapes": ["S4", "S8"],
         "law": ["S4", "S8"],
-        "spacings": [0.4],
+        "spacings": [0.4, 0.2],
         "times": [0.25, 0.5],
     },
     "marker_nonlinear": {
