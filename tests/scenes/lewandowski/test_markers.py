@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from fracparticles.markers import SHAPES
@@ -16,6 +17,7 @@ from fracstudy.ledger import judge
 from fracstudy.printed import read_claims
 from fracstudy.verdicts import Status
 from scene_functions import figure, scenes, study
+from scenes.lewandowski.marker_claims.error_law import _best, rows
 from scenes.lewandowski.marker_claims.numbers import _parameters
 from scenes.lewandowski.marker_nonlinear.evolution import Evolution, Markers
 from scenes.lewandowski.marker_square.study import _apart
@@ -59,7 +61,7 @@ PARAMETERS = {
         "counts": [16, 64],
         "shapes": ["S4", "S8"],
         "law": ["S4", "S8"],
-        "spacings": [0.4],
+        "spacings": [0.4, 0.2],
         "times": [0.25, 0.5],
     },
     "marker_nonlinear": {
@@ -206,6 +208,13 @@ def test_the_slope_of_the_large_scales_is_wrong_only_where_eps_is_large():
         trace = runs.trace("S8", "midpoints", follow=False)
         excess[epsilon] = _apart(runs, trace, epsilon)["excess of the coarse slope"]
     assert abs(excess[0.2]) < 0.05 < excess[2.0]
+
+
+def test_the_best_support_parameter_is_the_power_of_h_that_the_law_says():
+    """Its derivative is zero where k eps^k = M (h / eps)^M, so that eps ~ h^(M / (k + M)), 3/5 for S4."""
+    best = pd.DataFrame(rows(["S4", "S8"], [0.4, 0.2, 0.1, 0.05])).query("what == 'best ε'")
+    found = next(f for f in _best(best) if f.claim == "M-C3.optimum").numbers
+    assert found["power"]["S4"] < 0.1
 
 
 def test_the_number_of_markers_in_a_support_parameter_is_what_counts():
