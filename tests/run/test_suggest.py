@@ -157,7 +157,7 @@ def test_a_narrow_blob_far_from_the_rest_is_on_the_lattice():
 
 
 def test_data_far_narrower_than_they_spread_are_sent_on_at_once():
-    """A lattice of 1e8 particles was looked for, for hours."""
+    """A lattice of 1e8 particles was looked for: two minutes for a width of 1e-4, without an end for less."""
     for dim, width in ((1, 1e-6), (2, 1e-3)):
         with pytest.raises(InvalidInput, match=r"spread over .* = 1\. Take fp\.follow"):
             fp.suggest(

@@ -25,6 +25,12 @@ from fracstudy.report import pages
 from fracstudy.sources import sources_of
 from fracstudy.summary import already, slowest, summary
 
+if problem := next((c for c in " '\"" if c in str(Path.cwd())), None):
+    raise WorkflowError(
+        f"the folder {Path.cwd()} has {problem!r} in its path, which Snakemake's jobs cannot take: "
+        "move the project, or call it by a link without."
+    )
+
 try:
     STUDY, SCENES = read_config(config)
     CASES, BATCHES = batches(SCENES, STUDY.smoke)
@@ -48,13 +54,6 @@ FUNCTIONS = ("study.py", "figure.py")
 
 wildcard_constraints:
     scene="|".join(SCENES),
-
-
-if problem := next((c for c in " '\"" if c in str(Path.cwd())), None):
-    raise WorkflowError(
-        f"the folder {Path.cwd()} has {problem!r} in its path, which Snakemake's jobs cannot take: "
-        "move the project, or call it by a link without."
-    )
 
 
 def claim_folder():

@@ -7,7 +7,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import levy_stable
 
 from fracparticles.special import reduced_green
 from fracstudy.race.clock import forget_tables, measure, one_core, timings_dataset
@@ -37,6 +36,8 @@ def benchmark(
     repeats : int
         Timings of ours.
     """
+    from scipy.stats import levy_stable  # takes longest to import, and readers of this file do not need it
+
     one_core()
     many, few = (np.linspace(0.0, _FARTHEST, n) for n in (points, points_of_scipy))
     reduced_green(few, alpha[0])  # compiles what is not compiled yet
