@@ -36,9 +36,7 @@ def benchmark(
     repeats : int
         Timings of ours.
     """
-    from scipy.stats import (
-        levy_stable,  # takes longest to import, and readers of this file do not need it
-    )
+    from scipy.stats import levy_stable  # here alone: it takes long to import
 
     one_core()
     many, few = (np.linspace(0.0, _FARTHEST, n) for n in (points, points_of_scipy))
