@@ -145,9 +145,8 @@ def test_the_regional_operator_on_a_parabola(alpha):
         exact += 2 * x * (upper ** (1 - alpha) - lower ** (1 - alpha)) / (1 - alpha)
         deviation = line.matrix() @ x**2 - tail_constant(alpha) * exact
         errors.append(np.abs(deviation[inside]).max())
-    assert orders(errors)[0] == pytest.approx(
-        6.0 - alpha, abs=0.15
-    )  # the place of the maximum moves
+    # The place of the maximum moves.
+    assert orders(errors)[0] == pytest.approx(6.0 - alpha, abs=0.15)
 
 
 def test_reflecting_eigenvalues_have_the_order_of_the_weights():

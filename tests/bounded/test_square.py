@@ -103,9 +103,8 @@ def test_the_weights_of_a_line_are_the_sums_along_it():
     sums[1] += second
     assert line_weights(alpha, 3) == pytest.approx(sums, rel=1e-10)
     w = weights(alpha, 400)
-    assert (4.0 * w[1:, :].sum()) == pytest.approx(
-        rate_of_all(alpha), rel=2e-4
-    )  # the rest: 400^-1.5
+    # The rest: 400^-1.5.
+    assert (4.0 * w[1:, :].sum()) == pytest.approx(rate_of_all(alpha), rel=2e-4)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)

@@ -78,9 +78,8 @@ def test_a_displacement_wave_decays_at_the_symbol_of_dd(order, theta):
 @pytest.mark.parametrize(("factor", "stable"), [(0.9, True), (1.1, False)])
 def test_the_step_is_limited_as_that_of_dd(factor, stable):
     h, n, alpha = 0.1, 400, 1.5
-    limit = (
-        2.0 / (2.0 / 2.0) ** alpha * (2.0 * math.e / alpha) ** (alpha / 2.0) * h**alpha
-    )  # s = 2, order II
+    # s = 2, order II.
+    limit = 2.0 / (2.0 / 2.0) ** alpha * (2.0 * math.e / alpha) ** (alpha / 2.0) * h**alpha
     theta = math.sqrt(2.0 * alpha) / 2.0  # the fastest wave
     x = np.arange(-n, n + 1) * h
     bump = 1e-7 * np.sin(theta * x / h) * np.exp(-((x / (40 * h)) ** 2))

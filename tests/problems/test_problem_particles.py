@@ -25,9 +25,8 @@ def shifted(x: np.ndarray) -> np.ndarray:
 
 
 def test_whole_spacings_are_exact():
-    assert (
-        error(10, shifted, velocity=1.0) < 2e-6
-    )  # of the tails, which are continued about the origin
+    # Of the tails, which are continued about the origin.
+    assert error(10, shifted, velocity=1.0) < 2e-6
 
 
 @pytest.mark.parametrize(("remeshing", "order"), [("Lambda3", 4.0), ("M4'", 3.0)])

@@ -250,9 +250,8 @@ def test_what_is_below_every_number_is_zero_and_not_waited_for():
     flow = exponential_flow(diagonal([-1.0, -0.3]), 1e8, -1.0, 0.0)
     u, applications = flow.run(np.ones(2))
     assert np.array_equal(u, np.zeros(2))
-    assert (
-        applications < 5 * flow.operator_applications
-    )  # the pieces that were tried, and some hundreds
+    # The pieces that were tried, and some hundreds.
+    assert applications < 5 * flow.operator_applications
 
 
 def test_growth_beyond_all_numbers_says_when():

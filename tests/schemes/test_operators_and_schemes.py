@@ -359,7 +359,6 @@ def test_a_particle_s_own_weight_costs_dpse_no_digits():
     setting = Setting(n=1, alpha=1.5, overlap=0.25)
     b = dpse.potential_weights(np.arange(3.0), setting)
     c = dpse.laplacian_weights(np.array([1.0]), setting)[0]
-    corner = c * (
-        b[1] - b[0]
-    )  # what particle 1 adds to the row of particle 0; particle 2 adds e^-64
+    # What particle 1 adds to the row of particle 0; particle 2 adds e^-64.
+    corner = c * (b[1] - b[0])
     assert dense_matrix(SCHEMES["DPSE"].operator(setting))[0, 0] == pytest.approx(corner, rel=1e-13)

@@ -38,9 +38,8 @@ from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 
 __all__ = ["Disc"]
 
-_MOST_RINGS = (
-    128  # beyond, the innermost digits of 1 - r ~ N^-3 are worth less than the order gains
-)
+# Beyond, the innermost digits of 1 - r ~ N^-3 are worth less than the order gains.
+_MOST_RINGS = 128
 _MOST_ANGLES = 512
 _TURN = 0.382  # of a step of the angle, where fields are looked at again: no simple fraction
 

@@ -31,9 +31,8 @@ __all__ = ["OutsideValues", "loss_rates"]
 
 _STEP = 0.25
 _FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
-_UNRESOLVED = (
-    1e-5  # of kappa max |g|, between all points and every other: for smooth values below 1e-8
-)
+# Of kappa max |g|, between all points and every other: for smooth values below 1e-8.
+_UNRESOLVED = 1e-5
 _NEAR = 40.0  # e^-40 of the distance of the first particle
 
 

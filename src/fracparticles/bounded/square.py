@@ -98,9 +98,8 @@ class Square(Domain):
         self.diffusivity = check.scale("diffusivity", diffusivity)
         fitted = check.flag("fitted", fitted)
         h = 2.0 * self.half_width / self.side
-        self._rate = (
-            self.diffusivity * h**-self.alpha
-        )  # of the operator on a lattice of spacing one
+        # Of the operator on a lattice of spacing one.
+        self._rate = self.diffusivity * h**-self.alpha
         middle = h * (np.arange(self.side) - 0.5 * (self.side - 1))
         self.x, self.y = self.points = tuple(np.meshgrid(middle, middle, indexing="ij"))
         line = np.ones(self.side)

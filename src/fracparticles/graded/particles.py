@@ -147,11 +147,8 @@ def _least_eigenvalue(matrix: np.ndarray, root: np.ndarray) -> float:
     n = root.size
     if n <= _DENSE:
         return float(np.linalg.eigvalsh(matrix * root[:, None] / root).min())
-    from scipy.sparse.linalg import (
-        ArpackNoConvergence,
-        LinearOperator,
-        eigsh,
-    )  # a tenth of a second
+    # It takes a tenth of a second to import.
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
     symmetric = LinearOperator((n, n), lambda u: root * (matrix @ (u / root)), dtype=float)
     start = np.cos(2.4 * np.arange(n))  # anything that is not a constant, the same every time

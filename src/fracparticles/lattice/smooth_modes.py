@@ -73,9 +73,8 @@ def radial_integral(dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
     k = _HIGHEST * s**4
     surface = {2: 2.0 * np.pi, 3: 4.0 * np.pi}[dim]
     volume = surface * k ** (dim - 1) * (4.0 * k / s / _WAVES) / (2.0 * np.pi) ** dim
-    terms = 24 + int(
-        0.5 * _HIGHEST * np.sqrt(dim)
-    )  # the waves of half the diagonal, and some to spare
+    # The waves of half the diagonal, and some to spare.
+    terms = 24 + int(0.5 * _HIGHEST * np.sqrt(dim))
     angle = (np.arange(terms) + 0.5) * (np.pi / terms)
     z = np.outer(k, np.sqrt(dim) * np.cos(0.5 * angle))
     mean, slope = (j0(z), j1(z) / z) if dim == 2 else (spherical_jn(0, z), spherical_jn(1, z) / z)
@@ -111,9 +110,8 @@ def _next_integral(p: float, z: np.ndarray) -> np.ndarray:
     k = np.arange(1.0, 20.0)
     small = np.minimum(z, 1.0)
     terms = (-small[..., None]) ** k / (gamma(k + 1.0) * (k - p))
-    log_gamma = (
-        np.euler_gamma * p + (zeta(k + 1.0) * p ** (k + 1.0) / (k + 1.0)).sum()
-    )  # of Gamma(1 - p)
+    # Of Gamma(1 - p)
+    log_gamma = np.euler_gamma * p + (zeta(k + 1.0) * p ** (k + 1.0) / (k + 1.0)).sum()
     near = -np.expm1(log_gamma + p * np.log(small)) / p - terms.sum(axis=-1)
     large, far = np.maximum(z, 1.0), np.zeros_like(z)
     for j in range(80, 0, -1):

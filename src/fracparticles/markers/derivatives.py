@@ -20,9 +20,8 @@ from fracparticles.moving.reliability import cells
 
 __all__ = ["flux_ripple", "warn_of_derivatives"]
 
-_WAVENUMBERS = np.linspace(
-    0.0, 400.0, 8001
-)  # eps k; beyond, S2 and what is smoother leave little: 0 is said
+# eps k; beyond, S2 and what is smoother leave little: 0 is said.
+_WAVENUMBERS = np.linspace(0.0, 400.0, 8001)
 _MOST = 0.1  # of the flux
 
 

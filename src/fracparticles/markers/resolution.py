@@ -68,9 +68,8 @@ def noise(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
         return 0.0
     width, field = cells(x), velocity.fields(x, weights)[0]
     squares = velocity.shape.transform(WAVENUMBERS) ** 2
-    square = (
-        float(squares.sum()) * (WAVENUMBERS[1] - WAVENUMBERS[0]) / math.pi
-    )  # int S^2, by Parseval
+    # int S^2, by Parseval.
+    square = float(squares.sum()) * (WAVENUMBERS[1] - WAVENUMBERS[0]) / math.pi
     variance = np.minimum(2.0 * np.diff(width * field / weights) ** 2, 1.0)
     held = np.minimum(width[1:] / velocity.epsilon * square, 1.0)
     share = np.abs(weights[1:]) / np.abs(weights).max()

@@ -80,9 +80,8 @@ def _weights(cell, even, odd, first, weights):
             first[start + j] = int(left)
             y[j] = 2.0 * (left - cell[start + j] + 0.5 * WIDTH) - 1.0
         for m in range(WIDTH // 2):
-            for j in range(
-                _BLOCK
-            ):  # all of the block, so that the compiler takes several at a time
+            # All of the block, so that the compiler takes several at a time.
+            for j in range(_BLOCK):
                 square = y[j] * y[j]
                 symmetric[j] = horner(even[m], square)
                 skew[j] = y[j] * horner(odd[m], square)

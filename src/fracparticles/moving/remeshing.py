@@ -57,9 +57,8 @@ _BACKWARDS = [
     for row in _SIX_FOUR
 ]
 _NINTH = np.array([_SIX_FOUR, _BACKWARDS], dtype=float)
-_FARTHEST = (
-    2**31
-)  # lattice points from the origin: beyond, places are rounded by more than 1e-7 of a spacing
+# Lattice points from the origin: beyond, places are rounded by more than 1e-7 of a spacing.
+_FARTHEST = 2**31
 _MOST_POINTS = 2**26  # between the particles: one farther out has run away
 _ULPS = 2.0 * float(np.finfo(float).eps)
 

@@ -34,9 +34,8 @@ _USUAL = {"interval": 200, "square": 64, "disc": 64}
 _RANGE = {"interval": (16, 4000), "square": (8, 512), "disc": (8, 128)}
 OF_A_LATTICE = ("spacing", "order", "overlap", "far_terms")
 _NORMAL = 1e-9  # of the greatest velocity, what may point through an edge that nothing leaves
-_MOST = (
-    2100  # particles in a disc, whose modes with a diffusivity that varies are those of one matrix
-)
+# Particles in a disc, whose modes with a diffusivity that varies are those of one matrix.
+_MOST = 2100
 
 
 def is_bounded(exterior: str) -> bool:

@@ -42,11 +42,8 @@ _CLEAR = 0.3  # of the total: the last change of the reference
 _MOST_POINTS = 5_000_000
 _UNSETTLED = 0.5  # of the total
 _TERMS = {1: 4, 2: 4, 3: 2}  # that continue the reference
-_ROOM = {
-    1: 4.0,
-    2: 2.0,
-    3: 1.0,
-}  # of the narrow lattice: what its ends do to the spacing's error must not count
+# Of the narrow lattice: what its ends do to the spacing's error must not count.
+_ROOM = {1: 4.0, 2: 2.0, 3: 1.0}
 _EIGHTHS = 8  # of the half-width, where tails meet the data: the same places at any spacing
 _FAR = 1e4  # in units of the lattice: where the power is read by which data fall
 _FALLEN = 1e-13  # of the greatest: data that have ended

@@ -25,9 +25,8 @@ __all__ = [
 # Below the symbol the function of time is bounded, and a little room costs nothing; above zero it would grow.
 _ROOM = 1e-6
 _ROOM_OF_A_TABLE = 1e-2  # in a box: interpolated kernels have eigenvalues of their own
-_ROOM_OF_STEPS = (
-    0.1  # of all n: a step at the limit amplifies what is below, so that a run does by two at most
-)
+# Of all n: a step at the limit amplifies what is below, so that a run does by two at most.
+_ROOM_OF_STEPS = 0.1
 # Where the eigenvalues are not proved to be real and in the interval, T_k of the operator may grow like exp(g k). The
 # coefficients of a series of degree K fall like exp(-74 (k / K)^2), so that its terms grow by exp((g K)^2 / 300) at
 # most. Measured (tests/run/test_stiff.py): on the line with exact kernels, unless the ends amplify, g < 0.001 and

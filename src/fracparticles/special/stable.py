@@ -201,9 +201,8 @@ def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     value = green(x, t, alpha, dim)
     x = check.real_array("x", x)
     with np.errstate(over="ignore"):
-        flux = _product(x, value) / (
-            float(alpha) * float(t)
-        )  # of float32 they would have its digits
+        # Of float32 they would have its digits.
+        flux = _product(x, value) / (float(alpha) * float(t))
     return check.like(x, _finite(t, flux))
 
 

@@ -15,10 +15,8 @@ from fracparticles.errors import AccuracyWarning
 __all__ = ["defining_integral"]
 
 _UNRESOLVED = 1e-3  # of the greatest integral
-_ORDERS = (
-    1e-12,
-    150.0,
-)  # the nodes of lower ones are lost in round-off, and Gamma of higher ones overflows
+# The nodes of lower ones are lost in round-off, and Gamma of higher ones overflows.
+_ORDERS = 1e-12, 150.0
 
 
 def defining_integral(

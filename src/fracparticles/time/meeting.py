@@ -69,9 +69,8 @@ class Meeting:
         fewer = np.array([gamma < last for _, gamma in self._terms])
         change[fewer] -= _least_squares(self._columns[:, fewer], self._weight) @ found
         most = [0.0, 0.0]
-        for harmonic in HARMONICS[
-            self._dim
-        ]:  # the moment of one has nothing of the others beyond a cube
+        # The moment of one has nothing of the others beyond a cube.
+        for harmonic in HARMONICS[self._dim]:
             own = [row for row, (other, _) in enumerate(self._terms) if other is harmonic]
             if harmonic.degree < len(most) and own:
                 lacking = abs(float(self._beyond(own) @ change[own]))

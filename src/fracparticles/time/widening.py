@@ -39,18 +39,16 @@ _LET_GO = 20.0  # E: 2e-9
 _STRETCH = 2.1  # the circle of the transforms over the lattice; twice the lattice is wanted of it
 _TERMS = {1: 5, 2: 4, 3: 2}
 _SHORT_WAVES = 1e-5  # of the integral; measured, the estimate is two to a hundred times too large
-_OF_A_PEAK = (
-    5e-5  # of the greatest value, before the first doubling; measured, two to fifty times too large
-)
+# Of the greatest value, before the first doubling; measured, two to fifty times too large.
+_OF_A_PEAK = 5e-5
 _DOUBTFUL = 2e-6  # likewise; measured, at least the error
 _GREATEST = 5.0  # of the gamma, once the tail is known
 _SHORTEST = 1e-12  # scaled time of a step that only moves the solution
 _TINY = float(np.finfo(float).tiny)
 _ROUND_OFF = float(np.finfo(float).eps)
 _CANCELLED = 10.0  # int |u| over what is left of it: less is no cancellation
-_NARROW = (
-    10.0  # half the lattice over the spread at a doubling: measured, less loses the sixth digit
-)
+# Half the lattice over the spread at a doubling: measured, less loses the sixth digit.
+_NARROW = 10.0
 
 
 class Moments(NamedTuple):
@@ -120,9 +118,8 @@ def evolve_long(
         )
     points, dim = check.whole_number("points", u.shape[0], FEWEST), u.ndim
     exponent = int(np.frexp(np.abs(u).max(initial=0.0))[1])
-    u = np.asarray(
-        np.ldexp(u, -exponent)
-    )  # of order one: sums of the greatest numbers would overflow
+    # Of order one: sums of the greatest numbers would overflow.
+    u = np.asarray(np.ldexp(u, -exponent))
     doubling = _LET_GO * (2.0 / np.pi) ** alpha  # D t / h^alpha at which the spacing doubles
     middle = _middle(u)
     before = tail_exponents(alpha, _TERMS[dim]) if tail is None else powers(tail, dim)

@@ -87,10 +87,8 @@ class VariableDiffusivity:
         self.conservative = form != "DD"
         self._pad, self._lock = 0, Lock()
         self._looked_at = np.zeros(0)  # the last D that was judged
-        self._settled, self._resolved = (
-            setting.is_open,
-            True,
-        )  # until a warning says otherwise: one is enough
+        # Until a warning says otherwise: one is enough.
+        self._settled, self._resolved = setting.is_open, True
         if form == "FPSE":
             self._pad = ExchangeDivergence.reach(setting) if setting.is_open else 0
             self._gradient = FractionalGradient(setting, self._pad, tails)

@@ -40,9 +40,8 @@ __all__ = ["VariableOrder", "interpolation_bound", "nodes_needed"]
 
 _TOLERANCE = 1e-12  # of the largest symbol, pi^alpha at most
 _ROWS = 33  # samples of alpha
-_UP_AND_DOWN = (
-    0.5  # of `resolution`: above, it is no single jump, which leaves two per cent at most
-)
+# Of `resolution`: above, it is no single jump, which leaves two per cent at most.
+_UP_AND_DOWN = 0.5
 _MOST = 40  # nodes; alpha from 1.01 to 1.99 takes fewer
 
 

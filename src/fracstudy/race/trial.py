@@ -23,9 +23,8 @@ __all__ = ["BLOCK", "LABELS", "VARIABLES", "run_trials"]
 BLOCK = 1000
 """Data at once, where what is asked for is many solves."""
 _NOT_YET = Timing(())
-_SLACK = (
-    1.5  # a trial is timed again if no other one of its contender is so much faster and as good
-)
+# A trial is timed again if no other one of its contender is so much faster and as good.
+_SLACK = 1.5
 _FAR = 10.0  # nor if one of anybody is so much faster and as good: noise cannot put it ahead
 _MATRIX = 600  # points up to which the whole run may be one matrix
 _MOST = 2**19  # numbers in a block

@@ -93,9 +93,8 @@ def of_the_cache(folder: Path, flips: int, parts: int, seed: int) -> Iterator[Pr
     """The sum of 0, .., 4 by a compiled function, whose index or code is cut, changed, of another version."""
     folder.mkdir()
     source = folder / "summing.py"
-    njit(lambda x: x)(
-        0.0
-    )  # what the compiler loads at its first use is there for all that begin here
+    # What the compiler loads at its first use is there for all that begin here.
+    njit(lambda x: x)(0.0)
     os.environ.pop("NUMBA_CACHE_DIR", None)
 
     def compiled(factor: float) -> dict[str, bytes]:

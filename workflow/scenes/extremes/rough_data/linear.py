@@ -136,9 +136,8 @@ def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
     h = D / n and the time of the run are rounded anew: some ulp of each, of which T |lambda| are seen.
     """
     same = Kind("units", "the same in other units", 1e-10, must=HELD)
-    moving = replace(
-        same, bound=1e-6, must=None
-    )  # whose sums are exact to 1e-11 of the peak, a step
+    # Whose sums are exact to 1e-11 of the peak, a step.
+    moving = replace(same, bound=1e-6, must=None)
     others = ((1e-6, 1.0), (1.0, 1e6), (1e-30, 1.0), (1e30, 1e-10), (1e40, 1e60))
     for scheme in schemes:
         kind = moving if ALL_SCHEMES[scheme].moving else same

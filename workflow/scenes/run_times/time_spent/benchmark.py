@@ -75,9 +75,8 @@ def _row(name: str, case: Case, repeats: int) -> dict[str, Any]:
         # In turn, so that a clock that slows down meanwhile slows both.
         for _ in range(_SOLVES):
             solve += measure(partial(ready.solve, u0))[0]
-            if (
-                operator is not None
-            ):  # the solve by one pair of transforms is one sum, and nothing beside it
+            # The solve by one pair of transforms is one sum, and nothing beside it.
+            if operator is not None:
                 one_sum += measure(partial(operator.convolve, u0))[0]
     one = one_sum if one_sum.times else solve
     sums = one.minimum * ready.operator_applications
