@@ -300,6 +300,8 @@ def test_who_passes_a_problem_is_sent_on():
     for call in (fp.solve, fp.prepare, fp.estimate_error):
         with pytest.raises(InvalidInput, match=r"is for fp\.solve_problem"):
             call(problem)
+    with pytest.raises(InvalidInput, match=r"is for fp\.solve\."):
+        fp.solve_problem(problem.case)
 
 
 def test_a_word_is_no_flag():

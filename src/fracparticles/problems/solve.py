@@ -69,7 +69,8 @@ def solve_problem(
     >>> problem = Problem(alpha=1.5, velocity="-x", half_width=50.0, spacing=0.1, t_initial=1.0, t_final=2.0)
     >>> u = solve_problem(problem).u
     """
-    problem = check.instance("problem", problem, Problem)
+    remedy = "Make one: fp.Problem(alpha=1.5, ...). A fp.Case is for fp.solve."
+    problem = check.instance("problem", problem, Problem, "a fp.Problem", remedy)
     if problem.is_bounded:
         return solve_on_domain(problem, initial, estimate)
     plain = problem.order_coefficient.constant is not None and problem.diffusion.constant

@@ -215,7 +215,7 @@ def _check_own_step(case: Derived) -> None:
             given,
             getattr(case, given),
             f"for {case.scheme} a step from {least:.4g} to {most:.4g}, so that epsilon / h is from {OVERLAPS[0]:g} to "
-            f"{OVERLAPS[1]:g}; this run takes {case.steps} steps of {case.time_step:.4g}",
+            f"{OVERLAPS[1]:g}; that of this run is {case.time_step:.4g}",
             "Change it, the spacing, or the time of the run.",
         )
 
