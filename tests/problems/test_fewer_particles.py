@@ -112,6 +112,12 @@ def test_data_that_know_their_own_particles_are_no_reason_to_fail():
     def broken(problem, initial):
         raise RuntimeError
 
+    # A diffusivity, too, which is asked for on three times as many.
+    def of_these(x):
+        assert x.size != 192
+        return 1.0 + 0.0 * x
+
+    solve_problem(Problem(**ENDS | {"diffusivity": of_these}, particles=64), bell)
     u = problem.bounded_domain.values("u", bell)
     with pytest.raises(RuntimeError):
         space_errors(problem, bell, [u], broken)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fracparticles import pse
-from fracparticles.errors import AccuracyWarning
+from fracparticles.errors import AccuracyWarning, InvalidInput
 
 KERNELS = {
     "Gaussian": (pse.GAUSSIAN_20, 2),
@@ -76,3 +76,22 @@ def test_where_the_particles_end_nothing_is_said_of_the_radius():
     x = np.linspace(-1.0, 1.0, 21)
     _, spoken = warned(pse.reconstruct, x, x, np.exp(x), 0.1, 0.2, pse.construct(0, 2))
     assert not spoken
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_is_zero_but_for_round_off_is_no_error():
+    x, particles = np.linspace(-1.0, 1.0, 9), np.arange(-6.0, 6.0, 0.1)
+    for f in (lambda y: 3.0 - 2.0 * y, lambda y: np.cos(y) ** 2 + np.sin(y) ** 2):
+        pse.derivative(x, f(x), particles, f(particles), 0.1, 0.2, pse.GAUSSIAN_20, 2)
+
+
+def test_a_ragged_list_is_refused():
+    with pytest.raises(InvalidInput):
+        pse.reconstruct([0.0], [[1.0], [2.0, 3.0]], [1.0], 0.1, 0.2, pse.GAUSSIAN_20)
+
+
+@pytest.mark.filterwarnings("error")
+def test_of_a_stencil_nothing_is_known():
+    x = np.arange(-5.0, 6.0)
+    stencil = pse.construct_stencil(2, 2)
+    pse.derivative(x[1:-1], x[1:-1] ** 2, x, x**2, 1.0, 1.0, stencil, 2)

@@ -156,6 +156,12 @@ def test_a_narrow_blob_far_from_the_rest_is_on_the_lattice():
     assert case.reach > 300.0
 
 
+def test_the_fundamental_solution_begins_as_a_point_mass_that_is_refused():
+    with pytest.raises(InvalidInput) as refused:
+        fp.suggest(error=1e-6, alpha=1.5, t_final=1.0)
+    assert refused.value.field == "t_initial"
+
+
 def test_data_far_narrower_than_they_spread_are_sent_on_at_once():
     """A lattice of 1e8 particles was looked for: two minutes for a width of 1e-4, without an end for less."""
     for dim, width in ((1, 1e-6), (2, 1e-3)):

@@ -20,6 +20,13 @@ def test_the_fundamental_solution_tends_to_it(law, alpha, t):
     assert np.abs(green(x, t, alpha) - exact).max() < 10.0 * NEAR * exact.max()
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("law", [heat_kernel, cauchy])
+def test_a_number_gives_a_number_and_far_away_there_is_nothing(law):
+    assert isinstance(law(0.5, 1.0), float)
+    assert law(1e200, 1.0) == 0.0
+
+
 @pytest.mark.parametrize("law", [heat_kernel, cauchy])
 @pytest.mark.parametrize(("field", "bad"), [("x", np.nan), ("t", 0.0), ("t", -1.0)])
 def test_bad_input_is_refused(law, field, bad):

@@ -16,18 +16,37 @@ from fracparticles.sph import (
     rl_derivative,
     rl_integral,
 )
-from fracparticles.sph.product_integration import product_integral
+from fracparticles.sph.product_integration import fractional_integral
 
 OPERATORS = {"caputo": caputo_derivative, "rl": rl_derivative, "integral": rl_integral}
 
 
-@pytest.mark.parametrize("power", [-0.9, -0.3, 0.0, 0.5, 1.7])
-def test_a_straight_line_is_integrated_exactly(power):
-    """int_0^x (x - t)^p (2 - 3 t) dt = 2 x^(p+1)/(p+1) - 3 x^(p+2)/((p+1)(p+2)); the weights lose i^2 round-off."""
+@pytest.mark.parametrize("order", [0.0, 1e-17, 0.1, 0.7, 1.0, 1.5, 2.7])
+def test_a_straight_line_is_integrated_exactly(order):
+    """I^q (2 - 3 x) = 2 x^q / Gamma(q+1) - 3 x^(q+1) / Gamma(q+2); the weights lose i^2 round-off."""
     x = np.linspace(0.0, 2.0, 101)
-    found = product_integral(2.0 - 3.0 * x, 0.02, np.full(x.size, power))
-    exact = 2.0 * x ** (power + 1.0) - 3.0 * x ** (power + 2.0) / (power + 2.0)
-    assert found == pytest.approx(exact / (power + 1.0), rel=0.0, abs=1e-11)
+    found = fractional_integral(2.0 - 3.0 * x, 0.02, np.full(x.size, order))
+    exact = 2.0 * x**order / gamma(order + 1.0) - 3.0 * x ** (order + 1.0) / gamma(order + 2.0)
+    assert found[1:] == pytest.approx(exact[1:], rel=0.0, abs=1e-11)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", ["caputo", "integral"])
+@pytest.mark.parametrize("method", ["halved", "completed"])
+@pytest.mark.parametrize("scale", [1e-30, 1.0, 1e3])
+def test_what_is_zero_but_for_round_off_is_no_error(name, method, scale):
+    line = ParticleLine(0.0, scale, 101)
+    x = line.x_all / scale
+    for f in (np.full_like(x, 3.0), np.cos(x) ** 2 + np.sin(x) ** 2, np.zeros_like(x)):
+        OPERATORS[name](line, f, 0.5, method=method)
+
+
+@pytest.mark.filterwarnings("error", "ignore::fracparticles.errors.AccuracyWarning")
+def test_orders_near_the_ends_of_their_range():
+    line = ParticleLine(0.0, 1.0, 201)
+    f = line.x_all**2
+    rl_integral(line, f, 1e-17, method="completed")
+    rl_derivative(line, f, 0.3 + 0.6999 * np.clip(line.x_all, 0.0, 1.0) ** 4, method="completed")
 
 
 def of_a_power(q: float, x: np.ndarray, alpha: np.ndarray) -> np.ndarray:

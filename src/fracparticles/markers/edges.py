@@ -5,9 +5,9 @@ the edge a step of the height J is a sum of waves: F differs from it at the dist
 
     J / pi int_0^inf d(q) sin(q y) / q dq,     d = S^(eps q) g(q) - exp(c_1 q^2 t),
 
-g what the steps multiply a wave of the markers by, -c_1 the diffusivity (`reliability`). That is linear, as the method
-is not: V = -F_x / F at the edge of F drives the markers apart by what F lacks of the field there, and they stay so. How
-far is what the method itself says, of a half line of markers in a unit of epsilon, against erfc. The larger of both is
+g what the steps multiply a wave of the markers by, -c_1 the diffusivity (`reliability`). That is linear; the method is
+not. V = -F_x / F at the edge of F drives the markers apart by what F lacks of the field there, and they stay apart. How
+far is measured: a half line of markers is run, and compared with erfc. The larger of both is
 0.26 J after t = 0.01 eps^2, 0.07 J after 0.1 eps^2, and 0.03 J after eps^2; what is displaced then falls like 1 / t.
 
 Where the field runs against its edge, a = c_0 - V > 0 on the right, the edge is a shock: that of Burgers' equation,
@@ -62,7 +62,7 @@ def edge_error(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps: St
 
 
 def _step_error(velocity: Velocity, c: np.ndarray, side: float, steps: Steps) -> float:
-    """The largest error of a step of height 1 on this side of the markers; zero if its waves grow."""
+    """The largest error of a step of height 1 on this side of the markers; zero where it is not known."""
     against, spread, count = side * c[0], abs(c[1]), float(steps.count)
     if against > 0.0:
         count = min(count, 4.0 * spread / (math.pi * against**2 * steps.dt))
@@ -76,7 +76,7 @@ def _step_error(velocity: Velocity, c: np.ndarray, side: float, steps: Steps) ->
         d = transform * made - np.exp(count * exact)
         waves = np.sin(np.outer(_NEAR, WAVENUMBERS)) / WAVENUMBERS
         off = float(np.abs(waves @ d).max()) * (WAVENUMBERS[1] - WAVENUMBERS[0]) / math.pi
-    return max(off, displaced) if off <= 1.0 else 0.0
+    return max(off, displaced) if off <= 1.0 else displaced
 
 
 def _displaced(shape: Shape, time: float) -> float:

@@ -18,14 +18,14 @@ __all__ = ["displacement_growth"]
 
 _STEPS = 3  # of which a measured growth is the mean
 _XI = 1e-5  # displacement of a wave, in spacings: its square is what linearity neglects
-_MOST = 100_000
+_MOST = 100_000  # particles on a side
 
 
 def displacement_growth(velocity: DiffusionVelocity, dt: float, theta: float, half: int) -> float:
     """Return what a midpoint step multiplies a displacement wave by.
 
-    A uniform field on 2 `half` + 1 particles, h = 1, moves with and without the wave; their distance in the middle,
-    where the ends are not felt yet, against the wave. What the ends do is like (theta `half`)^-alpha.
+    A uniform field on 2 `half` + 1 particles, h = 1, is moved with and without the wave. Their difference in the
+    middle, where the ends are not felt yet, is compared with the wave. What the ends do is like (theta `half`)^-alpha.
 
     Raises
     ------

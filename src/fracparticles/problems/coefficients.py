@@ -64,6 +64,11 @@ class WithCoefficients(ProblemFields):
         return self.reaction is None or "u" not in self.reaction.depends_on
 
     @property
+    def adds(self) -> bool:
+        """Whether there is a source that says nothing of u: it adds to u, and leaves its errors as they are."""
+        return self.reaction is not None and self.is_linear
+
+    @property
     def is_autonomous(self) -> bool:
         """Whether no coefficient says anything of t."""
         return all("t" not in one.depends_on for one in self.coefficients)

@@ -54,6 +54,8 @@ def space_errors(
 ) -> list[float] | None:
     """Return the error at each output time; None if there are too few particles, or a function is for these alone.
 
+    Even then an error that is known, and large, is returned.
+
     Parameters
     ----------
     problem : Problem
@@ -67,22 +69,20 @@ def space_errors(
         From these and such a list to the errors at the particles that are known beforehand, see `frozen`.
     """
     apart: list[np.ndarray] = []
-    errors = known(problem, initial, fields)
+    errors = _quietly(known, problem, initial, fields)
     least = np.array([_distance(problem, u, u - e) for u, e in zip(fields, errors, strict=True)])
     for _ in range(_HALVINGS):
         try:
             fewer = _halved(problem)
             if not (initial is None or callable(initial)):
                 initial = among(problem, fewer, initial)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                coarse = solve(fewer, initial)
+            coarse = _quietly(solve, fewer, initial)
         except InvalidInput:  # too few particles, or a function that knows its own alone
             break
         except NonFiniteSolution:
             apart.append(np.full(len(fields), np.inf))
             break
-        coarse_errors = known(fewer, initial, coarse)
+        coarse_errors = _quietly(known, fewer, initial, coarse)
         apart.append(np.array([
             min(_distance(fewer, among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
             for u, e, v, f in zip(fields, errors, coarse, coarse_errors, strict=True)
@@ -90,12 +90,19 @@ def space_errors(
         if apart[0].max() <= SPACE_ERROR:
             break
         problem, fields, errors = fewer, coarse, coarse_errors
-    if not apart:
-        return None
+    if not apart:  # what is known is a part of the error alone: said where it is large
+        return list(least) if least.max() > SPACE_ERROR else None
     factor = np.full(len(fields), _UNKNOWN)
     if len(apart) > 1:
         factor = _still_to_come(*apart)
     return list(least + apart[0] * factor)
+
+
+def _quietly(call: Callable[..., list[np.ndarray]], *given: Any) -> list[np.ndarray]:
+    """Call without warnings: the run itself has given them, and some are of places that are no particles."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        return call(*given)
 
 
 def _still_to_come(first: np.ndarray, second: np.ndarray) -> np.ndarray:

@@ -1,13 +1,13 @@
 """What the particles of an interval make of the initial data by diffusion alone, beside three times as many.
 
 Of 3 n particles, at (j + 1/2) / (3 n), n are those of the interval itself, j = 3 i + 1. A kink between the particles
-has its error from the first moment on, which half of the particles cannot tell, see `frozen`; of that of a kink three
-times as many leave a third. A velocity and a source are left out: so all is in the modes, a step of any length.
+has its error from the first moment on, which half of the particles cannot tell, see `frozen`. Three times as many have
+a third of it, so that two thirds are known. Without a velocity and a source all is in the modes, and a step may have
+any length.
 """
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -41,18 +41,15 @@ def errors_of_diffusion(
     many = 3 * fields[0].shape[0]
     if problem.domain != "interval" or many > _MOST or "t" in problem.diffusion.depends_on:
         return nothing
-    alone = problem.model_copy(update={"velocity": None, "source": None})
-    finer = alone.model_copy(update={"particles": many})
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            given = initial if callable(initial) else among(problem, finer, initial)
-            pairs = list(zip(solve(alone, initial), solve(finer, given), strict=True))
+        alone = problem.model_copy(update={"velocity": None, "source": None})
+        finer = alone.model_copy(update={"particles": many})
+        given = initial if callable(initial) else among(problem, finer, initial)
+        pairs = list(zip(solve(alone, initial), solve(finer, given), strict=True))
     except (InvalidInput, NonFiniteSolution):  # a function that knows its own particles alone
         return nothing
-    adds = problem.reaction is not None and problem.is_linear
     sizes = [
-        1.0 if adds else _greatest(u) / (_greatest(v) or 1.0)
+        1.0 if problem.adds else _greatest(u) / (_greatest(v) or 1.0)
         for u, (v, _) in zip(fields, pairs, strict=True)
     ]
     return [size * (v - w[1::3]) for size, (v, w) in zip(sizes, pairs, strict=True)]

@@ -8,7 +8,8 @@ A^ and T^ the symbols of the diffusion and the transport. The equation is given 
 particles: so a kink or a jump has its error from the first moment on. Half of the particles cannot tell that error. For
 a time of some h^alpha they see as little of the kink as all of them do, and the difference is small.
 
-Each place has the error of its own D; a is the mean over |u|. The data go on beyond the ends as in a mirror.
+Each place has the error of the nearest of five D; a is the mean over |u|, alpha the greatest. The data go on beyond the
+ends as in a mirror.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ _FINER = {1: 16, 2: 2}  # samples between two particles
 _LEVELS = 5  # of D, from its least to its greatest
 _LOOKS = 9  # in time, at a coefficient that changes
 _LEAST = 1e-3  # of the greatest D, the least that is told from nothing
-_MOST = 100.0  # the exponent of a wave that grows
+_STEEPEST = 100.0  # the exponent of a wave that grows
+_MOST = 2**23  # places of the finer lattice, of whose waves some ten arrays are held at a time
 
 
 class _Waves(NamedTuple):
@@ -43,18 +45,18 @@ class _Waves(NamedTuple):
     def after(self, spread: float, carried: list[float]) -> Any:
         """Return the transform at a time."""
         moved = sum((a * k for a, k in zip(carried, self.carried, strict=False)), 0.0)
-        return self.data * np.exp(np.minimum(-spread * self.spread, _MOST) - 1j * moved)
+        return self.data * np.exp(np.minimum(-spread * self.spread, _STEEPEST) - 1j * moved)
 
 
 def frozen_errors(
     problem: Problem, initial: Any, u0: np.ndarray, fields: list[np.ndarray]
 ) -> list[np.ndarray]:
-    """Return at each output time the error at the particles.
+    """Return at each output time the error at the particles; zeros where it is not known.
 
     Parameters
     ----------
     problem : Problem
-        Of the whole space.
+        Of the whole space; of a large lattice nothing is known.
     initial : callable or any
         The initial data; if they are no function, they are a spline through the particles.
     u0 : array
@@ -63,15 +65,15 @@ def frozen_errors(
         u at each output time, in whose size the errors are.
     """
     size = float(np.abs(u0).max())
-    if not 0.0 < size < np.inf:
+    places = (2 * _FINER[problem.dim] * u0.shape[0]) ** problem.dim
+    if not 0.0 < size < np.inf or places > _MOST:
         return [np.zeros_like(u0)] * len(fields)
     scheme, equation = _of_the_scheme(problem, u0 / size), _of_the_equation(problem, initial, u0)
-    # A source that knows nothing of u adds to it; whatever else makes u grow or fall does so with its error.
-    adds = problem.reaction is not None and problem.is_linear
+    # Whatever else than a source that adds to it makes u grow or fall does so with its error.
     errors = []
     for t, u in zip(problem.output_times, fields, strict=True):
         off, greatest = _error(problem, t, u0, scheme, equation)
-        errors.append((size if adds else float(np.abs(u).max()) / greatest) * off)
+        errors.append((size if problem.adds else float(np.abs(u).max()) / greatest) * off)
     return errors
 
 
@@ -102,11 +104,14 @@ def _error(
 def _of_the_scheme(problem: Problem, u: np.ndarray) -> _Waves:
     data = np.fft.fftn(np.pad(u, [(0, n - 2) for n in u.shape], "reflect"))
     theta = _wavenumbers(data.shape, 1)
-    setting, transport = problem.case.setting, Transport(problem.case.setting)
+    setting = problem.case.setting
     grid = np.stack(np.broadcast_arrays(*theta), axis=-1)
     each = np.abs(grid[..., 0]) if problem.dim == 1 else grid.reshape(-1, problem.dim)
     symbol = np.asarray(SCHEMES[problem.case.scheme].symbol(each, setting)).reshape(data.shape)
-    carried = [np.sign(k) * transport.symbol(np.abs(k).ravel()).reshape(k.shape) for k in theta]
+    carried = []
+    if problem.transport:
+        of_a = Transport(setting).symbol
+        carried = [np.sign(k) * of_a(np.abs(k).ravel()).reshape(k.shape) for k in theta]
     return _Waves(data, -symbol, carried)
 
 

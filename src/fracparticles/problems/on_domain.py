@@ -70,12 +70,12 @@ def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Datase
     }  # fmt: skip
     if estimate:
         sampled = initial if callable(initial) else u0
-        found = with_space_error(found, problem, sampled, fields, _on_fewer, _known)
+        found = with_space_error(found, problem, sampled, fields, _fields_of, _known)
     _warn(problem, found)
     return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
 
 
-def _on_fewer(problem: Problem, initial: Any) -> list[np.ndarray]:
+def _fields_of(problem: Problem, initial: Any) -> list[np.ndarray]:
     try:
         u0 = problem.bounded_domain.values("initial", initial)
     except Exception as error:  # whatever a function may raise that knows its own particles alone
@@ -88,7 +88,7 @@ def _on_fewer(problem: Problem, initial: Any) -> list[np.ndarray]:
 
 
 def _known(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[np.ndarray]:
-    return errors_of_diffusion(problem, initial, fields, _on_fewer)
+    return errors_of_diffusion(problem, initial, fields, _fields_of)
 
 
 def _integrated(problem: Problem, rates: DomainRates, u0: np.ndarray, held: Held) -> Integration:
@@ -112,8 +112,8 @@ def _warn(problem: Problem, found: Estimates) -> None:
     says = {
         "atol_share": "u has fallen, and the steps are accurate to {:.2g} of what is left at an output time. Take a "
         "smaller rtol, or atol, or an earlier end.",
-        "space_error": "the particles leave an error of about {:.1g} of u, by the diffusion of the data on more of "
-        "them, and the same on half and a quarter. Take more, or smoother data and coefficients.",
+        "space_error": "the particles leave an error of about {:.1g} of u, as diffusion of the data on more of "
+        "them and runs on half and a quarter say. Take more, or smoother data and coefficients.",
         "unresolved_share": "the particles do not resolve the solution: {:.2g} of it is in waves that they do not tell "
         "apart. Take more.",
     }

@@ -223,8 +223,8 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "smaller spacing, or a smoother coefficient",
         "atol_share": "the solution has fallen: errors of early steps, within rtol of what it was, or atol, are {:.2g} "
         "of its greatest value. Take a smaller rtol, or atol",
-        "space_error": "the particles leave an error of about {:.1g} of u, by the waves of the data, and by half and "
-        "a quarter of them. Take a smaller spacing, or smoother data and coefficients",
+        "space_error": "the particles leave an error of about {:.1g} of u, as the waves of the data and runs on "
+        "half and a quarter of them say. Take a smaller spacing, or smoother data and coefficients",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
     }

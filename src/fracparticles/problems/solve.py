@@ -38,7 +38,7 @@ def solve_problem(
         Left out, the fundamental solution at `t_initial`, of a problem with a constant order and diffusivity.
     estimate : bool
         Whether to solve on fewer particles, too, for the error that the particles leave, `space_error`: see
-        `fewer_particles`. It takes some half as long again.
+        `fewer_particles`. It takes some half as long again, on an interval up to a second more.
 
     Returns
     -------
@@ -71,15 +71,15 @@ def solve_problem(
     """
     remedy = "Make one: fp.Problem(alpha=1.5, ...). A fp.Case is for fp.solve."
     problem = check.instance("problem", problem, Problem, "a fp.Problem", remedy)
+    estimate = check.flag("estimate", estimate)
     if problem.is_bounded:
         return solve_on_domain(problem, initial, estimate)
     plain = problem.order_coefficient.constant is not None and problem.diffusion.constant
     if initial is None and not plain:
         given = "data of your own: there is no fundamental solution with these coefficients"
         raise InvalidInput("initial", None, given, "Pass an array, or a function.")
-    case = problem.case.model_copy(
-        update={"t_initial": problem.t_initial}
-    )  # it is said, if by default
+    # So t_initial counts as given, though it be the default.
+    case = problem.case.model_copy(update={"t_initial": problem.t_initial})
     u0, origin = initial_strengths(case, initial)
     probe_source(problem, u0)
     result = integrate(problem, Rates(problem), u0.reshape(-1))
@@ -88,13 +88,13 @@ def solve_problem(
     sampled = initial is None or callable(initial)
     if estimate:
         found = with_space_error(
-            found, problem, initial if sampled else u0, fields, _on_fewer, _known
+            found, problem, initial if sampled else u0, fields, _fields_of, _known
         )
     warn_if_doubtful(problem, found)
     return to_dataset(problem, lattice_layout(problem), u0, result, found, origin)
 
 
-def _on_fewer(problem: Problem, initial: Initial | None) -> list[np.ndarray]:
+def _fields_of(problem: Problem, initial: Initial | None) -> list[np.ndarray]:
     u0, _ = initial_strengths(problem.case, initial)
     return [u.reshape(u0.shape) for u in integrate(problem, Rates(problem), u0.reshape(-1)).u]
 

@@ -83,9 +83,8 @@ class Transport:
         """Depths p from the end, and what u_(n-p) adds to the points beyond it, shape (terms, pad)."""
         n, powers = setting.n, 1.0 + setting.alpha * np.arange(1, setting.far_terms + 1)
         depth = np.array([round(n * share) for share in (0.0, 0.25, 0.5)[: setting.far_terms]])
-        met = (
-            n / (n - depth)[:, None]
-        ) ** powers  # their amplitudes from the strengths: its inverse
+        # Its inverse makes their amplitudes of the strengths.
+        met = (n / (n - depth)[:, None]) ** powers
         beyond = (n / np.arange(n + 1, n + self._pad + 1)[:, None]) ** powers
         return depth, np.linalg.solve(met.T, beyond.T)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +18,7 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.pse.moments import nodes_and_weights, warn_of_moment
-from fracparticles.pse.shapes import Kernel, Stencil, kernel_of
+from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["derivative", "lattice", "reconstruct", "regularised"]
 
@@ -25,9 +26,18 @@ _MOST_PARTICLES = 2**26
 _FARTHEST = 2.0**31  # lattice points from the origin
 _MOST_PAIRS = 2**25  # of points and particles
 _HIGHEST = 24  # order of a derivative
+_ROUND_OFF = 64.0 * float(np.finfo(float).eps)  # of the sum of the sizes of all terms
 _WRONG = 0.05  # of the largest value, by the smoothing
 _SEEN = 3.0  # radii: what lies farther counts little in any kernel
 _WHOLE = 0.75, 1.5  # of its moment, what twice the radius leaves where there are no gaps
+
+
+class _Sums(NamedTuple):
+    """Of a sum over the particles at each point: itself, the moment that must be 1, and the sizes of its terms."""
+
+    result: FloatArray
+    moment: FloatArray
+    sizes: FloatArray
 
 
 def lattice(low: float, high: float, h: float) -> FloatArray:
@@ -70,19 +80,18 @@ def reconstruct(
     kernel : Kernel
         eta, of one dimension.
     """
-    values = check.vector("values", values, np.size(particles), complex_too=True)
+    x, particles = check.positions("x", x, least=0), check.positions("particles", particles)
+    values = check.vector("values", values, particles.size, complex_too=True)
 
-    def sums(radius: float) -> tuple[FloatArray, FloatArray]:
+    def sums(radius: float) -> _Sums:
         weights = _matrix(x, particles, volumes, radius, kernel)
-        return weights @ values, weights.sum(axis=1)
+        return _Sums(weights @ values, weights.sum(axis=1), np.abs(weights) @ np.abs(values))
 
     with np.errstate(all="ignore"):
-        result, mass = sums(epsilon)
-        result = check.finite_result("values", result)
-        if not isinstance(kernel, Stencil):
-            inside = _inside(x, particles, epsilon, kernel)
-            _warn_of_smoothing(result, mass, *sums(2.0 * epsilon), inside)
-    return result
+        found = sums(epsilon)
+        check.finite_result("values", found.result)
+        _warn_of_smoothing(found, sums, _inside(x, particles, epsilon, kernel), epsilon)
+    return found.result
 
 
 def derivative(
@@ -113,24 +122,25 @@ def derivative(
         As in `reconstruct`.
     """
     order = check.whole_number("order", order, least=1, most=_HIGHEST)
-    values = check.vector("values", values, np.size(particles), complex_too=True)
-    at = check.vector("at", at, np.size(x), least=0, complex_too=True)
+    x, particles = check.positions("x", x, least=0), check.positions("particles", particles)
+    values = check.vector("values", values, particles.size, complex_too=True)
+    at = check.vector("at", at, x.size, least=0, complex_too=True)
 
-    def sums(radius: float) -> tuple[FloatArray, FloatArray]:
+    def sums(radius: float) -> _Sums:
         divisor = _power(radius, order)
         weights = _matrix(x, particles, volumes, radius, kernel)
-        found = (weights * (values - at[:, None])).sum(axis=1) / divisor
-        z = np.where(weights == 0.0, 0.0, (np.asarray(particles) - np.asarray(x)[:, None]) / radius)
-        return found, np.einsum("ij,ij->i", weights, z**order) / math.factorial(order)
+        result = (weights * (values - at[:, None])).sum(axis=1) / divisor
+        z = np.where(weights == 0.0, 0.0, (particles - x[:, None]) / radius)
+        moment = np.einsum("ij,ij->i", weights, z**order) / math.factorial(order)
+        sizes = np.abs(weights) @ np.abs(values) + np.abs(weights).sum(axis=1) * np.abs(at)
+        return _Sums(result, moment, sizes / divisor)
 
     with np.errstate(all="ignore"):
-        result, moments = sums(epsilon)
-        result = check.finite_result("values", result)
-        warn_of_moment(moments, "points", stacklevel=2)
-        if not isinstance(kernel, Stencil):
-            inside = _inside(x, particles, epsilon, kernel)
-            _warn_of_smoothing(result, moments, *sums(2.0 * epsilon), inside)
-    return result
+        found = sums(epsilon)
+        check.finite_result("values", found.result)
+        warn_of_moment(found.moment, "points", stacklevel=2)
+        _warn_of_smoothing(found, sums, _inside(x, particles, epsilon, kernel), epsilon)
+    return found.result
 
 
 def regularised(
@@ -153,28 +163,29 @@ def regularised(
         return check.finite_result("f", shifted @ (w * kernel(z)) / divisor)
 
 
-def _inside(x: ArrayLike, particles: ArrayLike, epsilon: float, kernel: Kernel) -> np.ndarray:
+def _inside(x: FloatArray, particles: FloatArray, epsilon: float, kernel: Kernel) -> np.ndarray:
     """Whether the particles go on beyond each point as far as a kernel of twice the radius sees."""
     seen = 2.0 * epsilon * min(kernel.reach, _SEEN)
-    return (np.asarray(x) - seen >= np.min(particles)) & (np.asarray(x) + seen <= np.max(particles))
+    return (x - seen >= particles.min()) & (x + seen <= particles.max())
 
 
 def _warn_of_smoothing(
-    result: FloatArray,
-    moment: FloatArray,
-    wider: FloatArray,
-    wider_moment: FloatArray,
-    inside: np.ndarray,
+    found: _Sums, sums: Callable[[float], _Sums], inside: np.ndarray, epsilon: float
 ) -> None:
     """Warn if twice the radius changes a result, over its moment, by more than three times what is allowed."""
-    ratio = wider_moment / moment
+    try:
+        wider = sums(2.0 * epsilon)
+    except InvalidInput:  # a stencil knows one radius, and the numbers end at 1e100
+        return
+    ratio = wider.moment / found.moment
     whole = inside & (ratio > _WHOLE[0]) & (ratio < _WHOLE[1])
-    change = np.where(whole, np.abs(wider / ratio - result), 0.0) / 3.0
-    largest = float(np.abs(result).max(initial=0.0))
-    if change.max(initial=0.0) > _WRONG * largest:
+    change = np.where(whole, np.abs(wider.result / ratio - found.result), 0.0) / 3.0
+    most, largest = (float(np.abs(a).max(initial=0.0)) for a in (change, found.result))
+    if most > _WRONG * largest + _ROUND_OFF * float(found.sizes.max(initial=0.0)):
         warnings.warn(
             "epsilon is too large for the field: the smoothing changes the result by about "
-            f"{change.max() / largest:.2g} of its largest value. Take a smaller epsilon, or a kernel of higher order.",
+            f"{most / max(most, largest):.2g} of its largest value. Take a smaller epsilon, or a kernel of higher "
+            "order.",
             AccuracyWarning,
             stacklevel=3,
         )

@@ -181,9 +181,8 @@ def _spline(axes: Sequence[np.ndarray], values: np.ndarray, x: list[np.ndarray])
 def _monotone(axes: Sequence[np.ndarray], values: np.ndarray, x: list[np.ndarray]) -> np.ndarray:
     from scipy.interpolate import PchipInterpolator
 
-    with np.errstate(
-        over="ignore"
-    ):  # 1 / slope of data that have underflown: the slope is zero then
+    # Of data that have underflowed 1 / slope is infinite, and the slope zero.
+    with np.errstate(over="ignore"):
         return _by_axes(PchipInterpolator, axes, values, x)
 
 

@@ -113,6 +113,8 @@ def suggest(
         raise InvalidInput("t_final", None, "a number > t_initial", "Give it, or times.")
     problem = Case(scheme=_EXCHANGE, integrator="exponential", half_width=1.0, spacing=0.1,
                    **(fields | {"dim": 1}))  # fmt: skip
+    if isinstance(initial, str):
+        problem.refuse_point_mass()
     spread = (problem.diffusivity * problem.span) ** (1.0 / problem.alpha)
     least = 0.0
     if within is None:
@@ -144,9 +146,10 @@ def suggest(
 
 def _refuse_narrow(initial: Initial, radius: float, spread: float, dim: int) -> None:
     """Refuse data so narrow for their spread that a lattice which holds both takes minutes to find, or hours."""
-    if (spread / radius) ** dim > _MOST_SPREAD:
+    most = _MOST_SPREAD ** (1.0 / dim)
+    if spread > most * radius:
         allowed = (
-            f"data that spread to at most {_MOST_SPREAD ** (1.0 / dim):.3g} times their radius on a lattice: they hold "
+            f"data that spread to at most {most:.3g} times their radius on a lattice: they hold "
             f"within {radius:.2g} and spread over (D T)^(1/alpha) = {spread:.2g}"
         )
         remedy = "Take fp.follow, whose particles are placed by the data; or fp.green times their integral."

@@ -97,7 +97,7 @@ def symbol_range(
 
 
 def worst_wave(name: str, setting: Setting) -> float:
-    """Return k h of the wave on the line that a scheme damps the most, of 4000."""
+    """Return k h of the wave on the line that a scheme damps the most, of 4001 evenly spaced."""
     return float(_WAVES[np.argmin(scheme(name).symbol(_WAVES, setting))])
 
 

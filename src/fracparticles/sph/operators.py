@@ -64,7 +64,7 @@ def rl_integral(
     AccuracyWarning
         If a value is wrong by more than 5 per cent of the largest, as far as the field shows it. So do the others.
     """
-    return _apply(_left_integral, comparison.rl_integral, line, f, order, side, method)
+    return _apply(_left_integral, comparison.rl_integral, 1, line, f, order, side, method)
 
 
 def rl_derivative(
@@ -75,35 +75,46 @@ def rl_derivative(
     Within 2 h of the end where the integral stops (b, or a for the right-handed one) all methods except `completed`
     are wrong by about (h/(b-a))^(1-alpha) / 2 of f' there.
     """
-    return _apply(_left_rl_derivative, comparison.rl_derivative, line, f, order, side, method)
+    return _apply(_left_rl_derivative, comparison.rl_derivative, -1, line, f, order, side, method)
 
 
 def caputo_derivative(
     line: ParticleLine, f: Any, order: Any, *, side: str = "left", method: str = "standard"
 ) -> np.ndarray:
     """The Caputo derivative (36). Parameters as in `rl_integral`."""
-    return _apply(_left_caputo, comparison.caputo_derivative, line, f, order, side, method)
+    return _apply(_left_caputo, comparison.caputo_derivative, -1, line, f, order, side, method)
 
 
 def singular_integral(
     line: ParticleLine, f: Any, order: Any, *, method: str = "standard"
 ) -> np.ndarray:
     """The left-handed integral by the singular sum (23), (24), whose infinite term j = i is left out."""
-    return _apply(_left_singular_integral, comparison.rl_integral, line, f, order, "left", method)
+    return _apply(
+        _left_singular_integral, comparison.rl_integral, 1, line, f, order, "left", method
+    )
 
 
 def _apply(
-    left: Left, other: Other, line: ParticleLine, f: Any, order: Any, side: str, method: str
+    left: Left,
+    other: Other,
+    sign: int,
+    line: ParticleLine,
+    f: Any,
+    order: Any,
+    side: str,
+    method: str,
 ) -> np.ndarray:
+    """Apply an operator on this side, and compare it; it has the unit of a length to the power of sign * alpha."""
     line = check.instance("line", line, ParticleLine)
     f, alpha = line.field("f", f), _orders(line, order)
     check.choice("method", method, (*METHODS, COMPLETED))
-    forward = slice(
-        None, None, 1 if check.choice("side", side, ("left", "right")) == "left" else -1
-    )
-    f, alpha = f[forward], alpha[forward]
-    result = left(line, f, alpha, method)[forward]
-    comparison.warn_of_difference(line, result, other(line, f, alpha)[forward], method)
+    turn = 1 if check.choice("side", side, ("left", "right")) == "left" else -1
+    f, alpha = f[::turn], alpha[::turn]
+    result = left(line, f, alpha, method)[::turn]
+    with np.errstate(all="ignore"):  # of values near the greatest number the differences overflow
+        compared = other(line, f, alpha)[::turn]
+        size = float((np.abs(f).max() * (line.b - line.a) ** (sign * alpha)).max())
+        comparison.warn_of_difference(line, result, compared, size, method)
     return result
 
 

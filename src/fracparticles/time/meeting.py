@@ -57,8 +57,8 @@ class Meeting:
     def left_open(self, u: np.ndarray) -> tuple[float, float]:
         """Return what the last gamma changes of int u and of int x u beyond the lattice: those left out may as much.
 
-        The period is the unit of length. Without terms, where nothing is to be beyond, what is there if u falls like
-        |x|^(-n-1) up to twice the distance.
+        The period is the unit of length. Without terms, where nothing is taken to lie beyond, what does if u goes on
+        like |x|^(-n-1) up to twice the distance.
         """
         found, reach = u[tuple(self._samples)], 2.0 * self._nearest
         if not self._terms:

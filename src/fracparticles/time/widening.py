@@ -51,7 +51,7 @@ _CANCELLED = 10.0  # int |u| over what is left of it: less is no cancellation
 _NARROW = 10.0
 
 
-class Moments(NamedTuple):
+class _Unknown(NamedTuple):
     """int |u|, and what is not known of int u and int x u, in units of the spacing."""
 
     size: float
@@ -128,8 +128,8 @@ def evolve_long(
         _step, points, dim, alpha, before=before, after=after, middle=middle, outer=True
     )
     if left <= doubling * h**alpha:
-        time = left * h**-alpha
-        u = _begun(first(time, moved=None), u, lambda waves: waves.of_a_peak(alpha, time)[0])[0]
+        scaled = max(left * h**-alpha, _SHORTEST)
+        u = _begun(first(scaled, moved=None), u, lambda waves: waves.of_a_peak(alpha, scaled)[0])[0]
         return np.ldexp(u, exponent), h
     spread = left / h**alpha + (0.5 * points) ** alpha  # of what lies beyond the lattice
     if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
@@ -165,7 +165,7 @@ def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
 
 def _begun(
     step: Continued, u: np.ndarray, of_a_peak: Callable[[ShortWaves], float] | None = None
-) -> tuple[np.ndarray, np.ndarray, Moments]:
+) -> tuple[np.ndarray, np.ndarray, _Unknown]:
     """Return the result of the first step, the amplitudes of its tail, and what is not known of the moments.
 
     Warns if the data are not what the step takes; with `of_a_peak` also if waves that the lattice lacks are there yet.
@@ -182,8 +182,9 @@ def _begun(
     of_mass, of_first = step.tails.meeting.left_open(u)
     of_mass, of_first = of_mass * length**u.ndim, of_first * length ** (u.ndim + 1)
     _warn_of_tails(of_mass / (size + _TINY), len(u))
+    # The estimate of what the lattice lacks is so many times larger than the error; that of the powers is not.
     of_mass += missed * (_DOUBTFUL / _SHORT_WAVES) + _ROUND_OFF * size
-    return result[0], step.amplitudes(numbers), Moments(size, of_mass, of_first)
+    return result[0], step.amplitudes(numbers), _Unknown(size, of_mass, of_first)
 
 
 def _onward(step: Continued, u: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -215,7 +216,7 @@ def _warn_of_tails(doubt: float, points: int) -> None:
         )
 
 
-def _warn_of_what_cancels(u: np.ndarray, unknown: Moments, spread: float, alpha: float) -> None:
+def _warn_of_what_cancels(u: np.ndarray, unknown: _Unknown, spread: float, alpha: float) -> None:
     """Warn if the data have cancelled down to what is not known of their integral or of their first moment.
 
     In units of the first spacing. An integral m spreads to m G <= m P_0, a first moment to its product with the
