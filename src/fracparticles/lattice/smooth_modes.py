@@ -110,7 +110,7 @@ def _next_integral(p: float, z: np.ndarray) -> np.ndarray:
     k = np.arange(1.0, 20.0)
     small = np.minimum(z, 1.0)
     terms = (-small[..., None]) ** k / (gamma(k + 1.0) * (k - p))
-    # Of Gamma(1 - p)
+    # Of Gamma(1 - p).
     log_gamma = np.euler_gamma * p + (zeta(k + 1.0) * p ** (k + 1.0) / (k + 1.0)).sum()
     near = -np.expm1(log_gamma + p * np.log(small)) / p - terms.sum(axis=-1)
     large, far = np.maximum(z, 1.0), np.zeros_like(z)
