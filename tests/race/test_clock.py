@@ -27,6 +27,18 @@ def test_an_action_is_repeated_until_the_time_is_up():
     assert len((timing + short).times) == 6
 
 
+def test_what_is_done_before_an_action_is_not_timed():
+    done: list[int] = []
+
+    def before() -> None:
+        done.append(1)
+        time.sleep(0.02)
+
+    timing, _ = clock.measure(lambda: None, repeats=3, before=before)
+    assert len(done) == 3
+    assert timing.minimum < 0.02
+
+
 def test_tables_are_forgotten():
     stability_limit("KPSE", 0.5)
     assert _symbol_range.cache_info().currsize > 0

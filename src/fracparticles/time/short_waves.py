@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from functools import cached_property, reduce
+from functools import reduce
 
 import numpy as np
 
@@ -41,27 +41,23 @@ class ShortWaves:
         data, own = spectrum.shape[: spectrum.ndim - dim], spectrum.shape[spectrum.ndim - dim :]
         self._each, self._dim, self._length = spectrum.reshape(math.prod(data), *own), dim, length
 
-    @cached_property
-    def _high(self) -> list[np.ndarray]:
-        """a of each axis, shape (data, waves)."""
-        return self._greatest(0.8, 1.0)
-
     def _rates(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """For each axis a and r, shape (data, waves); r is at most 1."""
-        for a, b in zip(self._high, self._greatest(0.4, 0.5), strict=True):
+        for a, b in zip(self._greatest(0.8, 1.0), self._greatest(0.4, 0.5), strict=True):
             yield a, np.minimum(1.0, a / (b + _TINY))
 
     def _greatest(self, low: float, top: float) -> list[np.ndarray]:
         """The greatest |u^| from low K to top K, on both sides of zero: at one wave the aliases of some data cancel."""
         length, half = self._length, self._length // 2
         first, last = int(low * half), int(top * half)
-        above, below = range(first, last + 1), range(length - last, length + 1 - max(first, 1))
-        both = [*above, *below] if self._dim > 1 else []
+        sides = slice(first, last + 1), slice(length - last, length + 1 - max(first, 1))
         greatest = []
         for axis in range(1, self._dim + 1):
-            where = both if axis < self._dim else slice(first, last + 1)
-            waves = self._each[(*(slice(None),) * axis, where)]
-            band = np.maximum.reduce(np.abs(waves), axis)
+            bands = [
+                np.maximum.reduce(np.abs(self._each[(*(slice(None),) * axis, side)]), axis)
+                for side in (sides if axis < self._dim else sides[:1])
+            ]
+            band = reduce(np.maximum, bands)
             greatest.append(band.reshape(len(band), math.prod(band.shape[1:])))
         return greatest
 
@@ -71,17 +67,24 @@ class ShortWaves:
         return np.asarray(sum(2.0 * a[:, 0] * r[:, 0] ** 2.5 for a, r in self._rates()))
 
     def at_most(self, alpha: float, tau: float) -> list[float]:
-        """Return a bound of `of_a_peak` as if u^ did not fall beyond K, nor faster for waves along the other axes.
+        """Return a bound of `of_a_peak`, as if u^ did not fall beyond K, nor along the other axes.
 
-        Of an axis 2 H_0 int_0^1 exp(-kappa c s^alpha) ds < 2 H_0 min(1, (kappa c)^(-1/alpha)), with H_0 the sum of a
-        over the waves along the other axes, and c = tau pi^alpha.
+        Of an axis 2 H_0 int_0^1 exp(-kappa c s^alpha) ds <= 2 H_0 min(1, (kappa c)^(-1/alpha)), c = tau pi^alpha. In
+        H_0, of the waves q along one other axis, sum_q exp(-kappa^2 tau q^alpha) / L <= 1/L + (kappa^2 tau)^(-1/alpha) / pi.
         """
-        dim, c = self._dim, _slowed(self._dim, alpha) * tau * math.pi**alpha
-        weight = 2.0 * min(1.0, c ** (-1.0 / alpha))
-        if dim == 1:
-            return [weight * a for a in self._high[0].ravel().tolist()]
-        weight *= 2.0 * float(self._length) ** (1 - dim)  # of a wave, with that of conjugates
-        return [weight * sum(h) for h in zip(*(a.sum(1).tolist() for a in self._high), strict=True)]
+        kappa = _slowed(self._dim, alpha)
+        weight = 2.0 * min(1.0, (kappa * tau) ** (-1.0 / alpha) / math.pi)
+        if self._dim > 1:
+            across = 1.0 / self._length + (kappa * kappa * tau) ** (-1.0 / alpha) / math.pi
+            weight *= min(1.0, across) ** (self._dim - 1)
+        first = int(0.8 * (self._length // 2))
+        band = slice(first, self._length - first + 1)  # on both sides of zero, where there are two
+        greatest = []
+        for axis in range(1, self._dim + 1):
+            size = np.abs(self._each[(*(slice(None),) * axis, band)])
+            flat = size.reshape(len(size), math.prod(size.shape[1:]))
+            greatest.append(np.maximum.reduce(flat, 1).tolist())
+        return [weight * sum(a) for a in zip(*greatest, strict=True)]
 
     def of_a_peak(self, alpha: float, tau: float) -> list[float]:
         """Return how far off a peak of each of the data may be after the scaled time tau: if all waves are in phase.

@@ -178,6 +178,10 @@ class WholeSpace:
         self._inside: tuple[Any, ...] | None = None  # the lattice in a longer circle
         if length != points:
             self._inside = (..., *(slice(self._start, self._start + points),) * dim)
+        middle, steps = points // 2, [points**k for k in reversed(range(dim))]
+        self._ends = [  # the middles of the faces, of N^n points in a row
+            middle * (sum(steps) - step) + at * step for at in (0, points - 1) for step in steps
+        ]
         self._alpha, self._tau = alpha, scaled_time
         self._changed = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
         self._circle: Circle | Continued
@@ -217,7 +221,7 @@ class WholeSpace:
         seen: list[np.ndarray] = []
         with np.errstate(over="ignore", invalid="ignore"):
             result, numbers = self._run(u, seen.append)
-            each = result.reshape(_count(result, self._dim), self._points**self._dim)
+            each = result.reshape(-1, self._points**self._dim)
             peaks = np.maximum.reduce(np.abs(each), 1).tolist()
             if not all(map(math.isfinite, peaks)):
                 check.finite_result("u", each)
@@ -251,15 +255,10 @@ class WholeSpace:
 
     def _miss(self, each: np.ndarray, numbers: np.ndarray | None, peaks: list[float]) -> float:
         """Return how far the tail is from the result in the middles of the faces, over its maximum."""
-        points, dim = self._points, self._dim
-        middle, steps = points // 2, [points**k for k in reversed(range(dim))]
-        ends = [
-            middle * (sum(steps) - step) + at * step for at in (0, points - 1) for step in steps
-        ]
-        miss = each.take(ends, 1)
+        miss = each.take(self._ends, 1)
         if isinstance(self._circle, Continued) and numbers is not None:
-            faces = np.transpose(np.unravel_index(ends, (points,) * dim)) + self._start
-            miss -= self._circle.tails.result_at(faces, numbers)
+            faces = np.transpose(np.unravel_index(self._ends, (self._points,) * self._dim))
+            miss -= self._circle.tails.result_at(faces + self._start, numbers)
         return _worst([max(map(abs, one)) for one in miss.tolist()], peaks)
 
 

@@ -73,14 +73,22 @@ class Timing:
 
 
 def measure(
-    action: Callable[[], Any], repeats: int = 1, seconds: float = float("inf")
+    action: Callable[[], Any],
+    repeats: int = 1,
+    seconds: float = float("inf"),
+    before: Callable[[], object] | None = None,
 ) -> tuple[Timing, Any]:
-    """Time an action so many times, fewer if that takes longer than `seconds`; return the last result, too."""
+    """Time an action so many times, fewer if that takes longer than `seconds`; return the last result, too.
+
+    What is to be done `before` each time is not timed.
+    """
     times: list[float] = []
     result = None
     began, others = time.perf_counter(), _seconds_of_others()
     for _ in range(repeats):
         result = None  # before the next one takes its memory
+        if before is not None:
+            before()
         start = time.perf_counter()
         result = action()
         times.append(time.perf_counter() - start)

@@ -89,7 +89,7 @@ def run_trials(
     seconds: float,
     most: int | None = None,
 ) -> list[dict[str, Any]]:
-    """Run every trial once, then time those that matter in `rounds` rounds, each with its set-up; one row a trial.
+    """Run every trial once, then time those that matter in `rounds` rounds, set-ups and solves; one row a trial.
 
     A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, within a
     factor of 10 of the front of all, and does not take a quarter of a second. The rounds go through all of them, so
@@ -100,9 +100,8 @@ def run_trials(
     problem : Problem
     contenders : iterable of Contender
     rounds : int
-        Set-ups a trial.
     repeats, seconds : int, float
-        Solves a set-up, fewer if they take longer than that.
+        Set-ups and solves in a round, fewer if they take longer than that.
     most : int, optional
         Only the first trials of each contender.
     """
@@ -115,8 +114,8 @@ def run_trials(
     again = list(compress(worth, _near(worth, judged, 1, _FAR)))
     for _ in range(rounds):
         for record in again:
-            forget_tables()
-            setup, ready = measure(partial(record.contender.prepare, problem, **record.given))
+            prepare = partial(record.contender.prepare, problem, **record.given)
+            setup, ready = measure(prepare, repeats, seconds, before=forget_tables)
             solve, _ = measure(partial(ready.solve, record.u0), repeats, seconds)
             record.setups += setup
             record.solves += solve
@@ -154,8 +153,8 @@ def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Re
     record = _Record(contender, given, row)
     try:
         with quiet():
-            forget_tables()
-            setup, ready = measure(partial(contender.prepare, problem, **given))
+            prepare = partial(contender.prepare, problem, **given)
+            setup, ready = measure(prepare, before=forget_tables)
             u0 = problem.kept("initial", ready.x)
             solve, u = measure_warm(partial(ready.solve, u0))
             u = u if ready.result is None else ready.result(u0)
