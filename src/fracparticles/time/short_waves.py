@@ -70,7 +70,7 @@ class ShortWaves:
         """Return a bound of `of_a_peak`, as if u^ did not fall beyond K, nor along the other axes.
 
         Of an axis 2 H_0 int_0^1 exp(-kappa c s^alpha) ds <= 2 H_0 min(1, (kappa c)^(-1/alpha)), c = tau pi^alpha. In
-        H_0, of the waves q along one other axis, sum_q exp(-kappa^2 tau q^alpha) / L <= 1/L + (kappa^2 tau)^(-1/alpha) / pi.
+        H_0, along one of the other axes, sum_q exp(-kappa^2 tau q^alpha) / L <= 1/L + (kappa^2 tau)^(-1/alpha) / pi.
         """
         kappa = _slowed(self._dim, alpha)
         weight = 2.0 * min(1.0, (kappa * tau) ** (-1.0 / alpha) / math.pi)
