@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from fracparticles.errors import InvalidInput, one_of
-from fracstudy.config import CONFIG, read_project
 
 __all__ = ["listed", "scenes"]
 
@@ -23,6 +22,8 @@ def scenes(document: str | None = None) -> None:
 
 def listed(project: Path, document: str | None = None) -> list[str]:
     """Return the lines of the list for the project in that folder; raises `InvalidInput` if there is none."""
+    from fracstudy.config import CONFIG, read_project  # heavy, and not for those who ask for --help
+
     if not (project / CONFIG).is_file():
         found = f"a folder that holds {CONFIG}"
         raise InvalidInput("folder", str(project), found, "Change to the folder of the study.")

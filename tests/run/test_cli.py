@@ -570,6 +570,7 @@ def test_the_list_of_scenes(cli, monkeypatch):
     assert "[L-T3, " in row
     assert "marker_square" not in out
     assert "marker_square" in cli("scenes")[1]
+    assert "List the scenes" in cli("--help")[1]
     assert refused(cli("scenes", "luchesi"), "luchesi", "lucchesi")
 
 

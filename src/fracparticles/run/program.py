@@ -28,11 +28,8 @@ for _place, _help in _COMMANDS.items():
     app.command(f"fracparticles.run.{_place}", name=_place.split(":")[1], help=_help)
 # Those of other packages that are there, of the study for one.
 for _entry in entry_points(group="fracparticles.commands"):
-    _package = _entry.module.split(".")[0]
-    if find_spec(_package) is not None:
-        app.command(
-            _entry.value, name=_entry.name, help=f"A command of {_package}, see its --help."
-        )
+    if find_spec(_entry.module.split(".")[0]) is not None:
+        app.command(_entry.load(), name=_entry.name)
 app.register_install_completion_command(
     help="Install completion for bash, zsh or fish, and say where."
 )
