@@ -18,11 +18,11 @@ def observed(h: Sequence[float], errors: Sequence[float]) -> list[float]:
     return [np.nan, *observed_order(h, errors)]
 
 
-def orders_by(table: pd.DataFrame, by: str | Sequence[str], error: str, h: str = "h") -> pd.Series:
+def orders_by(table: pd.DataFrame, by: str | Sequence[str], error: str) -> pd.Series:
     """Return for each row the observed order between it and the row before in its group; nan for the first ones."""
     orders = pd.Series(np.nan, index=table.index)
     for _, part in table.groupby(by):
-        orders[part.index[1:]] = observed_order(part[h], part[error])
+        orders[part.index[1:]] = observed_order(part["h"], part[error])
     return orders
 
 

@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from functools import partial
+from inspect import isgeneratorfunction
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,7 @@ import pandas as pd
 
 from fracparticles.errors import FracparticlesError, FracparticlesWarning, reason_of
 from fracstudy.errors import EPS, off, quiet
+from fracstudy.scene import call
 
 __all__ = [
     "BAD",
@@ -31,6 +34,7 @@ __all__ = [
     "frame",
     "off",
     "overheard",
+    "probes_of",
     "quiet",
 ]
 
@@ -166,10 +170,26 @@ class Kind:
         for case, run in cases.items():
             yield self(case, run)
 
+    def over(
+        self, run: Callable[..., Any], cases: Mapping[str, tuple[Any, ...]], **other: Any
+    ) -> Iterator[Probe]:
+        """Make one probe of each, by its name: the same with other arguments."""
+        for case, arguments in cases.items():
+            yield self(case, run, *arguments, **other)
+
 
 def _stray(category: type[Warning]) -> bool:
     """Whether a warning is one of numpy's, that something overflowed or was divided by zero unseen."""
     return issubclass(category, RuntimeWarning)
+
+
+def probes_of(*modules: ModuleType, **given: Any) -> Iterator[Probe]:
+    """Make the probes of modules: each generator in its turn makes a family, from those of the values that it takes."""
+    for module in modules:
+        for name, family in list(vars(module).items()):
+            own = isgeneratorfunction(family) and family.__module__ == module.__name__
+            if own and not name.startswith("_"):
+                yield from call(family, **given)
 
 
 def frame(probes: Iterable[Probe]) -> pd.DataFrame:

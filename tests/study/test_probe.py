@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import warnings
+from types import ModuleType
 
 import numpy as np
 import pytest
 
 from fracparticles.errors import AccuracyWarning, FracparticlesError, InvalidInput
-from fracstudy.probe import HELD, REFUSED, Kind, Verdict, frame, off, overheard, quiet
+from fracstudy.probe import HELD, REFUSED, Kind, Verdict, frame, off, overheard, probes_of, quiet
 
 
 def refuses():
@@ -126,3 +127,26 @@ def test_quiet_says_nothing_of_one_kind_of_warning():
             grows(1.0)()
             warnings.warn("another", UserWarning, stacklevel=1)
     assert [str(one.message) for one in caught] == ["another"]
+
+
+def test_one_function_is_probed_with_several_arguments():
+    kind = Kind("k", "small", 1.0)
+    made = list(kind.over(lambda x, y: x - y, {"a": (1.0, 0.5), "b": (3.0, 1.0)}, source="scipy"))
+    assert [(one.case, one.deviation, one.source) for one in made] == [
+        ("a", 0.5, "scipy"),
+        ("b", 2.0, "scipy"),
+    ]
+
+
+def test_the_families_of_a_module_are_made_in_their_order_with_what_they_take():
+    module = ModuleType("families")
+    exec(
+        "from itertools import product\n"
+        "def second(b, kind): yield kind('second', float, b)\n"
+        "def _hidden(a, kind): yield kind('hidden', float, a)\n"
+        "def no_family(a): return a\n"
+        "def first(a, b, kind): yield kind('first', float, a + b)\n",
+        vars(module),
+    )
+    made = [(p.case, p.deviation) for p in probes_of(module, a=1.0, b=2.0, c=3.0, kind=Kind("k"))]
+    assert made == [("second", 2.0), ("first", 3.0)]

@@ -25,8 +25,13 @@ from threadpoolctl import threadpool_info, threadpool_limits
 if TYPE_CHECKING:
     import xarray as xr
 
+    Measurements = xr.Dataset
+else:
+    Measurements = Any  # a data set, whose package takes long to import
+
 __all__ = [
     "LONG",
+    "Measurements",
     "Timing",
     "conditions",
     "forget_tables",
@@ -231,7 +236,7 @@ def timings_dataset(
     variables: Mapping[str, tuple[str, str]],
     title: str,
     facts: Mapping[str, Any],
-) -> xr.Dataset:
+) -> Measurements:
     """Return measurements as a data set, one element of `dimension` a row.
 
     Parameters

@@ -9,7 +9,7 @@ import mpmath as mp
 from fracparticles import special
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.ends_of_alpha import references
-from scenes.extremes.ends_of_alpha.names import distance, relative, written
+from scenes.extremes.ends_of_alpha.references import distance, relative, written
 
 _FAR = 1e6
 # Documented: 1e-13, 1e-12 for what has a derivative.
@@ -44,11 +44,8 @@ FUNCTIONS = {
 
 def errors(name: str, n: int, alpha: float, radii: list[float]) -> float:
     """Return the greatest relative error of a function at some radii, t = 1."""
-    worst = 0.0
-    for r in radii:
-        value, size = _exact(name, n, alpha, r)
-        worst = max(worst, float(abs(FUNCTIONS[name](r, 1.0, alpha, n) - value) / abs(size)))
-    return worst
+    parts = [(FUNCTIONS[name](r, 1.0, alpha, n), *_exact(name, n, alpha, r)) for r in radii]
+    return max(float(abs(found - value) / abs(size)) for found, value, size in parts)
 
 
 def probes(betas: list[float], radii: list[float], dims: list[int]) -> Iterator[Probe]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from functools import cache
 from itertools import product
+from typing import Any
 
 import mpmath as mp
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from fracparticles.kernels.families import PAPER_ORDERS, kernel, kernel_transform
 from fracparticles.kernels.tabulated import tabulated
 from fracstudy.probe import HELD, Kind, Probe
-from scenes.extremes.ends_of_alpha.names import written
+from scenes.extremes.ends_of_alpha.references import written
 
 RADII = (0.0, 0.3, 1.7, 7.0, 100.0)
 WAVES = (0.01, 0.7, 3.0)
@@ -37,14 +38,12 @@ def exact(
         power, more = alpha - (2 if name == "kappa" else 0), 2 if name == "K" else 0
         a, b = (power + n) / 2, half + mp.mpf(more) / 2
         constant = 2**power * mp.gamma(a) / (mp.pi**half * mp.gamma(b) * mp.factorial(more))
+        parts = [mp.hyp1f1(a, b, -x)]
         if family == "gamma":
-            parts = [
-                mp.rf(a, j) / mp.factorial(j) * mp.hyp1f1(a + j, b, -x) for j in range(order // 2)
-            ]
-        else:
-            parts = [mp.hyp1f1(a, b, -x)]
-            if order == 4:
-                parts = [2 * parts[0], -(2 ** (-a)) * mp.hyp1f1(a, b, -x / 2)]
+            each = range(order // 2)
+            parts = [mp.rf(a, j) / mp.factorial(j) * mp.hyp1f1(a + j, b, -x) for j in each]
+        elif order == 4:
+            parts = [2 * parts[0], -(2 ** (-a)) * mp.hyp1f1(a, b, -x / 2)]
         # G of order II is exp(-x) and a rest that cancel next to its zero.
         size = mp.fsum(map(abs, parts)) + (mp.exp(-x) if name == "G" else 0)
         return (-1 if name == "G" else 1) * constant * mp.fsum(parts), constant * size
@@ -63,9 +62,8 @@ def exact_transform(name: str, k: float, alpha: float, order: int, family: str) 
 
         k = mp.mpf(k)
         if name == "K":
-            return mp.quad(
-                lambda q: q ** (alpha - 1) * eta(q), [k, k + 1, k + 3, k + 7, k + 15, k + 40]
-            )
+            ends = [k + far for far in (0, 1, 3, 7, 15, 40)]
+            return mp.quad(lambda q: q ** (alpha - 1) * eta(q), ends)
         power = {"kappa": alpha - 2, "F": alpha - 1, "G": alpha}[name]
         return (-1 if name == "G" else 1) * k**power * eta(k)
 
@@ -74,12 +72,9 @@ def worst(name: str, beta: float, n: int, form: tuple[int, str]) -> float:
     """Return the greatest error of a kernel at some radii, relative to the parts that cancel."""
     order, family = form
     ours = np.asarray(kernel(name, np.array(RADII), 1.0 + beta, dim=n, order=order, family=family))
-    deviation = 0.0
-    for r, value in zip(RADII, ours, strict=True):
-        value_exact, size = exact(name, r, 1.0 + beta, n, order, family)
-        if size > 0:
-            deviation = max(deviation, float(abs(value - value_exact) / size))
-    return deviation
+    parts = [exact(name, r, 1.0 + beta, n, order, family) for r in RADII]
+    misses = [abs(u - v) / size for u, (v, size) in zip(ours, parts, strict=True) if size > 0]
+    return float(max(misses, default=0.0))
 
 
 def probes(betas: list[float], orders: list[int], dims: list[int]) -> Iterator[Probe]:
@@ -94,18 +89,11 @@ def probes(betas: list[float], orders: list[int], dims: list[int]) -> Iterator[P
     transform = Kind("transform", "a power of k times eta^", 1e-12, "mpmath", HELD)
     for beta, name in product(betas, NAMES):
         every = f"order {orders[0]} to {orders[-1]}, {written(beta)}"
+        most = lambda of, *more: max(of(name, beta, *more, form) for form in forms)  # noqa: E731
         for n in dims:
-            yield right(
-                f"{name}, n = {n}, {every}",
-                lambda: max(worst(name, beta, n, form) for form in forms),
-            )
-        yield table(
-            f"{name}, step {STEP:g}, {written(beta)}",
-            lambda: max(_table_error(name, beta, form) for form in forms),
-        )
-        yield transform(
-            f"{name}, {every}", lambda: max(_transform_error(name, beta, form) for form in forms)
-        )
+            yield right(f"{name}, n = {n}, {every}", most, worst, n)
+        yield table(f"{name}, step {STEP:g}, {written(beta)}", most, _table_error)
+        yield transform(f"{name}, {every}", most, _transform_error)
 
 
 def _table_error(name: str, beta: float, form: tuple[int, str]) -> float:
@@ -127,10 +115,7 @@ def _table_error(name: str, beta: float, form: tuple[int, str]) -> float:
 
 def _transform_error(name: str, beta: float, form: tuple[int, str]) -> float:
     order, family = form
-    ours = np.asarray(
-        kernel_transform(name, np.array(WAVES), 1.0 + beta, order=order, family=family)
-    )
-    return max(
-        float(abs(value / exact_transform(name, k, 1.0 + beta, order, family) - 1))
-        for k, value in zip(WAVES, ours, strict=True)
-    )
+    how: dict[str, Any] = {"order": order, "family": family}
+    ours = np.asarray(kernel_transform(name, np.array(WAVES), 1.0 + beta, **how)).tolist()
+    exact = [exact_transform(name, k, 1.0 + beta, **how) for k in WAVES]
+    return max(float(abs(u / v - 1)) for u, v in zip(ours, exact, strict=True))

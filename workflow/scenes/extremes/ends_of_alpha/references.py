@@ -18,6 +18,7 @@ so that the corrections are derivatives in s, at s = n + 1, n + 2 and n + 4.
 """
 
 from functools import cache
+from typing import Any
 
 import mpmath as mp
 
@@ -103,3 +104,19 @@ def _terms(n: int, alpha: float, r: float, terms: int) -> list[mp.mpf]:
             * r ** (-a * m - n)
             for m in range(1, terms + 1)
         ]
+
+
+def distance(beta: float) -> float:
+    """Return the distance of alpha = 1 + beta, as the double that it is, to the nearer end."""
+    alpha = 1.0 + beta
+    return min(alpha - 1.0, 2.0 - alpha)
+
+
+def written(beta: float) -> str:
+    """Return beta, or 1 minus it where it is above a half, with one digit."""
+    return f"beta = {beta:.0e}" if beta < 0.5 else f"beta = 1 - {2.0 - (1.0 + beta):.0e}"
+
+
+def relative(found: Any, exact: Any) -> float:
+    """Return |found / exact - 1|."""
+    return float(abs(mp.mpf(found) / exact - 1))

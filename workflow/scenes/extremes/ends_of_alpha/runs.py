@@ -9,7 +9,7 @@ import numpy as np
 import fracparticles as fp
 from fracparticles.run.solver import compute
 from fracstudy.probe import HELD, Kind, Probe, off
-from scenes.extremes.ends_of_alpha.names import distance, written
+from scenes.extremes.ends_of_alpha.references import distance, written
 
 TIME = 0.5
 
@@ -50,17 +50,17 @@ def _limit(beta: float) -> str:
     return "the solution of Cauchy" if beta < 0.5 else "the Gaussian"
 
 
-def _whole_space(betas: list[float], dims: list[int]) -> Iterator[Probe]:
+def whole_space(near: list[float], dims: list[int]) -> Iterator[Probe]:
     """The limits themselves are the data and the solution: they differ from those of alpha by its distance, times 5.
 
     Near 1 the terms that are left out fall like (t / D)^(3 + n) on the line, 1e-7 of the peak and less, and the lattice
     does not hold waves of pi / h, exp(-pi / h) each. Near 2 the Gaussian at the ends, exp(-D^2 / 8), is 3e-4 in space.
     """
-    for beta, dim in product(betas, dims):
+    for beta, dim in product(near, dims):
         points, half_width = _LATTICES[dim]
         h = 2.0 * half_width / points
-        near = 4.0 * (2.0 / half_width) ** (3.0 + dim) + 40.0 * dim * np.exp(-2.0 * np.pi / h)
-        bound = near if beta < 0.5 else 4.0 * np.exp(-(half_width**2) / 8.0)
+        bound = 4.0 * (2.0 / half_width) ** (3.0 + dim) + 40.0 * dim * np.exp(-2.0 * np.pi / h)
+        bound = bound if beta < 0.5 else 4.0 * np.exp(-(half_width**2) / 8.0)
         bound = bound + 5.0 * distance(beta) + 1e-13
         right = Kind("whole space", _limit(beta), bound, "closed form", HELD)
         for terms in (1, 2, 6):
@@ -68,17 +68,15 @@ def _whole_space(betas: list[float], dims: list[int]) -> Iterator[Probe]:
             yield right(name, evolved, beta, dim, terms)
 
 
-def _open(betas: list[float], dims: list[int]) -> Iterator[Probe]:
+def open_exterior(near: list[float], dims: list[int]) -> Iterator[Probe]:
     """GPSE in one step, open: exact but for its quadrature, exp(-pi t / h), and the far field, (t / D)^3 of its own."""
-    for beta, (dim, half_width, h) in product(betas, ((1, 40.0, 0.1), (2, 12.0, 0.15))):
-        if dim not in dims:
-            continue
+    lattices = [one for one in ((1, 40.0, 0.1), (2, 12.0, 0.15)) if one[0] in dims]
+    for beta, (dim, half_width, h) in product(near, lattices):
         far, waves = 8.0 * half_width**-3.0, 4.0 * dim * np.exp(-0.5 * np.pi / h)
         bound = 5.0 * distance(beta) + far + waves
         right = Kind("open exterior", _limit(beta), bound, "closed form")
-        yield right(
-            f"GPSE, one step, n = {dim}, {written(beta)}", _one_step, beta, dim, half_width, h
-        )
+        case = f"GPSE, one step, n = {dim}, {written(beta)}"
+        yield right(case, _one_step, beta, dim, half_width, h)
 
 
 def _one_step(beta: float, dim: int, half_width: float, h: float) -> float:
@@ -87,25 +85,17 @@ def _one_step(beta: float, dim: int, half_width: float, h: float) -> float:
     return off(run.u, closed(run.case.radius, 0.5 + TIME, beta, dim))
 
 
-def _continuous(betas: list[float], dims: list[int]) -> Iterator[Probe]:
+def continuous(near: list[float], dims: list[int]) -> Iterator[Probe]:
     """Nothing happens at the end itself: the run at 10^-4 from it differs by that, times what a run differs by."""
-    for beta, scheme, dim in product(betas, ("DD", "FPSE", "KPSE"), dims):
+    for beta, scheme, dim in product(near, ("DD", "FPSE", "KPSE"), dims):
         if distance(beta) > 1e-14:
             continue
         other = 1e-4 if beta < 0.5 else 1.0 - 1e-4
         # d ln u / d alpha is 6 at the peak in space
-        near = Kind("open exterior", f"the run at {written(other)}", 1e-3)
+        same = Kind("open exterior", f"the run at {written(other)}", 1e-3)
         fields = {"scheme": scheme, "dim": dim, "exterior": "open", "integrator": "exponential"}
         fields |= {"half_width": 4.0, "spacing": 0.5}
-        yield near(
+        yield same(
             f"{scheme}, order 2, n = {dim}, {written(beta)}",
             lambda: off(compute_at(beta, **fields).u, compute_at(other, **fields).u),
         )
-
-
-def probes(betas: list[float], dims: list[int]) -> Iterator[Probe]:
-    """All of them, next to the ends."""
-    betas = [beta for beta in betas if distance(beta) < 1e-4]
-    yield from _whole_space(betas, dims)
-    yield from _open(betas, dims)
-    yield from _continuous(betas, dims)

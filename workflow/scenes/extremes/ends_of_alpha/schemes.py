@@ -11,20 +11,11 @@ from scipy.linalg import expm, toeplitz
 import fracparticles as fp
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
 from scenes.extremes.ends_of_alpha import kernels
-from scenes.extremes.ends_of_alpha.names import written
+from scenes.extremes.ends_of_alpha.references import written
 from scenes.extremes.ends_of_alpha.runs import TIME, compute_at
 
 _N, _H, _OVERLAP = 20, 0.25, 2.0  # 41 particles
 _ROUND_OFF = 64.0 * EPS  # of T |lambda|, measured, see `run.reliability`
-
-
-def _values(name: str, beta: float, order: int) -> np.ndarray:
-    """Return the kernel at m / s, m = 0 .. 2 n, from mpmath."""
-    family = "printed" if order in (2, 4) else "gamma"
-    r = np.arange(2 * _N + 1) / _OVERLAP
-    return np.array(
-        [float(kernels.exact(name, float(x), 1.0 + beta, 1, order, family)[0]) for x in r]
-    )
 
 
 def _exchange(w: np.ndarray) -> np.ndarray:
@@ -36,16 +27,17 @@ def _exchange(w: np.ndarray) -> np.ndarray:
 
 def _matrix(scheme: str, beta: float, order: int) -> np.ndarray:
     """Return A h^alpha of DD (10), KPSE (34), or DPSE (13), (16), truncated."""
-    alpha, s = 1.0 + beta, _OVERLAP
+    alpha, s, family = 1.0 + beta, _OVERLAP, "printed" if order in (2, 4) else "gamma"
+    r, name = np.arange(2 * _N + 1) / s, {"KPSE": "K", "DD": "G", "DPSE": "kappa"}[scheme]
+    at = [kernels.exact(name, float(x), alpha, 1, order, family)[0] for x in r]
+    values = np.array(at, dtype=float)
     if scheme == "KPSE":
-        return _exchange(alpha * s ** (-1.0 - alpha) * _values("K", beta, order))
+        return _exchange(alpha * s ** (-1.0 - alpha) * values)
     if scheme == "DD":
-        return toeplitz(s ** (-1.0 - alpha) * _values("G", beta, order))
+        return toeplitz(s ** (-1.0 - alpha) * values)
     # Only differences of the potential enter: the constant 1 / beta is taken off where there are digits for it.
     with mp.workdps(40):
-        at = [kernels.exact("kappa", m / s, alpha, 1, 2, "printed")[0] for m in range(2 * _N + 1)]
         potential = np.array([float(value - at[0]) for value in at]) * s ** (1.0 - alpha)
-    r = np.arange(2 * _N + 1) / s
     laplacian = 2.0 * s**-3.0 * 2.0 / np.sqrt(np.pi) * np.exp(-r * r)  # (16), (17)
     return _exchange(laplacian) @ toeplitz(potential)
 
@@ -57,7 +49,7 @@ def _against_matrix(scheme: str, beta: float, order: int) -> float:
     return off(run.u, exact)
 
 
-def _dense(betas: list[float]) -> Iterator[Probe]:
+def dense(betas: list[float]) -> Iterator[Probe]:
     """exp(A T) u0 with A element by element from mpmath: round-off of T |lambda| = 40, of DPSE over beta."""
     right = Kind("scheme", "exp(A T) of its matrix", source="mpmath kernels, scipy expm", must=HELD)
     schemes = (("DD", 2), ("DD", 12), ("KPSE", 2), ("KPSE", 12), ("DPSE", 2))
@@ -68,7 +60,7 @@ def _dense(betas: list[float]) -> Iterator[Probe]:
         yield right(name, _against_matrix, scheme, beta, order, bound=bound)
 
 
-def _limits(betas: list[float]) -> Iterator[Probe]:
+def limits(betas: list[float]) -> Iterator[Probe]:
     """a = 2 / |lambda_min|, of DD and FPSE of order II from k^alpha exp(-k^2/4) and k^alpha exp(-k^2/2).
 
     The transform is greatest at k^2 = 2 alpha and alpha; the aliases, exp(-(2 pi s - k)^2 / 4), are below 1e-22.
@@ -98,7 +90,7 @@ def _green_range(alpha: mp.mpf, s: mp.mpf) -> mp.mpf:
     return zero - mp.fsum(mp.exp(-(abs(s * mp.pi * (2 * m + 1)) ** alpha)) for m in aliases)
 
 
-def _beyond() -> Iterator[Probe]:
+def beyond() -> Iterator[Probe]:
     """beta below half an ulp of 1 makes alpha 1, or 2 from the other side: there is no such equation here."""
     x = np.linspace(-4.0, 4.0, 33)
     refused = Kind("no such alpha", must=REFUSED)
@@ -114,10 +106,3 @@ def _beyond() -> Iterator[Probe]:
             "stability_limit": lambda: fp.stability_limit("KPSE", beta),
         }
         yield from refused.of({f"{name}, beta = {beta!r}": call for name, call in calls.items()})
-
-
-def probes(betas: list[float]) -> Iterator[Probe]:
-    """All of them."""
-    yield from _dense(betas)
-    yield from _limits(betas)
-    yield from _beyond()

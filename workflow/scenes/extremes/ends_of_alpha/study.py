@@ -1,14 +1,13 @@
 """The fractional orders next to 1 and to 2: densities, kernels, schemes and runs against their limits and mpmath."""
 
 import numpy as np
-import pandas as pd
 
 from fracparticles.special import reduced_green
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from fracstudy.probe import frame
+from fracstudy.probe import frame, probes_of
 from scenes.extremes.ends_of_alpha import densities, kernels, runs, schemes
-from scenes.extremes.ends_of_alpha.names import distance
+from scenes.extremes.ends_of_alpha.references import distance
 
 _SHOWN = ("density", "rate", "tail mass")
 
@@ -21,17 +20,10 @@ def study(
     beta as given is not beta as used: alpha = 1 + beta is a double, a multiple of 2.2e-16. All references take alpha as
     the double that it is.
     """
-    probes = [
-        *densities.probes(betas, radii, dims),
-        *kernels.probes(betas, orders, dims),
-        *schemes.probes(betas),
-        *runs.probes(betas, dims),
-    ]
-    return Result(frame(probes), (), _series(betas, orders))
-
-
-def _series(betas: list[float], orders: list[int]) -> pd.DataFrame:
-    """The worst of one to three dimensions at r = 1.1; of kernels the worst of orders, families and radii."""
+    near = [beta for beta in betas if distance(beta) < 1e-4]
+    given = {"betas": betas, "near": near, "radii": radii}
+    probes = probes_of(densities, kernels, schemes, runs, orders=orders, dims=dims, **given)
+    # The worst of one to three dimensions at r = 1.1; of kernels the worst of orders, families and radii.
     panels, forms = Panels(), kernels.forms_of(orders)
     for beta in betas:
         alpha, panel = 1.0 + beta, "one" if beta < 0.5 else "two"
@@ -47,4 +39,5 @@ def _series(betas: list[float], orders: list[int]) -> pd.DataFrame:
         errors["evolve"] = runs.evolved(beta, 1, 1)
         for name, error in errors.items():
             panels.add(panel, name, distance(beta), max(error, 1e-17))
-    return panels.frame.sort_values(["panel", "series", "x"], ignore_index=True)
+    series = panels.frame.sort_values(["panel", "series", "x"], ignore_index=True)
+    return Result(frame(probes), (), series)

@@ -91,6 +91,7 @@ def _changed(data: bytes, place: int, bit: int) -> bytes:
 
 def of_the_cache(folder: Path, flips: int, parts: int, seed: int) -> Iterator[Probe]:
     """The sum of 0, .., 4 by a compiled function, whose index or code is cut, changed, of another version."""
+    folder, flips, parts = folder / "cache", flips // 5, max(2, parts // 4)
     folder.mkdir()
     source = folder / "summing.py"
     # What the compiler loads at its first use is there for all that begin here.
@@ -113,14 +114,11 @@ def of_the_cache(folder: Path, flips: int, parts: int, seed: int) -> Iterator[Pr
         # twice: the second time with what the first one kept
         return all(forked(_sum(source, 30.0)) == (0, "") for _ in range(2))
 
-    cut = [
-        {name: data[: len(data) * k // parts]} for name, data in new.items() for k in range(parts)
-    ]
-    changed = [
-        {name: _changed(data, *place)}
-        for name, data in new.items()
-        for place in _places(len(data), flips // 2, seed)
-    ]
+    cut: list[dict[str, bytes]] = []
+    changed: list[dict[str, bytes]] = []
+    for name, data in new.items():
+        cut += [{name: data[: len(data) * k // parts]} for k in range(parts)]
+        changed += [{name: _changed(data, *at)} for at in _places(len(data), flips // 2, seed)]
     code = {name: data for name, data in old.items() if name in new and name.endswith(".nbc")}
     same = Kind("damaged cache", "3 (0 + 1 + 2 + 3 + 4) = 30", 0.0, "closed form", HELD)
     for case, damages in {
@@ -134,8 +132,7 @@ def of_the_cache(folder: Path, flips: int, parts: int, seed: int) -> Iterator[Pr
 def _sum(source: Path, expected: float) -> Callable[[], int]:
     def work() -> int:
         spec = importlib.util.spec_from_file_location("summing", source)
-        assert spec is not None
-        assert spec.loader is not None
+        assert spec is not None and spec.loader is not None  # noqa: PT018
         module = importlib.util.module_from_spec(spec)
         sys.dont_write_bytecode = True
         spec.loader.exec_module(module)

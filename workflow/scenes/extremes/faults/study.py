@@ -1,11 +1,10 @@
 """Faults: what is killed, full, read-only, damaged or changed, and what the next call makes of it."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from fracstudy.inputs import Inputs, Result
-from fracstudy.probe import Probe, frame
+from fracstudy.probe import frame, probes_of
 from scenes.extremes.faults import damage, workflows, writing
 
 
@@ -25,17 +24,9 @@ def study(
     file in the folder.
     """
     with TemporaryDirectory() as name:
-        table = frame(_probes(Path(name), kills, interrupts, flips, parts, seed, workflow))
+        folder, modules = Path(name), (writing, damage, *([workflows] if workflow else []))
+        given = {"kills": kills, "interrupts": interrupts, "flips": flips, "parts": parts}
+        setup = writing.Setup(folder)
+        table = frame(probes_of(*modules, folder=folder, setup=setup, seed=seed, **given))
         table["found"] = table["found"].str.replace(f"{name}/", "")
         return Result(table)
-
-
-def _probes(
-    folder: Path, kills: int, interrupts: int, flips: int, parts: int, seed: int, workflow: bool
-) -> Iterator[Probe]:
-    setup = writing.Setup(folder)
-    yield from writing.probes(setup, kills, interrupts, parts, seed)
-    yield from damage.of_the_run(setup, flips, parts, seed)
-    yield from damage.of_the_cache(folder / "cache", flips // 5, max(2, parts // 4), seed)
-    if workflow:
-        yield from workflows.probes(folder / "workflow", Path.cwd())

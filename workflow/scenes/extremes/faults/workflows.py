@@ -96,9 +96,9 @@ class Project:
         process.communicate(timeout=_LONGEST)
 
 
-def probes(folder: Path, root: Path) -> Iterator[Probe]:
+def probes(folder: Path) -> Iterator[Probe]:
     """Each fault once, on a workflow of two runs; then the next call."""
-    project, table = Project(folder, root), "tables/two.csv"
+    project, table = Project(folder / "workflow", Path.cwd()), "tables/two.csv"
     right = project.end()
     same = Kind("workflow", "then the files of an undisturbed run", must=HELD)
     for name, by in (("SIGKILL", signal.SIGKILL), ("SIGINT", signal.SIGINT)):

@@ -9,6 +9,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +81,13 @@ def probes(setup: Setup, kills: int, interrupts: int, parts: int, seed: int) -> 
     once = [None]
     faults: tuple[tuple[str, str, str, Callable[..., bool], list[Any]], ...] = (
         ("killed", again, f"SIGKILL at {kills} moments of a run", _killed, killed),
-        ("killed", again, "SIGTERM at as many as interrupts", _terminated, stopped),
+        (
+            "killed",
+            again,
+            "SIGTERM at as many as interrupts",
+            partial(_killed, by=signal.SIGTERM),
+            stopped,
+        ),
         ("interrupted", line, f"SIGINT {moment}", _interrupted, stopped),
         ("no room", refused, f"{disk} {parts} parts of the file", _no_room, sizes),
         ("no room", refused, "the same, command line", _no_room_for_the_command, sizes[::4]),
@@ -105,10 +112,6 @@ def _mended_after(setup: Setup, fault: Callable[..., bool], one: Any) -> bool:
 def _killed(setup: Setup, moment: float, by: int = signal.SIGKILL) -> bool:
     ended(begun(setup.run), moment * setup.took, by)
     return setup.whole
-
-
-def _terminated(setup: Setup, moment: float) -> bool:
-    return _killed(setup, moment, signal.SIGTERM)
 
 
 def _interrupted(setup: Setup, moment: float) -> bool:

@@ -1,5 +1,7 @@
 """What holds of the configuration: it is read, and its cases are those that it names, or it is refused in a line."""
 
+# ruff: noqa: B008  an argument of a property is drawn from its default
+
 import datetime
 import math
 import tempfile
@@ -18,10 +20,8 @@ from fracparticles.run.case import Case
 from fracstudy.config import StudyConfig, batches, jobs, read_config, targets
 from fracstudy.scene import Scene
 from fracstudy.scene_files import merged, resolved
-from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.harness import always
 from scenes.extremes.fuzzing.strategies import among, chance, fields_of, numbers, texts
-
-PROPERTIES = Properties()
 
 Tree = Any  # of mappings, lists and values, as YAML gives it
 _STUDY: Tree = yaml.safe_load("""
@@ -110,9 +110,8 @@ def _combinations(block: BaseModel) -> int:
     return prod(len(value) if isinstance(value, list) else 1 for value in values)
 
 
-@PROPERTIES.add("study.yaml, scene.yaml, runs", "its cases, or a line", share=8)
-@drawn(_files())
-def _read(parts: tuple[Tree, bytes]) -> float:
+@always("study.yaml, scene.yaml, runs", "its cases, or a line", share=8)
+def _read(parts=_files()):
     """A configuration is refused, or all that is made of it fits together."""
     config, scene = parts
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
@@ -132,9 +131,8 @@ def _read(parts: tuple[Tree, bytes]) -> float:
         return 2.0 * wrong
 
 
-@PROPERTIES.add("smoke, variants", "laid over, nothing else", share=4)
-@drawn(_TREES, _TREES, st.booleans())
-def _laid(tree: Tree, other: Tree, smoke: bool) -> float:
+@always("smoke, variants", "laid over, nothing else", share=4)
+def _laid(tree=_TREES, other=_TREES, smoke=st.booleans()):
     """To lay a tree over itself, or an empty one over it, changes nothing; what is resolved stays as it is."""
     before = deepcopy((tree, other))
     whole = resolved(tree, smoke)

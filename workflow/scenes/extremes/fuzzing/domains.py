@@ -1,7 +1,8 @@
 """What holds of operators that vary in space, of intervals, and of particles that follow the solution."""
 
+# ruff: noqa: B008  an argument of a property is drawn from its default
+
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,8 @@ from fracparticles.bounded.interval import Interval
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import FORMS, VariableDiffusivity, VariableOrder
 from fracstudy.probe import HELD
-from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.harness import always
 from scenes.extremes.fuzzing.strategies import among, between
-
-PROPERTIES = Properties()
 
 _FORMS = st.sampled_from(tuple(FORMS))
 _ALPHAS = st.one_of(between(1.05, 1.95), among(1.01, 1.99))
@@ -32,9 +31,14 @@ def _kernel(name: str, z: np.ndarray, s: Setting) -> np.ndarray:
     return np.asarray(fp.kernel(name, z / (s.overlap * s.spacing), s.alpha, 1, s.order))
 
 
-@PROPERTIES.add("variable diffusivity", "the sums one by one", "naive sums", 2)
-@drawn(_FORMS, between(1.05, 1.95), st.integers(4, 20), among(2, 4), among(1.0, 1e-12, 1e12))
-def _diffusivity(form: str, alpha: float, n: int, order: int, size: float) -> float:
+@always("variable diffusivity", "the sums one by one", "naive sums", 2)
+def _diffusivity(
+    form=_FORMS,
+    alpha=between(1.05, 1.95),
+    n=st.integers(4, 20),
+    order=among(2, 4),
+    size=among(1.0, 1e-12, 1e12),
+):
     """The sums of the three forms, one by one, on a truncated lattice."""
     s = Setting(alpha=alpha, n=n, spacing=0.25, order=order, overlap=2.0)
     operator, h, e = VariableDiffusivity(form, s), 0.25, 0.5
@@ -57,9 +61,10 @@ def _diffusivity(form: str, alpha: float, n: int, order: int, size: float) -> fl
     return float(np.abs(found - exact).max()) / (1e-9 * size * (h**-alpha))
 
 
-@PROPERTIES.add("variable order", "each row's own sum", "naive sums", must=HELD)
-@drawn(between(1.02, 1.5), between(1.5, 1.98), st.integers(4, 12), among(2, 4))
-def _order(low: float, high: float, n: int, order: int) -> float:
+@always("variable order", "each row's own sum", "naive sums", must=HELD)
+def _order(
+    low=between(1.02, 1.5), high=between(1.5, 1.98), n=st.integers(4, 12), order=among(2, 4)
+):
     """Each row is that of a constant order, by its own sum."""
     s = Setting(alpha=1.5, n=n, spacing=0.25, order=order, overlap=2.0)
     x = 0.25 * np.arange(-n, n + 1.0)
@@ -75,9 +80,14 @@ def _order(low: float, high: float, n: int, order: int) -> float:
 # --- intervals --------------------------------------------------------------------------------------------
 
 
-@PROPERTIES.add("an interval, stationary", "Jacobi polynomials, to 1e-3", "closed form", 2, HELD)
-@drawn(_ALPHAS, st.integers(60, 150), among(0.0, 3.0, -2e3), among(1.0, 0.25, 2.0**10), _SEEDS)
-def _jacobi(alpha: float, particles: int, middle: float, half: float, seed: int) -> float:
+@always("an interval, stationary", "Jacobi polynomials, to 1e-3", "closed form", 2, HELD)
+def _jacobi(
+    alpha=_ALPHAS,
+    particles=st.integers(60, 150),
+    middle=among(0.0, 3.0, -2e3),
+    half=among(1.0, 0.25, 2.0**10),
+    seed=_SEEDS,
+):
     """(1 - x^2)^(alpha/2) P_n, of which the operator makes -Gamma(alpha + n + 1) / n! P_n (Dyda et al. 2017)."""
     shares, s = np.random.default_rng(seed).uniform(-1.0, 1.0, 5), 0.5 * alpha
     line = Interval(alpha=alpha, particles=particles, ends=(middle - half, middle + half))
@@ -94,43 +104,33 @@ def _jacobi(alpha: float, particles: int, middle: float, half: float, seed: int)
     return float(np.abs(found - exact).max()) / (1e-3 * float(np.abs(shares).sum()))
 
 
-@dataclass(frozen=True)
-class _Evolution:
-    """An interval with a source and, where they are given, values outside, that vary in time."""
+@always("an interval, its run", "in parts, units and total the same")
+def _interval(
+    exterior=among("absorbing", "reflecting", "given"),
+    alpha=between(1.05, 1.95),
+    degree=_DEGREES,
+    time=between(0.05, 2.0),
+    w=between(0.5, 8.0),
+):
+    """In two parts, and in other units, it is the same; where nothing crosses the ends the total gains the source."""
 
-    exterior: str
-    alpha: float
-    degree: float
-    w: float
-
-    def of(self, time: float, start: Any = None, since: float = 0.0, unit: float = 1.0) -> Any:
-        """Return it, and u after a time; lengths and times in `unit`."""
+    def after(time, start=None, since=0.0, unit=1.0):
+        """An interval with a source and perhaps values outside, that vary in time, and u; lengths in a unit."""
         line = Interval(
-            alpha=self.alpha, particles=60, exterior=self.exterior, degree=self.degree,
-            ends=(-unit, unit), diffusivity=unit**self.alpha,
+            alpha=alpha, particles=60, exterior=exterior, degree=degree, ends=(-unit, unit),
+            diffusivity=unit**alpha,
         )  # fmt: skip
         bell = lambda x: np.exp(-((x / unit) ** 2))  # noqa: E731
-        source = lambda x, t: (  # noqa: E731
-            np.exp(-2.0 * (x / unit - 0.2) ** 2) * np.sin(self.w * (t + since))
-        )
-        far = lambda y, t: np.cos(self.w * (t + since)) / (1.0 + (y / unit) ** 2)  # noqa: E731
-        outside = far if self.exterior == "given" else None
-        u = line.evolve(bell if start is None else start, time, source=source, outside=outside)
-        return line, u
+        source = lambda x, t: np.exp(-2.0 * (x / unit - 0.2) ** 2) * np.sin(w * (t + since))  # noqa: E731
+        far = lambda y, t: np.cos(w * (t + since)) / (1.0 + (y / unit) ** 2)  # noqa: E731
+        outside = far if exterior == "given" else None
+        data = bell if start is None else start
+        return line, line.evolve(data, time, source=source, outside=outside)
 
-
-_EXTERIORS = among("absorbing", "reflecting", "given")
-
-
-@PROPERTIES.add("an interval, its run", "in parts, units and total the same")
-@drawn(_EXTERIORS, between(1.05, 1.95), _DEGREES, between(0.05, 2.0), between(0.5, 8.0))
-def _interval(exterior: str, alpha: float, degree: float, time: float, w: float) -> float:
-    """In two parts, and in other units, it is the same; where nothing crosses the ends the total gains the source."""
-    one = _Evolution(exterior, alpha, degree, w)
-    line, u = one.of(time)
-    _, half = one.of(0.4 * time)
-    _, parts = one.of(0.6 * time, half, 0.4 * time)
-    _, scaled = one.of(time, unit=2.0**20)
+    line, u = after(time)
+    _, half = after(0.4 * time)
+    _, parts = after(0.6 * time, half, 0.4 * time)
+    _, scaled = after(time, unit=2.0**20)
     apart = max(float(np.abs(u - other).max()) for other in (parts, scaled))
     apart = apart / (1e-7 * float(np.abs(u).max()))
     if exterior != "reflecting":
@@ -142,9 +142,10 @@ def _interval(exterior: str, alpha: float, degree: float, time: float, w: float)
     return max(apart, lost / (1e-8 * (before + abs(gained))))
 
 
-@PROPERTIES.add("an interval, a constant", "it stays", "closed form", must=HELD)
-@drawn(_ALPHAS, _DEGREES, between(1e-3, 10.0), among(1.0, -3.0, 1e-200, 1e200))
-def _constant(alpha: float, degree: float, time: float, value: float) -> float:
+@always("an interval, a constant", "it stays", "closed form", must=HELD)
+def _constant(
+    alpha=_ALPHAS, degree=_DEGREES, time=between(1e-3, 10.0), value=among(1.0, -3.0, 1e-200, 1e200)
+):
     """A constant inside and outside stays."""
     line = Interval(alpha=alpha, particles=40, exterior="given", degree=degree)
     return float(np.abs(line.evolve(value, time, outside=value) / value - 1.0).max()) / 1e-9
@@ -153,15 +154,14 @@ def _constant(alpha: float, degree: float, time: float, value: float) -> float:
 # --- particles that follow -----------------------------------------------------------------------------------
 
 
-@PROPERTIES.add("particles that follow", "the sum of two, or a warning", "closed form")
-@drawn(
-    between(1.05, 1.95),
-    among(0.03, 0.3, 2.0),
-    between(-6.0, 6.0),
-    among(1.0, 0.1, -0.5),
-    among(1e-3, 0.1, 3.0),
-)
-def _followed(alpha: float, narrow: float, place: float, share: float, time: float) -> float:
+@always("particles that follow", "the sum of two, or a warning", "closed form")
+def _followed(
+    alpha=between(1.05, 1.95),
+    narrow=among(0.03, 0.3, 2.0),
+    place=between(-6.0, 6.0),
+    share=among(1.0, 0.1, -0.5),
+    time=among(1e-3, 0.1, 3.0),
+):
     """Two fundamental solutions of other widths: to a thousandth of int |u|, or a warning."""
 
     def exact(x: np.ndarray, t: float) -> np.ndarray:

@@ -1,5 +1,7 @@
 """What holds of the fields of a case: it is whole, and known by its text and its path, or refused in a line."""
 
+# ruff: noqa: B008  an argument of a property is drawn from its default
+
 import json
 from math import isfinite
 from pathlib import PurePosixPath
@@ -10,10 +12,8 @@ from hypothesis import strategies as st
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from scenes.extremes.fuzzing.cases import as_given, cases, changed
-from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.harness import always
 from scenes.extremes.fuzzing.strategies import anything, fields_of, given_fields, texts
-
-PROPERTIES = Properties()
 
 _LONGEST_NAME = 255  # bytes, of a file
 
@@ -45,9 +45,8 @@ _TEXTS = st.one_of(
 )
 
 
-@PROPERTIES.add("fields of a case", "a whole case, or a line", share=20)
-@drawn(st.one_of(given_fields(Case), _nearly()))
-def _whole(given: dict[str, Any]) -> float:
+@always("fields of a case", "a whole case, or a line", share=20)
+def _whole(given=st.one_of(given_fields(Case), _nearly())):
     """A case of any fields is refused, or is a case."""
     return 2.0 * _wrong(Case(**given))
 
@@ -71,9 +70,8 @@ def _wrong(case: Case) -> bool:
     )
 
 
-@PROPERTIES.add("another field", "another case, another path", share=5)
-@drawn(cases(), st.fixed_dictionaries({}, optional=fields_of(Case)))
-def _another(case: Case, other: dict[str, Any]) -> float:
+@always("another field", "another case, another path", share=5)
+def _another(case=cases(), other=st.fixed_dictionaries({}, optional=fields_of(Case))):
     """A case with another value of a field is another case, with another path; one that is given again the same."""
     wrong = _wrong(case)
     for name, value in other.items():
@@ -88,8 +86,7 @@ def _another(case: Case, other: dict[str, Any]) -> float:
     return 2.0 * wrong
 
 
-@PROPERTIES.add("text of a case", "a whole case, or a line", share=10)
-@drawn(_TEXTS)
-def _read(text: str) -> float:
+@always("text of a case", "a whole case, or a line", share=10)
+def _read(text=_TEXTS):
     """Any text is a case or refused."""
     return 2.0 * _wrong(Case.from_json(text))

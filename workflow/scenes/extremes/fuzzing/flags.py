@@ -1,5 +1,7 @@
 """What holds of the command line: done with a whole file, or a line on standard error and nothing else."""
 
+# ruff: noqa: B008  an argument of a property is drawn from its default
+
 import io
 import os
 import tempfile
@@ -16,10 +18,8 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
 from scenes.extremes.fuzzing.cases import as_given, cases, refuse_dear
-from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.harness import always
 from scenes.extremes.fuzzing.strategies import chance, fields_of, texts
-
-PROPERTIES = Properties()
 
 _STATUSES = (0, 1, 2, 3)  # done, the machine, the input, the solution
 _SPEAKS = ("error: ", "warning: ", "note: ")
@@ -76,9 +76,8 @@ _LIMITS = st.fixed_dictionaries(
 ).map(lambda given: ["limit", *_flags(given)])
 
 
-@PROPERTIES.add("the command line", "done, or a line", share=8)
-@drawn(st.one_of(_solving(), _LIMITS, st.lists(_WORDS, max_size=6)))
-def _spoken(words: list[str]) -> float:
+@always("the command line", "done, or a line", share=8)
+def _spoken(words=st.one_of(_solving(), _LIMITS, st.lists(_WORDS, max_size=6))):
     """Any words end with a status, and with lines that say what they are."""
     _refuse_dear_words(words)
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
@@ -93,9 +92,8 @@ def _spoken(words: list[str]) -> float:
         return 2.0 * wrong
 
 
-@PROPERTIES.add("flags of a case", "the bits of Python")
-@drawn(cases())
-def _same(case: fp.Case) -> float:
+@always("flags of a case", "the bits of Python")
+def _same(case=cases()):
     """The flags of a case write the bits that Python writes, or refuse what it refuses."""
     refuse_dear(case)
     words = ["solve", "--output=run.nc", *_flags(as_given(case))]
@@ -128,9 +126,8 @@ def _spoilt_files(draw: st.DrawFn) -> bytes:
     return bytes(content)
 
 
-@PROPERTIES.add("show, a spoilt file", "shown, or a line", share=3)
-@drawn(_spoilt_files())
-def _shown(content: bytes) -> float:
+@always("show, a spoilt file", "shown, or a line", share=3)
+def _shown(content=_spoilt_files()):
     """What is in a file is shown, or refused in a line."""
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         Path("run.nc").write_bytes(content)

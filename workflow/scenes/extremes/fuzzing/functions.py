@@ -1,5 +1,7 @@
 """What holds of the functions of the library, for arguments of all kinds."""
 
+# ruff: noqa: B008  an argument of a property is drawn from its default
+
 import inspect
 import math
 import pickle
@@ -20,11 +22,9 @@ from fracparticles.schemes import ALL_SCHEMES, SCHEMES, Setting
 from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.probe import EPS, HELD, off
 from scenes.extremes.fuzzing.cases import cases, refuse_dear
-from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
+from scenes.extremes.fuzzing.harness import NotRun, always
 from scenes.extremes.fuzzing.strategies import among, anything, between, chance, numbers, texts
 from scenes.extremes.long_and_short_times.profile import solution
-
-PROPERTIES = Properties()
 
 _ALPHAS = st.one_of(
     between(1.02, 1.98), between(1.02, 1.98), among(1.0 + 1e-9, 1.001, 1.999, 2.0 - 1e-9)
@@ -83,13 +83,16 @@ def _calls(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     return name, given
 
 
-@PROPERTIES.add("arguments of every name", "a result, or a line", share=25)
-@drawn(_calls())
-def _called(call: tuple[str, dict[str, Any]]) -> float:
+@always("arguments of every name", "a result, or a line", share=25)
+def _called(call=_calls()):
     """A call returns, or is refused; what it was given is as it was, and there is no file but a whole one."""
     name, given = call
-    if name == "WholeSpace" or name == "evolve":
-        _refuse_large(given)
+    points, stretch = given.get("points", 0), given.get("stretch", 0)
+    large = isinstance(points, int | np.integer) and points > 100
+    if name in ("WholeSpace", "evolve") and (
+        large or (isinstance(stretch, int | float) and stretch > 100.0)
+    ):
+        raise NotRun("many points")
     if isinstance(given.get("case"), fp.Case):
         refuse_dear(given["case"])
         if name in ("solve", "prepare") and given["case"].dim == 3:
@@ -109,13 +112,6 @@ def _called(call: tuple[str, dict[str, Any]]) -> float:
     return 0.0 if not isinstance(result, np.ndarray) or not np.isnan(result).any() else 2.0
 
 
-def _refuse_large(given: dict[str, Any]) -> None:
-    points, stretch = given.get("points", 0), given.get("stretch", 0)
-    large = isinstance(points, int | np.integer) and points > 100
-    if large or (isinstance(stretch, int | float) and stretch > 100.0):
-        raise NotRun("many points")
-
-
 def _inside(folder: str, path: Any) -> Any:
     """A path in a folder of its own, of the kind and the name that was given."""
     if isinstance(path, str):
@@ -126,21 +122,21 @@ def _inside(folder: str, path: Any) -> Any:
 _LINES = texts().map(lambda text: " ".join(text.split()))
 
 
-@PROPERTIES.add("errors", "one line, the same when unpickled", "pickle", 5)
-@drawn(_LINES, anything(), _LINES, st.just("Mend it."))
-def _error(field: str, value: Any, allowed: str, remedy: str) -> float:
+@always("errors", "one line, the same when unpickled", "pickle", 5)
+def _error(field=_LINES, value=anything(), allowed=_LINES, remedy=st.just("Mend it.")):
     """An error of ours is one line, whatever it is of, and goes from process to process."""
     wrong = False
+    try:
+        pickle.dumps(value)
+    except Exception:  # the value's own
+        sent = lambda error: error  # noqa: E731
+    else:
+        sent = lambda error: pickle.loads(pickle.dumps(error))  # noqa: E731
     for name in _ERRORS:
         kind = getattr(fp, name)
         ours = kind is fp.InvalidInput
         error = kind(field, value, allowed, remedy) if ours else kind(f"{field} {allowed}")
-        try:
-            pickle.dumps(value)
-        except Exception:  # the value's own
-            again = error
-        else:
-            again = pickle.loads(pickle.dumps(error))
+        again = sent(error)
         wrong |= "\n" in str(error) or str(again) != str(error) or type(again) is not kind
     return 2.0 * wrong
 
@@ -149,12 +145,11 @@ def _error(field: str, value: Any, allowed: str, remedy: str) -> float:
 
 
 _XS = st.one_of(st.just(0.0), between(0.0, 3.0), between(0.0, 30.0))
-_POINTS = (_XS, numbers(1e-3, 1e3), _ALPHAS, st.integers(1, 3))
+_TIMES, _DIMS = numbers(1e-3, 1e3), st.integers(1, 3)
 
 
-@PROPERTIES.add("green", "the Fourier integral", "scipy, quadrature", 5, HELD)
-@drawn(*_POINTS)
-def _green(r: float, t: float, alpha: float, dim: int) -> float:
+@always("green", "the Fourier integral", "scipy, quadrature", 5, HELD)
+def _green(r=_XS, t=_TIMES, alpha=_ALPHAS, dim=_DIMS):
     """G by quadrature of its Fourier integral, to 1e-10 of its maximum."""
     scale = t ** (-1.0 / alpha)
     x = r / scale
@@ -163,9 +158,8 @@ def _green(r: float, t: float, alpha: float, dim: int) -> float:
     return off(found, solution(np.array([x, x]), t, alpha, dim), 1e-10 * most)
 
 
-@PROPERTIES.add("green_rate, _slope, _flux", "differences of G", share=5, must=HELD)
-@drawn(*_POINTS)
-def _rates(r: float, t: float, alpha: float, dim: int) -> float:
+@always("green_rate, _slope, _flux", "differences of G", share=5, must=HELD)
+def _rates(r=_XS, t=_TIMES, alpha=_ALPHAS, dim=_DIMS):
     """The rate is dG/dt, the slope dG/dr, and the flux r G / (alpha t): by differences of G, to 1e-6."""
     x, step = abs(r) * t ** (1.0 / alpha), 1e-4
     green = lambda x, t: float(np.asarray(fp.green(x, t, alpha, dim)))  # noqa: E731
@@ -186,17 +180,21 @@ def _rates(r: float, t: float, alpha: float, dim: int) -> float:
     return max(map(abs, found)) / 1e-6
 
 
-@PROPERTIES.add("mean_radius", "(2 / pi) Gamma(1 - 1 / alpha)", "closed form", 3, HELD)
-@drawn(_ALPHAS)
-def _radius(alpha: float) -> float:
+@always("mean_radius", "(2 / pi) Gamma(1 - 1 / alpha)", "closed form", 3, HELD)
+def _radius(alpha=_ALPHAS):
     return abs(fp.mean_radius(alpha) * math.pi / (2.0 * gamma(1.0 - 1.0 / alpha)) - 1.0) / (
         16.0 * EPS / (alpha - 1.0)
     )
 
 
-@PROPERTIES.add("evolve, fundamental", "the fundamental solution, or a warning", "closed form", 3)
-@drawn(_ALPHAS, st.integers(4, 200), between(0.1, 3.0), between(0.01, 5.0), st.integers(1, 6))
-def _evolved(alpha: float, half: int, start: float, span: float, terms: int) -> float:
+@always("evolve, fundamental", "the fundamental solution, or a warning", "closed form", 3)
+def _evolved(
+    alpha=_ALPHAS,
+    half=st.integers(4, 200),
+    start=between(0.1, 3.0),
+    span=between(0.01, 5.0),
+    terms=st.integers(1, 6),
+):
     """From the fundamental solution to the fundamental solution, to a thousandth, or a warning."""
     h = 0.25
     x = h * np.arange(-half, half + 1)
@@ -205,9 +203,10 @@ def _evolved(alpha: float, half: int, start: float, span: float, terms: int) -> 
     return off(found, exact) / 2e-2
 
 
-@PROPERTIES.add("evolve, periodic", "every wave decays", "dense matrix", 3, HELD)
-@drawn(st.integers(8, 60), _ALPHAS, numbers(1e-6, 1e6), st.integers(0, 10**6))
-def _periodic(points: int, alpha: float, time: float, seed: int) -> float:
+@always("evolve, periodic", "every wave decays", "dense matrix", 3, HELD)
+def _periodic(
+    points=st.integers(8, 60), alpha=_ALPHAS, time=numbers(1e-6, 1e6), seed=st.integers(0, 10**6)
+):
     """Without terms it is a diagonal on the waves of the lattice: the transform as a dense matrix."""
     u = np.random.default_rng(seed).standard_normal(points)
     k = 2.0 * np.pi * np.arange(points) / points
@@ -219,9 +218,14 @@ def _periodic(points: int, alpha: float, time: float, seed: int) -> float:
     )
 
 
-@PROPERTIES.add("graded_particles, green_step", "the sums one by one", "naive sums", 2, HELD)
-@drawn(st.integers(1, 8), between(0.5, 50.0), _ALPHAS, numbers(1e-2, 1e2), st.sampled_from(FORMS))
-def _graded(half: int, reach: float, alpha: float, time: float, form: str) -> float:
+@always("graded_particles, green_step", "the sums one by one", "naive sums", 2, HELD)
+def _graded(
+    half=st.integers(1, 8),
+    reach=between(0.5, 50.0),
+    alpha=_ALPHAS,
+    time=numbers(1e-2, 1e2),
+    form=st.sampled_from(FORMS),
+):
     """The step against the sums one by one; the interpolated one mirrors and does not grow."""
     count = 2 * half + 1
     x, volumes = fp.graded_particles(count, reach, 1.0)
@@ -239,9 +243,10 @@ def _graded(half: int, reach: float, alpha: float, time: float, form: str) -> fl
     return max(float(np.abs(matrix - naive).max()) / size, float(mirrored)) / (64.0 * EPS * count)
 
 
-@PROPERTIES.add("kernel", "the integral of its transform", "scipy, quadrature", 3, HELD)
-@drawn(st.sampled_from(tuple(KERNELS)), between(0.05, 8.0), _ALPHAS, among(2, 4, 8))
-def _kernel(name: str, r: float, alpha: float, order: int) -> float:
+@always("kernel", "the integral of its transform", "scipy, quadrature", 3, HELD)
+def _kernel(
+    name=st.sampled_from(tuple(KERNELS)), r=between(0.05, 8.0), alpha=_ALPHAS, order=among(2, 4, 8)
+):
     """A kernel by quadrature of its transform, to 1e-8."""
     odd = KERNELS[name].parity == "odd"
     if name == "kappa":
@@ -253,9 +258,10 @@ def _kernel(name: str, r: float, alpha: float, order: int) -> float:
     return off(fp.kernel(name, r, alpha, 1, order), -value if odd else value, 1e-8)
 
 
-@PROPERTIES.add("stability_limit", "the spectral radius", "dense matrix", must=HELD)
-@drawn(among("DD", "KPSE", "FPSE", "FD"), between(0.05, 0.95), between(0.8, 3.0))
-def _limit(name: str, beta: float, overlap: float) -> float:
+@always("stability_limit", "the spectral radius", "dense matrix", must=HELD)
+def _limit(
+    name=among("DD", "KPSE", "FPSE", "FD"), beta=between(0.05, 0.95), overlap=between(0.8, 3.0)
+):
     """2 / a is the spectral radius of the matrix of many particles, from below."""
     overlap = overlap if SCHEMES[name].has_kernel else 2.0
     setting = Setting(alpha=1.0 + beta, overlap=overlap, n=24)

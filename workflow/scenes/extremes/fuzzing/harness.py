@@ -5,12 +5,13 @@ each case stands for itself: it is the same in whatever order, on whatever machi
 """
 
 import signal
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cache
+from inspect import signature
 from random import Random
-from typing import Any
+from typing import Any, NamedTuple
 
 from hypothesis import given, settings
 from hypothesis.strategies import SearchStrategy, tuples
@@ -22,9 +23,6 @@ _TRIES = 100  # a strategy may refuse what it has drawn
 _LONGEST = 60.0  # seconds: a case takes some milliseconds
 
 
-_Drawn = tuple[SearchStrategy[Any], Callable[..., float]]
-
-
 class NotRun(BaseException):
     """A case that is allowed, and would take more time or memory than there is here."""
 
@@ -33,22 +31,12 @@ class Hang(BaseException):
     """A case that takes too long. No `except Exception` of the code under test swallows it."""
 
 
-@dataclass(frozen=True)
-class Property:
+class Property(NamedTuple):
     """What must hold of every case that a strategy draws.
 
-    Attributes
-    ----------
-    name, expected, source : str
-        See `Probe`.
-    cases : SearchStrategy
-        What draws a case.
-    holds : callable
-        Takes the case and returns how far it is from what must come out, in units of what is allowed.
-    share : int
-        How many of the cases are of this property, against the shares of the others.
-    must : Verdict, optional
-        See `probe`; a refusal is never wrong.
+    `name`, `expected` and `source` are those of a `Probe`; `holds` takes the case and returns how far it is from what
+    must come out, in units of what is allowed; `share` is how many of the cases are of this property, against the
+    shares of the others; `must` is that of a `Kind`, but a refusal is never wrong.
     """
 
     name: str
@@ -60,40 +48,29 @@ class Property:
     must: Verdict | None = None
 
 
-class Properties(list[Property]):
-    """Those of a file, each said above the function that holds."""
-
-    def add(
-        self,
-        name: str,
-        expected: str,
-        source: str = "",
-        share: int = 1,
-        must: Verdict | None = None,
-    ) -> Callable[[_Drawn], Callable[..., float]]:
-        """Return what makes a property of a function that is `drawn`; see `Property`."""
-
-        def added(of: _Drawn) -> Callable[..., float]:
-            cases, holds = of
-            whole = Property(name, expected, source, cases, lambda case: holds(*case), share, must)
-            self.append(whole)
-            return holds
-
-        return added
-
-
-def drawn(*arguments: SearchStrategy[Any]) -> Callable[[Callable[..., float]], _Drawn]:
-    """Say what the arguments of a property are drawn from."""
-    return lambda holds: (tuples(*arguments), holds)
-
-
-@dataclass(frozen=True)
-class Outcome:
+class Outcome(NamedTuple):
     """What came of a case: the verdict, none if it was not run, and in words."""
 
-    seed: int
     verdict: Verdict | None
     words: str
+
+
+OF_MODULE: dict[str, list[Property]] = defaultdict(list)
+"""The properties of each module, in their order."""
+
+
+def always(
+    name: str, expected: str, source: str = "", share: int = 1, must: Verdict | None = None
+) -> Callable[[Callable[..., float]], Callable[..., float]]:
+    """Make a property of the function below: each of its arguments is drawn from its default, a strategy."""
+
+    def added(holds: Callable[..., float]) -> Callable[..., float]:
+        cases = tuples(*(argument.default for argument in signature(holds).parameters.values()))
+        whole = Property(name, expected, source, cases, lambda case: holds(*case), share, must)
+        OF_MODULE[holds.__module__].append(whole)
+        return holds
+
+    return added
 
 
 def judged(one: Property, case: Callable[[], Any]) -> Outcome:
@@ -106,17 +83,16 @@ def judged(one: Property, case: Callable[[], Any]) -> Outcome:
     try:
         found = Kind(one.name, one.expected, 1.0)("", run)
     except NotRun as why:
-        return Outcome(0, None, str(why))
+        return Outcome(None, str(why))
     except Hang:
-        return Outcome(0, Verdict.FAILED, f"no end after {_LONGEST:g} s")
+        return Outcome(Verdict.FAILED, f"no end after {_LONGEST:g} s")
     excused = one.must in (None, found.verdict) or found.verdict in (Verdict.REFUSED, *BAD)
-    return Outcome(0, found.verdict if excused else Verdict.SILENT, found.found)
+    return Outcome(found.verdict if excused else Verdict.SILENT, found.found)
 
 
 def outcome(one: Property, seed: int) -> Outcome:
     """Return what comes of the case that a seed draws."""
-    found = judged(one, lambda: draw(one, seed))
-    return Outcome(seed, found.verdict, found.words)
+    return judged(one, lambda: draw(one, seed))
 
 
 def draw(one: Property, seed: int) -> Any:
@@ -164,20 +140,14 @@ def row(one: Property, count: int, first: int = 0) -> tuple[Probe, dict[str, int
 
     The seeds of what is bad are printed; `again` draws such a case once more.
     """
-    outcomes = [outcome(one, seed) for seed in range(first, first + count)]
-    bad = [found for found in outcomes if found.verdict in BAD]
-    for found in bad:
-        print(f"{one.name!r}, seed {found.seed}: {found.verdict}: {found.words!a}", flush=True)
-    counts = {
-        str(verdict): sum(found.verdict is verdict for found in outcomes) for verdict in Verdict
-    }
-    counts = {"cases": count, **counts, "not run": sum(found.verdict is None for found in outcomes)}
-    worst = max(
-        (found.verdict for found in bad if found.verdict), key=BAD.index, default=Verdict.HELD
-    )
-    words = f"seed {bad[0].seed}: {bad[0].words}" if bad else "as expected"
-    case = f"{count} cases"
-    return (
-        Probe(one.name, case, one.expected, one.source, words, float(len(bad)), 0.0, worst),
-        counts,
-    )
+    outcomes = {seed: outcome(one, seed) for seed in range(first, first + count)}
+    bad = {seed: found for seed, found in outcomes.items() if found.verdict in BAD}
+    for seed, found in bad.items():
+        print(f"{one.name!r}, seed {seed}: {found.verdict}: {found.words!a}", flush=True)
+    verdicts = [found.verdict for found in outcomes.values()]
+    counts = {str(verdict): verdicts.count(verdict) for verdict in Verdict}
+    counts = {"cases": count, **counts, "not run": verdicts.count(None)}
+    worst = max((v for v in verdicts if v in BAD), key=BAD.index, default=Verdict.HELD)
+    words = next((f"seed {seed}: {found.words}" for seed, found in bad.items()), "as expected")
+    about = one.name, f"{count} cases", one.expected, one.source, words
+    return Probe(*about, float(len(bad)), 0.0, worst or Verdict.HELD), counts

@@ -1,5 +1,7 @@
 """What holds of problems whose coefficients vary, in space and in time."""
 
+# ruff: noqa: B008  an argument of a property is drawn from its default
+
 import json
 import math
 import re
@@ -15,10 +17,8 @@ from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates
 from fracparticles.problems.solve import solve_problem
 from fracparticles.variable import FORMS
-from scenes.extremes.fuzzing.harness import Properties, drawn
+from scenes.extremes.fuzzing.harness import always
 from scenes.extremes.fuzzing.strategies import among, anything, between, given_fields, texts
-
-PROPERTIES = Properties()
 
 _TOLERANCE = 1e-6  # rtol of the problems
 _ALLOWED = 100.0 * _TOLERANCE  # of the greatest |u| of a run: errors of the steps add up
@@ -85,9 +85,8 @@ _CONSERVING = st.one_of(
 )
 
 
-@PROPERTIES.add("text of a problem", "a whole problem, or a line", share=8)
-@drawn(_JSON)
-def _text(given: Any) -> float:
+@always("text of a problem", "a whole problem, or a line", share=8)
+def _text(given=_JSON):
     """A problem of any text or fields is refused, or is one that its own text gives again."""
     problem = Problem(**given) if isinstance(given, dict) else Problem.from_json(given)
     if not problem.reproducible:
@@ -96,11 +95,8 @@ def _text(given: Any) -> float:
     return 2.0 * (again.to_json() != problem.to_json() or again.case != problem.case)
 
 
-@PROPERTIES.add(
-    "a problem, matrix", "exp(A T) u, to 100 rtol, or a warning", "scipy, dense matrix", 2
-)
-@drawn(_STEADY, _SEEDS)
-def _matrix(problem: Problem, seed: int) -> float:
+@always("a problem, matrix", "exp(A T) u, to 100 rtol, or a warning", "scipy, dense matrix", 2)
+def _matrix(problem=_STEADY, seed=_SEEDS):
     """R(u) = A u + b by unit vectors, and its exponential; a mode that grows makes errors grow."""
     u0 = _data(problem, seed)
     rates, n, t = Rates(problem), u0.size, problem.t_initial
@@ -115,18 +111,17 @@ def _matrix(problem: Problem, seed: int) -> float:
     return _apart(_solved(problem, u0), seen[-1], u0, *seen) / growth
 
 
-@PROPERTIES.add(
+@always(
     "a problem, closed form", f"Ornstein and Uhlenbeck, to {_NEAR:g}, or a warning", "closed form"
 )
-@drawn(
-    between(1.1, 1.95),
-    st.sampled_from(tuple(FORMS)),
-    between(0.05, 2.0),
-    between(-3.0, 3.0),
-    among(0.1, 1.0, 3.0),
-    st.integers(3, 6),
-)
-def _known(alpha: float, form: str, c: float, v: float, d: float, across: int) -> float:
+def _known(
+    alpha=between(1.1, 1.95),
+    form=st.sampled_from(tuple(FORMS)),
+    c=between(0.05, 2.0),
+    v=between(-3.0, 3.0),
+    d=among(0.1, 1.0, 3.0),
+    across=st.integers(3, 6),
+):
     """a = v - c x and constant D, from the fundamental solution: one about v (1 - e) / c, e = exp(-c t), of the width
 
     l^alpha = e^alpha + D (1 - e^alpha) / (alpha c).
@@ -148,12 +143,13 @@ def _known(alpha: float, form: str, c: float, v: float, d: float, across: int) -
 # --- all ------------------------------------------------------------------------------------------------------
 
 
-@PROPERTIES.add("a problem, other units", "the same, or a warning")
-@drawn(_problems(), _SEEDS, st.sampled_from(_UNITS), st.sampled_from(_UNITS))
-def _scaled(problem: Problem, seed: int, length: float, time: float) -> float:
+@always("a problem, other units", "the same, or a warning")
+def _scaled(
+    problem=_problems(), seed=_SEEDS, length=st.sampled_from(_UNITS), time=st.sampled_from(_UNITS)
+):
     """The same in other units of length and of time."""
     u0 = _data(problem, seed)
-    rate = length**problem.order_coefficient.constant * length / time  # type: ignore[operator]
+    rate = length**problem.order_coefficient.constant * length / time
 
     def other(given: Any, factor: float) -> Any:
         if given is None or not isinstance(given, str):
@@ -174,9 +170,8 @@ def _scaled(problem: Problem, seed: int, length: float, time: float) -> float:
     return _apart(_solved(problem.model_copy(update=fields), u0), _solved(problem, u0), u0)
 
 
-@PROPERTIES.add("a problem, in two parts", "the problem at once, or a warning")
-@drawn(_problems(), _SEEDS)
-def _halves(problem: Problem, seed: int) -> float:
+@always("a problem, in two parts", "the problem at once, or a warning")
+def _halves(problem=_problems(), seed=_SEEDS):
     """To the middle, and from there to the end."""
     u0 = _data(problem, seed)
     middle = 0.5 * problem.t_final
@@ -185,9 +180,8 @@ def _halves(problem: Problem, seed: int) -> float:
     return _apart(last, _solved(problem, u0), u0, half)
 
 
-@PROPERTIES.add("a problem, its total", "what the source gives, or a warning", "scipy, quadrature")
-@drawn(_CONSERVING, _SEEDS)
-def _mass(problem: Problem, seed: int) -> float:
+@always("a problem, its total", "what the source gives, or a warning", "scipy, quadrature")
+def _mass(problem=_CONSERVING, seed=_SEEDS):
     """The total gains what the source gives, by quadrature in time; nothing leaves a truncated lattice."""
     u0 = _data(problem, seed)
     h, f = problem.case.particle_spacing, problem.reaction

@@ -1,5 +1,7 @@
 """What holds of every run: it is right against something else that is the same, or refused."""
 
+# ruff: noqa: B008  an argument of a property is drawn from its default
+
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -18,9 +20,7 @@ from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.probe import EPS, HELD
 from scenes.extremes.dense import whole
 from scenes.extremes.fuzzing.cases import cases, changed, refuse_dear, runs
-from scenes.extremes.fuzzing.harness import NotRun, Properties, drawn
-
-PROPERTIES = Properties()
+from scenes.extremes.fuzzing.harness import NotRun, always
 
 _LENGTHS = ("half_width", "spacing", "graded_scale")
 _TIMES = ("t_initial", "t_final", "times", "dt")
@@ -48,11 +48,10 @@ def _growth(case: Case) -> float:
     """Return the greatest factor by which the steps amplify a wave, which they do to round-off, too."""
     if case.is_graded or (case.kind.self_timed and case.is_one_step):
         return 1.0
-    ends = case.span * case.setting.rate * np.array(case.symbol_range)
-    if case.steps == 0:
-        return float(np.exp(max(0.0, min(ends[1], 700.0))))
-    polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
-    _, exponents = polynomial.log_power(ends / case.steps, case.steps)
+    exponents = case.span * case.setting.rate * np.array(case.symbol_range)
+    if case.steps:
+        polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
+        _, exponents = polynomial.log_power(exponents / case.steps, case.steps)
     return float(np.exp(max(0.0, min(exponents.max(), 700.0))))
 
 
@@ -79,19 +78,17 @@ def _final(case: Case, u0: np.ndarray | None = None) -> np.ndarray:
 # --- right against something independent ----------------------------------------------------------------
 
 
-@PROPERTIES.add(
+@always(
     "a run, fundamental", f"a relative error of {_NEAR:g} at most, or a warning", "closed form", 4
 )
-@drawn(cases())
-def _exact(case: Case) -> float:
+def _exact(case=cases()):
     """From the fundamental solution to the fundamental solution."""
     refuse_dear(case)
     return relative_l1_error(case, _final(case)) / _NEAR
 
 
-@PROPERTIES.add("a run, rough data", "exp(A T) u, or p(A dt)^n u", "scipy, dense matrix", 2, HELD)
-@drawn(runs())
-def _matrix(run: Run) -> float:
+@always("a run, rough data", "exp(A T) u, or p(A dt)^n u", "scipy, dense matrix", 2, HELD)
+def _matrix(run=runs()):
     """exp(A T) by scipy, or the n-th power of the step's polynomial, A from naive sums over unit vectors."""
     case, u0 = run
     _only_operators(case)
@@ -104,9 +101,8 @@ def _matrix(run: Run) -> float:
     return _apart(case, u, expected, u0)
 
 
-@PROPERTIES.add("a run, naive sums", "that by transforms", "naive sums", must=HELD)
-@drawn(runs())
-def _naive(run: Run) -> float:
+@always("a run, naive sums", "that by transforms", "naive sums", must=HELD)
+def _naive(run=runs()):
     """The sums by transforms against those one by one."""
     case, u0 = run
     naive = refuse_dear(changed(case, summation="naive"))
@@ -116,18 +112,16 @@ def _naive(run: Run) -> float:
 # --- right against itself ---------------------------------------------------------------------------------
 
 
-@PROPERTIES.add("a run, mirrored", "the mirrored run", share=2, must=HELD)
-@drawn(runs())
-def _mirrored(run: Run) -> float:
+@always("a run, mirrored", "the mirrored run", share=2, must=HELD)
+def _mirrored(run=runs()):
     """The mirrored data give the mirrored solution."""
     case, u0 = run
     axes = tuple(range(case.dim))
     return _apart(case, np.flip(_final(case, np.flip(u0, axes)), axes), _final(case, u0), u0)
 
 
-@PROPERTIES.add("a run, linear", "the sum of two runs", share=2, must=HELD)
-@drawn(runs())
-def _linear(run: Run) -> float:
+@always("a run, linear", "the sum of two runs", share=2, must=HELD)
+def _linear(run=runs()):
     """A sum of data gives the sum of solutions, each times its factor."""
     case, u0 = run
     if case.kind.moving:
@@ -137,14 +131,12 @@ def _linear(run: Run) -> float:
     return _apart(case, _final(case, 0.25 * u0 - 0.5 * v0), 0.25 * u - 0.5 * v, u0, v0, u, v)
 
 
-@PROPERTIES.add("a run, other units", "the same run", share=2, must=HELD)
-@drawn(runs())
-def _scaled(run: Run) -> float:
+@always("a run, other units", "the same run", share=2, must=HELD)
+def _scaled(run=runs()):
     """Lengths times c, times times c^alpha / d and D times d leave the strengths as they are."""
     case, u0 = run
     c, d = 2.0**7, 2.0**-5
-    times = dict.fromkeys(_TIMES, c**case.alpha / d)
-    factors = dict.fromkeys(_LENGTHS, c) | times
+    factors = dict.fromkeys(_LENGTHS, c) | dict.fromkeys(_TIMES, c**case.alpha / d)
     fields = {
         name: tuple(factor * t for t in value) if isinstance(value, tuple) else factor * value
         for name, factor in factors.items()
@@ -156,9 +148,8 @@ def _scaled(run: Run) -> float:
     return _apart(case, _final(other, u0), _final(case, u0), u0)
 
 
-@PROPERTIES.add("a run, in two parts", "the run at once", share=2, must=HELD)
-@drawn(runs())
-def _in_two_parts(run: Run) -> float:
+@always("a run, in two parts", "the run at once", share=2, must=HELD)
+def _in_two_parts(run=runs()):
     """To the middle, and from there to the end."""
     case, u0 = run
     _only_operators(case)
@@ -175,25 +166,23 @@ def _in_two_parts(run: Run) -> float:
 # --- right in whatever form ---------------------------------------------------------------------------------
 
 
-@PROPERTIES.add("a run, prepared", "the same bits", must=HELD)
-@drawn(runs())
-def _prepared(run: Run) -> float:
+@always("a run, prepared", "the same bits", must=HELD)
+def _prepared(run=runs()):
     """`prepare` and `solve` on bare arrays give the bits that `compute` gives, twice.
 
     Where strengths are next to the ends of float64, which `compute` moves away from there, to round-off.
     """
     case, u0 = run
     u, ready = _final(case, u0), prepare(case)
-    v = ready.solve(u0)
-    wrong = not np.array_equal(ready.solve(u0), v)
+    v, again = ready.solve(u0), ready.solve(u0)
+    wrong = not np.array_equal(again, v)
     if not 1e-200 < np.abs(u0).max() < 1e200:
         return max(2.0 * wrong, _apart(case, u, v, u0))
     return 2.0 * (wrong or not np.array_equal(u, v))
 
 
-@PROPERTIES.add("a run, in a file", "the same run, no other file", must=HELD)
-@drawn(runs())
-def _in_a_file(run: Run) -> float:
+@always("a run, in a file", "the same run, no other file", must=HELD)
+def _in_a_file(run=runs()):
     """A run that is written is read as it was, alone in its folder, and goes on from its file."""
     case, u0 = run
     found = solve(refuse_dear(case), u0)
@@ -228,9 +217,8 @@ def _with_labels(case: Case, u: np.ndarray) -> Any:
     return xr.DataArray(u, {axis: case.x for axis in axes}, axes)
 
 
-@PROPERTIES.add("a run, data in disguise", "the same bits", must=HELD)
-@drawn(runs())
-def _disguised(run: Run) -> float:
+@always("a run, data in disguise", "the same bits", must=HELD)
+def _disguised(run=runs()):
     """The data in other clothes give the same bits."""
     case, u0 = run
     u, before = _final(case, u0), u0.copy()

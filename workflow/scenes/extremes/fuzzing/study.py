@@ -5,10 +5,10 @@ import pandas as pd
 from fracstudy.inputs import Inputs, Result
 from fracstudy.probe import frame
 from scenes.extremes.fuzzing import configuration, domains, fields, flags, functions, problems, runs
-from scenes.extremes.fuzzing.harness import row
+from scenes.extremes.fuzzing.harness import OF_MODULE, row
 
 _MODULES = (fields, runs, functions, problems, domains, flags, configuration)
-PROPERTIES = [one for module in _MODULES for one in module.PROPERTIES]
+PROPERTIES = [one for module in _MODULES for one in OF_MODULE[module.__name__]]
 
 
 def study(inputs: Inputs, *, cases: int) -> Result:

@@ -16,58 +16,37 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.special import eval_genlaguerre, j0
 
+# kappa, G and K by 1F1: sign, alpha less the power, and b.
+_CONFLUENT = {"kappa": (1.0, 2.0, 0), "G": (-1.0, 0.0, 0), "K": (1.0, 0.0, 2)}
 _EXACT = {"limit": 2000, "epsabs": 1e-15, "epsrel": 1e-13}
 
 
 class Kernels:
-    """The kernels of a scheme, for scalar distances r in units of epsilon.
-
-    Parameters
-    ----------
-    alpha : float
-    dim : {1, 2, 3}
-    order : int
-    family : {"printed", "gamma"}
-    """
+    """The kernels of a scheme, for scalar distances r in units of epsilon; `family` is "printed" or "gamma"."""
 
     def __init__(self, alpha: float, dim: int = 1, order: int = 2, family: str = "printed") -> None:
         self.alpha, self.dim, self.order, self.family = alpha, dim, order, family
         self.values = cache(self._value)
 
     def _value(self, name: str, r: float) -> float:
-        return float(getattr(self, f"_{name}")(r))
-
-    def _constant(self, b: int, power: float) -> float:
-        """Gamma_{n,b}(power)  (B.14)."""
+        if name == "F":
+            return -r * self._value("K", r)
+        if name not in _CONFLUENT:
+            return float(getattr(self, f"_{name}")(r))
+        sign, less, b = _CONFLUENT[name]
+        power, half = self.alpha - less, 0.5 * self.dim
+        # Gamma_{n,b}(power)  (B.14)
         above = 2.0**power * gamma(0.5 * (power + self.dim))
-        return above / (pi ** (0.5 * self.dim) * gamma(0.5 * (self.dim + b)) * factorial(b))
+        constant = above / (pi**half * gamma(0.5 * (self.dim + b)) * factorial(b))
+        return sign * constant * self._confluent(0.5 * (power + self.dim), half + 0.5 * b, r * r)
 
     def _confluent(self, a: float, b: float, x: float) -> float:
+        f = lambda a, x: mp.hyp1f1(a, b, -x)  # noqa: E731
         if self.family == "gamma":
-            terms = (
-                mp.rf(a, j) / mp.factorial(j) * mp.hyp1f1(a + j, b, -x)
-                for j in range(self.order // 2)
-            )
-            return float(mp.fsum(terms))
-        narrow = mp.hyp1f1(a, b, -x)
-        return float(
-            narrow if self.order == 2 else 2 * narrow - mp.mpf(2) ** -a * mp.hyp1f1(a, b, -x / 2)
-        )
-
-    def _kappa(self, r: float) -> float:
-        a = 0.5 * (self.alpha - 2.0 + self.dim)
-        return self._constant(0, self.alpha - 2.0) * self._confluent(a, 0.5 * self.dim, r * r)
-
-    def _G(self, r: float) -> float:
-        a = 0.5 * (self.alpha + self.dim)
-        return -self._constant(0, self.alpha) * self._confluent(a, 0.5 * self.dim, r * r)
-
-    def _K(self, r: float) -> float:
-        a = 0.5 * (self.alpha + self.dim)
-        return self._constant(2, self.alpha) * self._confluent(a, 0.5 * self.dim + 1.0, r * r)
-
-    def _F(self, r: float) -> float:
-        return -r * self._K(r)
+            j = range(self.order // 2)
+            return float(mp.fsum(mp.rf(a, k) / mp.factorial(k) * f(a + k, x) for k in j))
+        narrow = f(a, x)
+        return float(narrow if self.order == 2 else 2 * narrow - mp.mpf(2) ** -a * f(a, x / 2))
 
     def _eta1(self, r: float) -> float:
         n, x = self.dim, r * r
@@ -77,10 +56,8 @@ class Kernels:
         return unit * (2.0 if self.order == 2 else n + 4.0 - 2.0 * x)
 
     def _Phi(self, r: float) -> float:
-        narrow = exp(-r * r) / sqrt(pi)
-        return (
-            2.0 * narrow if self.order == 2 else 4.0 * narrow - exp(-0.5 * r * r) / sqrt(2.0 * pi)
-        )
+        narrow, wide = exp(-r * r) / sqrt(pi), exp(-0.5 * r * r) / sqrt(2.0 * pi)
+        return 2.0 * narrow if self.order == 2 else 4.0 * narrow - wide
 
     def _E(self, r: float) -> float:
         """The inverse transform of exp(-k^alpha): (1 / pi) int cos(k r) exp(-k^alpha) dk on the line."""
@@ -150,9 +127,8 @@ def _finite_differences(size: int, alpha: float) -> np.ndarray:
     def left(i: int) -> np.ndarray:
         row = np.zeros(size + 2)  # u_{-1} .. u_{size}
         for j in range(i + 1):
-            step = ((i - j + 1.0) ** (1.0 - beta) - float(i - j) ** (1.0 - beta)) / gamma(
-                2.0 - beta
-            )
+            step = (i - j + 1.0) ** (1.0 - beta) - float(i - j) ** (1.0 - beta)
+            step /= gamma(2.0 - beta)
             row[j + 1] += step
             row[j] -= step
         return row[1:-1]
@@ -164,7 +140,5 @@ def _finite_differences(size: int, alpha: float) -> np.ndarray:
 def power_sum(weight: Callable[[float], float], power: float, n: int, i: int, far: int) -> float:
     """Return sum_{j > n} (n / j)^power w(j - i): term by term up to `far`, from there the integral of the rest."""
     near = sum((n / j) ** power * weight(j - i) for j in range(n + 1, far + 1))
-    rest = quad(lambda y: (n / y) ** power * weight(y - i), far + 0.5, inf, epsabs=0.0, limit=200)[
-        0
-    ]
-    return near + rest
+    term = lambda y: (n / y) ** power * weight(y - i)  # noqa: E731
+    return near + quad(term, far + 0.5, inf, epsabs=0.0, limit=200)[0]

@@ -1,7 +1,7 @@
 """Lattices that do not suit: of odd numbers of particles, too coarse, too narrow, beside the data."""
 
 from fracstudy.inputs import Inputs, Result
-from fracstudy.probe import frame
+from fracstudy.probe import frame, probes_of
 from scenes.extremes.geometry import lattices, sums
 
 
@@ -25,13 +25,13 @@ def study(
     lattices are made unsuitable.
     """
     errors = lattices.Errors()
-    probes = [
-        *sums.lattice_sums(sizes, list(half)),
-        *sums.matrices(beta, orders, overlaps, half),
-        *sums.exteriors(beta, overlaps, beyond),
-        *lattices.counts(beta),
-        *lattices.lattices(errors, beta, schemes, half_widths),
-        *lattices.graded(errors, beta),
-        *lattices.evolved(beta, points),
-    ]
-    return Result(frame(probes), (), errors.panels.frame)
+    of_sums = {
+        "sizes": sizes,
+        "orders": orders,
+        "overlaps": overlaps,
+        "half": half,
+        "beyond": beyond,
+    }
+    of_runs = {"schemes": schemes, "half_widths": half_widths, "points": points, "errors": errors}
+    probes = probes_of(sums, lattices, beta=beta, **of_sums, **of_runs)
+    return Result(frame(probes), (), errors.frame)

@@ -1,7 +1,6 @@
 """Sums over lattices of any size, and the matrices of the schemes, against sums term by term."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 from functools import cache
 from itertools import product
 from typing import Any
@@ -36,45 +35,45 @@ def _rounding(terms: int) -> float:
     return EPS * (terms + 8.0 * np.log2(4.0 * terms))
 
 
-def lattice_sums(sizes: dict[str, list[int]], dims: list[int]) -> Iterator[Probe]:
+def lattice_sums(sizes: dict[str, list[int]], half: dict[int, list[int]]) -> Iterator[Probe]:
     """y_i = sum_j w_{i-j} u_j of random numbers, by each summation, on lattices of every kind of size.
 
     Also beyond the ends of the lattice, up to seven points; w even and odd.
     """
     right = Kind("sums", "the sum term by term", source="numpy, dense", must=HELD)
     for kind, some in sizes.items():
-        every = f"N {kind}: {', '.join(map(str, some))}"
-        for name, convolution in _LINE.items():
-            yield right(
-                f"line, {name}, {every}",
-                lambda: max(_of_line(convolution, size) for size in some),
-                bound=_rounding(max(some)),
-            )
-        yield right(
-            f"line, banded, {every}, bands up to N",
-            lambda: max(map(_of_band, some)),
-            bound=_rounding(2 * max(some)),
-        )
-    for dim in [d for d in dims if d > 1]:
+        every, most = f"N {kind}: {', '.join(map(str, some))}", max(some)
+        for name, one in _LINE.items():
+            worst = lambda: max(_of_line(one, size) for size in some)  # noqa: E731
+            yield right(f"line, {name}, {every}", worst, bound=_rounding(most))
+        worst = lambda: max(map(_of_band, some))  # noqa: E731
+        yield right(f"line, banded, {every}, bands up to N", worst, bound=_rounding(2 * most))
+    for dim, (name, one) in product([d for d in half if d > 1], _BOX.items()):
         larger = [(7, 7), (3, 9), (9, 5)] if dim == 3 else [(13, 13), (5, 19), (17, 11)]
         sides = [(1, 1), (3, 3), *larger]
-        for name, box in _BOX.items():
-            yield right(
-                f"n = {dim}, {name}, from S^n to T^n: {', '.join(f'{a}-{b}' for a, b in sides)}",
-                lambda: max(_of_box(box, dim, pair) for pair in sides),
-                bound=_rounding(19**dim),
-            )
+        yield right(
+            f"n = {dim}, {name}, from S^n to T^n: {', '.join(f'{a}-{b}' for a, b in sides)}",
+            lambda: max(_of_box(one, dim, *pair) for pair in sides),
+            bound=_rounding(19**dim),
+        )
 
 
-def _of_line(convolution: Callable[..., Callable[[np.ndarray], np.ndarray]], size: int) -> float:
+def _missed(
+    found: np.ndarray, apart: np.ndarray, parity: int, w: np.ndarray, u: np.ndarray
+) -> float:
+    """How far a sum of w_{|i-j|} u_j, odd or even in i - j, is from the one by its matrix."""
+    exact = (np.where(apart < 0, parity, 1) * w[np.abs(apart)]) @ u
+    return off(found, exact, _size(w, u))
+
+
+def _of_line(convolution: Any, size: int) -> float:
     rng, worst = np.random.default_rng(size), 0.0
     for pad, parity in ((0, 1), (0, -1), (1, 1), (7, -1)):
         w, u = rng.standard_normal(size + pad), rng.standard_normal(size)
         w[0] *= parity > 0
         apart = np.arange(-pad, size + pad)[:, None] - np.arange(size)
-        exact = (np.where(apart < 0, parity, 1) * w[np.abs(apart)]) @ u
         found = convolution(w, size, parity, pad)(u)
-        worst = max(worst, off(found, exact, _size(w, u)))
+        worst = max(worst, _missed(found, apart, parity, w, u))
     return worst
 
 
@@ -84,23 +83,15 @@ def _of_band(size: int) -> float:
         w, v = rng.standard_normal(band + 1), rng.standard_normal(size)
         w[0] *= parity > 0
         apart = np.arange(size)[:, None] - np.arange(size)
-        every = np.append(w, np.zeros(size))
-        exact = (np.where(apart < 0, parity, 1) * every[np.abs(apart)]) @ v
         found = BandedConvolution(w, parity)(v, np.empty(size))
-        worst = max(worst, off(found, exact, _size(w, v)))
+        worst = max(worst, _missed(found, apart, parity, np.append(w, np.zeros(size)), v))
     return worst
 
 
-def _of_box(
-    convolution: Callable[..., Callable[[np.ndarray], np.ndarray]], dim: int, sides: tuple[int, int]
-) -> float:
-    sources, targets = sides
-    rng, worst = np.random.default_rng(sources + targets), 0.0
+def _of_box(convolution: Any, dim: int, sources: int, targets: int) -> float:
+    rng, worst, half = np.random.default_rng(sources + targets), 0.0, (sources + targets) // 2
     for odd in (None, *range(dim)):
-        w, u = (
-            rng.standard_normal(((sources + targets) // 2,) * dim),
-            rng.standard_normal((sources,) * dim),
-        )
+        w, u = rng.standard_normal((half,) * dim), rng.standard_normal((sources,) * dim)
         if odd is not None:
             w[(slice(None),) * odd + (0,)] = 0.0
         apart = places(targets // 2, dim)[:, None] - places(sources // 2, dim)
@@ -128,11 +119,9 @@ def matrices(
         source = "mpmath, dense" if name != "GPSE" else "QUADPACK, dense"
         for dim, overlap in product([d for d in one.dims if d in half], overlaps):
             counts = ", ".join(str((2 * n + 1) ** dim) for n in half[dim])
-            yield right(
-                f"{name}, n = {dim}, overlap {overlap:g}, N = {counts}",
-                lambda: _of_matrices(one, beta, dim, orders, overlap, half[dim]),
-                source=source,
-            )
+            case = f"{name}, n = {dim}, overlap {overlap:g}, N = {counts}"
+            how = (one, beta, dim, orders, overlap, half[dim])
+            yield right(case, _of_matrices, *how, source=source)
 
 
 def _of_matrices(
@@ -140,35 +129,36 @@ def _of_matrices(
 ) -> float:
     worst = 0.0
     for order in [r for r in orders if r in (one.orders if dim == 1 else one.box_orders)]:
-        family = "gamma" if order > 4 else "printed"
-        kernels = Kernels(1.0 + beta, dim, order, family)
+        kernels = Kernels(1.0 + beta, dim, order, "gamma" if order > 4 else "printed")
+        shared: dict[str, Any] = {
+            "alpha": 1.0 + beta,
+            "order": order,
+            "overlap": overlap,
+            "dim": dim,
+        }
         for n in half:
             exact = matrix(one.name, kernels, n, overlap)
-            setting = Setting(alpha=1.0 + beta, order=order, overlap=overlap, dim=dim, n=n)
             for summation in ("fft", "naive"):
-                found = scheme_matrix(one.name, replace(setting, summation=summation))
+                found = scheme_matrix(one.name, Setting(**shared, n=n, summation=summation))
                 difference, size = (np.abs(a).sum(axis=1).max() for a in (found - exact, exact))
                 worst = max(worst, float(difference / size) if size else float(difference))
     return worst
 
 
-def exteriors(beta: float, overlaps: list[float], half: list[int]) -> Iterator[Probe]:
+def exteriors(beta: float, overlaps: list[float], beyond: list[int]) -> Iterator[Probe]:
     """The sums beyond the ends of the line, S_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j}, term by term and an integral.
 
     The library sums f = j^-(1+alpha) w_{i-j} to 4 n, and from there by the formula of Euler and Maclaurin, whose next
     term is 7 f''' / 5760: for f ~ y^-5 and y >= 3 n that is (3 n)^-4 of the sum.
     """
-    alpha = 1.0 + beta
-    power = 1.0 + alpha
-    for n, overlap in product(half, overlaps):
+    alpha, power = 1.0 + beta, 1.0 + (1.0 + beta)
+    for n, overlap in product(beyond, overlaps):
         right = Kind("exterior", "the sum to infinity", (3.0 * n) ** -4.0, "mpmath, QUADPACK")
         yield right(f"KPSE's kernel, n = {n}, overlap {overlap:g}", _of_exterior, alpha, n, overlap)
     refused = Kind("exterior", "refused: too few particles to fit", must=REFUSED)
     for n, terms in ((0, 1), (1, 2), (2, 3)):
-        yield refused(
-            f"N = {2 * n + 1}, terms: {terms}",
-            lambda: far_field(lambda m: np.abs(m) ** -power, power, alpha, n, terms=terms),
-        )
+        tail = lambda: far_field(lambda m: np.abs(m) ** -power, power, alpha, n, terms=terms)  # noqa: E731
+        yield refused(f"N = {2 * n + 1}, terms: {terms}", tail)
 
 
 @cache
@@ -178,12 +168,8 @@ def _weight(alpha: float, r: float) -> float:
 
 
 def _of_exterior(alpha: float, n: int, overlap: float) -> float:
-    def weight(m: float) -> float:
-        return _weight(alpha, abs(m) / overlap)
-
-    found = far_field(np.vectorize(weight), 1.0 + alpha, alpha, n).right[0]
-    size, worst = float(np.abs(found).max()), 0.0
-    for i in (-n, 0, n):
-        exact = power_sum(weight, 1.0 + alpha, n, i, far=max(200, 10 * n))
-        worst = max(worst, abs(float(found[i + n]) - exact) / size)
-    return worst
+    weight = lambda m: _weight(alpha, abs(m) / overlap)  # noqa: E731
+    found, far = far_field(np.vectorize(weight), 1.0 + alpha, alpha, n).right[0], max(200, 10 * n)
+    size = float(np.abs(found).max())
+    exact = {i: power_sum(weight, 1.0 + alpha, n, i, far=far) for i in (-n, 0, n)}
+    return max(abs(float(found[i + n]) - value) / size for i, value in exact.items())

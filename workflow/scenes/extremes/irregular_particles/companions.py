@@ -25,16 +25,6 @@ _N = 120
 _H = 10.0 / _N
 
 
-def probes() -> Iterator[Probe]:
-    """All of them."""
-    yield from _exchange()
-    yield from _growth()
-    yield from _steps()
-    yield from _graded()
-    yield from _gaps()
-    yield from _refused()
-
-
 def _words(jitter: float) -> str:
     return "random" if jitter > 1.0 else f"jitter {jitter:g} h"
 
@@ -50,7 +40,7 @@ def _scattered(jitter: float) -> tuple[np.ndarray, np.ndarray]:
     return x, cell_volumes(x)
 
 
-def _exchange() -> Iterator[Probe]:
+def exchange() -> Iterator[Probe]:
     """Strength exchange (26) in one, two and three dimensions, on any places with any volumes: nothing is lost."""
     kept = Kind("conservation", "Σ Q kept", 64.0 * EPS, "exact sums", HELD)
     for dim, order in product((1, 2, 3), (2, 4)):
@@ -91,7 +81,7 @@ def _greatest_eigenvalue(jitter: float) -> float:
     return max(float(np.linalg.eigvalsh(symmetric).max()), 0.0) / exchange.rate
 
 
-def _growth() -> Iterator[Probe]:
+def growth() -> Iterator[Probe]:
     """Kernels of higher order are negative somewhere: on irregular particles strengths may grow, and that is said."""
     stays = Kind("growth", "no growth, no word", 0.01, "dense eigenvalues", HELD)
     grows = replace(stays, expected="growth, at the rate said", must=WARNED)
@@ -113,7 +103,7 @@ def _growth_missed(makes: Callable[[], object], greatest: float) -> tuple[float,
     return abs(said - greatest) / max(greatest, 1.0), f"said {said:.2g}, is {greatest:.2g}"
 
 
-def _steps() -> Iterator[Probe]:
+def steps() -> Iterator[Probe]:
     """A Green step by exchange keeps the total on any particles; where it amplifies, it says so, and by how much."""
     kept = Kind("conservation", "Σ V u kept", 64.0 * EPS, "exact sums", HELD)
     stays = Kind("growth", "does not amplify", 1e-6, "dense eigenvalues", HELD)
@@ -154,7 +144,7 @@ def _factor_missed(makes: Callable[[], np.ndarray], greatest: float) -> tuple[fl
     return max(said * (1.0 - 1e-3) / greatest - 1.0, 0.0), f"said {said:.3g}, is {greatest:.3g}"
 
 
-def _graded() -> Iterator[Probe]:
+def graded() -> Iterator[Probe]:
     """Graded particles from 1e-100 to 1e100, steps from 1e-300 on: the exchange keeps constants."""
     kept = Kind("graded", "rows are 1", 1e-12, "exact sums", HELD)
     for reach, scale in ((1e100, 1e-100), (1e-100, 1e-100), (1e100, 1e100), (1e-60, 1e60)):
@@ -170,21 +160,18 @@ def _graded_off(reach: float, scale: float) -> float:
     return off(green_step(x, v, 1.5, reach**1.5 if reach < 1e60 else 1.0).sum(axis=1), 1.0)
 
 
-def _gaps() -> Iterator[Probe]:
+def gaps() -> Iterator[Probe]:
     """Particles that do not reach one another, or whose volumes are not theirs: wrong by far only with a word."""
     lattice = np.linspace(-5.0, 5.0, 101)
     curvature = Kind("gaps", "f'' = 2, or a word", 0.1, "x²")
-    for case, epsilon, volume in (
-        ("ε = h / 100", 0.001, 0.1),
-        ("volumes five times too large", 0.2, 0.5),
-        ("volumes of h", 0.2, 0.1),
-    ):
-        yield curvature(f"PSE, {case}", _exchange_error, lattice, volume, epsilon)
-    for case, z, epsilon in (
-        ("among the particles", 0.05, 0.2),
-        ("far from all", 50.0, 0.2),
-        ("ε = h / 100", 0.0, 0.001),
-    ):
+    cases = {
+        "PSE, ε = h / 100": (lattice, 0.1, 0.001),
+        "PSE, volumes five times too large": (lattice, 0.5, 0.2),
+        "PSE, volumes of h": (lattice, 0.1, 0.2),
+    }
+    yield from curvature.over(_exchange_error, cases)
+    places = {"among the particles": (0.05, 0.2), "far from all": (50.0, 0.2)}
+    for case, (z, epsilon) in (places | {"ε = h / 100": (0.0, 0.001)}).items():
         second = partial(derivative, [z], [z * z], lattice, lattice**2, 0.1, epsilon)
         name = f"derivative (21), {case}"
         yield curvature(name, lambda: abs(float(second(GAUSSIAN_20, 2)[0]) / 2.0 - 1.0))
@@ -209,13 +196,11 @@ def _exchange_error(x: np.ndarray, volume: float, epsilon: float) -> float:
 
 def _line_error(jitter: float) -> float:
     x, v = _scattered(jitter)
-    return max(
-        abs(float(gradient([p], x, v, 3.0 * (x - p), 0.2)[0]) - 3.0)
-        for p in np.linspace(-4.0, 4.0, 9)
-    )
+    slopes = [gradient([p], x, v, 3.0 * (x - p), 0.2)[0] for p in np.linspace(-4.0, 4.0, 9)]
+    return max(abs(float(slope) - 3.0) for slope in slopes)
 
 
-def _refused() -> Iterator[Probe]:
+def refused() -> Iterator[Probe]:
     """What means nothing."""
     x = np.arange(9.0)
     yield from Kind("refused", must=REFUSED).of(

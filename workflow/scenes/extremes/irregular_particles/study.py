@@ -10,7 +10,7 @@ from fracparticles.schemes import Setting
 from fracparticles.schemes.spectrum import scheme_matrix
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from fracstudy.probe import EPS, HELD, Kind, Probe, frame, off
+from fracstudy.probe import EPS, HELD, Kind, Probe, frame, off, probes_of
 from scenes.extremes.irregular_particles import companions, theory
 from scenes.extremes.irregular_particles.operators import (
     ALPHA,
@@ -42,8 +42,7 @@ def study(
     probes = [
         *_lattice(overlap),
         *_conserved(x, overlap),
-        *theory.probes(x, overlap, seeds),
-        *companions.probes(),
+        *probes_of(theory, companions, x=x, overlap=overlap, seeds=seeds),
     ]
     panels = Panels()
     _add_jitter(panels, x, overlap, jitters, seeds)

@@ -41,12 +41,13 @@ def probes(x: np.ndarray, overlap: float, seeds: int) -> Iterator[Probe]:
     """
     close = 3.0 / sqrt(20.0 * seeds)
     predicted_error = Kind("accuracy", "the predicted error", close, "error theory", HELD)
-    for form, jitter, right in product(("KPSE", "GPSE"), (0.05, 0.2, 0.5), (True, False)):
-        how, name = ("jittered", jitter, right), f"{form}, jitter {jitter:g} h, {volumes(right)}"
-        yield predicted_error(name, _ratio_off, form, x, overlap, how, seeds)
-    for form in ("KPSE", "GPSE"):
-        how, name = ("random", 0.0, False), f"{form}, random places, equal volumes"
-        yield predicted_error(name, _ratio_off, form, x, overlap, how, seeds)
+    forms, of_jitter = ("KPSE", "GPSE"), product((0.05, 0.2, 0.5), (True, False))
+    how = {f"jitter {j:g} h, {volumes(right)}": ("jittered", j, right) for j, right in of_jitter}
+    for form, name in product(forms, how):
+        yield predicted_error(f"{form}, {name}", _ratio_off, form, x, overlap, how[name], seeds)
+    for form in forms:
+        name, anywhere = f"{form}, random places, equal volumes", ("random", 0.0, False)
+        yield predicted_error(name, _ratio_off, form, x, overlap, anywhere, seeds)
     power = Kind("order lost", "the predicted power", 2.0 * close, "error theory", HELD)
     for right in (True, False):
         name = f"KPSE, ε = {overlap:g} h, jitter 0.3 h, {volumes(right)}"
@@ -99,8 +100,7 @@ def _cubes(jitter: float) -> float:
     one, two, three = np.meshgrid(*(jitter * nodes,) * 3, indexing="ij")
     w = np.einsum("i,j,k->ijk", *(0.5 * weights,) * 3)
     here, there = (3.0 * a**2 + a**3 for a in (two - one, three - two))
-    here = here - float((w * here).sum())
-    there = there - float((w * there).sum())
+    here, there = (cube - float((w * cube).sum()) for cube in (here, there))
     return float((w * here * (here + 2.0 * there)).sum())
 
 

@@ -29,10 +29,9 @@ def probes(betas: list[float]) -> Iterator[Probe]:
     for beta, unit, scheme in product(betas, (1e-12, 1e12, 1e-75, 1e75), ("DD", "FPSE", "KPSE")):
         # The units round ln t, as in t^(1/alpha), and the series 40 of T |lambda|.
         rounded = 64.0 * EPS * (40.0 + abs(np.log(unit)))
+        name = f"{scheme}, open, beta = {beta:g}, t_0 = {unit:.0e}"
         same = Kind("units", "the run at t_0 = 1, scaled", rounded)
-        yield same(
-            f"{scheme}, open, beta = {beta:g}, t_0 = {unit:.0e}", _scaled, scheme, beta, unit
-        )
+        yield same(name, _scaled, scheme, beta, unit)
     yield from _refused()
 
 

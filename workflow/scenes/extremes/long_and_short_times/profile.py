@@ -37,10 +37,8 @@ def _integral(r: np.ndarray, alpha: float, n: int, power: float) -> np.ndarray:
 
 def _tail(r: np.ndarray, alpha: float, n: int) -> np.ndarray:
     m = np.arange(1.0, _TERMS + 1.0)
-    growth = gamma(1.0 + alpha * m) / gamma(m + 1.0)
-    growth *= (
-        gamma(0.5 * (alpha * m + n)) / gamma(0.5 * (alpha * m + 1.0)) / np.pi ** (0.5 * (n + 1))
-    )
+    ratio = gamma(0.5 * (alpha * m + n)) / gamma(0.5 * (alpha * m + 1.0)) / np.pi ** (0.5 * (n + 1))
+    growth = gamma(1.0 + alpha * m) / gamma(m + 1.0) * ratio
     terms = growth * (-1.0) ** (m + 1.0) * np.sin(0.5 * np.pi * alpha * m)
     return (terms * np.asarray(r)[..., None] ** (-alpha * m - n)).sum(axis=-1)
 

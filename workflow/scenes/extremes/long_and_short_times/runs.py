@@ -43,12 +43,9 @@ def _methods(n: int) -> dict[str, dict[str, Any]]:
     """Runs with an open exterior: order 12 leaves the lattice and the far field."""
     series = {"integrator": "exponential", "exterior": "open", "order": 12}
     whole = {**series, "evaluation": "convolution"}
+    of_series = ("DD", "FPSE", "KPSE") if n == 1 else ()
     methods = {f"{s}, order 12, convolution": {"scheme": s, **whole} for s in ("DD", "KPSE")}
-    if n > 1:
-        return methods
-    return methods | {
-        f"{s}, order 12, series": {"scheme": s, **series} for s in ("DD", "FPSE", "KPSE")
-    }
+    return methods | {f"{s}, order 12, series": {"scheme": s, **series} for s in of_series}
 
 
 def _miss(u: np.ndarray, x: np.ndarray, t: float, alpha: float, n: int) -> float:
@@ -196,11 +193,9 @@ def short_probes(betas: list[float], shares: list[float], dims: list[int]) -> It
             kind = ALL_SCHEMES[scheme]
             for exterior in kind.exteriors if n in kind.dims else ():
                 fields = {"scheme": scheme, "exterior": exterior, **_short(beta, n)}
-                yield right(
-                    f"{scheme}, order 2, {exterior}, {where}",
-                    lambda: _shift(fields, share),
-                    bound=(0.35 if n == 1 else 0.9) + rounded,
-                )
+                bound = (0.35 if n == 1 else 0.9) + rounded
+                name = f"{scheme}, order 2, {exterior}, {where}"
+                yield right(name, _shift, fields, share, bound=bound)
         yield right(f"evolve, {where}", _whole_shift, beta, n, share, bound=0.05 + rounded)
     refused = Kind("short time", "refused: epsilon / h below 1/4", must=REFUSED)
     lattice = {"scheme": "GPSE", "beta": 0.5, "half_width": 20.0, "spacing": 0.2}

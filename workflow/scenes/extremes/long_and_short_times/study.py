@@ -2,7 +2,7 @@
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from fracstudy.probe import frame
+from fracstudy.probe import frame, probes_of
 from scenes.extremes.long_and_short_times import bounded, functions, runs
 
 
@@ -15,25 +15,13 @@ def study(
     shares: list[float],
     dims: list[int],
 ) -> Result:
-    """One row a probe.
+    """One row a probe, for fractional orders `betas` in `dims` dimensions.
 
-    Parameters
-    ----------
-    betas, dims : list
-        Fractional orders; dimensions.
-    times : list of float
-        t of the fundamental solution.
-    ratios : list of float
-        t_f / t_0 of the long runs.
-    shares : list of float
-        (t_f - t_0) / t_0 of the short ones.
+    `times` are t of the fundamental solution, `ratios` t_f / t_0 of the long runs, `shares` (t_f - t_0) / t_0 of the
+    short ones.
     """
-    probes = [
-        *functions.probes(betas, times, dims),
-        *runs.long_probes(betas, ratios, dims),
-        *runs.short_probes(betas, shares, dims),
-        *bounded.probes(betas),
-    ]
+    given = {"betas": betas, "times": times, "ratios": ratios, "shares": shares, "dims": dims}
+    probes = probes_of(functions, runs, bounded, **given)
     panels = Panels()
     runs.add_profiles(panels, betas[-1] if len(betas) == 1 else betas[1], ratios)
     return Result(frame(probes), (), panels.frame)

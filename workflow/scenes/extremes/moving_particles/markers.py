@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from fracparticles.errors import FracparticlesWarning
 from fracparticles.markers import (
     SHAPES,
     Gaussian,
@@ -24,35 +23,22 @@ from fracparticles.markers.accuracy import optimal_support
 from fracparticles.markers.fourier import FourierMarkerVelocity
 from fracparticles.markers.growth import largest_step, measured_rate
 from fracparticles.markers.stability import extremes, lattice_rate
-from fracstudy.panels import Panels
 from fracstudy.probe import EPS, HELD, REFUSED, WARNED, Kind, Probe, off, quiet
-from scenes.extremes.moving_particles.words import add_error, missed
+from scenes.extremes.moving_particles.cloud import FACTORS, missed
 
-_SPOKEN = 0.05  # error of a run that must be spoken of
-_FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step
 SMOOTH = ("S4", "S6", "S8")  # with a second derivative, so that markers on a lattice have a rate
+SUPPORTED = ("S4", "S8")
 _XI, _STEPS = 1e-6, 5  # height of a wave, in epsilon
 # Half-widths of a Gaussian; S8, of both signs, needs a field that is not too weak.
 _WIDE, _NARROW = 5.0, 2.5
 
 
-def probes(shapes: Sequence[str], count: int, supports: Sequence[float]) -> Iterator[Probe]:
-    """All of them; `count` markers a run, epsilon / h of some from `supports`."""
-    yield from _solutions(shapes, count)
-    yield from _growth()
-    yield from _clusters()
-    yield from _supports(count, supports)
-    yield from _signs(count)
-    yield from _units(count)
-    yield from _tools()
-
-
-def _gaussian(count: int, shape: str) -> tuple[np.ndarray, np.ndarray]:
+def _gaussian(count: int, shape: str = "S4") -> tuple[np.ndarray, np.ndarray]:
     end = _NARROW if shape == "S8" else _WIDE
     return uniform(Gaussian().value, (-end, end), count)
 
 
-def _solutions(shapes: Sequence[str], count: int) -> Iterator[Probe]:
+def solutions(shapes: Sequence[str], count: int) -> Iterator[Probe]:
     """The Gaussian, smoothed: variances s^2 of the markers and s^2 + m eps^2 of F, m = int S x^2, obey
 
         s^2 + m eps^2 log(s^2 / s_0^2) = s_0^2 + 2 t,
@@ -68,30 +54,28 @@ def _solutions(shapes: Sequence[str], count: int) -> Iterator[Probe]:
         many, epsilon = 5 * count, 0.2 if name == "S8" else 0.3
         spacing = (_NARROW if name == "S8" else _WIDE) * 2.0 / many
         # The fourth moment over 24 times the fourth derivative, 12 at the peak; the markers as (h / eps)^M, twice.
-        fourth = 0.5 * epsilon**4 * abs(_moment(name, 4))
+        fourth = 0.5 * epsilon**4 * abs(_moments(name)[1])
         order = 6 if shape.smoothness is None else shape.smoothness + 1
         bound = fourth + 8.0 * (spacing / epsilon) ** order
         right = Kind("solution", "the smoothed Gaussian", bound, "closed form")
         yield right(f"{name}, ε = {epsilon / spacing:g} h", _smoothed_off, name, many, epsilon)
 
 
-def _moment(name: str, m: int) -> float:
-    """int S x^m dx, from the transform: 1 - m2 k^2/2 + m4 k^4/24."""
+def _moments(name: str) -> tuple[float, float]:
+    """int S x^2 dx and int S x^4 dx, from the transform: 1 - m2 k^2/2 + m4 k^4/24."""
     k = 0.05
     t1, t2 = (float(SHAPES[name].transform(f * k)) for f in (1.0, 2.0))
     second = -((16.0 * t1 - t2 - 15.0) / 12.0) * 2.0 / k**2
-    if m == 2:
-        return second
-    return (t2 - 1.0 + 2.0 * second * k**2) * 24.0 / (2.0 * k) ** 4
+    return second, (t2 - 1.0 + 2.0 * second * k**2) * 24.0 / (2.0 * k) ** 4
 
 
 def _smoothed_off(name: str, count: int, epsilon: float) -> float:
     limit, time = extremes(SHAPES[name]).eta * epsilon**2, 0.1
     steps = math.ceil(4.0 * time / limit) + 4
     velocity = MarkerVelocity(SHAPES[name], epsilon)
-    with quiet(FracparticlesWarning):  # clusters have no time to grow
+    with quiet():  # clusters have no time to grow
         end = run(*_gaussian(count, name), velocity, dt=time / steps, steps=steps)
-    m, start = _moment(name, 2) * epsilon**2, 0.5
+    m, start = _moments(name)[0] * epsilon**2, 0.5
     left = lambda s: s + m * math.log(s / start) - start - 2.0 * time  # noqa: E731
     variance = brentq(left, start, start + 2.0 * time)
     z = np.linspace(-1.0, 1.0, 81)
@@ -99,15 +83,21 @@ def _smoothed_off(name: str, count: int, epsilon: float) -> float:
     return off(end.field(z), exact)
 
 
-def _growth() -> Iterator[Probe]:
+def growth() -> Iterator[Probe]:
     """The wave that decays fastest, at steps about the limit of the lattice: 1 + z + z^2/2, and a word beyond.
 
-    Linear to the height of the wave; places are rounded to 1e-16 of 10, the wave is 1e-6.
+    Linear to the height of the wave; places are rounded to 1e-16 of 10, the wave is 1e-6. Waves whose transform is
+    negative grow at any step, at the predicted rate, and the run says so.
     """
     grows = Kind("step", "grows by 1 + z + z²/2", 1e-3, "lattice sum")
-    for name, factor in product(SMOOTH, _FACTORS):
+    for name, factor in product(SMOOTH, FACTORS):
         must = WARNED if factor > 1.0 else HELD
         yield grows(f"{name}, dt = {factor:g} η ε²", missed, wave_growth, name, factor, must=must)
+    for name in ("S4", "S6"):
+        found, how = extremes(SHAPES[name]), {"expected": "grow at any step", "must": WARNED}
+        steps = math.ceil(3.0 / (0.1 * found.eta * found.growth))
+        words = f"{name}, waves of {2.0 * math.pi / found.k_growth:.2f} ε"
+        yield grows(words, missed, wave_growth, name, 0.1, steps, True, **how)
 
 
 def wave_growth(
@@ -122,47 +112,30 @@ def wave_growth(
     period, h = waves * wavelength, wavelength / per
     # A neighbour at epsilon, where S'' jumps, is inside as often as outside: none is there.
     lattice = h * (np.arange(waves * per) + 0.5)
-    wave = np.cos(k * lattice)
-    rate = float(lattice_rate(shape, k, h))
-    dt = factor * found.eta
+    wave, dt = np.cos(k * lattice), factor * found.eta
     velocity = MarkerVelocity(shape, 1.0, period=period)
     end = run(lattice + _XI * wave, np.full(lattice.size, h), velocity, dt=dt, steps=steps)
     left = float((end.x - lattice) @ wave / (wave @ wave) / _XI)
-    z = dt * rate
+    z = dt * float(lattice_rate(shape, k, h))
     return float(np.copysign(abs(left) ** (1.0 / steps), left)), 1.0 + z + 0.5 * z * z
 
 
-def _clusters() -> Iterator[Probe]:
-    """Waves whose transform is negative grow at any step, at the predicted rate, and the run says so."""
-    grows = Kind("step", "grow at any step", 1e-3, "lattice sum", WARNED)
-    for name, factor in (("S4", 0.1), ("S6", 0.1)):
-        found = extremes(SHAPES[name])
-        steps = math.ceil(3.0 / (factor * found.eta * found.growth))
-        words = f"{name}, waves of {2.0 * math.pi / found.k_growth:.2f} ε"
-        yield grows(words, missed, wave_growth, name, factor, steps, True)
-
-
-def _supports(count: int, supports: Sequence[float]) -> Iterator[Probe]:
+def support(count: int, supports: Sequence[float]) -> Iterator[Probe]:
     """Support parameters from a tenth of the spacing to fifty times: wrong by more than 5 % only with a word."""
-    word = Kind("support", "within 5 %, or a word", _SPOKEN, "closed form")
-    for name, support in product(("S4", "S8"), supports):
-        yield word(f"{name}, ε = {support:g} h", _support_error, name, support, count)
-    for name, load in product(("S4", "S8"), ("quiet start", "random")):
-        yield word(f"{name}, {load}", _load_error, name, load, count)
+    word = Kind("support", "within 5 %, or a word", 0.05, "closed form")
+    for name, ratio in product(SUPPORTED, supports):
+        yield word(f"{name}, ε = {ratio:g} h", support_error, count, name, ratio)
+    for name in SUPPORTED:
+        quiet_start = equal_weight(Gaussian(), count)
+        yield word(f"{name}, quiet start", _error, name, *quiet_start, 0.1)
+        drawn = random(Gaussian(), count, np.random.default_rng(4))
+        yield word(f"{name}, random", _error, name, *drawn, 0.1)
 
 
-def _support_error(name: str, support: float, count: int) -> float:
+def support_error(count: int, name: str, support: float) -> float:
+    """Return the error of a run with that epsilon / h."""
     x, w = _gaussian(count, name)
     return _error(name, x, w, support * float(x[1] - x[0]))
-
-
-def _load_error(name: str, load: str, count: int) -> float:
-    profile = Gaussian()
-    if load == "random":
-        x, w = random(profile, count, np.random.default_rng(4))
-    else:
-        x, w = equal_weight(profile, count)
-    return _error(name, x, w, 0.1)
 
 
 def _error(name: str, x: np.ndarray, w: np.ndarray, epsilon: float) -> float:
@@ -175,77 +148,56 @@ def _error(name: str, x: np.ndarray, w: np.ndarray, epsilon: float) -> float:
     return off(end.field(z), Gaussian().value(z, dt * steps))
 
 
-def add_support_errors(panels: Panels, count: int, supports: Sequence[float]) -> None:
-    """Add the error of runs against epsilon / h, and whether they spoke."""
-    for name, support in product(("S4", "S8"), supports):
-        add_error(panels, name, support, partial(_support_error, name, support, count))
-
-
-def _signs(count: int) -> Iterator[Probe]:
+def signs(count: int) -> Iterator[Probe]:
     """F of one sign, whichever; a weight of zero counts for nothing."""
-    same = Kind("marker signs", "the same paths, bit for bit", must=HELD)
-    yield same("weights all negative", _sign_seen, count)
-    yield same("weights of zero between", _zero_seen, count, expected="the others' paths")
-    x, w = _gaussian(count, "S4")
-    cases: dict[str, tuple[np.ndarray, np.ndarray, str]] = {
-        "weights of both signs": (x, w * np.sign(x), "S4"),
-        "all weights zero": (x, 0.0 * w, "S4"),
-        "S8 in a far tail": (*_gaussian(200, "S4"), "S8"),
-        "a weight of nan": (x, np.where(x > 2.0, np.nan, w), "S4"),
-    }
-    refused, step = Kind("marker signs", must=REFUSED), partial(run, dt=1e-3, steps=3)
-    for case, (places, weights, name) in cases.items():
-        yield refused(case, step, places, weights, MarkerVelocity(SHAPES[name], 0.2))
-    wide, fast = uniform(Gaussian().value, (-7.0, 7.0), count), FourierMarkerVelocity(0.2)
-    yield refused("S8 by transforms, F below 1e-11", step, *wide, fast)
-
-
-def _five_steps(x: np.ndarray, w: np.ndarray) -> np.ndarray:
-    return run(x, w, MarkerVelocity(SHAPES["S4"], 0.5), dt=0.01, steps=5).x
-
-
-def _sign_seen(count: int) -> float:
-    x, w = _gaussian(count, "S4")
-    return float(np.abs(_five_steps(x, w) - _five_steps(x, -w)).max())
-
-
-def _zero_seen(count: int) -> float:
-    x, w = _gaussian(count, "S4")
+    x, w = _gaussian(count)
     more = np.sort(np.concatenate([x, 0.5 * (x[1:] + x[:-1])]))
     weights = np.zeros(more.size)
     weights[::2] = w
-    return float(np.abs(_five_steps(more, weights) - _five_steps(x, w)).max())
+    same = Kind("marker signs", "the same paths, bit for bit", must=HELD)
+    yield same("weights all negative", _apart, x, w, x, -w)
+    yield same("weights of zero between", _apart, x, w, more, weights, expected="the others' paths")
+    refused, step = Kind("marker signs", must=REFUSED), partial(run, dt=1e-3, steps=3)
+    s4, s8 = (MarkerVelocity(SHAPES[name], 0.2) for name in ("S4", "S8"))
+    cases: dict[str, tuple[Any, ...]] = {
+        "weights of both signs": (x, w * np.sign(x), s4),
+        "all weights zero": (x, 0.0 * w, s4),
+        "S8 in a far tail": (*_gaussian(200), s8),
+        "a weight of nan": (x, np.where(x > 2.0, np.nan, w), s4),
+    }
+    wide = uniform(Gaussian().value, (-7.0, 7.0), count)
+    cases["S8 by transforms, F below 1e-11"] = (*wide, FourierMarkerVelocity(0.2))
+    yield from refused.over(step, cases)
 
 
-def _units(count: int) -> Iterator[Probe]:
+def _five_steps(x: np.ndarray, w: np.ndarray, unit: float = 1.0, dt: float = 0.01) -> np.ndarray:
+    velocity = MarkerVelocity(SHAPES["S4"], 0.5 * unit)
+    return run(unit * x, w, velocity, dt=dt * unit**2, steps=5).x / unit
+
+
+def _apart(x: np.ndarray, w: np.ndarray, y: np.ndarray, v: np.ndarray) -> float:
+    return float(np.abs(_five_steps(y, v) - _five_steps(x, w)).max())
+
+
+def units(count: int) -> Iterator[Probe]:
     """Lengths times a power of two change no bit; a total in other units neither; periods do not count."""
+    x, w = _gaussian(count)
     no_bit = Kind("marker units", "no bit changes", 0.0, "scaling", HELD)
     for power in (-150, 150):
-        yield no_bit(f"lengths times 2^{power}", _other_units, count, 2.0**power)
+        yield no_bit(
+            f"lengths times 2^{power}",
+            lambda: off(_five_steps(x, w, 2.0**power, 2.0**-7), _five_steps(x, w, dt=2.0**-7), 1.0),
+        )
     # F and F_x are rounded alike, their quotient once more.
     same = Kind("marker units", "the same paths", 1e-12, "scaling")
     for scale in (1e-290, 1e290):
-        yield same(f"weights times {scale:g}", _other_weights, count, scale)
-    refused = Kind("marker units", must=REFUSED)
-    yield refused("weights of 1e308", _other_weights, count, 1e309)
+        yield same(f"weights times {scale:g}", _apart, x, w, x, scale * w)
+    with np.errstate(over="ignore"):
+        infinite = 1e309 * w
+    yield Kind("marker units", must=REFUSED)("weights of 1e308", _five_steps, x, infinite)
     for periods in (1, 10**6):
         same = Kind("marker units", "the same velocity", 64.0 * EPS * periods * 4.0, "scaling")
         yield same(f"periodic, {periods:g} periods away", _periods_off, periods)
-
-
-def _other_units(count: int, unit: float) -> float:
-    x, w = _gaussian(count, "S4")
-    plain = run(x, w, MarkerVelocity(SHAPES["S4"], 0.5), dt=2.0**-7, steps=5)
-    velocity = MarkerVelocity(SHAPES["S4"], 0.5 * unit)
-    other = run(unit * x, w, velocity, dt=2.0**-7 * unit**2, steps=5)
-    return float(np.abs(other.x / unit - plain.x).max())
-
-
-def _other_weights(count: int, scale: float) -> float:
-    x, w = _gaussian(count, "S4")
-    with np.errstate(over="ignore"):
-        scaled = scale * w
-    return float(np.abs(_five_steps(x, w) - _five_steps(x, scaled)).max())
 
 
 def _periods_off(periods: int) -> float:
@@ -256,18 +208,18 @@ def _periods_off(periods: int) -> float:
     return float(np.abs(velocity(x + 4.0 * periods, w) - velocity(x, w)).max()) * 0.2**2
 
 
-def _tools() -> Iterator[Probe]:
+def tools() -> Iterator[Probe]:
     """What measures rates, limits and supports says where there is nothing to measure."""
+    s3, s8 = SHAPES["S3"], SHAPES["S8"]
     wave: dict[str, Any] = {"spacing": 0.25, "period": 16.0, "amplitude": 1e-6}
-    flat = {**wave, "amplitude": 1e-100}
     yield from Kind("marker tools", must=REFUSED).of(
         {
-            "a wave of 1e-100": lambda: measured_rate(SHAPES["S8"], 4, **flat),
-            "a wave of two markers": lambda: measured_rate(SHAPES["S8"], 32, **wave),
-            "a limit of S3, whose slope has kinks": lambda: largest_step(SHAPES["S3"]),
-            "the best ε of S3 at h = 1e-3": lambda: optimal_support(SHAPES["S3"], 1e-3),
-            "the best ε at h = 1e-9": lambda: optimal_support(SHAPES["S8"], 1e-9),
-            "the best ε at h = 5": lambda: optimal_support(SHAPES["S8"], 5.0),
+            "a wave of 1e-100": lambda: measured_rate(s8, 4, **wave | {"amplitude": 1e-100}),
+            "a wave of two markers": lambda: measured_rate(s8, 32, **wave),
+            "a limit of S3, whose slope has kinks": lambda: largest_step(s3),
+            "the best ε of S3 at h = 1e-3": lambda: optimal_support(s3, 1e-3),
+            "the best ε at h = 1e-9": lambda: optimal_support(s8, 1e-9),
+            "the best ε at h = 5": lambda: optimal_support(s8, 5.0),
             "a square of no markers": lambda: equal_weight(Square(), 0),
         }
     )

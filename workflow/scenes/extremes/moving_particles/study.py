@@ -1,12 +1,15 @@
 """Moving particles: sums, remeshing, diffusion velocities, the random walk and markers, where they may go wrong."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import product
+from typing import Any
 
-from fracparticles.errors import FracparticlesWarning
+import numpy as np
+
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from fracstudy.probe import frame, quiet
+from fracstudy.probe import frame, overheard, probes_of, quiet
 from scenes.extremes.moving_particles import (
     equations,
     markers,
@@ -39,22 +42,31 @@ def study(
     overlap or support, with whether they spoke.
     """
     cloud, panels = Cloud(half_width, spacing), Panels()
-    probes = [
-        *sums.probes(particles),
-        *velocity_fields.probes(cloud, orders),
-        *velocity_limits.probes(cloud, orders),
-        *walk.probes(walkers),
-        *markers.probes(shapes, markers_in_a_run, supports),
-        *equations.probes(markers_in_a_run, reynolds),
+    given = {"orders": orders, "walkers": walkers, "shapes": shapes, "count": markers_in_a_run}
+    given |= {"cloud": cloud, "supports": supports, "reynolds": reynolds}
+    modules = (velocity_fields, velocity_limits, walk, markers, equations)
+    probes = [*probes_of(sums, **sums.particles_of(particles)), *probes_of(*modules, **given)]
+    waves: list[tuple[str, Callable[..., tuple[float, float]], Sequence[Any]]] = [
+        ("DVM {}", velocity_limits.wave_growth, orders),
+        ("{}", markers.wave_growth, markers.SMOOTH),
     ]
-    with quiet(FracparticlesWarning):  # half of the steps are beyond the limit
-        for order, factor in product(orders, _FACTORS):
-            found, predicted = velocity_limits.growth_of_a_wave(order, factor)
-            panels.add("growth", f"DVM {order}", factor, found, predicted=predicted)
-        for name, factor in product(markers.SMOOTH, _FACTORS):
-            found, predicted = markers.wave_growth(name, factor)
-            panels.add("growth", name, factor, found, predicted=predicted)
-    velocity_limits.add_overlap_errors(panels, cloud, orders)
-    markers.add_support_errors(panels, markers_in_a_run, supports)
-    series = panels.frame[["series", "x", "y", "predicted", "panel", "spoke"]]
-    return Result(frame(probes), (), series)
+    runs: list[tuple[str, Callable[..., float], Sequence[Any], Sequence[float]]] = [
+        ("DVM {}", partial(velocity_limits.case_error, cloud), orders, velocity_limits.OVERLAPS),
+        ("{}", partial(markers.support_error, markers_in_a_run), markers.SUPPORTED, supports),
+    ]
+    with quiet():  # half of the steps are beyond the limit
+        for name, growth, kinds in waves:
+            for kind, factor in product(kinds, _FACTORS):
+                found, predicted = growth(kind, factor)
+                panels.add("growth", name.format(kind), factor, found, predicted=predicted)
+        for name, error, kinds, ratios in runs:
+            for kind, ratio in product(kinds, ratios):
+                with overheard() as words:
+                    try:
+                        y = error(kind, ratio)
+                    except ArithmeticError:  # refused
+                        y = np.nan
+                panels.add("error", name.format(kind), ratio, y, spoke=bool(words))
+    return Result(
+        frame(probes), (), panels.frame[["series", "x", "y", "predicted", "panel", "spoke"]]
+    )

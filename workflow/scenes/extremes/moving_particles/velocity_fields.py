@@ -16,17 +16,10 @@ from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Clo
 
 # The sums state 1e-11 of the peak; a velocity is a quotient of two of them, and u at the ends is 1e-3 of it.
 _SAME = 1e-7
+_REMESHINGS = ("M4'", "Lambda3")
 
 
-def probes(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
-    """All of them."""
-    yield from _weak(cloud)
-    yield from _signs(cloud)
-    yield from _crossing(cloud)
-    yield from _remeshed(cloud, orders)
-
-
-def _weak(cloud: Cloud) -> Iterator[Probe]:
+def weak(cloud: Cloud) -> Iterator[Probe]:
     """A field below the round-off of the sums at the ends, beta near one; pairs, or a threshold, carry it."""
     wide, refused = Cloud(20.0, 2.0 * cloud.h), Kind("weak field", must=REFUSED)
     error = partial(wide.error, heat_kernel, alpha=2.0 - 1e-9)
@@ -37,8 +30,7 @@ def _weak(cloud: Cloud) -> Iterator[Probe]:
     yield right(f"{case}, threshold 1e-8", partial(error, threshold=1e-8))
     same = Kind("weak field", "the same particles", _SAME, "scaling")
     for unit in (1e-30, 1e30):
-        name = f"lengths times {unit:g}, times times {unit:g}^α"
-        yield same(name, _other_units, cloud, unit)
+        yield same(f"lengths times {unit:g}, times times {unit:g}^α", _other_units, cloud, unit)
     left_out = Kind("weak field", "left out", must=HELD)
     yield left_out("strengths of zero at the ends", _kept, cloud, 0.0)
     yield refused("strengths of 1e-320 at the ends", _kept, cloud, 1e-320)
@@ -59,10 +51,9 @@ def _kept(cloud: Cloud, ends: float) -> float:
     return float(cloud.run(u, time=0.01, remeshing="none").x.size - (cloud.x.size - 6))
 
 
-def _signs(cloud: Cloud) -> Iterator[Probe]:
+def signs(cloud: Cloud) -> Iterator[Probe]:
     """A velocity Q / u has no meaning where u is zero, and does not know the sign of u."""
-    same = Kind("sign", "the same paths, bit for bit", must=HELD)
-    yield same(
+    yield Kind("sign", "the same paths, bit for bit", must=HELD)(
         "a field that is negative everywhere",
         lambda: off(cloud.run(-cloud.u()).x, cloud.run().x, 1.0),
     )
@@ -86,17 +77,17 @@ def _uniform_moves(cloud: Cloud) -> float:
     return float(np.abs(run.x - cloud.x)[middle].max())
 
 
-def _crossing(cloud: Cloud) -> Iterator[Probe]:
+def crossing(cloud: Cloud) -> Iterator[Probe]:
     """Particles in any order, in one place, or nearly; and those that cross since the step is too large."""
     shuffled = np.random.default_rng(3).permutation(cloud.x.size)
     twice = np.repeat(np.arange(cloud.x.size), 2)
     same = Kind("crossing", "the same paths", _SAME, "the plain run")
-    for case, places, shift in (
-        ("in any order", shuffled, 0.0),
-        ("each in two halves, in one place", twice, 0.0),
-        ("each in two halves, 1e-14 apart", twice, 1e-14),
-    ):
-        yield same(f"particles {case}", _same_paths, cloud, places, shift)
+    cases = {
+        "particles in any order": (cloud, shuffled, 0.0),
+        "particles each in two halves, in one place": (cloud, twice, 0.0),
+        "particles each in two halves, 1e-14 apart": (cloud, twice, 1e-14),
+    }
+    yield from same.over(_same_paths, cases)
     yield Kind("crossing", *WORD)("steps of three times the limit", lambda: cloud.error(factor=3.0))
 
 
@@ -107,7 +98,7 @@ def _same_paths(cloud: Cloud, places: np.ndarray, shift: float) -> float:
     return off(other.x, cloud.run(**how).x[places], cloud.h)
 
 
-def _remeshed(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
+def remeshed(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
     """Remeshing at every step, when asked for, and never, onto either exterior."""
     source = "fundamental solution"
     right = Kind("remeshing runs", "the solution", cloud.smoothing(), source, HELD)
@@ -122,9 +113,6 @@ def _remeshed(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
     found = Kind("remeshing runs", "every strength is found", 500.0 * EPS, "exact sums")
     for name in _REMESHINGS:
         yield found(f"{name}, extended lattice", _unaccounted, cloud, name)
-
-
-_REMESHINGS = ("M4'", "Lambda3")
 
 
 def _unaccounted(cloud: Cloud, name: str) -> float:

@@ -16,39 +16,27 @@ from fracparticles.schemes.stability import stability_limit, worst_wave
 from fracparticles.special.ends import cauchy, heat_kernel
 from fracparticles.special.stable import green
 from fracparticles.special.tails import tail_constant
-from fracstudy.panels import Panels
 from fracstudy.probe import HELD, REFUSED, WARNED, Kind, Probe, off
-from scenes.extremes.moving_particles.cloud import ALPHA, START, TIME, WORD, Cloud
-from scenes.extremes.moving_particles.words import add_error, missed
+from scenes.extremes.moving_particles.cloud import ALPHA, FACTORS, START, TIME, WORD, Cloud, missed
 
-_FACTORS = (0.9, 0.99, 1.01, 1.1, 1.5)  # of the limit of a step
 _HALF, _STEPS = 300, 3  # particles on either side of a wave, steps
 _XI = 1e-5  # its height in spacings
-_OVERLAPS = (0.25, 0.4, 0.5, 0.6, 0.8, 1.0, 2.0, 4.0, 20.0)
+OVERLAPS = (0.25, 0.4, 0.5, 0.6, 0.8, 1.0, 2.0, 4.0, 20.0)
 
 
-def probes(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
-    """All of them."""
-    yield from _growth(orders)
-    yield from _overlaps(cloud, orders)
-    yield from _ends(cloud)
-    yield from _orders_of_the_equation(cloud)
-    yield from _few(cloud)
-
-
-def _growth(orders: Sequence[int]) -> Iterator[Probe]:
+def growth(orders: Sequence[int]) -> Iterator[Probe]:
     """A displacement wave on a uniform field: 1 + z + z^2/2 a step, z = dt A(k) of DD; beyond the limit it is told."""
-    for order, factor in product(orders, _FACTORS):
+    for order, factor in product(orders, FACTORS):
         # The ends stretch the middle by 2 A r^-alpha t, and z = -2 dt / a changes by as much.
         dt = factor * stability_limit("DD", ALPHA - 1.0, order)
         stretch = 2.0 * tail_constant(ALPHA) / ALPHA * _HALF**-ALPHA * _STEPS * dt
         bound = 2.0 * factor * abs(2.0 * factor - 1.0) * stretch
         must = WARNED if factor > 1.0 else HELD
         grows = Kind("step", "grows by 1 + z + z²/2", bound, "Fourier symbol", must)
-        yield grows(f"order {order}, dt = {factor:g} a", missed, growth_of_a_wave, order, factor)
+        yield grows(f"order {order}, dt = {factor:g} a", missed, wave_growth, order, factor)
 
 
-def growth_of_a_wave(order: int, factor: float) -> tuple[float, float]:
+def wave_growth(order: int, factor: float) -> tuple[float, float]:
     """Return what a step of `factor` times the limit multiplies the fastest wave by, and the prediction."""
     setting = Setting(alpha=ALPHA, order=order)
     theta = worst_wave("DD", setting)
@@ -56,26 +44,26 @@ def growth_of_a_wave(order: int, factor: float) -> tuple[float, float]:
     x = np.arange(-_HALF, _HALF + 1.0)
     wave = np.cos(theta * x)
 
-    def moved(places: np.ndarray) -> np.ndarray:
-        how: dict[str, Any] = {"spacing": 1.0, "alpha": ALPHA, "order": order, "remeshing": "none"}
-        return dvm.run(places, np.ones(x.size), dt=dt, steps=_STEPS, **how).x
-
-    change = (moved(x + _XI * wave) - moved(x)) / _XI
+    how: dict[str, Any] = {"spacing": 1.0, "alpha": ALPHA, "order": order, "remeshing": "none"}
+    ends = [
+        dvm.run(at, np.ones(x.size), dt=dt, steps=_STEPS, **how).x for at in (x + _XI * wave, x)
+    ]
+    change = (ends[0] - ends[1]) / _XI
     middle = np.abs(x) < _HALF / 6.0
     ratio = float(change[middle] @ wave[middle] / (wave[middle] @ wave[middle]))
     z = dt * float(SCHEMES["DD"].symbol(np.array([theta]), setting)[0])
     return float(np.copysign(abs(ratio) ** (1.0 / _STEPS), ratio)), 1.0 + z + 0.5 * z * z
 
 
-def _overlaps(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
+def overlaps(cloud: Cloud, orders: Sequence[int]) -> Iterator[Probe]:
     """Smoothing lengths from a quarter of the spacing to twenty times: wrong by more than 5 % only with a word."""
     word = Kind("overlap", *WORD)
-    for order, overlap in product(orders, _OVERLAPS):
-        yield word(f"order {order}, ε = {overlap:g} h", _case_error, cloud, order, overlap)
+    for order, overlap in product(orders, OVERLAPS):
+        yield word(f"order {order}, ε = {overlap:g} h", case_error, cloud, order, overlap)
 
 
-def _case_error(cloud: Cloud, order: int, overlap: float) -> float:
-    """The error (48) of a run of the public function, which says more than `dvm.run`."""
+def case_error(cloud: Cloud, order: int, overlap: float) -> float:
+    """Return the error (48) of a run of the public function, which says more than `dvm.run`."""
     grid = {"beta": ALPHA - 1.0, "half_width": cloud.half_width, "spacing": cloud.h}
     times = {"t_initial": START, "t_final": START + TIME}
     limit = stability_limit("DD", ALPHA - 1.0, order, overlap)
@@ -84,13 +72,7 @@ def _case_error(cloud: Cloud, order: int, overlap: float) -> float:
     return float(relative_l1_error(run.case, run.u))
 
 
-def add_overlap_errors(panels: Panels, cloud: Cloud, orders: Sequence[int]) -> None:
-    """Add the error of runs against the overlap, and whether they spoke."""
-    for order, overlap in product(orders, _OVERLAPS):
-        add_error(panels, f"DVM {order}", overlap, partial(_case_error, cloud, order, overlap))
-
-
-def _ends(cloud: Cloud) -> Iterator[Probe]:
+def ends(cloud: Cloud) -> Iterator[Probe]:
     """Lattices too narrow, thresholds too large, data off the centre: wrong by more than 5 % only with a word."""
     word = Kind("ends", *WORD)
     for exterior, threshold in product(dvm.EXTERIORS, (1e-300, 1e-6, 1e-3, 0.02, 0.2, 0.9)):
@@ -99,10 +81,9 @@ def _ends(cloud: Cloud) -> Iterator[Probe]:
     for exterior, width, time in product(dvm.EXTERIORS, (1.0, 2.0, 5.0), (0.5, 10.0)):
         run = partial(Cloud(width, cloud.h).error, exterior=exterior, time=time)
         yield word(f"{exterior}, |x| < {width:g}, T = {time:g}", run)
-    for centre in (3.0, 8.0):
-        place = centre * 0.1 * cloud.half_width
-        yield word(f"open, data at {centre / 10:g} of the half-width", _off_centre, cloud, place)
-    yield word("open, data beyond the lattice", _off_centre, cloud, 3.0 * cloud.half_width)
+    places = {"at 0.3 of the half-width": 3.0 * 0.1, "at 0.8 of the half-width": 8.0 * 0.1}
+    for where, share in (places | {"beyond the lattice": 3.0}).items():
+        yield word(f"open, data {where}", _off_centre, cloud, share * cloud.half_width)
 
 
 def _off_centre(cloud: Cloud, centre: float) -> float:
@@ -111,7 +92,7 @@ def _off_centre(cloud: Cloud, centre: float) -> float:
     return off(run.field(z), green(z - centre, START + TIME, ALPHA))
 
 
-def _orders_of_the_equation(cloud: Cloud) -> Iterator[Probe]:
+def orders_of_the_equation(cloud: Cloud) -> Iterator[Probe]:
     """Orders next to 1 and 2 against the Cauchy and the Gaussian density; between, 1 - alpha of the difference."""
     for exterior, alpha in product(dvm.EXTERIORS, (1.0 + 1e-9, 1.001, 1.999, 2.0 - 1e-9)):
         nearest, beta = round(alpha), alpha - 1.0
@@ -120,12 +101,12 @@ def _orders_of_the_equation(cloud: Cloud) -> Iterator[Probe]:
         narrow = Cloud(min(cloud.half_width, 6.0), cloud.h) if nearest == 2 else cloud
         exact = heat_kernel if nearest == 2 else cauchy
         written = f"{beta:.0e}" if beta < 0.5 else f"1 - {1.0 - beta:.0e}"
-        right = Kind("order", "the limit", bound, "closed form", HELD)
         run = partial(narrow.error, exact, alpha=alpha, exterior=exterior, steps=20)
+        right = Kind("order", "the limit", bound, "closed form", HELD)
         yield right(f"{exterior}, β = {written}", run)
 
 
-def _few(cloud: Cloud) -> Iterator[Probe]:
+def few(cloud: Cloud) -> Iterator[Probe]:
     """One particle does not move, two move apart alike; the tails of an open exterior ask for sixteen."""
     alike = Kind("few", "move apart alike", 1e-12, "symmetry")
     yield alike("one particle", _few_moved, cloud, 1, expected="stays")

@@ -1,7 +1,7 @@
 """The random walk at the ends of the order and of the numbers."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise, product
 
 import mpmath
@@ -22,55 +22,36 @@ from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe
 # sqrt(n) max |F_n - F| is above with a probability of 2 exp(-2 2.3^2) = 5e-5 (Kolmogorov).
 _SURE = 2.3
 _SEED = 7
-Law = Callable[[np.ndarray], np.ndarray]
 
 
-def probes(walkers: int) -> Iterator[Probe]:
-    """All of them."""
-    yield from _laws(walkers)
-    yield from _units()
-    yield from _cells()
-    yield from _numbers()
-
-
-def _laws(walkers: int) -> Iterator[Probe]:
+def laws(walkers: int) -> Iterator[Probe]:
     """Increments next to alpha = 1 and 2: Cauchy's law and the normal one of variance 2; in many steps as in one."""
     next_to = float(np.nextafter(1.0, 2.0)), float(np.nextafter(2.0, 1.0))
     for alpha, steps in product((next_to[0], 1.0 + 1e-6, 2.0 - 1e-6, next_to[1]), (1, 10)):
         right = Kind("walk", f"the law of α = {round(alpha)}", _SURE, "closed form", HELD)
-        law = _cauchy if alpha < 1.5 else _normal
-        name = f"α = {_near(alpha)}, {steps} step{'s' if steps > 1 else ''}"
-        yield right(name, _distance, alpha, law, walkers, steps)
+        near = f"1 + {alpha - 1.0:.0e}" if alpha < 1.5 else f"2 - {2.0 - alpha:.0e}"
+        name = f"α = {near}, {steps} step{'s' if steps > 1 else ''}"
+        yield right(name, _distance, alpha, walkers, steps)
 
 
-def _near(alpha: float) -> str:
-    return f"1 + {alpha - 1.0:.0e}" if alpha < 1.5 else f"2 - {2.0 - alpha:.0e}"
-
-
-def _cauchy(x: np.ndarray) -> np.ndarray:
-    return 0.5 + np.arctan(x) / math.pi
-
-
-def _normal(x: np.ndarray) -> np.ndarray:
-    return np.asarray(ndtr(x / math.sqrt(2.0)))
-
-
-def _distance(alpha: float, law: Law, walkers: int, steps: int) -> float:
+def _distance(alpha: float, walkers: int, steps: int) -> float:
     """Kolmogorov's sqrt(n) max |F_n - F|."""
     x = np.sort(walk(np.zeros(walkers), alpha, 1.0, np.random.default_rng(_SEED), steps=steps))
-    edges, f = np.arange(walkers + 1) / walkers, law(x)
+    f = 0.5 + np.arctan(x) / math.pi if alpha < 1.5 else ndtr(x / math.sqrt(2.0))
+    edges = np.arange(walkers + 1) / walkers
     return math.sqrt(walkers) * float(max((edges[1:] - f).max(), (f - edges[:-1]).max()))
 
 
-def _units() -> Iterator[Probe]:
+def units() -> Iterator[Probe]:
     """The same numbers in other units, to the end of what is a length; beyond, the walk says so."""
     same = Kind("walk", "the same walk", 64.0 * EPS, "scaling")
     for alpha, unit in ((1.5, 1e-60), (1.5, 1e60), (1.001, 1e95)):
         yield same(f"α = {alpha:g}, lengths times {unit:g}", _other_units, alpha, unit)
-    refused = Kind("walk", must=REFUSED)
-    for case, time in (("(D dt)^(1/α) = 1e-120", 1e-100), ("(D dt)^(1/α) = 1e120", 1e100)):
-        dice = np.random.default_rng(_SEED)
-        yield refused(case, lambda: walk([0.0], 1.2, time, dice, diffusivity=time**0.44))
+    cases = {"(D dt)^(1/α) = 1e-120": (1e-100,), "(D dt)^(1/α) = 1e120": (1e100,)}
+    dice = np.random.default_rng(_SEED)
+    yield from Kind("walk", must=REFUSED).over(
+        lambda time: walk([0.0], 1.2, time, dice, diffusivity=time**0.44), cases
+    )
 
 
 def _other_units(alpha: float, unit: float) -> float:
@@ -82,7 +63,7 @@ def _other_units(alpha: float, unit: float) -> float:
     return float(np.abs(other / unit / plain - 1.0).max()) / math.log(max(unit, 1.0 / unit))
 
 
-def _cells() -> Iterator[Probe]:
+def cells() -> Iterator[Probe]:
     """Every walker inside is counted, also next to the end; masses of cells near and far are those of Cauchy's law."""
     ends = np.array([-1.0, np.nextafter(-1.0, -2.0), np.nextafter(1.0, 0.0), 1.0])
     inside = Kind("cells", "two are inside", must=HELD)
@@ -92,12 +73,10 @@ def _cells() -> Iterator[Probe]:
     for k, (low, high) in enumerate(pairwise(edges)):
         # Of a tail x^-alpha the small part of alpha is seen as its logarithm.
         nearest = min(max(abs(low), 1.0), max(abs(high), 1.0))
-        right = Kind(
-            "cells", "its mass, relative", 2e-12 * (1.0 + math.log(nearest)), "closed form"
-        )
+        bound = 2e-12 * (1.0 + math.log(nearest))
+        right = Kind("cells", "its mass, relative", bound, "closed form")
         yield right(f"cell from {low:g} to {high:g}, α = 1 + 1e-12", _mass_off, edges, k)
-    refused = Kind("cells", must=REFUSED)
-    yield refused("cells that fall", cell_masses, edges[::-1], 1.0, 1.0 + 1e-12)
+    yield Kind("cells", must=REFUSED)("cells that fall", cell_masses, edges[::-1], 1.0, 1.0 + 1e-12)
 
 
 def _miscounted(ends: np.ndarray, cells: int) -> float:
@@ -112,7 +91,7 @@ def _mass_off(edges: np.ndarray, k: int) -> float:
         return abs(float(cell_masses(edges, 1.0, 1.0 + 1e-12)[k] / exact - 1))
 
 
-def _numbers() -> Iterator[Probe]:
+def numbers() -> Iterator[Probe]:
     """Deviations of counts and numbers of walkers for masses from 1e-300 to one."""
     # Logarithms of up to 1000 log 1000 are rounded.
     mean = Kind("cells", "E |N/n - p|", 1e-11, "scipy")

@@ -48,9 +48,8 @@ def exact(beta: float, schemes: list[str]) -> Iterator[Probe]:
         matrix = whole(case)
         # The series rounds T |lambda| 2^-52 of its terms some 64 times, which an open exterior may make larger than
         # their sum.
-        stiffness = case.span * float(
-            np.abs(scheme_matrix(case.scheme, case.setting)).sum(axis=1).max()
-        )
+        size = np.abs(scheme_matrix(case.scheme, case.setting)).sum(axis=1).max()
+        stiffness = case.span * float(size)
         bound = max(_SAME, 64.0 * EPS * stiffness)
         for words, u0 in _shapes(case.x).items():
             name = f"{case.scheme}, {case.exterior}, {words}"
@@ -90,9 +89,8 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
             ("-0.0", -np.zeros(case.shape), bounded),
             ("5e-324 on one particle", np.where(case.x == 0.0, 5e-324, 0.0), bounded),
         ):
-            yield kind(
-                f"{scheme}, {words}", lambda: float(np.abs(run(case, u0)).max() > np.abs(u0).max())
-            )
+            grows = lambda: float(np.abs(run(case, u0)).max() > np.abs(u0).max())  # noqa: E731
+            yield kind(f"{scheme}, {words}", grows)
 
 
 def _scaled_back(u: np.ndarray, size: float) -> np.ndarray:
@@ -113,9 +111,8 @@ def symmetries(beta: float, schemes: list[str]) -> Iterator[Probe]:
             u, v = rng.standard_normal((2, case.particles))
             solve, name = prepare(case).solve, f"{scheme}, {case.exterior}, noise"
             size = float(np.abs(solve(u)).max() + np.abs(solve(v)).max())
-            yield linear(
-                name, lambda: off(solve(3.0 * u - 2.0 * v), 3.0 * solve(u) - 2.0 * solve(v), size)
-            )
+            both = lambda: off(solve(3.0 * u - 2.0 * v), 3.0 * solve(u) - 2.0 * solve(v), size)  # noqa: E731
+            yield linear(name, both)
             yield mirror(name, lambda: off(solve(u[::-1].copy()), solve(u)[::-1], size))
         if scheme == "DPSE":  # whose truncated potential reaches everywhere
             continue
@@ -148,9 +145,8 @@ def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
                 time = c ** (1.0 + beta) / d
                 fields = {"half_width": c * usual.reach, "spacing": c * usual.spacing}
                 fields |= {"t_initial": 0.5 * time, "t_final": time, "diffusivity": d, "dim": dim}
+                scaled = lambda: c**dim * run(case_of(scheme, beta, **fields), None)  # noqa: E731
                 yield kind(
                     f"{scheme}, n = {dim}, lengths times {c:g}, D = {d:g}",
-                    lambda: deviation(
-                        c**dim * run(case_of(scheme, beta, **fields), None), run(usual, None)
-                    ),
+                    lambda: deviation(scaled(), run(usual, None)),
                 )

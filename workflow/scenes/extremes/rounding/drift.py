@@ -25,14 +25,14 @@ def _case(steps: int, **more: Any) -> Case:
     return Case(**_FIELDS, dt=dt, t_final=0.5 + steps * dt, integrator="euler", **more)
 
 
-def probes(most: int, points: Panels) -> Iterator[Probe]:
+def probes(steps: int, points: Panels) -> Iterator[Probe]:
     """The sum of the strengths, which the exchange form keeps exactly.
 
     A step rounds each of N strengths, sums of N terms. If the roundings are independent the mass wanders by eps sqrt(n)
     after n steps; if all have one sign it drifts by n N eps, the bound. The columns of A sum up to zero but for
     eps |A|, which is of the second kind.
     """
-    counts = [10**k for k in range(1, round(np.log10(most)) + 1)]
+    counts = [10**k for k in range(1, round(np.log10(steps)) + 1)]
     case = _case(counts[-1])
     operator = SCHEMES["KPSE"].operator(case.setting)
     matrix = np.eye(operator.size) + case.time_step * dense_matrix(operator)
@@ -63,10 +63,10 @@ def probes(most: int, points: Panels) -> Iterator[Probe]:
         for n, value in zip(counts[shown], values[shown], strict=True):
             words = f"KPSE, {n:.0e} steps of Euler, {name}"
             yield kept(words, float, value, bound=n * terms * eps)
-    same = Kind("mass", "the same, below n N eps", most * terms * EPS, must=HELD)
+    same = Kind("mass", "the same, below n N eps", steps * terms * EPS, must=HELD)
     yield same(
-        f"KPSE, {most:.0e} steps, step by step and one series",
-        lambda: off(prepare(_case(most)).solve(u0) / u, 1.0),
+        f"KPSE, {steps:.0e} steps, step by step and one series",
+        lambda: off(prepare(_case(steps)).solve(u0) / u, 1.0),
     )
 
 

@@ -25,17 +25,7 @@ _FIELDS["integrator"] = "exponential"
 _SAME = Kind("type", "the bits of float64", must=HELD)
 
 
-def probes(particles: int) -> Iterator[Probe]:
-    """All of them; the lattices of sums have so many particles."""
-    yield from _kinds()
-    yield from _functions()
-    yield from _sums(particles)
-    yield from _series()
-    yield from _kept()
-    yield from _arithmetic()
-
-
-def _kinds() -> Iterator[Probe]:
+def kinds() -> Iterator[Probe]:
     """Strengths of other types and layouts: widened, the same bits as those of their values in float64; or refused."""
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.random.default_rng(3).uniform(-1.0, 1.0, case.shape)
@@ -72,7 +62,7 @@ def _other_bits(case: Case, given: np.ndarray) -> float:
     return float(not (same and given.tobytes() == before.tobytes()))
 
 
-def _functions() -> Iterator[Probe]:
+def functions() -> Iterator[Probe]:
     """Public functions of float32: the value at the number in float64, not one of single precision."""
     x = np.linspace(-3.0, 3.0, 31).astype(np.float32)
     narrow = x, np.float32(0.7), np.float32(1.3)
@@ -86,10 +76,8 @@ def _functions() -> Iterator[Probe]:
         "evolve": lambda x, t, a: fp.evolve(np.exp(-(x.astype(float) ** 2)), 0.2, a, t),
     }
     for name, function in functions.items():
-        yield _SAME(
-            f"{name} of float32",
-            lambda: float(not np.array_equal(function(*narrow), function(*wide))),
-        )
+        other = lambda: float(not np.array_equal(function(*narrow), function(*wide)))  # noqa: E731
+        yield _SAME(f"{name} of float32", other)
     third = np.array([1.0 / 3.0], dtype=np.float32)
     # The number in single precision next to a third is 11184811 / 2^25.
     exact = Kind("type", "11184811 / 2^25", 0.0, "IEEE 754", HELD)
@@ -97,7 +85,7 @@ def _functions() -> Iterator[Probe]:
         yield exact("a third as float32", off, kept, 11184811.0 / 2.0**25, 1.0)
 
 
-def _sums(particles: int) -> Iterator[Probe]:
+def sums(particles: int) -> Iterator[Probe]:
     """Sums of terms of both signs: round-off is eps N sum |w u| by loops, eps 8 log2(N) |w| |u| by transforms."""
     fields = {"spacing": 10.0 / (particles - 1), **_FIELDS}
     rng, count = np.random.default_rng(5), np.arange(particles)
@@ -131,20 +119,18 @@ def _sums(particles: int) -> Iterator[Probe]:
     for what, u in data.items():
         bound = EPS * (16.0 + log2(particles)) * float(np.abs(u).sum()) * h
         right = Kind("sum", "math.fsum, pairwise", bound, "math.fsum", HELD)
-        yield right(
-            f"mass of {particles} particles, {what}", lambda: abs(case.integral(u) - h * fsum(u))
-        )
+        name = f"mass of {particles} particles, {what}"
+        yield right(name, lambda: abs(case.integral(u) - h * fsum(u)))
 
 
-def _series() -> Iterator[Probe]:
+def series() -> Iterator[Probe]:
     """exp(A T) u0 of 17 particles against 50 digits: round-off T |A| eps times the condition of the modes of A."""
     within = Kind("series", "exp(A T) u0, in units of (10 + T |A|) eps", 1.0, "mpmath", HELD)
     fields = {"beta": 0.5, "half_width": 4.0, "spacing": 0.5, "integrator": "exponential"}
     for scheme in ("DD", "FPSE", "KPSE"):
         cases = [Case(scheme=scheme, t_final=0.5 + span, **fields) for span in (1.0, 1e3, 1e6)]
-        for case, flow in zip(
-            cases, _exponentials(scheme_matrix(cases[0].scheme, cases[0].setting)), strict=True
-        ):
+        flows = _exponentials(scheme_matrix(scheme, cases[0].setting))
+        for case, flow in zip(cases, flows, strict=True):
             name = f"{scheme}, 17 particles, T = {case.span:.0e}"
             yield within(name, _of_series, case, flow)
 
@@ -166,11 +152,10 @@ def _of_series(case: Case, flow: mpmath.matrix) -> float:
     return off(prepare(case).solve(u0), exact, np.abs(u0).max()) / (EPS * (10.0 + stiffness))
 
 
-def _kept() -> Iterator[Probe]:
+def kept() -> Iterator[Probe]:
     """Numbers at the ends of the range, written and read: the same bits."""
-    numbers = np.array(
-        [0.1, -0.0, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 1.0 + EPS, np.pi]
-    )
+    ends = [5e-324, 2.2250738585072014e-308, 1.7976931348623157e308]
+    numbers = np.array([0.1, -0.0, *ends, 1.0 + EPS, np.pi])
     same = Kind("kept", "the same bits", must=HELD)
     lattice = {"half_width": 5.0 + 1e-15, "spacing": 0.25, "integrator": "exponential"}
     case = Case(scheme="KPSE", beta=0.1 + 0.2, **lattice)
@@ -188,24 +173,20 @@ def _kept() -> Iterator[Probe]:
             read = pd.read_csv(folder / "x.csv", float_precision="round_trip")["x"].to_numpy()
             return float(read.tobytes() != numbers.tobytes())
 
-        ends = "5e-324 to 1.8e308, -0"
-        yield same(f"a NetCDF file, {ends}", file)
-        yield same(f"a table, {ends}", table)
+        yield same("a NetCDF file, 5e-324 to 1.8e308, -0", file)
+        yield same("a table, 5e-324 to 1.8e308, -0", table)
     again = Kind("kept", "the same case", must=HELD)
     yield again("a case as JSON", lambda: float(Case.from_json(case.to_json()) != case))
 
 
-def _arithmetic() -> Iterator[Probe]:
+def arithmetic() -> Iterator[Probe]:
     """What a library that is loaded may switch off for all: numbers below the normal ones, and rounding to nearest."""
     compute(Case(scheme="DVM", beta=0.5, half_width=5.0, spacing=0.5, dt=0.05, t_final=0.6))
     least, one = np.float64(2.2250738585072014e-308), np.float64(1.0)
     normal = Kind("arithmetic", "not flushed to zero", 0.0, "IEEE 754", HELD)
     yield normal("half of the least normal number", lambda: float(least / 2.0 * 2.0 != least))
-    even = Kind("arithmetic", "rounded to even", 0.0, "IEEE 754", HELD)
-    yield even(
-        "1 + eps / 2 and 1 + 3 eps / 2",
-        lambda: float(one + EPS / 2.0 != 1.0 or one + 1.5 * EPS != 1.0 + 2.0 * EPS),
-    )
+    wrong = lambda: float(one + EPS / 2.0 != 1.0 or one + 1.5 * EPS != 1.0 + 2.0 * EPS)  # noqa: E731
+    yield normal("1 + eps / 2 and 1 + 3 eps / 2", wrong, expected="rounded to even")
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.full(case.shape, 3e-310)
     exact = whole(case) @ np.full(u0.size, 3.0)

@@ -2,7 +2,7 @@
 
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from fracstudy.probe import frame
+from fracstudy.probe import frame, probes_of
 from scenes.extremes.rounding import bits, drift, numbers
 
 
@@ -11,9 +11,6 @@ def study(
 ) -> Result:
     """One row a probe. The mass is followed over so many steps; the sums have so many particles."""
     points = Panels()
-    rows = [
-        *numbers.probes(particles),
-        *drift.probes(steps, points),
-        *bits.probes(threads, workflow),
-    ]
-    return Result(frame(rows), (), points.frame)
+    given = {"steps": steps, "particles": particles, "threads": threads, "workflow": workflow}
+    table = frame(probes_of(numbers, drift, bits, points=points, **given))
+    return Result(table, (), points.frame)

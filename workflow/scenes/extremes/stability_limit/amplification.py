@@ -25,9 +25,8 @@ def measured(
     rows = []
     for scheme, integrator, setting in _settings(half, overlaps, orders):
         # The table moves the eigenvalues, not the limit of the exact kernels: that is what a user compares dt with.
-        limit = stability_limit(
-            scheme, _BETA, setting.order, setting.overlap, setting.dim, setting.family
-        )
+        of = (setting.order, setting.overlap, setting.dim, setting.family)
+        limit = stability_limit(scheme, _BETA, *of)
         if limit == 0.0:
             continue
         p = STEP_POLYNOMIALS[integrator]
@@ -39,7 +38,10 @@ def measured(
             u = step(operator, p, dt, _STEPS - _LAST, start)
             v = step(operator, p, dt, _LAST, u)
             growth = (np.linalg.norm(v) / np.linalg.norm(u)) ** (1.0 / _LAST)
-            radius = _radius(integrator, eigenvalues * dt)
+            z, value = eigenvalues * dt, np.ones_like(eigenvalues)
+            for k in range(p.stages, 0, -1):  # of open operators the eigenvalues may be a pair
+                value = 1.0 + z / k * value
+            radius = float(np.abs(value).max())
             rows.append((scheme, integrator, setting, factor, growth, radius))
     columns = ["scheme", "integrator", "setting", "factor", "measured", "predicted"]
     return pd.DataFrame(rows, columns=columns)
@@ -66,28 +68,15 @@ def _settings(
         yield scheme, "rk2", Setting(**line)
 
 
-def _radius(integrator: str, z: np.ndarray) -> float:
-    """max |p(z)|, in complex numbers: of open operators the eigenvalues may be a pair."""
-    stages = STEP_POLYNOMIALS[integrator].stages
-    value = np.ones_like(z)
-    for k in range(stages, 0, -1):
-        value = 1.0 + z / k * value
-    return float(np.abs(value).max())
-
-
 def probes(measured: pd.DataFrame) -> Iterator[Probe]:
     """One probe a setting and step: |v| / |u| over fifty steps, v = p(A dt)^50 u, is the radius to the power of 50."""
     for row in measured.itertuples():
         right = Kind("growth per step", f"{row.predicted:.2f}", _BOUND, "dense matrix", HELD)
+        s = row.setting
+        name = f"{row.scheme}, order {s.order}, s = {s.overlap:g}"
+        name += (f", n = {s.dim}" if s.dim > 1 else "") + (", open" if s.is_open else "")
+        name += "" if s.kernel_table is None else ", table"
         yield right(
-            f"{_named(row.scheme, row.setting)}, {row.integrator}, dt = {row.factor:g} a",
+            f"{name}, {row.integrator}, dt = {row.factor:g} a",
             lambda: (abs(row.measured - row.predicted), f"{row.measured:.2f}"),
         )
-
-
-def _named(scheme: str, setting: Setting) -> str:
-    words = [f"{scheme}, order {setting.order}, s = {setting.overlap:g}"]
-    words += [f"n = {setting.dim}"] if setting.dim > 1 else []
-    words += ["open"] if setting.is_open else []
-    words += [] if setting.kernel_table is None else ["table"]
-    return ", ".join(words)

@@ -103,9 +103,8 @@ def _step_of_overflow(case: Case) -> float:
     amplitude = np.maximum(np.abs(coefficients) * np.abs(modes).max(axis=0), EPS * 1e-3)
     factor = np.log(np.abs(1.0 + z + 0.5 * z * z))
     growing = factor > 1e-6
-    return float(
-        ((np.log(np.finfo(float).max) - np.log(amplitude))[growing] / factor[growing]).min()
-    )
+    left = np.log(np.finfo(float).max) - np.log(amplitude)
+    return float((left[growing] / factor[growing]).min())
 
 
 def _overflow(case: Case, expected: float) -> tuple[float, str]:

@@ -22,19 +22,15 @@ def against_an_independent_symbol(orders: list[int], overlaps: list[float]) -> I
     right = Kind("limit a", bound=1e-9, source="scipy", must=HELD)
     for scheme, order, s, beta in product(("DD", "FPSE", "KPSE"), orders, overlaps, (0.1, 0.9)):
         a = _limit(scheme, beta, order, s)
-        yield right(
-            f"{scheme}, order {order}, beta = {beta:g}, s = {s:g}",
-            lambda: _deviation(stability_limit(scheme, beta, order, s), a),
-            expected=f"{a:.3g}" if a else "zero: the symbol is positive",
-        )
+        expected = f"{a:.3g}" if a else "zero: the symbol is positive"
+        name = f"{scheme}, order {order}, beta = {beta:g}, s = {s:g}"
+        yield right(name, _deviation, a, scheme, beta, order, s, expected=expected)
     for scheme, beta in product(("DD", "FPSE", "KPSE"), (1e-6, 0.5, 1.0 - 1e-6)):
         a = SCHEMES[scheme].closed_form_limit(beta, 1000.0)
         # The aliases that the closed form leaves out are zero here.
         right = Kind("limit a", f"{a:.3g}", 1e-9, "closed form", HELD)
-        yield right(
-            f"{scheme}, order 2, beta = {beta:g}, s = 1000",
-            lambda: _deviation(stability_limit(scheme, beta, 2, 1000.0), a),
-        )
+        name = f"{scheme}, order 2, beta = {beta:g}, s = 1000"
+        yield right(name, _deviation, a, scheme, beta, 2, 1000.0)
     for order, s in product((2, 4), (0.6, 1.25, 2.0)):
         positive = Kind("limit a", "positive: no wave grows")
         yield positive(f"DPSE, order {order}, beta = 0.1, s = {s:g}", _not_positive, order, s)
@@ -58,13 +54,8 @@ def in_boxes(overlaps: list[float]) -> Iterator[Probe]:
         theta = np.stack(np.meshgrid(*[np.union1d(axis, near)] * dim, indexing="ij"), axis=-1)
         theta = theta.reshape(-1, dim)
         theta = theta[(np.diff(theta, axis=1) >= 0.0).all(axis=1)]
-        yield right(
-            f"{scheme}, order {order}, beta = 0.5, s = {s:g}, n = {dim}",
-            lambda: _below(
-                stability_limit(scheme, 0.5, order, s, dim), symbol(scheme, theta, 1.5, order, s)
-            ),
-            bound=missed[dim],
-        )
+        name = f"{scheme}, order {order}, beta = 0.5, s = {s:g}, n = {dim}"
+        yield right(name, _below, scheme, order, s, theta, bound=missed[dim])
 
 
 def refused() -> Iterator[Probe]:
@@ -81,22 +72,16 @@ def refused() -> Iterator[Probe]:
         "FD in the plane": ("FD", 0.5, 2, 2.0, 2),
         "no scheme": ("XPSE", 0.5),
     }
-    kind = Kind("refused", "an error of ours", must=REFUSED)
-    for name, arguments in cases.items():
-        yield kind(name, stability_limit, *arguments)
+    yield from Kind("refused", "an error of ours", must=REFUSED).over(stability_limit, cases)
 
 
 def _limit(scheme: str, beta: float, order: int, s: float) -> float:
     alpha = 1.0 + beta
-
-    def values(theta: np.ndarray) -> np.ndarray:
-        return symbol(scheme, np.atleast_1d(theta)[:, None], alpha, order, s)
-
+    values = lambda t: symbol(scheme, np.atleast_1d(t)[:, None], alpha, order, s)  # noqa: E731
     # Where theta is smaller than 1e-3, A ~ -theta^alpha of an exchange is lost in the round-off of its parts.
     first = 1e-3 if scheme == "KPSE" else 0.0
-    theta = np.union1d(
-        np.linspace(first, np.pi, _POINTS), np.linspace(first, min(np.pi, 16.0 / s), _POINTS)
-    )
+    far, near = (np.linspace(first, min(np.pi, end), _POINTS) for end in (np.pi, 16.0 / s))
+    theta = np.union1d(far, near)
     if scheme == "FPSE":  # whose factors may change sign next to zero
         theta = np.union1d(theta, np.geomspace(1e-6, 1e-2, 200))
     found = values(theta)
@@ -113,21 +98,20 @@ def _limit(scheme: str, beta: float, order: int, s: float) -> float:
 def _least(f: Callable[[np.ndarray], np.ndarray], theta: np.ndarray, k: int) -> float:
     """The least value near theta_k by scipy's minimiser."""
     around = theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)]
-    options = {"xatol": 1e-10}
-    return float(
-        minimize_scalar(
-            lambda t: float(f(t)[0]), bounds=around, method="bounded", options=options
-        ).fun
-    )
+    how: dict[str, Any] = {"bounds": around, "method": "bounded", "options": {"xatol": 1e-10}}
+    return float(minimize_scalar(lambda t: float(f(t)[0]), **how).fun)
 
 
-def _deviation(found: float, expected: float) -> tuple[float, str]:
+def _deviation(expected: float, *arguments: Any) -> tuple[float, str]:
+    found = stability_limit(*arguments)
     if expected == 0.0 or found == 0.0:
         return abs(found - expected), f"{found:.3g}"
     return abs(found / expected - 1.0), f"{found:.3g}"
 
 
-def _below(found: float, values: np.ndarray) -> tuple[float, str]:
+def _below(scheme: str, order: int, s: float, theta: np.ndarray) -> tuple[float, str]:
+    found = stability_limit(scheme, 0.5, order, s, theta.shape[1])
+    values = symbol(scheme, theta, 1.5, order, s)
     if values.max() > 1e-9 * -values.min():
         return found, f"{found:.3g}"
     expected = -2.0 / values.min()

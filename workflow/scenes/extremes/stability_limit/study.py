@@ -7,7 +7,7 @@ import numpy as np
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import Panels
-from fracstudy.probe import frame
+from fracstudy.probe import frame, probes_of
 from scenes.extremes.stability_limit import amplification, growth, limits, normality
 
 SHOWN = tuple(product(("DD", "FPSE", "KPSE"), (2, 4, 8)))
@@ -29,17 +29,9 @@ def study(
     predicted.
     """
     measured = amplification.measured(half, overlaps, orders, factors)
-    probes = [
-        *amplification.probes(measured),
-        *growth.words(half, factors),
-        *growth.hidden(half),
-        *growth.overflow(),
-        *limits.against_an_independent_symbol(orders, overlaps),
-        *limits.in_boxes(overlaps),
-        *limits.refused(),
-        *normality.eigenvalues(half, orders, overlaps),
-        *normality.transient_growth(min(half, 40)),
-    ]
+    given = {"measured": measured, "half": half, "factors": factors}
+    modules = (amplification, growth, limits, normality)
+    probes = probes_of(*modules, orders=orders, overlaps=overlaps, **given)
     panels = Panels()
     for scheme, order in SHOWN:
         for beta in map_betas:

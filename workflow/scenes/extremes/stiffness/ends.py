@@ -113,8 +113,9 @@ def refused(half: int) -> Iterator[Probe]:
             "data that are nan": lambda: one.advance(lambda y: -y, hole, dt=1.0, steps=1),
         }
     )
-    overflow = Kind("overflow", "an error, no warning of numpy's")
-    yield overflow("5 stages, z = -1e10", _overflows, one)
+    yield Kind("overflow", "an error, no warning of numpy's")(
+        "5 stages, z = -1e10", _overflows, one
+    )
 
 
 def _overflows(step: ChebyshevStep) -> float:

@@ -1,7 +1,7 @@
 """Stiff problems, T |lambda| up to 1e10: what each way of the time integration does, and whether it is right."""
 
 from fracstudy.inputs import Inputs, Result
-from fracstudy.probe import frame
+from fracstudy.probe import frame, probes_of
 from scenes.extremes.stiffness import ends, ways
 
 
@@ -14,12 +14,5 @@ def study(
     error of each way.
     """
     found, series = ways.probes(schemes, half, stiffness, most)
-    probes = [
-        *found,
-        *ends.conservation(half, stiffness),
-        *ends.decay(schemes, half, stiffness),
-        *ends.at_the_limit(half, stiffness),
-        *ends.spoken_of(half, stiffness),
-        *ends.refused(half),
-    ]
+    probes = [*found, *probes_of(ends, schemes=schemes, half=half, stiffness=stiffness)]
     return Result(frame(probes), (), series)

@@ -128,13 +128,8 @@ def _ways(
 ) -> Iterator[tuple[str, Callable[[], np.ndarray], Callable[[Any], Any], int, float]]:
     """Yield the way, the run, the function of A that it is, its applications, and what else its bound holds."""
     exponential = one.case(integrator="exponential", t_final=time)
-    yield (
-        "exponential",
-        lambda: prepare(exponential).solve(one.u0),
-        lambda z: mp.exp(z * time),
-        _applications(exponential),
-        0.0,
-    )
+    run = lambda: prepare(exponential).solve(one.u0)  # noqa: E731
+    yield "exponential", run, lambda z: mp.exp(z * time), _applications(exponential), 0.0
     steps = max(2, ceil(time * -one.lowest / 1.8))
     for evaluation in ("series", "stepping"):
         fields = {"integrator": "rk2", "dt": time / steps, "t_final": time}
@@ -145,16 +140,11 @@ def _ways(
     largest = 0.95 * ChebyshevStep(_STAGES).stability_interval
     number = max(4, ceil(time * -one.lowest / largest))
     stages = stages_for(time * -one.lowest / number)
-    rkc = ChebyshevStep(stages)
-    operator = SCHEMES[one.scheme].operator(exponential.setting)
-    yield (
-        "stabilised",
-        lambda: rkc.advance(operator.apply, one.u0, dt=time / number, steps=number),
-        lambda z: _of_a_step(rkc, z * time / number) ** number,
-        number * stages,
-        # The roundings of the stages, some s^2 ulps a step.
-        number * stages**2 * EPS,
-    )
+    rkc, apply = ChebyshevStep(stages), SCHEMES[one.scheme].operator(exponential.setting).apply
+    run = lambda: rkc.advance(apply, one.u0, dt=time / number, steps=number)  # noqa: E731
+    power = lambda z: _of_a_step(rkc, z * time / number) ** number  # noqa: E731
+    # The roundings of the stages, some s^2 ulps a step.
+    yield "stabilised", run, power, number * stages, number * stages**2 * EPS
 
 
 def _of_a_step(rkc: ChebyshevStep, z: Any) -> Any:

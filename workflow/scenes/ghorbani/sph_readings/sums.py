@@ -16,46 +16,22 @@ from scenes.ghorbani.operators import SLOPES
 
 @dataclass(frozen=True)
 class Reading:
-    """The choices behind the printed digits; each default is the one that gives them.
+    """The choices behind the printed digits; each default is the one that gives them."""
 
-    Attributes
-    ----------
-    ahead : {"complex", "absolute", "none"}
-        The power of x_i - x_j for j > i: complex, of the absolute distance, or no term.
-    real : bool
-        Whether the norms take the real part only.
-    correction : {"divided", "multiplied", "none"}
-        Whether the gradient is divided by L, multiplied (as (18), (19) print), or left as it is.
-    virtual : bool
-        Whether gradients have virtual particles.
-    exact : bool
-        Whether f' and f'' are the analytical ones.
-    eta : {"h^2", "1/h^2"}
-        eta of (37) is 0.0001 times this.
-    singular : bool
-        Whether the sums are the singular ones, (23), (25), (26), without their infinite term.
-    halved : bool
-        Whether the particles at the two ends have half volumes.
-    first : bool
-        Whether x = 0 is judged for the RL derivative.
-    midpoint : {"average", "itself", "product"}
-        The integrand of (20): the average of f' (21), its cubic interpolation at the auxiliary particle, or the average
-        of f' times the power.
-    last : bool
-        Whether there is an auxiliary particle beyond x_N, as the N terms of (20) ask for.
-    """
-
+    # The power of x_i - x_j for j > i: complex, of the absolute distance, or no term.
     ahead: Literal["complex", "absolute", "none"] = "complex"
-    real: bool = False
+    real: bool = False  # whether the norms take the real part only
+    # Whether the gradient is divided by L, multiplied (as (18), (19) print), or left as it is.
     correction: Literal["divided", "multiplied", "none"] = "divided"
-    virtual: bool = True
-    exact: bool = False
-    eta: Literal["h^2", "1/h^2"] = "h^2"
-    singular: bool = False
-    halved: bool = False
-    first: bool = False
+    virtual: bool = True  # whether gradients have virtual particles
+    exact: bool = False  # whether f' and f'' are the analytical ones
+    eta: Literal["h^2", "1/h^2"] = "h^2"  # eta of (37) is 0.0001 times this
+    singular: bool = False  # whether the sums are (23), (25), (26), without their infinite term
+    halved: bool = False  # whether the particles at the two ends have half volumes
+    first: bool = False  # whether x = 0 is judged for the RL derivative
+    # The integrand of (20): the average of f' (21), f' at the auxiliary particle, or the average of f' times the power.
     midpoint: Literal["average", "itself", "product"] = "average"
-    last: bool = False
+    last: bool = False  # whether a particle is beyond x_N, as the N terms of (20) ask for
 
 
 def approximate(

@@ -82,12 +82,8 @@ def _truncation(inputs: Inputs, main: Inputs, errors: pd.Series) -> Iterator[Fin
 def truncation_effect(runs: pd.DataFrame) -> pd.DataFrame:
     """Return the relative L1 distance of u from that on the widest domain, over |x| <= 5 R_alpha.
 
-    It is by scheme (rows) and truncation factor C (columns). The runs hold u for |x| <= 5 R_alpha at least.
-
-    Raises
-    ------
-    FracparticlesError
-        If the lattices of the runs differ in their spacing: then u has no common points.
+    It is by scheme (rows) and truncation factor C (columns). The runs hold u for |x| <= 5 R_alpha at least, on
+    lattices of one spacing: without common points it is refused.
     """
     spacing = runs["particle_spacing"]
     if spacing.max() > spacing.min() * (1.0 + 1e-6):

@@ -4,12 +4,10 @@ A run takes a set-up (kernel values, their transforms, for the open exterior its
 the operator as the time series has terms. Each is measured by itself, and the peak memory with it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,9 +15,6 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import Prepared, prepare
 from fracparticles.schemes import SCHEMES
 from fracstudy.race import clock
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _BETA = 0.5
 _START, _END = 0.5, 1.5
@@ -57,23 +52,13 @@ def benchmark(
     repeats: int,
     seconds: float,
     memory: bool,
-) -> xr.Dataset:
+) -> clock.Measurements:
     """Measure set-up, application, solve and peak memory at beta = 0.5 and h = 0.2, from t = 0.5 to 1.5.
 
-    Parameters
-    ----------
-    lines, squares, cubes : sequence of int
-        Particles in each direction, odd.
-    kinds : mapping
-        What is measured on a "line", a "square" and a "cube": scheme, order and exterior, "KPSE-12-open".
-    naive_particles : float
-        The most particles whose sums are also done over all pairs, of truncated lattices only.
-    most_solved : float
-        The most particles of a whole solve.
-    repeats, seconds : int, float
-        A timing is repeated so often, fewer if that takes longer.
-    memory : bool
-        Whether to measure the peak memory: each dimension and kind then has a process of its own.
+    `lines`, `squares` and `cubes` are particles in each direction, odd; `kinds` says what is measured on a "line", a
+    "square" and a "cube": scheme, order and exterior, "KPSE-12-open". Sums of truncated lattices are also done over all
+    pairs for up to `naive_particles`, whole solves for up to `most_solved`. A timing is repeated `repeats` times, fewer
+    if that takes longer than `seconds`. For the `memory` each dimension and kind has a process of its own.
     """
     machine_memory = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
     limits = {"naive_particles": naive_particles, "most_solved": most_solved, "memory": memory}

@@ -68,14 +68,9 @@ def study(inputs: Inputs, *, extrapolate_to: float) -> Result:
 
 
 def exponent(particles: np.ndarray, values: np.ndarray) -> float:
-    """Return the least-squares slope of log values against log N over the upper half of the sizes that have a value.
+    """Return the least-squares slope of log values against log N, ascending, over the upper half of those above zero.
 
     Of two sizes at least; nan if there are not so many.
-
-    Parameters
-    ----------
-    particles, values : array, shape (sizes,)
-        N, ascending, and the values; those that are nan or not positive are left out.
     """
     known = values > 0.0
     upper = max(2, ceil(known.sum() / 2))
@@ -88,16 +83,9 @@ def exponent(particles: np.ndarray, values: np.ndarray) -> float:
 def extrapolate(
     particles: np.ndarray, values: np.ndarray, law: Callable[[float], float], target: float
 ) -> float:
-    """Return what `law` makes of the value of the largest size that has one; nan if none has.
+    """Return the value at N = `target` by a law, known up to a factor, from the largest of N, ascending, that has one.
 
-    Parameters
-    ----------
-    particles, values : array, shape (sizes,)
-        N, ascending, and the values.
-    law : callable
-        Of N, up to a factor.
-    target : float
-        N of the value that is returned.
+    It is nan if none has.
     """
     known = np.flatnonzero(values > 0.0)
     if not known.size:

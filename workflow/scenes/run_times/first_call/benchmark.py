@@ -1,16 +1,11 @@
 """What a first call costs: a process of its own, from its start to the result."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fracstudy.race.clock import Timing, measure, one_core, timings_dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
+from fracstudy.race.clock import Measurements, Timing, measure, one_core, timings_dataset
 
 _DATA = "x = np.linspace(-20.0, 20.0, 400, endpoint=False); u0 = 1.0 / (1.0 + x**2)\n"
 _CALLS = {
@@ -32,7 +27,7 @@ _CALLS = {
 }
 
 
-def benchmark(repeats: int) -> xr.Dataset:
+def benchmark(repeats: int) -> Measurements:
     """Time processes; each program has run once before, so that what is compiled or cached on disk is there.
 
     Of a single repeat, which has no say in a time, the run before is left out.

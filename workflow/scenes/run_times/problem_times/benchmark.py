@@ -1,36 +1,29 @@
 """Error against run time for the problems that one Fourier transform cannot do: ours and peers, one core."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 from fracstudy.errors import quiet
-from fracstudy.race.clock import measure_warm, one_core, timings_dataset
+from fracstudy.race.clock import Measurements, measure_warm, one_core, timings_dataset
 from scenes.run_times.problem_times.contest import Contest
 from scenes.run_times.problem_times.interval import eigenvalue, leaving
 from scenes.run_times.problem_times.line import drawn_back, variable_diffusivity
 from scenes.run_times.problem_times.plane import carried_round
-from scenes.run_times.problem_times.two_blobs import competing, drawn_together
-from scenes.run_times.problem_times.two_widths import two_widths
-
-if TYPE_CHECKING:
-    import xarray as xr
+from scenes.run_times.problem_times.two_blobs import competing, drawn_together, two_widths
 
 CONTESTS: dict[str, Callable[[float], Contest]] = {
     "variable diffusivity": variable_diffusivity,
     "Ornstein-Uhlenbeck": drawn_back,
     "eigenvalue": eigenvalue,
     "Getoor": leaving,
-    "widths 0.01 and 1": partial(two_widths, narrow=1e-2),
-    "widths 0.0001 and 1": partial(two_widths, narrow=1e-4),
-    "drawn together, 0.01": partial(drawn_together, narrow=1e-2),
-    "drawn together, 0.0001": partial(drawn_together, narrow=1e-4),
-    "competing, 0.01": partial(competing, narrow=1e-2),
-    "competing, 0.0001": partial(competing, narrow=1e-4),
     "carried round": carried_round,
 }
+for _narrow in (0.01, 0.0001):
+    CONTESTS |= {
+        f"widths {_narrow} and 1": partial(two_widths, narrow=_narrow),
+        f"drawn together, {_narrow}": partial(drawn_together, narrow=_narrow),
+        f"competing, {_narrow}": partial(competing, narrow=_narrow),
+    }
 
 
 def benchmark(
@@ -39,26 +32,12 @@ def benchmark(
     repeats: int,
     seconds: float,
     most: int | None = None,
-) -> xr.Dataset:
-    """Measure every trial, set-up and solve together, after one that warms up what is short.
+) -> Measurements:
+    """Measure every trial, set-up and solve together, after one that warms up what is short; the least time is kept.
 
-    With a single repeat, which has no say in a time, what compiles before is left out, too.
-
-    Parameters
-    ----------
-    alpha : float
-        Fractional order, 1 < alpha < 2.
-    contests : mapping
-        Contest -> contender -> grids, the arguments of its `solve`.
-    repeats, seconds : int, float
-        At most so many timings of a trial, and no more than take so long; the least is kept.
-    most : int, optional
-        Only the first grids of each contender.
-
-    Returns
-    -------
-    xarray.Dataset
-        Dimension `trial`.
+    `contests` has, by contest and contender, the grids: the arguments of its `solve`; only the first `most` of them if
+    given. A trial has `repeats` timings, fewer if they take longer than `seconds`. With a single one, which has no say
+    in a time, what compiles before is left out, too.
     """
     one_core()
     rows = []

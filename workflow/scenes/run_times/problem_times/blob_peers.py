@@ -37,17 +37,7 @@ _PARTS = 2  # of the Runge-Kutta scheme in each half of a step
 
 @dataclass(frozen=True)
 class Circle:
-    """A circle, and how many points there are.
-
-    Attributes
-    ----------
-    alpha : float
-    middle, half_width : float
-    narrow : float
-        Width of the narrow blob at the start.
-    points : float
-        How many go into a width.
-    """
+    """A circle, the width of the narrow blob at the start, and how many `points` go into a width."""
 
     alpha: float
     middle: float

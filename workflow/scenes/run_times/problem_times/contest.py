@@ -33,12 +33,7 @@ class Contest(NamedTuple):
 
 def greatest_error(exact: Callable[[np.ndarray], np.ndarray]) -> Callable[[Points], float]:
     """Return the error of an answer (x, u): the greatest at its points, over the greatest of the exact values."""
-
-    def error(answer: Points) -> float:
-        x, u = answer
-        return off(u, exact(x))
-
-    return error
+    return lambda answer: off(answer[1], exact(answer[0]))
 
 
 def on_lattices(
@@ -49,15 +44,9 @@ def on_lattices(
     def solve(
         form: str, order: int, half_width: float, spacing: float, rtol: float, overlap: float = 2.0
     ) -> tuple[int, Points]:
-        grid: dict[str, Any] = {
-            "half_width": half_width,
-            "spacing": spacing,
-            "rtol": rtol,
-            "overlap": overlap,
-        }
-        run = solve_problem(
-            Problem(form=form, order=order, **grid, **fields), start, estimate=False
-        )
+        grid: dict[str, Any] = {"half_width": half_width, "spacing": spacing, "overlap": overlap}
+        problem = Problem(form=form, order=order, rtol=rtol, **grid, **fields)
+        run = solve_problem(problem, start, estimate=False)
         return run["u"].size, (run["x"].values, run["u"].values)
 
     return {f"{form} {order}": partial(solve, form, order) for form in forms for order in (4, 12)}

@@ -1,6 +1,8 @@
 """Contests on (-1, 1) with absorbing ends: the first eigenvalue, and the mean time to leave (Getoor 1961)."""
 
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -21,21 +23,10 @@ _ENOUGH = 200  # polynomials for round-off
 def eigenvalue(alpha: float) -> Contest:
     """The lowest eigenvalue of (-Laplacian)^(alpha/2); the answers are numbers."""
     exact = jacobi_eigenvalues(alpha, polynomials=_ENOUGH)[0]
-
-    def ours(particles: int) -> tuple[int, float]:
-        return particles, Interval(alpha=alpha, particles=particles).eigenvalues()[0]
-
-    def polynomials(count: int) -> tuple[int, float]:
-        return count, jacobi_eigenvalues(alpha, polynomials=count)[0]
-
-    def elements(count: int, power: float) -> tuple[int, float]:
-        return count - 1, element_eigenvalue(alpha, count, power)
-
-    def differences(points: int) -> tuple[int, float]:
-        return points, difference_eigenvalue(alpha, points)
-
-    peers = {"Jacobi polynomials": polynomials, **_peers(elements, differences)}
-    return Contest(lambda ours: float(abs(ours / exact - 1.0)), {"graded particles": ours}, peers)
+    ours = {"graded particles": lambda n: (n, Interval(alpha=alpha, particles=n).eigenvalues()[0])}
+    peers = {"Jacobi polynomials": lambda n: (n, jacobi_eigenvalues(alpha, polynomials=n)[0])}
+    others = _peers(alpha, element_eigenvalue, difference_eigenvalue)
+    return Contest(lambda found: float(abs(found / exact - 1.0)), ours, peers | others)
 
 
 def leaving(alpha: float) -> Contest:
@@ -45,16 +36,18 @@ def leaving(alpha: float) -> Contest:
         line = Interval(alpha=alpha, particles=particles)
         return particles, (line.x, np.asarray(line.stationary(1.0)))
 
-    def elements(count: int, power: float) -> tuple[int, Points]:
-        return count - 1, element_solution(alpha, count, power)
-
-    def differences(points: int) -> tuple[int, Points]:
-        return points, difference_solution(alpha, points)
-
-    error = greatest_error(partial(getoor, alpha=alpha))
-    return Contest(error, {"graded particles": ours}, _peers(elements, differences))
+    error, peers = (
+        greatest_error(partial(getoor, alpha=alpha)),
+        (element_solution, difference_solution),
+    )
+    return Contest(error, {"graded particles": ours}, _peers(alpha, *peers))
 
 
-def _peers(elements: Solve, differences: Solve) -> dict[str, Solve]:
-    equal = partial(elements, power=1.0)
-    return {"elements, equal": equal, "elements, graded": elements, "differences": differences}
+def _peers(
+    alpha: float, elements: Callable[..., Any], differences: Callable[..., Any]
+) -> dict[str, Solve]:
+    return {
+        "elements, equal": lambda count: (count - 1, elements(alpha, count)),
+        "elements, graded": lambda count, power: (count - 1, elements(alpha, count, power)),
+        "differences": lambda points: (points, differences(alpha, points)),
+    }

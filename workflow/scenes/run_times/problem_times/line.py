@@ -46,16 +46,12 @@ class _Source:
 def variable_diffusivity(alpha: float) -> Contest:
     """u_t = (D grad^beta u)_x + f to t = 1, D = 1 + exp(-x^2) / 2, u = exp(-t - x^2)."""
     source = _Source(alpha)
-
-    def bell(x: np.ndarray) -> np.ndarray:
-        return np.exp(-x * x)
-
-    def diffusivity(x: np.ndarray) -> np.ndarray:
-        return 1.0 + 0.5 * bell(x)
-
-    # A function: that is what a source is looked at as.
-    acts = {"diffusivity": diffusivity, "source": lambda x, t: source(x, t)}
-    fields: dict[str, Any] = {"alpha": alpha, "t_final": 1.0, **acts}
+    bell = lambda x: np.exp(-x * x)  # noqa: E731
+    diffusivity = lambda x: 1.0 + 0.5 * bell(x)  # noqa: E731
+    fields: dict[str, Any] = {"alpha": alpha, "t_final": 1.0, "diffusivity": diffusivity}
+    fields["source"] = lambda x, t: source(
+        x, t
+    )  # a function: that is what a source is looked at as
     peers = _peers(_PEERS, fields, bell, (diffusivity, None), source)
     error = greatest_error(lambda x: np.exp(-1.0) * bell(x))
     return Contest(error, on_lattices(["FPSE", "DD"], bell, **fields), peers)
@@ -71,13 +67,8 @@ def drawn_back(alpha: float) -> Contest:
     def stable(age: float) -> Field:
         return lambda x: np.asarray(green(x, age, alpha))
 
-    fields: dict[str, Any] = {
-        "alpha": alpha,
-        "velocity": "-x",
-        "far_terms": 3,
-        "t_initial": 1.0,
-        "t_final": 2.0,
-    }
+    fields: dict[str, Any] = {"alpha": alpha, "velocity": "-x", "far_terms": 3}
+    fields |= {"t_initial": 1.0, "t_final": 2.0}
     every = _PEERS | {"differences, upwind": partial(differences, upwind=True)}
     peers = _peers(every, fields, stable(1.0), (None, np.negative))
     ours = on_lattices(["FPSE", "DD"], stable(1.0), **fields)

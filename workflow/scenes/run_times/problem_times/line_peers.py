@@ -32,6 +32,7 @@ from scipy.special import eval_laguerre, roots_genlaguerre
 from fracstudy.race.contenders.rational import RationalLine
 
 Field = Callable[[np.ndarray], np.ndarray]
+Coefficient = Field | None
 Rate = Callable[[float, np.ndarray], np.ndarray]
 
 
@@ -46,11 +47,7 @@ def centred_weights(power: float, count: int) -> np.ndarray:
 
 
 def pseudo_spectral(
-    alpha: float,
-    half_width: float,
-    spacing: float,
-    diffusivity: Field | None,
-    velocity: Field | None,
+    alpha: float, half_width: float, spacing: float, diffusivity: Coefficient, velocity: Coefficient
 ) -> tuple[np.ndarray, Rate]:
     """Return the points of the circle and R(t, u) without a source."""
     n = round(half_width / spacing)
@@ -80,8 +77,8 @@ def differences(
     alpha: float,
     half_width: float,
     spacing: float,
-    diffusivity: Field | None,
-    velocity: Field | None,
+    diffusivity: Coefficient,
+    velocity: Coefficient,
     upwind: bool = False,
 ) -> tuple[np.ndarray, Rate]:
     """Return the points of the lattice and R(t, u) without a source; carried is the mean or the upwind value."""
@@ -109,11 +106,7 @@ def differences(
 
 
 def rational(
-    alpha: float,
-    points: int,
-    scale: float,
-    diffusivity: Field | None,
-    velocity: Field | None,
+    alpha: float, points: int, scale: float, diffusivity: Coefficient, velocity: Coefficient
 ) -> tuple[np.ndarray, Rate]:
     """Return the points, an even number of them on the whole line, and R(t, u) without a source; `scale` is L."""
     line = RationalLine(points, scale)

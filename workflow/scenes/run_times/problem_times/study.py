@@ -13,14 +13,7 @@ FIRST = "the first"  # the row of a problem that says who is
 
 
 def study(inputs: Inputs, *, errors: list[float]) -> Result:
-    """A row for each problem and contender, and one for each problem with the first to each error.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        With the benchmark.
-    errors : list of float
-    """
+    """A row for each problem and contender, and one for each problem with the first to each error."""
     data = inputs.benchmarks["problem_times"]
     trials = data.assign(name=data["contender"], failed=~(data["error"] < float("inf")))
     rows = [

@@ -10,13 +10,11 @@ Four ways to the same discrete solution, p(A dt)^n u0, from the papers' own to o
 and, of the transform pair that all is made of, what other kinds of it would cost.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyfftw
@@ -28,9 +26,6 @@ from fracparticles.run.solver import compute, initial_strengths, prepare
 from fracstudy.errors import off
 from fracstudy.race import clock
 from fracstudy.race.contenders.schemes import few_steps
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Action = Callable[[], Any]
 
@@ -51,30 +46,13 @@ def benchmark(
     timed_steps: Mapping[str, int],
     memory: bool,
     measured_plans: bool,
-) -> xr.Dataset:
-    """Time DD, FPSE and KPSE of both orders and GPSE on the reference problem, one core.
+) -> clock.Measurements:
+    """Time DD, FPSE and KPSE of both orders and GPSE, by steps of `green_dt`, on the reference problem, one core.
 
-    Parameters
-    ----------
-    repeats : int
-        Timings of each series after a warm-up; their minimum and median are kept.
-    truncation, spacing, dt : float
-        The reference problem.
-    green_dt : float
-        The time step of GPSE.
-    stepped : sequence of str
-        Schemes, order II, that are also stepped through.
-    timed_steps : mapping
-        How many steps are timed by summation, "fft" and "naive"; the time of all is extrapolated.
-    memory : bool
-        Whether to measure the peak memory, each run in a process of its own.
-    measured_plans : bool
-        Whether FFTW may also look for its fastest plan, which takes it some seconds.
-
-    Returns
-    -------
-    xarray.Dataset
-        Dimension `run`; times in seconds, nan where not measured.
+    The series are timed `repeats` times after a warm-up. The schemes `stepped`, order II, are also stepped through:
+    `timed_steps` says how many steps are timed by summation, "fft" and "naive", and the time of all is extrapolated.
+    For the peak `memory` each run has a process of its own. FFTW may take some seconds to look for its fastest plan if
+    `measured_plans` says so. Of the data set times are nan where they were not measured.
     """
     clock.one_core()
     common = {"beta": 0.5, "truncation": truncation, "spacing": spacing}

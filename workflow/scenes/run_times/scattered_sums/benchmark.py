@@ -1,18 +1,13 @@
 """Run times of the sums over particles that lie anywhere on the line, as DVM needs them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
-from fracstudy.race.clock import measure, one_core, timings_dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
+from fracstudy.race.clock import Measurements, measure, one_core, timings_dataset
 
 _BETA = 0.5
 _OVERLAP = 2.0  # smoothing length over the mean spacing
@@ -26,17 +21,10 @@ _VARIABLES = {
 
 def benchmark(
     particles: Sequence[int], naive_particles: float, repeats: int, seconds: float
-) -> xr.Dataset:
-    """Time field (7) and flux (19) of scattered particles, by non-uniform FFT and over all pairs.
+) -> Measurements:
+    """Time field (7) and flux (19) of scattered particles by non-uniform FFT, of few also over all pairs.
 
-    Parameters
-    ----------
-    particles : sequence of int
-        Numbers of particles.
-    naive_particles : float
-        The largest number for which the sums are also done over all pairs.
-    repeats, seconds : int, float
-        A timing is repeated so often, fewer if that takes longer.
+    Few are up to `naive_particles`. A timing is repeated `repeats` times, fewer if that takes longer than `seconds`.
     """
     one_core()
     rows = [_measure_one(int(n), naive_particles, repeats, seconds) for n in particles]

@@ -1,18 +1,12 @@
 """Run times of the reduced fundamental solution: ours, and scipy's density of the stable law."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fracparticles.special import reduced_green
-from fracstudy.race.clock import forget_tables, measure, one_core, timings_dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
+from fracstudy.race.clock import Measurements, forget_tables, measure, one_core, timings_dataset
 
 _FARTHEST = 100.0  # in units of the scale
 _VARIABLES = {
@@ -24,18 +18,8 @@ _VARIABLES = {
 
 def benchmark(
     alpha: Sequence[float], points: int, points_of_scipy: int, repeats: int
-) -> xr.Dataset:
-    """Time evaluations at equally spaced points of 0 <= x <= 100.
-
-    Parameters
-    ----------
-    alpha : sequence of float
-        Fractional orders, 1 < alpha < 2.
-    points, points_of_scipy : int
-        How many points at once, of ours and of scipy's.
-    repeats : int
-        Timings of ours.
-    """
+) -> Measurements:
+    """Time evaluations at equally spaced points of 0 <= x <= 100, so many at once of ours and of scipy's."""
     from scipy.stats import levy_stable  # here alone: it takes long to import
 
     one_core()

@@ -1,10 +1,8 @@
 """The time of a step where nothing can be kept from the one before: a new step or coefficient, moved particles."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,12 +10,15 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import advect, prepare
 from fracparticles.schemes import SCHEMES
 from fracparticles.time.whole_space import WholeSpace
-from fracstudy.race.clock import forget_tables, measure_warm, one_core, timings_dataset
+from fracstudy.race.clock import (
+    Measurements,
+    forget_tables,
+    measure_warm,
+    one_core,
+    timings_dataset,
+)
 from fracstudy.race.contenders.exact_symbol import ExactSymbol
 from fracstudy.race.problems.fundamental import Fundamental
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _STEP = 0.001
 _SMALL = 65  # points on which each method takes a step before it is timed
@@ -30,15 +31,10 @@ _VARIABLES = {
 }
 
 
-def benchmark(line: int, plane: int, repeats: int) -> xr.Dataset:
-    """Time steps of 0.001 on the papers' problem, each made anew.
+def benchmark(line: int, plane: int, repeats: int) -> Measurements:
+    """Time so many steps of 0.001 on the papers' problem, each made anew.
 
-    Parameters
-    ----------
-    line, plane : int
-        About the number of points, on the line and along an axis in the plane.
-    repeats : int
-        Steps; their minimum and median are kept.
+    About the number of points, on the line and along an axis in the plane, is given.
     """
     one_core()
     rows: list[dict[str, Any]] = []

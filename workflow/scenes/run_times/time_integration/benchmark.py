@@ -8,11 +8,9 @@ The operators are made once, and what is timed is the way from u(0) to u(T) = ex
     Chebyshev series                               of the exponential
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.linalg import expm
@@ -25,10 +23,7 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
 from fracparticles.time import STEP_POLYNOMIALS, exponential, step
 from fracparticles.time.rkc import ChebyshevStep, stages_for
-from fracstudy.race.clock import measure, one_core, timings_dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
+from fracstudy.race.clock import Measurements, measure, one_core, timings_dataset
 
 # Integrator, steps, operator applications, run.
 Way = tuple[str, int, int, Callable[[], np.ndarray]]
@@ -53,21 +48,11 @@ def benchmark(
     factors: Sequence[int],
     repeats: int,
     seconds: float,
-) -> xr.Dataset:
-    """Measure the integrators on some schemes with the open exterior.
+) -> Measurements:
+    """Measure the integrators on some schemes, given with their orders, with the open exterior.
 
-    Parameters
-    ----------
-    beta : float
-        Fractional order.
-    truncation, spacing : float
-        The lattice.
-    schemes : mapping
-        Their orders by name.
-    factors : sequence of int
-        Numbers of steps over the least stable one; of RKC2, the numbers of steps themselves.
-    repeats, seconds : int, float
-        Solves, fewer if they take longer than that.
+    `factors` are numbers of steps over the least stable one; of RKC2, the numbers of steps themselves. Each solve is
+    timed `repeats` times, fewer if that takes longer than `seconds`.
     """
     one_core()
     rows: list[dict[str, Any]] = []

@@ -1,13 +1,11 @@
 """Where the time of a run goes: the parts of the set-up, the sums over the particles, and the rest."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import partial, wraps
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -19,10 +17,14 @@ from fracparticles.run.case import Case
 from fracparticles.run.solver import Prepared, initial_strengths, prepare
 from fracparticles.schemes.spectrum import spectral_interval
 from fracparticles.time import exponential_flow, power_flow
-from fracstudy.race.clock import Timing, forget_tables, measure, one_core, timings_dataset
-
-if TYPE_CHECKING:
-    import xarray as xr
+from fracstudy.race.clock import (
+    Measurements,
+    Timing,
+    forget_tables,
+    measure,
+    one_core,
+    timings_dataset,
+)
 
 # The parts of a set-up and the functions that do them; a part within a part counts for itself.
 _FUNCTIONS: dict[str, tuple[Callable[..., Any], ...]] = {
@@ -45,16 +47,8 @@ _VARIABLES = {
 }  # fmt: skip
 
 
-def benchmark(cases: Mapping[str, Mapping[str, Any]], repeats: int) -> xr.Dataset:
-    """Take the time of runs apart.
-
-    Parameters
-    ----------
-    cases : mapping
-        Fields of a case by a name for it.
-    repeats : int
-        Set-ups and solves; the least of each is kept.
-    """
+def benchmark(cases: Mapping[str, Mapping[str, Any]], repeats: int) -> Measurements:
+    """Take the time of runs apart, of the cases by a name for each; the least of `repeats` is kept."""
     one_core()
     rows = [_row(name, Case(**fields), repeats) for name, fields in cases.items()]
     title = "Where the time of a run goes"

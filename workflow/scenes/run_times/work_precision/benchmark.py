@@ -1,17 +1,12 @@
 """Error against run time: every problem, every contender that can solve it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fracstudy.race.clock import one_core, timings_dataset
+from fracstudy.race.clock import Measurements, one_core, timings_dataset
 from fracstudy.race.contenders import CONTENDERS
 from fracstudy.race.problems import PROBLEMS
 from fracstudy.race.trial import BLOCK, LABELS, VARIABLES, run_trials
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def benchmark(
@@ -23,23 +18,11 @@ def benchmark(
     seconds: float,
     contenders: Sequence[str] = tuple(CONTENDERS),
     most: int | None = None,
-) -> xr.Dataset:
-    """Measure error, set-up, solve, blocks of solves and memory.
+) -> Measurements:
+    """Measure error, set-up, solve, blocks of solves and memory, see `trial.run_trials`.
 
-    Parameters
-    ----------
-    dim : int
-        Number of dimensions.
-    problems : sequence of str
-        Their names; those that do not exist in so many dimensions are left out.
-    beta : sequence of float
-        Fractional orders.
-    rounds, repeats, seconds : int, int, float
-        See `trial.run_trials`.
-    contenders : sequence of str
-        All if left out.
-    most : int, optional
-        Only the first trials of each.
+    Problems that do not exist in so many dimensions are left out; only the first `most` trials of each contender are
+    made if that is given.
     """
     one_core()
     rivals = [CONTENDERS[name]() for name in contenders]

@@ -15,13 +15,7 @@ _GROUPS = {"ours": "ours", "peers": "peer", "schemes": "scheme of the papers"}
 def study(inputs: Inputs, *, errors: list[float], time: str) -> Result:
     """List, for each problem, beta and error, the fastest of ours, of the peers and of the papers' schemes.
 
-    Parameters
-    ----------
-    inputs : Inputs
-        With one benchmark.
-    errors : list of float
-    time : str
-        "total_time", of one solve with its set-up, or "block_time", of one of many.
+    `time` is "total_time", of one solve with its set-up, or "block_time", of one of many.
     """
     (frame,) = inputs.benchmarks.values()
     trials = trials_of(frame).dropna(subset=[time])
