@@ -89,7 +89,7 @@ def probes(betas: list[float], orders: list[int], dims: list[int]) -> Iterator[P
     transform = Kind("transform", "a power of k times eta^", 1e-12, "mpmath", HELD)
     for beta, name in product(betas, NAMES):
         every = f"order {orders[0]} to {orders[-1]}, {written(beta)}"
-        most = lambda of, *more: max(of(name, beta, *more, form) for form in forms)  # noqa: E731
+        most = lambda of, *more: max(of(name, beta, *more, form) for form in forms)
         for n in dims:
             yield right(f"{name}, n = {n}, {every}", most, worst, n)
         yield table(f"{name}, step {STEP:g}, {written(beta)}", most, _table_error)

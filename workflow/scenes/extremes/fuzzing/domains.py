@@ -44,7 +44,7 @@ def _diffusivity(
     operator, h, e = VariableDiffusivity(form, s), 0.25, 0.5
     (points,) = operator.points
     x = h * np.arange(-n, n + 1.0)
-    d = lambda x: size * (1.0 + 0.8 * np.tanh(x) + 0.1 * np.cos(3.0 * x))  # noqa: E731
+    d = lambda x: size * (1.0 + 0.8 * np.tanh(x) + 0.1 * np.cos(3.0 * x))
     u, z = np.exp(-((x - 0.4) ** 2)), x[:, None] - x
     flux = -h / e**alpha * _kernel("F", z, s) @ u  # grad^beta u is minus this
     if form == "FPSE":
@@ -120,9 +120,9 @@ def _interval(
             alpha=alpha, particles=60, exterior=exterior, degree=degree, ends=(-unit, unit),
             diffusivity=unit**alpha,
         )  # fmt: skip
-        bell = lambda x: np.exp(-((x / unit) ** 2))  # noqa: E731
-        source = lambda x, t: np.exp(-2.0 * (x / unit - 0.2) ** 2) * np.sin(w * (t + since))  # noqa: E731
-        far = lambda y, t: np.cos(w * (t + since)) / (1.0 + (y / unit) ** 2)  # noqa: E731
+        bell = lambda x: np.exp(-((x / unit) ** 2))
+        source = lambda x, t: np.exp(-2.0 * (x / unit - 0.2) ** 2) * np.sin(w * (t + since))
+        far = lambda y, t: np.cos(w * (t + since)) / (1.0 + (y / unit) ** 2)
         outside = far if exterior == "given" else None
         data = bell if start is None else start
         return line, line.evolve(data, time, source=source, outside=outside)

@@ -129,9 +129,9 @@ def _error(field=_LINES, value=anything(), allowed=_LINES, remedy=st.just("Mend 
     try:
         pickle.dumps(value)
     except Exception:  # the value's own
-        sent = lambda error: error  # noqa: E731
+        sent = lambda error: error
     else:
-        sent = lambda error: pickle.loads(pickle.dumps(error))  # noqa: E731
+        sent = lambda error: pickle.loads(pickle.dumps(error))
     for name in _ERRORS:
         kind = getattr(fp, name)
         ours = kind is fp.InvalidInput
@@ -162,7 +162,7 @@ def _green(r=_XS, t=_TIMES, alpha=_ALPHAS, dim=_DIMS):
 def _rates(r=_XS, t=_TIMES, alpha=_ALPHAS, dim=_DIMS):
     """The rate is dG/dt, the slope dG/dr, and the flux r G / (alpha t): by differences of G, to 1e-6."""
     x, step = abs(r) * t ** (1.0 / alpha), 1e-4
-    green = lambda x, t: float(np.asarray(fp.green(x, t, alpha, dim)))  # noqa: E731
+    green = lambda x, t: float(np.asarray(fp.green(x, t, alpha, dim)))
     most = green(0.0, t)
 
     def slope(of: Callable[[float], float]) -> float:  # of fourth order, per relative step
@@ -252,7 +252,7 @@ def _kernel(
     if name == "kappa":
         raise NotRun("no plain integral")
     end = 42.0 ** (1.0 / alpha) if name == "E" else 30.0 + 2.0 * order
-    hat = lambda k: float(np.asarray(kernel_transform(name, k, alpha, 1, order)))  # noqa: E731
+    hat = lambda k: float(np.asarray(kernel_transform(name, k, alpha, 1, order)))
     how: dict[str, Any] = {"weight": "sin" if odd else "cos", "wvar": r, "epsabs": 1e-12}
     value = quad(hat, 0.0, end, limit=400, **how)[0] / math.pi
     return off(fp.kernel(name, r, alpha, 1, order), -value if odd else value, 1e-8)

@@ -188,7 +188,7 @@ def _mass(problem=_CONSERVING, seed=_SEEDS):
     given = 0.0
     if f is not None:
         where = {"x": problem.case.x, "u": np.zeros(u0.size)}
-        rate = lambda t: float(f({**where, "t": np.array(t)}).sum())  # noqa: E731
+        rate = lambda t: float(f({**where, "t": np.array(t)}).sum())
         given = quad(rate, 0.0, problem.t_final, epsrel=1e-10)[0]
     found = _solved(problem, u0)
     size = float(np.abs(u0).sum() + np.abs(found).sum())

@@ -41,7 +41,7 @@ class Kernels:
         return sign * constant * self._confluent(0.5 * (power + self.dim), half + 0.5 * b, r * r)
 
     def _confluent(self, a: float, b: float, x: float) -> float:
-        f = lambda a, x: mp.hyp1f1(a, b, -x)  # noqa: E731
+        f = lambda a, x: mp.hyp1f1(a, b, -x)
         if self.family == "gamma":
             j = range(self.order // 2)
             return float(mp.fsum(mp.rf(a, k) / mp.factorial(k) * f(a + k, x) for k in j))
@@ -140,5 +140,5 @@ def _finite_differences(size: int, alpha: float) -> np.ndarray:
 def power_sum(weight: Callable[[float], float], power: float, n: int, i: int, far: int) -> float:
     """Return sum_{j > n} (n / j)^power w(j - i): term by term up to `far`, from there the integral of the rest."""
     near = sum((n / j) ** power * weight(j - i) for j in range(n + 1, far + 1))
-    term = lambda y: (n / y) ** power * weight(y - i)  # noqa: E731
+    term = lambda y: (n / y) ** power * weight(y - i)
     return near + quad(term, far + 0.5, inf, epsabs=0.0, limit=200)[0]

@@ -44,9 +44,9 @@ def lattice_sums(sizes: dict[str, list[int]], half: dict[int, list[int]]) -> Ite
     for kind, some in sizes.items():
         every, most = f"N {kind}: {', '.join(map(str, some))}", max(some)
         for name, one in _LINE.items():
-            worst = lambda: max(_of_line(one, size) for size in some)  # noqa: E731
+            worst = lambda: max(_of_line(one, size) for size in some)
             yield right(f"line, {name}, {every}", worst, bound=_rounding(most))
-        worst = lambda: max(map(_of_band, some))  # noqa: E731
+        worst = lambda: max(map(_of_band, some))
         yield right(f"line, banded, {every}, bands up to N", worst, bound=_rounding(2 * most))
     for dim, (name, one) in product([d for d in half if d > 1], _BOX.items()):
         larger = [(7, 7), (3, 9), (9, 5)] if dim == 3 else [(13, 13), (5, 19), (17, 11)]
@@ -157,7 +157,7 @@ def exteriors(beta: float, overlaps: list[float], beyond: list[int]) -> Iterator
         yield right(f"KPSE's kernel, n = {n}, overlap {overlap:g}", _of_exterior, alpha, n, overlap)
     refused = Kind("exterior", "refused: too few particles to fit", must=REFUSED)
     for n, terms in ((0, 1), (1, 2), (2, 3)):
-        tail = lambda: far_field(lambda m: np.abs(m) ** -power, power, alpha, n, terms=terms)  # noqa: E731
+        tail = lambda: far_field(lambda m: np.abs(m) ** -power, power, alpha, n, terms=terms)
         yield refused(f"N = {2 * n + 1}, terms: {terms}", tail)
 
 
@@ -168,7 +168,7 @@ def _weight(alpha: float, r: float) -> float:
 
 
 def _of_exterior(alpha: float, n: int, overlap: float) -> float:
-    weight = lambda m: _weight(alpha, abs(m) / overlap)  # noqa: E731
+    weight = lambda m: _weight(alpha, abs(m) / overlap)
     found, far = far_field(np.vectorize(weight), 1.0 + alpha, alpha, n).right[0], max(200, 10 * n)
     size = float(np.abs(found).max())
     exact = {i: power_sum(weight, 1.0 + alpha, n, i, far=far) for i in (-n, 0, n)}

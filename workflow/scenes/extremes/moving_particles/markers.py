@@ -76,7 +76,7 @@ def _smoothed_off(name: str, count: int, epsilon: float) -> float:
     with quiet():  # clusters have no time to grow
         end = run(*_gaussian(count, name), velocity, dt=time / steps, steps=steps)
     m, start = _moments(name)[0] * epsilon**2, 0.5
-    left = lambda s: s + m * math.log(s / start) - start - 2.0 * time  # noqa: E731
+    left = lambda s: s + m * math.log(s / start) - start - 2.0 * time
     variance = brentq(left, start, start + 2.0 * time)
     z = np.linspace(-1.0, 1.0, 81)
     exact = math.sqrt(0.5 / (variance + m)) * np.exp(-0.5 * z * z / (variance + m))

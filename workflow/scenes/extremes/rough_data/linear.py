@@ -89,7 +89,7 @@ def sizes(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
             ("-0.0", -np.zeros(case.shape), bounded),
             ("5e-324 on one particle", np.where(case.x == 0.0, 5e-324, 0.0), bounded),
         ):
-            grows = lambda: float(np.abs(run(case, u0)).max() > np.abs(u0).max())  # noqa: E731
+            grows = lambda: float(np.abs(run(case, u0)).max() > np.abs(u0).max())
             yield kind(f"{scheme}, {words}", grows)
 
 
@@ -111,7 +111,7 @@ def symmetries(beta: float, schemes: list[str]) -> Iterator[Probe]:
             u, v = rng.standard_normal((2, case.particles))
             solve, name = prepare(case).solve, f"{scheme}, {case.exterior}, noise"
             size = float(np.abs(solve(u)).max() + np.abs(solve(v)).max())
-            both = lambda: off(solve(3.0 * u - 2.0 * v), 3.0 * solve(u) - 2.0 * solve(v), size)  # noqa: E731
+            both = lambda: off(solve(3.0 * u - 2.0 * v), 3.0 * solve(u) - 2.0 * solve(v), size)
             yield linear(name, both)
             yield mirror(name, lambda: off(solve(u[::-1].copy()), solve(u)[::-1], size))
         if scheme == "DPSE":  # whose truncated potential reaches everywhere
@@ -145,7 +145,7 @@ def units(beta: float, schemes: list[str], dims: list[int]) -> Iterator[Probe]:
                 time = c ** (1.0 + beta) / d
                 fields = {"half_width": c * usual.reach, "spacing": c * usual.spacing}
                 fields |= {"t_initial": 0.5 * time, "t_final": time, "diffusivity": d, "dim": dim}
-                scaled = lambda: c**dim * run(case_of(scheme, beta, **fields), None)  # noqa: E731
+                scaled = lambda: c**dim * run(case_of(scheme, beta, **fields), None)
                 yield kind(
                     f"{scheme}, n = {dim}, lengths times {c:g}, D = {d:g}",
                     lambda: deviation(scaled(), run(usual, None)),

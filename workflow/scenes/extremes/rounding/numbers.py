@@ -76,7 +76,7 @@ def functions() -> Iterator[Probe]:
         "evolve": lambda x, t, a: fp.evolve(np.exp(-(x.astype(float) ** 2)), 0.2, a, t),
     }
     for name, function in functions.items():
-        other = lambda: float(not np.array_equal(function(*narrow), function(*wide)))  # noqa: E731
+        other = lambda: float(not np.array_equal(function(*narrow), function(*wide)))
         yield _SAME(f"{name} of float32", other)
     third = np.array([1.0 / 3.0], dtype=np.float32)
     # The number in single precision next to a third is 11184811 / 2^25.
@@ -185,7 +185,7 @@ def arithmetic() -> Iterator[Probe]:
     least, one = np.float64(2.2250738585072014e-308), np.float64(1.0)
     normal = Kind("arithmetic", "not flushed to zero", 0.0, "IEEE 754", HELD)
     yield normal("half of the least normal number", lambda: float(least / 2.0 * 2.0 != least))
-    wrong = lambda: float(one + EPS / 2.0 != 1.0 or one + 1.5 * EPS != 1.0 + 2.0 * EPS)  # noqa: E731
+    wrong = lambda: float(one + EPS / 2.0 != 1.0 or one + 1.5 * EPS != 1.0 + 2.0 * EPS)
     yield normal("1 + eps / 2 and 1 + 3 eps / 2", wrong, expected="rounded to even")
     case = Case(scheme="KPSE", spacing=0.25, **_FIELDS)
     u0 = np.full(case.shape, 3e-310)

@@ -77,7 +77,7 @@ def refused() -> Iterator[Probe]:
 
 def _limit(scheme: str, beta: float, order: int, s: float) -> float:
     alpha = 1.0 + beta
-    values = lambda t: symbol(scheme, np.atleast_1d(t)[:, None], alpha, order, s)  # noqa: E731
+    values = lambda t: symbol(scheme, np.atleast_1d(t)[:, None], alpha, order, s)
     # Where theta is smaller than 1e-3, A ~ -theta^alpha of an exchange is lost in the round-off of its parts.
     first = 1e-3 if scheme == "KPSE" else 0.0
     far, near = (np.linspace(first, min(np.pi, end), _POINTS) for end in (np.pi, 16.0 / s))

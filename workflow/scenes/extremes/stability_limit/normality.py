@@ -58,12 +58,12 @@ def transient_growth(half: int) -> Iterator[Probe]:
         expected = "at most 1" if normal else "at most the condition of the modes"
         # Of the zero eigenvalue round-off makes eps |A|, over t up to 1e6.
         bounded = Kind("transient growth", expected, 1e-8, must=HELD)
-        flow = lambda: _worst([expm(t * matrix) for t in _TIMES], condition, reach)  # noqa: E731
+        flow = lambda: _worst([expm(t * matrix) for t in _TIMES], condition, reach)
         yield bounded(f"{name}, exp(A t)", flow, source="scipy")
         dt, one = 0.99 * stability_limit(scheme, 0.5, order), np.eye(len(matrix))
         p = one + dt * matrix @ (one + 0.5 * dt * matrix)
         power = np.linalg.matrix_power
-        steps = lambda: _worst([power(p, int(n)) for n in _STEPS], condition, reach)  # noqa: E731
+        steps = lambda: _worst([power(p, int(n)) for n in _STEPS], condition, reach)
         yield bounded(f"{name}, p(A dt)^n, rk2, dt = 0.99 a", steps, source="dense matrix")
         # The next term of the exponential, t |A|^2 / 2, against |A|.
         rate = Kind("numerical range", f"log |exp(A t)| / t = {reach:.0e}", 1e-3, "scipy", HELD)

@@ -128,21 +128,21 @@ def _ways(
 ) -> Iterator[tuple[str, Callable[[], np.ndarray], Callable[[Any], Any], int, float]]:
     """Yield the way, the run, the function of A that it is, its applications, and what else its bound holds."""
     exponential = one.case(integrator="exponential", t_final=time)
-    run = lambda: prepare(exponential).solve(one.u0)  # noqa: E731
+    run = lambda: prepare(exponential).solve(one.u0)
     yield "exponential", run, lambda z: mp.exp(z * time), _applications(exponential), 0.0
     steps = max(2, ceil(time * -one.lowest / 1.8))
     for evaluation in ("series", "stepping"):
         fields = {"integrator": "rk2", "dt": time / steps, "t_final": time}
         case = one.case(**fields, evaluation=evaluation)
         count = 2 * case.steps if evaluation == "stepping" else _applications(case)
-        run = lambda: prepare(case).solve(one.u0)  # noqa: E731
+        run = lambda: prepare(case).solve(one.u0)
         yield f"rk2, {evaluation}", run, power_of_step(case), count, 0.0
     largest = 0.95 * ChebyshevStep(_STAGES).stability_interval
     number = max(4, ceil(time * -one.lowest / largest))
     stages = stages_for(time * -one.lowest / number)
     rkc, apply = ChebyshevStep(stages), SCHEMES[one.scheme].operator(exponential.setting).apply
-    run = lambda: rkc.advance(apply, one.u0, dt=time / number, steps=number)  # noqa: E731
-    power = lambda z: _of_a_step(rkc, z * time / number) ** number  # noqa: E731
+    run = lambda: rkc.advance(apply, one.u0, dt=time / number, steps=number)
+    power = lambda z: _of_a_step(rkc, z * time / number) ** number
     # The roundings of the stages, some s^2 ulps a step.
     yield "stabilised", run, power, number * stages, number * stages**2 * EPS
 

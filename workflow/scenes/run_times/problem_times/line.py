@@ -46,8 +46,8 @@ class _Source:
 def variable_diffusivity(alpha: float) -> Contest:
     """u_t = (D grad^beta u)_x + f to t = 1, D = 1 + exp(-x^2) / 2, u = exp(-t - x^2)."""
     source = _Source(alpha)
-    bell = lambda x: np.exp(-x * x)  # noqa: E731
-    diffusivity = lambda x: 1.0 + 0.5 * bell(x)  # noqa: E731
+    bell = lambda x: np.exp(-x * x)
+    diffusivity = lambda x: 1.0 + 0.5 * bell(x)
     fields: dict[str, Any] = {"alpha": alpha, "t_final": 1.0, "diffusivity": diffusivity}
     fields["source"] = lambda x, t: source(
         x, t
