@@ -72,6 +72,8 @@ class StudyConfig(_Strict):
         Where the report goes.
     site_dir : str
         Where the site goes.
+    site_api : bool
+        Whether the site has the pages of the library's API, which are the same whatever is studied.
     scenes_dir : str
         Where the scenes are, `<document>/<scene>/scene.yaml`.
     documents : dict
@@ -89,6 +91,7 @@ class StudyConfig(_Strict):
     results_dir: str = Field(min_length=1)
     report_dir: str = Field(min_length=1)
     site_dir: str = "site"
+    site_api: bool = True
     scenes_dir: str = "workflow/scenes"
     documents: dict[str, Document] = Field(min_length=1)
     grids: str | None = None

@@ -67,10 +67,12 @@ class Inputs:
         rows = []
         for path in self.runs:
             with netCDF4.Dataset(intact(Path(path))) as file:
+                # Nothing is masked or scaled; to find that out of each number takes as long as all else.
+                file.set_auto_maskandscale(False)
                 row = {
-                    name: _plain(variable[...])
+                    name: _plain(variable.getValue())
                     for name, variable in file.variables.items()
-                    if variable.ndim == 0
+                    if not variable.dimensions
                 }
             rows.append({**row, "run": path})
         return pd.DataFrame(rows)

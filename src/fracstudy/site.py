@@ -31,6 +31,8 @@ _LINK = re.compile(r"(\]\(|(?:href|src)=\")(?!https?://|#|mailto:)([^)\"#\s]+)(#
 _FOLDER_LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)#\s]+)\)")
 # Pages of `docs`: those that a newcomer reads first, and those about the project itself.
 _FIRST, _PROJECT = ("own_problem", "other_equations"), ("architecture",)
+# Nobody looks for a number by the search, whose index would hold mostly numbers.
+_UNSEARCHED = "---\nsearch: {exclude: true}\n---\n\n"
 _SCHEMES = ("DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM", "FD")
 
 
@@ -46,6 +48,7 @@ def build(
     report: Path,
     sources: Path,
     site: Path,
+    api: bool = True,
 ) -> None:
     """Build the site.
 
@@ -63,6 +66,8 @@ def build(
         Where the sources are laid out, made anew.
     site : Path
         Where the site goes, made anew.
+    api : bool
+        Whether it has a page for each room of the library: half of the time, and the same whatever is studied.
 
     Raises
     ------
@@ -90,7 +95,7 @@ def build(
     )
     shutil.copytree(root / "docs/theme", sources / "theme")
     examples = _examples(root / "examples", results / "examples", sources / "examples")
-    rooms = _api(root / "src/fracparticles", sources / "api")
+    rooms = _api(root / "src/fracparticles", sources / "api") if api else []
     _generate(root, sources, site, _navigation(documents, root, examples, rooms))
     runs = results / "runs"
     if runs.is_dir():
@@ -121,7 +126,7 @@ def _lay_out(page: Path, pages: Mapping[Path, Path], places: Mapping[Path, Path]
 
     text = page.read_text("utf-8")
     if page.parent.name == "tables":
-        text = f"# {page.stem}\n\n{text}"
+        text = f"{_UNSEARCHED}# {page.stem}\n\n{text}"
     write_text(place, _LINK.sub(placed, _FOLDER_LINK.sub(without_folder, text)))
 
 
@@ -158,7 +163,7 @@ def _api(package: Path, out: Path) -> list[str]:
 
 
 def _navigation(
-    documents: Mapping[str, Document], root: Path, examples: Iterable[Path], rooms: Iterable[str]
+    documents: Mapping[str, Document], root: Path, examples: Iterable[Path], rooms: Sequence[str]
 ) -> list[dict[str, Any]]:
     places = {stem: place for place, stem in enumerate(_FIRST)}
     own = sorted((root / "docs").glob("*.md"))
@@ -183,7 +188,7 @@ def _navigation(
         },
         {"Examples": [{_title(page): f"examples/{page.name}"} for page in examples]},
         {"Ledger": "results/claims.md"},
-        {"API": [{room: f"api/{room}.md"} for room in rooms]},
+        *([{"API": [{room: f"api/{room}.md"} for room in rooms]}] if rooms else []),
         {
             "Project": [
                 *({_title(page): f"docs/{page.name}"} for page in about),

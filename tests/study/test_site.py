@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from html.parser import HTMLParser
@@ -156,6 +157,22 @@ def test_the_api_is_made_of_the_docstrings(site):
     assert "green" in text
     assert "The density." in text
     assert "Special functions." in text
+
+
+def test_the_numbers_of_the_tables_are_not_searched(site):
+    tables = [page.name for page in (site / "results/tables").glob("*.html")]
+    index = json.loads((site / "search/search_index.json").read_text("utf-8"))["docs"]
+    assert tables
+    assert any(entry["location"].startswith("report/") for entry in index)
+    assert not any(entry["location"].startswith("results/tables") for entry in index)
+
+
+def test_a_site_without_the_api_has_no_page_of_it_and_none_leads_there(study, tmp_path):
+    root, out = study["root"], tmp_path / "s"
+    folders = {"results": root / "results", "report": root / "report", "sources": tmp_path / "p"}
+    build(study["scenes"], study["documents"], root, **folders, site=out, api=False)
+    assert not (out / "api").exists()
+    assert "api/" not in (out / "index.html").read_text("utf-8")
 
 
 def test_a_row_of_the_ledger_says_what_the_filters_look_for(study):

@@ -39,5 +39,6 @@ rule site:
         code=code("src/fracstudy/site.py", SOLVER),
         documents=STUDY.model_dump(mode="json")["documents"],
         report=str(REPORT),
+        api=STUDY.site_api,
     script:
         "../scripts/site.py"

@@ -22,4 +22,5 @@ with TemporaryDirectory() as sources:
         report=Path(snakemake.params.report),
         sources=Path(sources) / "pages",
         site=Path(snakemake.output[0]).parent,
+        api=snakemake.params.api,
     )
