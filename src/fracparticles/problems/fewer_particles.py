@@ -1,9 +1,10 @@
 """The error that the particles leave: what is known of it, and the rest by the problem on half and a quarter of them.
 
-Known is what they make of the initial data alone, see `frozen` and `finer_particles`; it is taken off each u before
-they are compared, where that brings these together. With d_1 the distance between u and what half of the particles
-along each axis make of it, and d_2 that between half and a quarter, each half of the spacing leaves r = d_1 / d_2 of
-the distance before. All those that are still to come are the rest of the error,
+Known is what they make of the initial data alone, see `frozen` and `finer_particles`: the largest such error, where the
+data are an array and may be one or the other thing between the particles. That of the smoothest of these is taken off
+each u before they are compared, where that brings them together. With d_1 the distance between u and what half of the
+particles along each axis make of it, and d_2 that between half and a quarter, each half of the spacing leaves
+r = d_1 / d_2 of the distance before. All those that are still to come are the rest of the error,
 
     d_1 (r + r^2 + ..) = d_1 r / (1 - r),
 
@@ -38,11 +39,11 @@ _FEWEST = {"interval": 16, "square": 8, "disc": 8, None: 8}
 
 Estimates = dict[str, tuple[list[float], str]]
 Solve = Callable[[Problem, Any], list[np.ndarray]]
-Known = Callable[[Problem, Any, list[np.ndarray]], list[np.ndarray]]
+Known = Callable[[Problem, Any, list[np.ndarray]], list[list[np.ndarray]]]
 
 
-def _nothing(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[np.ndarray]:
-    return [np.zeros_like(u) for u in fields]
+def _nothing(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[list[np.ndarray]]:
+    return [[] for _ in fields]
 
 
 def space_errors(
@@ -66,11 +67,14 @@ def space_errors(
     solve : callable
         From a problem and its initial data to such a list.
     known : callable
-        From these and such a list to the errors at the particles that are known beforehand, see `frozen`.
+        From these and such a list to the errors at the particles that may be known beforehand, see `frozen`.
     """
     apart: list[np.ndarray] = []
     errors = _quietly(known, problem, initial, fields)
-    least = np.array([_distance(problem, u, u - e) for u, e in zip(fields, errors, strict=True)])
+    least = np.array([
+        max((_distance(problem, u, u - e) for e in each), default=0.0)
+        for u, each in zip(fields, errors, strict=True)
+    ])  # fmt: skip
     for _ in range(_HALVINGS):
         try:
             fewer = _halved(problem)
@@ -85,7 +89,9 @@ def space_errors(
         coarse_errors = _quietly(known, fewer, initial, coarse)
         apart.append(np.array([
             min(_distance(fewer, among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
-            for u, e, v, f in zip(fields, errors, coarse, coarse_errors, strict=True)
+            for u, e, v, f in zip(
+                fields, _smoothest(errors), coarse, _smoothest(coarse_errors), strict=True
+            )
         ]))  # fmt: skip
         if apart[0].max() <= SPACE_ERROR:
             break
@@ -98,7 +104,11 @@ def space_errors(
     return list(least + apart[0] * factor)
 
 
-def _quietly(call: Callable[..., list[np.ndarray]], *given: Any) -> list[np.ndarray]:
+def _smoothest(errors: list[list[np.ndarray]]) -> list[Any]:
+    return [each[0] if each else 0.0 for each in errors]
+
+
+def _quietly(call: Callable[..., list[Any]], *given: Any) -> list[Any]:
     """Call without warnings: the run itself has given them, and some are of places that are no particles."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.problems.fewer_particles import Solve, among
+from fracparticles.problems.fewer_particles import Solve
+from fracparticles.problems.interpolants import interpolants
 from fracparticles.problems.problem import Problem
 
 __all__ = ["errors_of_diffusion"]
@@ -23,36 +24,44 @@ _MOST = 900  # particles whose modes take a second
 
 def errors_of_diffusion(
     problem: Problem, initial: Any, fields: list[np.ndarray], solve: Solve
-) -> list[np.ndarray]:
-    """Return at each output time the error at the particles; none where it is not known.
+) -> list[list[np.ndarray]]:
+    """Return at each output time the error at the particles, for all that the data may be; none where nothing is known.
 
     Parameters
     ----------
     problem : Problem
         Of a bounded domain. On a square and a disc, and of a D that changes in time, nothing is known.
     initial : callable or array
-        The initial data: a function, or values at the particles.
+        The initial data: a function, or values at the particles, see `interpolants`.
     fields : list of arrays
         u at each output time, in whose size the errors are.
     solve : callable
         From a problem and its initial data to such a list.
     """
-    nothing = [np.zeros_like(u) for u in fields]
+    nothing: list[list[np.ndarray]] = [[] for _ in fields]
     many = 3 * fields[0].shape[0]
     if problem.domain != "interval" or many > _MOST or "t" in problem.diffusion.depends_on:
         return nothing
     try:
         alone = problem.model_copy(update={"velocity": None, "source": None})
         finer = alone.model_copy(update={"particles": many})
-        given = initial if callable(initial) else among(problem, finer, initial)
-        pairs = list(zip(solve(alone, initial), solve(finer, given), strict=True))
+        given = [initial] if callable(initial) else interpolants(initial, _places(many))
+        coarse, fine = solve(alone, initial), [solve(finer, one) for one in given]
     except (InvalidInput, NonFiniteSolution):  # a function that knows its own particles alone
         return nothing
     sizes = [
         1.0 if problem.adds else _greatest(u) / (_greatest(v) or 1.0)
-        for u, (v, _) in zip(fields, pairs, strict=True)
+        for u, v in zip(fields, coarse, strict=True)
     ]
-    return [size * (v - w[1::3]) for size, (v, w) in zip(sizes, pairs, strict=True)]
+    return [
+        [size * (v - w[1::3]) for w in each]
+        for size, v, *each in zip(sizes, coarse, *fine, strict=True)
+    ]
+
+
+def _places(many: int) -> np.ndarray:
+    """Those of the finer particles, in spacings of the others behind the first of these."""
+    return np.asarray((np.arange(many) - 1.0) / 3.0)
 
 
 def _greatest(u: np.ndarray) -> float:

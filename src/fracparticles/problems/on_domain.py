@@ -87,7 +87,7 @@ def _fields_of(problem: Problem, initial: Any) -> list[np.ndarray]:
     return _integrated(problem, rates, u0, _held(problem, rates, u0)).u
 
 
-def _known(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[np.ndarray]:
+def _known(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[list[np.ndarray]]:
     return errors_of_diffusion(problem, initial, fields, _fields_of)
 
 

@@ -1,0 +1,102 @@
+"""What initial data that are an array may be between the particles.
+
+Data that are smooth on the scale of h are their cubic spline there. An array of a kink does not say where the kink is,
+nor does one of a jump. How smooth the data are is told by the cubic through four: what it misses of the value in their
+middle,
+
+    r_s = |u_i - (9 u_(i-s) + 9 u_(i+s) - u_(i-3s) - u_(i+3s)) / 16|,
+
+falls with the stride s, from two to one, to a sixteenth where u is smooth, to a half at a kink and not at all at a
+jump. Where it falls to no less than a fourth, u is one of these instead:
+
+    linear                            right of a kink at a particle;
+    the value on the left, or on the right, between two particles that differ by more than twice what those
+    beside them do                    right of a jump just before a particle, or just behind one.
+
+A kink between two particles has an error in between those of the spline and of the straight line, and a jump in between
+those of its two ends. A root, whose slope is infinite, may have three times as much, see tests/problems/test_arrays.py.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import maximum_filter1d
+
+__all__ = ["interpolants"]
+
+_ROUGH = 0.25  # of what the cubic misses at twice the stride
+_JUMP = 2.0  # of the differences beside it
+_LEAST = 1e-4  # of the greatest |u|, a miss that is no matter
+_NEAR = {1: 5, 2: 9}  # particles among which the greatest miss is taken, by stride
+
+
+def interpolants(u: np.ndarray, at: np.ndarray) -> list[np.ndarray]:
+    """Return what u may be at other places: its spline first, and where it is rough each of the others.
+
+    Parameters
+    ----------
+    u : array, shape (N, .., N)
+        Values at particles that are equally spaced in some variable along each axis, eight at least.
+    at : array, shape (M,)
+        The places along each axis, in spacings behind the first particle; what lies outside has the spline alone.
+    """
+    spline, linear, left, right = u, u, u, u
+    for axis in range(u.ndim):
+        spline = _splined(spline, at, axis)
+        linear, left, right = (
+            _rough_parts(one, at, axis, side)
+            for one, side in ((linear, None), (left, 0.0), (right, 1.0))
+        )
+    found = [spline]
+    for one in (linear, left, right):
+        if not any(np.array_equal(one, other) for other in found):
+            found.append(one)
+    return found
+
+
+def _splined(u: np.ndarray, at: np.ndarray, axis: int) -> np.ndarray:
+    return np.asarray(CubicSpline(np.arange(u.shape[axis]), u, axis)(at))
+
+
+def _rough_parts(u: np.ndarray, at: np.ndarray, axis: int, side: float | None) -> np.ndarray:
+    """The spline, where u is rough a straight line, and where it jumps the value on one side, 0. or 1., if given."""
+    values = np.moveaxis(u, axis, 0)
+    cell = np.clip(np.floor(at).astype(int), 0, values.shape[0] - 2)
+    inside = (at >= 0.0) & (at <= values.shape[0] - 1)
+    along = (-1,) + (1,) * (u.ndim - 1)
+    part = np.broadcast_to((at - cell).reshape(along), (at.size, *values.shape[1:]))
+    if side is not None:
+        between = (part > 0.0) & (part < 1.0)
+        part = np.where(_jumps(values)[cell] & between, side, part)
+    line = (1.0 - part) * values[cell] + part * values[cell + 1]
+    chosen = _is_rough(values)[cell] & inside.reshape(along)
+    return np.moveaxis(np.where(chosen, line, _splined(values, at, 0)), 0, axis)
+
+
+def _is_rough(values: np.ndarray) -> np.ndarray:
+    """Whether u is rough between each two particles along the first axis."""
+    fine, coarse = (
+        maximum_filter1d(_missed(values, stride), near, axis=0) for stride, near in _NEAR.items()
+    )
+    rough = (fine > _ROUGH * coarse) & (fine > _LEAST * np.abs(values).max())
+    return np.asarray(rough[:-1] | rough[1:])
+
+
+def _missed(values: np.ndarray, stride: int) -> np.ndarray:
+    """r_s at each particle; beyond the ends u goes on without a kink."""
+    count, beyond = values.shape[0], 3 * stride
+    width = [(beyond, beyond)] + [(0, 0)] * (values.ndim - 1)
+    longer = np.pad(values, width, "reflect", reflect_type="odd")
+    near, far = (
+        longer[beyond + k : beyond + k + count] + longer[beyond - k : beyond - k + count]
+        for k in (stride, beyond)
+    )
+    return np.abs(values - (9.0 * near - far) / 16.0)
+
+
+def _jumps(values: np.ndarray) -> np.ndarray:
+    """Whether two particles differ by more than twice what those beside them do, along the first axis."""
+    steps = np.abs(np.diff(values, axis=0))
+    longer = np.pad(steps, [(1, 1)] + [(0, 0)] * (values.ndim - 1))
+    return np.asarray(steps > _JUMP * np.maximum(longer[:-2], longer[2:]))
