@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from kinks import KINKS, SAID, H, bell, error, solution, solved
 
-from fracparticles.problems import Problem
+from fracparticles.problems import Problem, solve_problem
+from fracparticles.problems.fewer_particles import among
 from fracparticles.problems.interpolants import interpolants
 
 TAUS = (0.03, 0.3, 3.0, 30.0)  # h^alpha
@@ -80,15 +81,50 @@ def test_a_kink_is_a_straight_line_and_a_jump_is_anywhere_between():
     spline, linear = interpolants(kink, 31.0 + PARTS)
     assert linear == pytest.approx(PARTS)
     assert spline != pytest.approx(PARTS, abs=1e-2)
-    _, linear, left, right = interpolants(jump, 31.0 + PARTS)
-    assert linear == pytest.approx(PARTS)
-    assert left == pytest.approx(0.0 * PARTS, abs=0.0)
-    assert right == pytest.approx(1.0 + 0.0 * PARTS, rel=0.0)
+    _, least, most = interpolants(jump, 31.0 + PARTS)
+    assert least == pytest.approx(0.0 * PARTS, abs=0.0)
+    assert most == pytest.approx(1.0 + 0.0 * PARTS, rel=0.0)
 
 
 def test_every_interpolant_meets_the_particles():
     u = np.random.default_rng(1).standard_normal((20, 24))
     u[:, 12:] += 10.0
     square = u[:, :20]
-    for found in interpolants(square, np.arange(20.0)):
+    for found in interpolants(square, np.arange(20.0), np.arange(20.0)):
         assert found == pytest.approx(square, abs=1e-12)
+
+
+def box(x, y):
+    return 1.0 * ((np.abs(x - 0.1) < 0.3) & (np.abs(y + 0.07) < 0.35))
+
+
+@pytest.mark.parametrize("as_array", [False, True])
+@pytest.mark.parametrize(("domain", "particles", "finer"), [("square", 24, 120), ("disc", 16, 48)])
+def test_a_jump_in_a_square_and_a_disc(domain, particles, finer, as_array):
+    """Against three and five times as many. Half of the particles alone said 0.01 where a fifth of u was wrong."""
+    fields = {"alpha": 1.5, "half_width": 1.0, "exterior": "absorbing", "domain": domain}
+    fields["times"] = tuple(tau * particles**-1.5 for tau in (0.3, 3.0, 30.0))
+    some, many = (Problem(**fields, particles=n) for n in (particles, finer))
+    exact = solve_problem(many, box, estimate=False).u.values
+    run = solve_problem(some, box(*some.places.values()) if as_array else box)
+    for u, v, said in zip(run.u.values, exact, run.space_error.values, strict=True):
+        off = np.abs(u - among(many, some, v)).max() / np.abs(u).max()
+        # Of three times as many two thirds are known.
+        assert off < 2.0 * said
+        assert off > said / 8.0
+
+
+@pytest.mark.parametrize(("domain", "particles"), [("interval", 320), ("square", 40)])
+def test_more_particles_than_have_thrice_as_many(domain, particles):
+    """The box has its error from fewer; a bell that fewer would not see has none."""
+    fields = {"alpha": 1.5, "half_width": 1.0, "exterior": "absorbing", "domain": domain}
+    fields |= {"particles": particles, "t_final": 30.0 * (3.0 / particles) ** 1.5}
+
+    def along(profile):
+        return profile if domain == "interval" else lambda x, y: profile(x) * np.cos(y)
+
+    jump = solve_problem(Problem(**fields), along(lambda x: 1.0 * (np.abs(x - 0.101) < 0.2)))
+    assert float(jump.space_error) > 0.02
+    narrow = 3.0 * float(np.diff(np.asarray(jump.x)).max())
+    smooth = solve_problem(Problem(**fields), along(lambda x: np.exp(-((x / narrow) ** 2))))
+    assert float(smooth.space_error) < 0.02

@@ -28,7 +28,15 @@ from scipy.interpolate import CubicSpline
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems.problem import Problem
 
-__all__ = ["SPACE_ERROR", "Estimates", "Solve", "among", "space_errors", "with_space_error"]
+__all__ = [
+    "SPACE_ERROR",
+    "Estimates",
+    "Solve",
+    "among",
+    "axes_of",
+    "space_errors",
+    "with_space_error",
+]
 
 SPACE_ERROR = 0.03
 """Of the greatest |u|, an error that is said."""
@@ -162,7 +170,7 @@ def _count(problem: Problem) -> int:
     return problem.case.x.size // 2
 
 
-def _axes(problem: Problem) -> list[tuple[np.ndarray, bool]]:
+def axes_of(problem: Problem) -> list[tuple[np.ndarray, bool]]:
     """For each axis the variable in which its particles are equally spaced, from 0 to 1, and whether it is an angle."""
     if not problem.is_bounded:
         return [(np.linspace(0.0, 1.0, problem.case.x.size), False)] * problem.dim
@@ -176,7 +184,9 @@ def _axes(problem: Problem) -> list[tuple[np.ndarray, bool]]:
 
 def among(problem: Problem, fewer: Problem, u: np.ndarray) -> np.ndarray:
     """Return a field of the problem where the fewer particles are, by splines along each axis."""
-    for axis, ((s, turns), (at, _)) in enumerate(zip(_axes(problem), _axes(fewer), strict=True)):
+    for axis, ((s, turns), (at, _)) in enumerate(
+        zip(axes_of(problem), axes_of(fewer), strict=True)
+    ):
         if turns:
             s, u = np.append(s, 1.0), np.concatenate([u, u.take([0], axis)], axis)
         u = CubicSpline(s, u, axis, "periodic" if turns else "not-a-knot")(at)

@@ -161,7 +161,7 @@ def _between(problem: Problem, initial: Any, u0: np.ndarray) -> list[np.ndarray]
             values = np.array(np.nan)
         if np.isfinite(values).all():
             return [values]
-    found = interpolants(u0, part)
+    found = interpolants(u0, *(part,) * dim)
     return found[:1] if initial is None else found
 
 
