@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from kinks import KINKS, SAID, H, bell, error, solution, solved
 
-from fracparticles.problems import Problem, solve_problem
+from fracparticles.problems import Problem, frozen, solve_problem
 from fracparticles.problems.fewer_particles import among
 from fracparticles.problems.interpolants import interpolants
 
@@ -128,3 +128,19 @@ def test_more_particles_than_have_thrice_as_many(domain, particles):
     narrow = 3.0 * float(np.diff(np.asarray(jump.x)).max())
     smooth = solve_problem(Problem(**fields), along(lambda x: np.exp(-((x / narrow) ** 2))))
     assert float(smooth.space_error) < 0.02
+
+
+@pytest.mark.parametrize("as_array", [False, True])
+@pytest.mark.parametrize("tau", [0.3, 3.0])
+def test_a_lattice_that_is_too_large_for_its_waves(monkeypatch, as_array, tau):
+    """A kink there had the error of half and a quarter alone, a tenth of its own."""
+    given, transform = KINKS["tent"]
+    fields = {"alpha": 1.5, "order": 2, "t_final": tau * H**1.5}
+    x = Problem(half_width=10.0, spacing=H, **fields).case.x
+    monkeypatch.setattr(frozen, "_MOST", 32 * x.size - 1)
+    run, _ = solved(given(x / 0.5) if as_array else lambda x: given(x / 0.5), **fields)
+    exact = solution(lambda k: 0.5 * transform(0.5 * k), x, fields["t_final"], 1.5)
+    off = error(run.u.values, exact)
+    assert off / 2.0 < float(run.space_error) < 3.0 * off
+    smooth, _ = solved(bell(x / 0.8), **{**fields, "order": 4})
+    assert float(smooth.space_error) < SAID

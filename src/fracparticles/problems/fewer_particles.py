@@ -34,6 +34,7 @@ __all__ = [
     "Solve",
     "among",
     "axes_of",
+    "halved",
     "space_errors",
     "with_space_error",
 ]
@@ -85,7 +86,7 @@ def space_errors(
     ])  # fmt: skip
     for _ in range(_HALVINGS):
         try:
-            fewer = _halved(problem)
+            fewer = halved(problem)
             if not (initial is None or callable(initial)):
                 initial = among(problem, fewer, initial)
             coarse = _quietly(solve, fewer, initial)
@@ -147,7 +148,7 @@ def _distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:
     return max(float(off.max()) / greatest, float((volumes * (off / greatest)).sum()) / whole)
 
 
-def _halved(problem: Problem) -> Problem:
+def halved(problem: Problem) -> Problem:
     """The problem on half as many particles along each axis; raises `InvalidInput` if these are too few."""
     half, least = _count(problem) // 2, _FEWEST[problem.domain]
     if half < least:

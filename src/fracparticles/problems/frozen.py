@@ -20,7 +20,8 @@ import numpy as np
 
 from fracparticles.arguments import FloatArray
 from fracparticles.problems.expressions import Coefficient
-from fracparticles.problems.interpolants import interpolants
+from fracparticles.problems.fewer_particles import among, halved
+from fracparticles.problems.interpolants import interpolants, is_rough
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.transport import Transport
 from fracparticles.schemes import SCHEMES
@@ -56,7 +57,8 @@ def frozen_errors(
     Parameters
     ----------
     problem : Problem
-        Of the whole space; of a large lattice nothing is known.
+        Of the whole space. On a large lattice it is half of what half of the particles say, as that of a jump is; and
+        of data that are smooth there nothing is known.
     initial : callable or any
         The initial data; if they are no function, each of what an array may be between the particles, the smoothest
         first, see `interpolants`. Nothing is the fundamental solution, which is smooth.
@@ -67,8 +69,10 @@ def frozen_errors(
     """
     size = float(np.abs(u0).max())
     places = (2 * _FINER[problem.dim] * u0.shape[0]) ** problem.dim
-    if not 0.0 < size < np.inf or places > _MOST:
+    if not 0.0 < size < np.inf:
         return [[]] * len(fields)
+    if places > _MOST:
+        return _by_half(problem, initial, u0, fields)
     scheme = _of_the_scheme(problem, u0 / size)
     equations = [_of_the_equation(problem, u / size) for u in _between(problem, initial, u0)]
     errors: list[list[np.ndarray]] = []
@@ -78,6 +82,16 @@ def frozen_errors(
         now = float(np.abs(u).max())
         errors.append([(size if problem.adds else now / greatest) * off for off, greatest in found])
     return errors
+
+
+def _by_half(
+    problem: Problem, initial: Any, u0: np.ndarray, fields: list[np.ndarray]
+) -> list[list[np.ndarray]]:
+    if not is_rough(u0):  # half of the particles may not see how smooth it is
+        return [[]] * len(fields)
+    half = halved(problem)
+    errors = frozen_errors(half, initial, among(problem, half, u0), fields)
+    return [[0.5 * among(half, problem, off) for off in each] for each in errors]
 
 
 def _error(
