@@ -86,15 +86,16 @@ def _are_rough(values: np.ndarray) -> np.ndarray:
 
 
 def _missed(values: np.ndarray, stride: int) -> np.ndarray:
-    """r_s at each particle; beyond the ends u goes on without a kink."""
-    count, beyond = values.shape[0], 3 * stride
-    width = [(beyond, beyond)] + [(0, 0)] * (values.ndim - 1)
-    longer = np.pad(values, width, "reflect", reflect_type="odd")
-    near, far = (
-        longer[beyond + k : beyond + k + count] + longer[beyond - k : beyond - k + count]
-        for k in (stride, beyond)
-    )
-    return np.abs(values - (9.0 * near - far) / 16.0)
+    """r_s at each particle; beside an end that of the outermost which has all four others."""
+    far, count = 3 * stride, values.shape[0] - 6 * stride
+    if count < 1:
+        return np.zeros(values.shape)
+
+    def pair(k: int) -> np.ndarray:
+        return np.asarray(values[far + k : far + k + count] + values[far - k : far - k + count])
+
+    missed = np.abs(values[far:-far] - (9.0 * pair(stride) - pair(far)) / 16.0)
+    return np.pad(missed, [(far, far)] + [(0, 0)] * (values.ndim - 1), "edge")
 
 
 def _jumps(values: np.ndarray) -> np.ndarray:
