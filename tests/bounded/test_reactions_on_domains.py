@@ -8,6 +8,7 @@ from scipy.special import gamma
 
 from fracparticles.bounded.interval import Interval
 from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.problems import Problem, solve_problem
 
 
 @pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
@@ -61,3 +62,24 @@ def test_what_is_refused():
             call()
     with pytest.raises(InvalidInput, match=r"^source = "):
         line.react(1.0, 1.0, lambda x, t, u: u[:3])
+
+
+@pytest.mark.parametrize("rate", [3.0, 100.0, 1e6])
+def test_a_decay_beside_a_velocity_is_a_factor(rate):
+    """exp(-c t) times what there is without it; followed to where it is nothing it took 684 steps, and failed later."""
+    fields = {"alpha": 1.5, "half_width": 1.0, "exterior": "absorbing", "particles": 32}
+    fields |= {"velocity": "1 + x", "times": (0.1, 1.0)}
+    plain = solve_problem(Problem(**fields), np.cos, estimate=False)
+    run = solve_problem(Problem(**fields, source=f"-{rate}*u"), np.cos, estimate=False)
+    fallen = np.exp(-rate * plain.t)
+    # By a step's tolerance: the derivatives differ in their last digits.
+    assert np.abs(run.u - fallen * plain.u).max() <= 1e-6 * np.abs(fallen * plain.u).max()
+    assert int(run.accepted_steps) <= int(plain.accepted_steps) + 2
+
+
+def test_what_falls_to_nothing_beside_a_velocity_is_followed_to_it():
+    """The slope of its source was nothing over nothing."""
+    fields = {"alpha": 1.5, "half_width": 1.0, "exterior": "absorbing", "particles": 24}
+    fields |= {"velocity": "1 - x**2", "t_final": 1.0, "source": "-1e3*u - u**2", "rtol": 1e-3}
+    run = solve_problem(Problem(**fields), np.cos, estimate=False)
+    assert np.abs(run.u).max() < 1e-290

@@ -23,6 +23,7 @@ Beside = Callable[[float, FloatArray], FloatArray]
 
 _FINEST = 1e-12  # of a relative tolerance
 _MOST = 20_000  # steps
+_NOTHING = 1e-290  # of u, not followed any further: numbers end
 
 
 class ImplicitSteps(ModalSteps):
@@ -60,7 +61,8 @@ class ImplicitSteps(ModalSteps):
             first = size_of(modes.into(self._rest(start, u))) * span
 
             def atol(t: float, y: FloatArray) -> float:
-                return self._tolerance * (self._size(t, y) or first or 1.0) / np.sqrt(y.size)
+                size = max(self._size(t, y) or first or 1.0, _NOTHING)
+                return self._tolerance * size / np.sqrt(y.size)
 
             solver = Radau(
                 rate, start, y, start + span, rtol=self._tolerance, atol=atol(start, y),

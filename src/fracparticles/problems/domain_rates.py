@@ -29,6 +29,7 @@ __all__ = ["DomainRates"]
 
 _LOOKS = 33  # at a diffusivity that depends on time
 _UNIFORM = 1e-6  # of a rate, its round-off where g is greater
+_FADED = 1e-290
 _KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
 
 
@@ -135,7 +136,9 @@ class DomainRates:
         """Return df/du at the particles, by a difference."""
         if self.source is None or self.problem.is_linear:
             return np.zeros(v.shape)
-        return slope_of(self.source, t, v + self.lift(t).base)
+        u = v + self.lift(t).base
+        # A difference of a share of what has faded would be nothing over nothing.
+        return slope_of(self.source, t, u if np.abs(u).max() > _FADED else 0.0 * u)
 
     def decay(self, v: np.ndarray) -> float:
         """Return c >= 0 of a source -c u + g(x), by what it makes of u and of -u/2; 0 of any other."""
@@ -150,6 +153,13 @@ class DomainRates:
         greatest = float(c.flat[np.abs(u).argmax()])
         off = np.abs(np.stack([c, half])[:, where] - greatest).max(initial=0.0)
         return max(0.0, greatest) if off <= _UNIFORM * abs(greatest) else 0.0
+
+    @property
+    def only_decays(self) -> bool:
+        """Whether nothing makes u where there is none: no value outside, and a source that is zero for u = 0."""
+        start = self.problem.t_initial
+        made = 0.0 if self.source is None else self.source(start, np.zeros(self.shape))
+        return self.problem.exterior != "given" and not np.any(made)
 
     def slowest(self) -> float:
         """Return the lowest eigenvalue of -D A with the least D of the run."""

@@ -1,9 +1,10 @@
 """The error that the particles leave: what is known of it, and the rest by the problem on half and a quarter of them.
 
-Known is what they make of the initial data alone, see `frozen` and `finer_particles`; it is taken off each u before
-they are compared, where that brings these together. With d_1 the distance between u and what half of the particles
-along each axis make of it, and d_2 that between half and a quarter, each half of the spacing leaves r = d_1 / d_2 of
-the distance before. All those that are still to come are the rest of the error,
+Known is what they make of the initial data alone, see `frozen` and `finer_particles`: the largest such error, where the
+data are an array and may be one or the other thing between the particles. That of the smoothest of these is taken off
+each u before they are compared, where that brings them together. With d_1 the distance between u and what half of the
+particles along each axis make of it, and d_2 that between half and a quarter, each half of the spacing leaves
+r = d_1 / d_2 of the distance before. All those that are still to come are the rest of the error,
 
     d_1 (r + r^2 + ..) = d_1 r / (1 - r),
 
@@ -27,7 +28,16 @@ from scipy.interpolate import CubicSpline
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems.problem import Problem
 
-__all__ = ["SPACE_ERROR", "Estimates", "Solve", "among", "space_errors", "with_space_error"]
+__all__ = [
+    "SPACE_ERROR",
+    "Estimates",
+    "Solve",
+    "among",
+    "axes_of",
+    "halved",
+    "space_errors",
+    "with_space_error",
+]
 
 SPACE_ERROR = 0.03
 """Of the greatest |u|, an error that is said."""
@@ -38,11 +48,11 @@ _FEWEST = {"interval": 16, "square": 8, "disc": 8, None: 8}
 
 Estimates = dict[str, tuple[list[float], str]]
 Solve = Callable[[Problem, Any], list[np.ndarray]]
-Known = Callable[[Problem, Any, list[np.ndarray]], list[np.ndarray]]
+Known = Callable[[Problem, Any, list[np.ndarray]], list[list[np.ndarray]]]
 
 
-def _nothing(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[np.ndarray]:
-    return [np.zeros_like(u) for u in fields]
+def _nothing(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[list[np.ndarray]]:
+    return [[] for _ in fields]
 
 
 def space_errors(
@@ -66,14 +76,17 @@ def space_errors(
     solve : callable
         From a problem and its initial data to such a list.
     known : callable
-        From these and such a list to the errors at the particles that are known beforehand, see `frozen`.
+        From these and such a list to the errors at the particles that may be known beforehand, see `frozen`.
     """
     apart: list[np.ndarray] = []
     errors = _quietly(known, problem, initial, fields)
-    least = np.array([_distance(problem, u, u - e) for u, e in zip(fields, errors, strict=True)])
+    least = np.array([
+        max((_distance(problem, u, u - e) for e in each), default=0.0)
+        for u, each in zip(fields, errors, strict=True)
+    ])  # fmt: skip
     for _ in range(_HALVINGS):
         try:
-            fewer = _halved(problem)
+            fewer = halved(problem)
             if not (initial is None or callable(initial)):
                 initial = among(problem, fewer, initial)
             coarse = _quietly(solve, fewer, initial)
@@ -85,7 +98,9 @@ def space_errors(
         coarse_errors = _quietly(known, fewer, initial, coarse)
         apart.append(np.array([
             min(_distance(fewer, among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
-            for u, e, v, f in zip(fields, errors, coarse, coarse_errors, strict=True)
+            for u, e, v, f in zip(
+                fields, _smoothest(errors), coarse, _smoothest(coarse_errors), strict=True
+            )
         ]))  # fmt: skip
         if apart[0].max() <= SPACE_ERROR:
             break
@@ -98,7 +113,11 @@ def space_errors(
     return list(least + apart[0] * factor)
 
 
-def _quietly(call: Callable[..., list[np.ndarray]], *given: Any) -> list[np.ndarray]:
+def _smoothest(errors: list[list[np.ndarray]]) -> list[Any]:
+    return [each[0] if each else 0.0 for each in errors]
+
+
+def _quietly(call: Callable[..., list[Any]], *given: Any) -> list[Any]:
     """Call without warnings: the run itself has given them, and some are of places that are no particles."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
@@ -129,7 +148,7 @@ def _distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:
     return max(float(off.max()) / greatest, float((volumes * (off / greatest)).sum()) / whole)
 
 
-def _halved(problem: Problem) -> Problem:
+def halved(problem: Problem) -> Problem:
     """The problem on half as many particles along each axis; raises `InvalidInput` if these are too few."""
     half, least = _count(problem) // 2, _FEWEST[problem.domain]
     if half < least:
@@ -152,7 +171,7 @@ def _count(problem: Problem) -> int:
     return problem.case.x.size // 2
 
 
-def _axes(problem: Problem) -> list[tuple[np.ndarray, bool]]:
+def axes_of(problem: Problem) -> list[tuple[np.ndarray, bool]]:
     """For each axis the variable in which its particles are equally spaced, from 0 to 1, and whether it is an angle."""
     if not problem.is_bounded:
         return [(np.linspace(0.0, 1.0, problem.case.x.size), False)] * problem.dim
@@ -166,7 +185,9 @@ def _axes(problem: Problem) -> list[tuple[np.ndarray, bool]]:
 
 def among(problem: Problem, fewer: Problem, u: np.ndarray) -> np.ndarray:
     """Return a field of the problem where the fewer particles are, by splines along each axis."""
-    for axis, ((s, turns), (at, _)) in enumerate(zip(_axes(problem), _axes(fewer), strict=True)):
+    for axis, ((s, turns), (at, _)) in enumerate(
+        zip(axes_of(problem), axes_of(fewer), strict=True)
+    ):
         if turns:
             s, u = np.append(s, 1.0), np.concatenate([u, u.take([0], axis)], axis)
         u = CubicSpline(s, u, axis, "periodic" if turns else "not-a-knot")(at)

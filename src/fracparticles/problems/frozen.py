@@ -17,10 +17,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from fracparticles.arguments import FloatArray
 from fracparticles.problems.expressions import Coefficient
+from fracparticles.problems.fewer_particles import among, halved
+from fracparticles.problems.interpolants import interpolants, is_rough
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.transport import Transport
 from fracparticles.schemes import SCHEMES
@@ -50,15 +51,17 @@ class _Waves(NamedTuple):
 
 def frozen_errors(
     problem: Problem, initial: Any, u0: np.ndarray, fields: list[np.ndarray]
-) -> list[np.ndarray]:
-    """Return at each output time the error at the particles; zeros where it is not known.
+) -> list[list[np.ndarray]]:
+    """Return at each output time the error at the particles, for all that the data may be; none where nothing is known.
 
     Parameters
     ----------
     problem : Problem
-        Of the whole space; of a large lattice nothing is known.
+        Of the whole space. On a large lattice it is half of what half of the particles say, as that of a jump is; and
+        of data that are smooth there nothing is known.
     initial : callable or any
-        The initial data; if they are no function, they are a spline through the particles.
+        The initial data; if they are no function, each of what an array may be between the particles, the smoothest
+        first, see `interpolants`. Nothing is the fundamental solution, which is smooth.
     u0 : array
         Their values at the particles.
     fields : list of arrays
@@ -66,15 +69,29 @@ def frozen_errors(
     """
     size = float(np.abs(u0).max())
     places = (2 * _FINER[problem.dim] * u0.shape[0]) ** problem.dim
-    if not 0.0 < size < np.inf or places > _MOST:
-        return [np.zeros_like(u0)] * len(fields)
-    scheme, equation = _of_the_scheme(problem, u0 / size), _of_the_equation(problem, initial, u0)
-    # Whatever else than a source that adds to it makes u grow or fall does so with its error.
-    errors = []
+    if not 0.0 < size < np.inf:
+        return [[]] * len(fields)
+    if places > _MOST:
+        return _by_half(problem, initial, u0, fields)
+    scheme = _of_the_scheme(problem, u0 / size)
+    equations = [_of_the_equation(problem, u / size) for u in _between(problem, initial, u0)]
+    errors: list[list[np.ndarray]] = []
     for t, u in zip(problem.output_times, fields, strict=True):
-        off, greatest = _error(problem, t, u0, scheme, equation)
-        errors.append((size if problem.adds else float(np.abs(u).max()) / greatest) * off)
+        found = [_error(problem, t, u0, scheme, one) for one in equations]
+        # Whatever else than a source that adds to it makes u grow or fall does so with its error.
+        now = float(np.abs(u).max())
+        errors.append([(size if problem.adds else now / greatest) * off for off, greatest in found])
     return errors
+
+
+def _by_half(
+    problem: Problem, initial: Any, u0: np.ndarray, fields: list[np.ndarray]
+) -> list[list[np.ndarray]]:
+    if not is_rough(u0):  # half of the particles may not see how smooth it is
+        return [[]] * len(fields)
+    half = halved(problem)
+    errors = frozen_errors(half, initial, among(problem, half, u0), fields)
+    return [[0.5 * among(half, problem, off) for off in each] for each in errors]
 
 
 def _error(
@@ -115,9 +132,8 @@ def _of_the_scheme(problem: Problem, u: np.ndarray) -> _Waves:
     return _Waves(data, -symbol, carried)
 
 
-def _of_the_equation(problem: Problem, initial: Any, u0: np.ndarray) -> _Waves:
+def _of_the_equation(problem: Problem, u: np.ndarray) -> _Waves:
     m = _FINER[problem.dim]
-    u = _between(problem, initial, u0, m) / np.abs(u0).max()
     data = np.fft.fftn(np.pad(u, [(0, n) for n in u.shape], "symmetric"))
     waves = _wavenumbers(data.shape, m)
     for k in waves:  # the first place lies half of a finer spacing behind the first particle
@@ -144,10 +160,10 @@ def _mean(problem: Problem, one: Coefficient, t: float) -> Any:
     return sum(one(problem.places | {"t": np.array(time)}) for time in times) / len(times)
 
 
-def _between(problem: Problem, initial: Any, u0: np.ndarray, m: int) -> np.ndarray:
-    """The data at m places between each two particles, equally spaced, none of them at a particle."""
-    count, dim = u0.shape[0], problem.dim
-    part = (np.arange((count - 1) * m) + 0.5) / m
+def _between(problem: Problem, initial: Any, u0: np.ndarray) -> list[np.ndarray]:
+    """What the data may be at m places between each two particles, equally spaced, none of them at a particle."""
+    m, dim = _FINER[problem.dim], problem.dim
+    part = (np.arange((u0.shape[0] - 1) * m) + 0.5) / m
     x = problem.case.x[0] + part * problem.case.particle_spacing
     if callable(initial):
         try:
@@ -158,10 +174,9 @@ def _between(problem: Problem, initial: Any, u0: np.ndarray, m: int) -> np.ndarr
         except Exception:  # whatever a function may raise that knows its own particles alone
             values = np.array(np.nan)
         if np.isfinite(values).all():
-            return values
-    for axis in range(dim):
-        u0 = CubicSpline(np.arange(count), u0, axis)(part)
-    return u0
+            return [values]
+    found = interpolants(u0, *(part,) * dim)
+    return found[:1] if initial is None else found
 
 
 def _folded(fine: Any, shape: tuple[int, ...]) -> Any:

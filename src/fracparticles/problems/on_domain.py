@@ -23,7 +23,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
 from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.problems.fewer_particles import SPACE_ERROR, Estimates, with_space_error
-from fracparticles.problems.finer_particles import errors_of_diffusion
+from fracparticles.problems.finer_particles import errors_of_diffusion, values_of
 from fracparticles.problems.integrate import (
     Integration,
     advanced,
@@ -76,18 +76,12 @@ def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Datase
 
 
 def _fields_of(problem: Problem, initial: Any) -> list[np.ndarray]:
-    try:
-        u0 = problem.bounded_domain.values("initial", initial)
-    except Exception as error:  # whatever a function may raise that knows its own particles alone
-        what = "a function of the place"
-        raise InvalidInput(
-            "initial", initial, what, "Evaluate it where it is asked for."
-        ) from error
+    u0 = values_of(problem, initial)
     rates = DomainRates(problem)
     return _integrated(problem, rates, u0, _held(problem, rates, u0)).u
 
 
-def _known(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[np.ndarray]:
+def _known(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[list[np.ndarray]]:
     return errors_of_diffusion(problem, initial, fields, _fields_of)
 
 
@@ -153,13 +147,27 @@ def _in_modes(
         shown = f"a rate of {fastest / problem.span:.3g}"
         what = f"a source whose rates times the time of the run are below {_FASTEST:g} on the disc"
         raise InvalidInput("source", shown, what, "End before, or take the square.")
+    last = 0.0  # by how much u decays beside the steps
     moves = problem.transport or "t" in problem.diffusion.depends_on or fastest > _FAST
     if moves and problem.domain == "interval":
+        # A decay -c u alone is a factor exp(-c t): steps would follow u to where it is nothing.
+        last = decay if rates.only_decays else 0.0
+
+        def derivative(t: float, v: np.ndarray) -> np.ndarray:
+            return rates.derivative_in_modes(t, v) + last * np.eye(v.size)
+
         steps = ImplicitSteps(
-            modes, rates.beside_modes, rates.derivative_in_modes, problem.rtol, held
+            modes, lambda t, v: rates.beside_modes(t, v) + last * v, derivative, problem.rtol, held
         )
         method = "radau"
-    outputs = advanced(problem, steps, v0, sudden_changes(problem, u0))
+    outputs = [
+        np.exp(-last * (t - problem.t_initial)) * v
+        for t, v in zip(
+            problem.output_times,
+            advanced(problem, steps, v0, sudden_changes(problem, u0)),
+            strict=True,
+        )
+    ]
     return Integration(
         outputs, method, steps.accepted, steps.rejected, rates.evaluations,
         problem.span * float(modes.rates.max()),

@@ -99,5 +99,7 @@ def _fields_of(problem: Problem, initial: Initial | None) -> list[np.ndarray]:
     return [u.reshape(u0.shape) for u in integrate(problem, Rates(problem), u0.reshape(-1)).u]
 
 
-def _known(problem: Problem, initial: Initial | None, fields: list[np.ndarray]) -> list[np.ndarray]:
+def _known(
+    problem: Problem, initial: Initial | None, fields: list[np.ndarray]
+) -> list[list[np.ndarray]]:
     return frozen_errors(problem, initial, initial_strengths(problem.case, initial)[0], fields)

@@ -16,6 +16,7 @@ from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
 from fracparticles.pse.moments import warn_of_moment
 from fracparticles.pse.shapes import Kernel, kernel_of
+from fracparticles.pse.smoothing import warn_of_exchange
 
 __all__ = ["StrengthExchange", "cell_volumes"]
 
@@ -37,7 +38,7 @@ class StrengthExchange:
     Warns with `AccuracyWarning` if eta is not symmetric, or the particles near some of them give far less or far more
     than one for its second moment, sum_p V_p |x_p - x_i|^2 eta_eps / (2 d eps^2): diffusion there is too slow or too
     fast by this factor. Warns with `StabilityWarning` if eta is negative somewhere and makes A amplify, whatever the
-    step.
+    step. `apply` warns with `AccuracyWarning`, the first time, if epsilon is too large for its strengths.
 
     Parameters
     ----------
@@ -97,6 +98,8 @@ class StrengthExchange:
             self.rate = float(check.finite_result("volumes", abs(self.matrix).sum(axis=0).max()))
             unit = epsilon**2 / (2.0 * dim * diffusivity)
             moments = np.bincount(i, unit * v[p] * eta * z * z, self.size).astype(float)
+        self._of_kernel = points, v, epsilon, kernel
+        self._diffusivity, self._moments, self._asked = diffusivity, moments, False
         half = len(pairs)
         if not np.array_equal(eta[:half], eta[half:]):
             warnings.warn(
@@ -114,7 +117,10 @@ class StrengthExchange:
 
         Raises `InvalidInput` if it has another shape; so does `combine`.
         """
-        return np.asarray(self.matrix @ check.operand("u", u, (self.size,), complex_too=True))
+        u = check.operand("u", u, (self.size,), complex_too=True)
+        if not self._asked:
+            self._ask(u)
+        return np.asarray(self.matrix @ u)
 
     def combine(
         self, u: FloatArray, out: FloatArray, scale: float, shift: float = 0.0, keep: float = 0.0
@@ -125,6 +131,14 @@ class StrengthExchange:
         out *= keep
         out += shift * u
         out += scale * (self.matrix @ u)
+
+    def _ask(self, u: FloatArray) -> None:
+        """Look at the first strengths alone: what comes of them is smoother."""
+        self._asked = True
+        points, v, epsilon, kernel = self._of_kernel
+        with np.errstate(all="ignore"):
+            matrix = self.matrix / self._diffusivity
+            warn_of_exchange(points, v, u / v, epsilon, kernel, matrix, self._moments)
 
 
 def _warn_of_growth(matrix: csr_array, root: np.ndarray, rate: float) -> None:

@@ -20,7 +20,7 @@ _BEYOND = 4.0
 _HIGHEST = 60  # z^60 exp(-z^2) is below 1e-16 of its maximum beyond the reach and `_BEYOND`
 _SCANNED = 4096  # points between which a kernel changes its sign once at most
 _MOST_POINTS = 2**26  # of lattices
-_ENOUGH = 0.25  # of a moment
+ENOUGH = 0.25  # of a moment
 
 # On pieces of length 1, exact for the splines; for exp(-z^2) times a polynomial of degree 30 at round-off.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -138,7 +138,7 @@ def warn_of_moment(found: FloatArray, places: str, stacklevel: int) -> None:
     -----
     AccuracyWarning
     """
-    off = (found < _ENOUGH) | (found > 1.0 / _ENOUGH)
+    off = (found < ENOUGH) | (found > 1.0 / ENOUGH)
     if off.any():
         warnings.warn(
             f"at {np.count_nonzero(off)} of {off.size} {places} the particles nearby make from {found.min():.2g} to "
