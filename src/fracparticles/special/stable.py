@@ -28,7 +28,7 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
 from fracparticles.special import radial
-from fracparticles.special.radial import RadialTable, radial_table, tail_sine
+from fracparticles.special.radial import radial_table, tail_sine
 
 __all__ = [
     "central_mass",
@@ -137,18 +137,23 @@ def _product(x: FloatArray, value: FloatArray | float) -> FloatArray:
 
 
 def _or_tail(
-    value: FloatArray | float, x: FloatArray, scale: float, table: RadialTable, factor: Any, n: int
+    value: FloatArray | float, x: FloatArray, scale: float, alpha: float, factor: Any, n: int
 ) -> FloatArray | float:
-    """Return the value, where |x| scale is far factor c |x|^(-n-alpha), c the coefficient of Phi's tail."""
+    """Return the value, where |x| scale is far factor |x|^(-n-alpha)."""
     size = np.abs(x)
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         far = size * scale > _FAR
         if not far.any():
             return value
-        tail, root = factor * table.far_density[0], size ** (-0.5 * table.alpha)
+        tail, root = factor, size ** (-0.5 * alpha)
         for one in (root, root, *n * [1.0 / size]):  # their product alone may not be a number
             tail = tail * one
     return np.where(far, tail, value)
+
+
+def _first_term(alpha: float, n: int) -> float:
+    """Return c of Phi_n ~ c r^(-n-alpha)."""
+    return float(radial_table(float(alpha), n).far_density[0])
 
 
 def _times_power(scale: float, n: int, value: FloatArray | float) -> FloatArray | float:
@@ -199,7 +204,7 @@ def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     scale, n = _similarity(t, alpha), check.dimension(dim)
     x = check.real_array("x", x)
     value = _times_power(scale, n, reduced_green(_scaled(x, scale), alpha, n))
-    value = _or_tail(value, x, scale, radial_table(float(alpha), n), float(t), n)
+    value = _or_tail(value, x, scale, alpha, float(t) * _first_term(alpha, n), n)
     return check.like(x, _finite(t, value))
 
 
@@ -211,10 +216,9 @@ def green_slope(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | fl
     scale, n = _similarity(t, alpha), check.dimension(dim)
     x, r = check.real_array("x", x), _scaled(x, scale)
     slope = -2.0 * math.pi * _product(r, _reduced(r, float(alpha), n + 2))
-    slope = _times_power(scale, n + 1, slope)
-    factor = -2.0 * math.pi * float(t) * np.sign(x)
-    slope = _or_tail(slope, x, scale, radial_table(float(alpha), n + 2), factor, n + 1)
-    return check.like(x, _finite(t, slope))
+    factor = -2.0 * math.pi * _first_term(alpha, n + 2) * np.sign(x) * float(t)
+    value = _or_tail(_times_power(scale, n + 1, slope), x, scale, alpha, factor, n + 1)
+    return check.like(x, _finite(t, value))
 
 
 def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -228,9 +232,9 @@ def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     with np.errstate(over="ignore"):
         # Of float32 they would have its digits.
         flux = _product(x, value) / (float(alpha) * float(t))
-    factor, scale = np.sign(x) / float(alpha), _similarity(t, alpha)
-    flux = _or_tail(flux, x, scale, radial_table(float(alpha), dim), factor, dim - 1)
-    return check.like(x, _finite(t, flux))
+    factor = np.sign(x) / float(alpha) * _first_term(alpha, dim)
+    value = _or_tail(flux, x, _similarity(t, alpha), alpha, factor, dim - 1)
+    return check.like(x, _finite(t, value))
 
 
 def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -246,9 +250,8 @@ def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     growth = 2.0 * math.pi * _product(r, _product(r, _reduced(r, float(alpha), n + 2)))
     with np.errstate(over="ignore"):
         rate = (growth - n * _reduced(r, float(alpha), n)) / (float(alpha) * float(t))
-    rate = _times_power(scale, n, rate)
-    rate = _or_tail(rate, x, scale, radial_table(float(alpha), n), 1.0, n)
-    return check.like(x, _finite(t, rate))
+    value = _times_power(scale, n, rate)
+    return check.like(x, _finite(t, _or_tail(value, x, scale, alpha, _first_term(alpha, n), n)))
 
 
 def mean_radius(alpha: float) -> float:
