@@ -203,6 +203,34 @@ def test_far_tail_neither_overflows_nor_loses_digits():
     assert green(1e300, 1e-300, alpha) == 0.0
 
 
+@pytest.mark.parametrize("alpha", [1.0 + 1e-9, 1.5, 2.0 - 1e-9])
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_far_out_the_functions_are_those_of_the_first_term(alpha, dim):
+    """Where r is so large that Phi is zero in float64, and G = c t x^(-n-alpha) is not: of 1000 x and t."""
+    generator = np.random.default_rng(dim)
+    with mp.workdps(30):
+        a, n = mp.mpf(alpha), dim
+        c = mp.gamma(1 + a) * mp.sin(mp.pi * a / 2) / mp.pi
+        c *= mp.gamma((a + n) / 2) / mp.gamma((a + 1) / 2) / mp.pi ** (mp.mpf(n - 1) / 2)
+        looked_at = 0
+        for _ in range(1000):
+            x, t = (float(10.0**power) for power in generator.uniform(-300, 300, 2))
+            if x * mp.mpf(t) ** (-1 / a) < 1e18:
+                continue
+            rate = c * mp.mpf(x) ** (-n - a)
+            for function, exact in (
+                (green, rate * t),
+                (green_slope, -(n + a) * rate * t / x),
+                (green_flux, rate * x / a),
+                (green_rate, rate),
+            ):
+                if 1e-290 < abs(exact) < 1e300:
+                    with contextlib.suppress(InvalidInput):
+                        assert function(x, t, alpha, n) == pytest.approx(float(exact), rel=1e-12)
+                        looked_at += 1
+    assert looked_at > 100
+
+
 @pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
 def test_partial_sums(alpha):
     x = np.array([0.2, 1.0, 3.0])

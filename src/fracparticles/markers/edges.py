@@ -10,6 +10,9 @@ not. V = -F_x / F at the edge of F drives the markers apart by what F lacks of t
 far is measured: a half line of markers is run, and compared with erfc. The larger of both is
 0.26 J after t = 0.01 eps^2, 0.07 J after 0.1 eps^2, and 0.03 J after eps^2; what is displaced then falls like 1 / t.
 
+A field that falls to nothing within epsilon of the last marker is a step there, too: by the square of its slope over
+that of a step, as what epsilon changes of a smooth field is.
+
 Where the field runs against its edge, a = c_0 - V > 0 on the right, the edge is a shock: that of Burgers' equation,
 J / (1 + exp(a y / mu)), has the slope of a step after t = 4 mu / (pi a^2), and none of it is taken away later. Of a
 step that the equation makes waves of, as KdV does, nothing is said.
@@ -50,13 +53,15 @@ def edge_error(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps: St
     c = all_coefficients(velocity, x, weights)
     if velocity.period is not None or c.shape[1] != 2:
         return 0.0
-    field = np.abs(velocity.fields(x, weights)[0])
-    found = 0.0
+    fields = np.abs(velocity.fields(x, weights))
+    field, found, peak = fields[0], 0.0, fields[0].max()
+    steepest = velocity.shape(np.zeros(1))[0] / velocity.epsilon  # slope of a step of height 1
     for end, side in ((np.argmin(x), -1.0), (np.argmax(x), 1.0)):
         # At the edge F is a half of the field; what the field does is seen a little inside.
         near = np.abs(x - x[end]) < CORE * velocity.epsilon
         inside = np.argmax(np.where(near, field, -1.0))
-        jump = min(2.0 * field[end] / field.max(), 1.0)
+        slope = min(fields[1, near].max() / (steepest * field[inside]), 1.0)
+        jump = min(max(2.0 * field[end], field[inside] * slope**2) / peak, 1.0)
         found = max(found, jump * _step_error(velocity, c[inside], side, steps))
     return found
 

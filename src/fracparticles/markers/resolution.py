@@ -10,6 +10,7 @@ All is estimated from the run alone.
   of N markers at random of a field as wide as L after the time t >> eps^2, about L / (N (8 pi t)^(1/2)). F is off by
   twice its square root at the worst of some twenty places.
 - F is smoother than the field: how much, is what a smaller epsilon changes, or a larger one (`smoothing`).
+- F at a marker without neighbours is its own, W S(0) / eps (`lone`); of a quiet start the last may be.
 Where the set of markers ends, F ends too, and says nothing about the field.
 """
 
@@ -29,6 +30,8 @@ __all__ = ["noise", "smoothing", "warn_of_resolution"]
 _SMOOTHED = 0.1  # of F, before there is a warning
 _NOISE = 0.15  # at the start: diffusion takes most of it away
 _BOTH = 0.2  # of the smoothing and of the noise at the end at its worst place: each by itself may be allowed
+_LONE = 0.03  # of the peak of F, as at an edge
+_APART, _NEIGHBOURS = 0.4, 17  # of epsilon; nearer ones leave little, and S8 reaches 6.5 epsilon
 _PARTS = (2.0, 0.5, 0.25, 0.125)  # of epsilon
 _SIGMAS = 3.0  # of noise, the greatest of some hundred markers
 _WORST = 2.0  # the same of some twenty places, as many as F has that do not know of each other
@@ -59,6 +62,21 @@ def smoothing(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
     return found
 
 
+def lone(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
+    """Return by how much of the peak of F a marker is off that has its neighbours far away, on either side alike.
+
+    The sum W / eps sum_j S(j d / eps) of equal ones, d apart, less W / d.
+    """
+    if x.size < 2:
+        return 0.0
+    width = cells(x)
+    far = width > _APART * velocity.epsilon
+    offsets = np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1.0)[:, None] * width[far] / velocity.epsilon
+    held = velocity.shape(offsets).sum(axis=0) / velocity.epsilon
+    off = np.abs(weights[far] * (held - 1.0 / width[far])).max(initial=0.0)
+    return float(off / np.abs(velocity.fields(x, weights)[0]).max())
+
+
 def noise(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
     """Return the noise that gaps at random leave on F, relative to it: the mean over the markers, by their weights."""
     order = np.argsort(x, kind="stable")
@@ -81,7 +99,8 @@ def warn_of_resolution(
 ) -> None:
     """Warn if the markers, at one of several times, are too far apart, or epsilon is too large for their field.
 
-    Also if they lie irregularly at the first of them, so that F is off at the start, or by the last of the steps.
+    Also if some of them are far from all others; or if they lie irregularly at the first of the times, so that F is off
+    at the start, or by the last of the steps.
 
     Warns
     -----
@@ -102,6 +121,14 @@ def warn_of_resolution(
         warnings.warn(
             f"the markers lie irregularly: what is left of their noise, and epsilon, may put F off by {off:.2g} of its "
             "peak. Take a quiet start, or more markers.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+    alone = max(lone(velocity, *one) for one in markers)
+    if alone > _LONE and not found > RIPPLE:
+        warnings.warn(
+            "some markers lie far from their neighbours: F is their own there, and off by up to "
+            f"{min(alone, 1.0):.2g} of its peak. Take more markers there, or a larger epsilon.",
             AccuracyWarning,
             stacklevel=3,
         )

@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.exponential import ExponentialSteps
 from fracparticles.bounded.implicit import ImplicitSteps
 from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Held
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
+from fracparticles.problems.disc_waves import high_waves, warn_of_growth
 from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.problems.fewer_particles import SPACE_ERROR, Estimates, with_space_error
 from fracparticles.problems.finer_particles import errors_of_diffusion, values_of
@@ -52,6 +54,7 @@ def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Datase
     _look_at_coefficients(problem)
     probe_source(problem, u0)
     rates = DomainRates(problem)
+    warn_of_growth(problem, rates)
     held = _held(problem, rates, u0)
     result = _integrated(problem, rates, u0, held)
     fields = result.u
@@ -97,8 +100,11 @@ def _integrated(problem: Problem, rates: DomainRates, u0: np.ndarray, held: Held
 
 
 def _in_short_waves(rates: DomainRates, t: float, u: np.ndarray) -> float:
-    domain = rates.domain
-    return domain.unresolved(u - rates.lift(t).base) / max(domain.norm(u), 1e-300)
+    domain, v = rates.domain, u - rates.lift(t).base
+    unresolved = domain.unresolved(v)
+    if isinstance(domain, Disc) and rates.problem.transport:
+        unresolved = max(unresolved, high_waves(domain, v))
+    return unresolved / max(domain.norm(u), 1e-300)
 
 
 def _warn(problem: Problem, found: Estimates) -> None:

@@ -6,6 +6,9 @@
 al. (2020); (57), (58) for n = 2. `fracparticles.special.radial` evaluates Phi_n; here are the
 functions of x and t, and the partial sums (A.1), (A.2) that the paper's figures show.
 
+Where |x| t^(-1/alpha) > 1e20 the first term of (A.2) is all, G = c t |x|^(-n-alpha), and is evaluated as that: there
+Phi_n may vanish in float64 although G does not.
+
 All functions except the masses take signed positions: G and its rate are even functions of x, its slope and its
 flux are odd. For n > 1, x is the radius, or a position on an axis.
 
@@ -39,6 +42,9 @@ __all__ = [
     "reduced_green",
     "tail_mass",
 ]
+
+
+_FAR = 1e20  # r; the second term of (A.2) is below 1e-20 of the first
 
 
 # --- partial sums of Appendix A -------------------------------------------------------------------
@@ -130,6 +136,26 @@ def _product(x: FloatArray, value: FloatArray | float) -> FloatArray:
     return np.multiply(x, value, out=np.zeros(np.shape(x)), where=np.not_equal(value, 0.0))
 
 
+def _or_tail(
+    value: FloatArray | float, x: FloatArray, scale: float, alpha: float, factor: Any, n: int
+) -> FloatArray | float:
+    """Return the value, where |x| scale is far factor |x|^(-n-alpha)."""
+    size = np.abs(x)
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        far = size * scale > _FAR
+        if not far.any():
+            return value
+        tail, root = factor, size ** (-0.5 * alpha)
+        for one in (root, root, *n * [1.0 / size]):  # their product alone may not be a number
+            tail = tail * one
+    return np.where(far, tail, value)
+
+
+def _first_term(alpha: float, n: int) -> float:
+    """Return c of Phi_n ~ c r^(-n-alpha)."""
+    return float(radial_table(float(alpha), n).far_density[0])
+
+
 def _times_power(scale: float, n: int, value: FloatArray | float) -> FloatArray | float:
     """Return scale^n value; scale^n alone may overflow. What overflows all the same is infinite."""
     with np.errstate(over="ignore"):
@@ -178,6 +204,7 @@ def green(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     scale, n = _similarity(t, alpha), check.dimension(dim)
     x = check.real_array("x", x)
     value = _times_power(scale, n, reduced_green(_scaled(x, scale), alpha, n))
+    value = _or_tail(value, x, scale, alpha, float(t) * _first_term(alpha, n), n)
     return check.like(x, _finite(t, value))
 
 
@@ -187,9 +214,11 @@ def green_slope(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | fl
     Parameters and errors as for `green`; an odd function of x, of relative accuracy better than 1e-12.
     """
     scale, n = _similarity(t, alpha), check.dimension(dim)
-    r = _scaled(x, scale)
+    x, r = check.real_array("x", x), _scaled(x, scale)
     slope = -2.0 * math.pi * _product(r, _reduced(r, float(alpha), n + 2))
-    return check.like(r, _finite(t, _times_power(scale, n + 1, slope)))
+    factor = -2.0 * math.pi * _first_term(alpha, n + 2) * np.sign(x) * float(t)
+    value = _or_tail(_times_power(scale, n + 1, slope), x, scale, alpha, factor, n + 1)
+    return check.like(x, _finite(t, value))
 
 
 def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -203,7 +232,9 @@ def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     with np.errstate(over="ignore"):
         # Of float32 they would have its digits.
         flux = _product(x, value) / (float(alpha) * float(t))
-    return check.like(x, _finite(t, flux))
+    factor = np.sign(x) / float(alpha) * _first_term(alpha, dim)
+    value = _or_tail(flux, x, _similarity(t, alpha), alpha, factor, dim - 1)
+    return check.like(x, _finite(t, value))
 
 
 def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
@@ -215,11 +246,12 @@ def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
     n G / (alpha t).
     """
     scale, n = _similarity(t, alpha), check.dimension(dim)
-    r = _scaled(x, scale)
+    x, r = check.real_array("x", x), _scaled(x, scale)
     growth = 2.0 * math.pi * _product(r, _product(r, _reduced(r, float(alpha), n + 2)))
     with np.errstate(over="ignore"):
         rate = (growth - n * _reduced(r, float(alpha), n)) / (float(alpha) * float(t))
-    return check.like(r, _finite(t, _times_power(scale, n, rate)))
+    value = _times_power(scale, n, rate)
+    return check.like(x, _finite(t, _or_tail(value, x, scale, alpha, _first_term(alpha, n), n)))
 
 
 def mean_radius(alpha: float) -> float:
