@@ -13,8 +13,8 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 from combinations import COMBINATIONS  # noqa: E402
 
-# The same examples each time; `--hypothesis-profile=thorough` takes ten times as many.
-settings.register_profile("quick", deadline=None, derandomize=True, max_examples=30)
+# The same examples each time; `--hypothesis-profile=thorough` takes twenty times as many, and whole sweeps.
+settings.register_profile("quick", deadline=None, derandomize=True, max_examples=15)
 settings.register_profile("thorough", settings.get_profile("quick"), max_examples=300)
 settings.load_profile("quick")
 

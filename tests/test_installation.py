@@ -20,6 +20,7 @@ from numba.core.registry import CPUDispatcher
 
 import fracparticles
 from fracparticles import _compiled, _compiler
+from sweeps import covering, few
 
 PACKAGE = Path(fracparticles.__file__).parent
 PEAK = math.gamma(1.0 + 1.0 / 1.5) / math.pi  # of the fundamental solution of alpha = 1.5 at t = 1
@@ -231,8 +232,7 @@ def module(compiled, tmp_path) -> Path:
     return tmp_path / "summing.py"
 
 
-@pytest.mark.parametrize("damage", DAMAGES)
-@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+@pytest.mark.parametrize(("damage", "kind"), covering(DAMAGES, ["nbi", "nbc"]))
 def test_a_damaged_cache_is_made_again(module, damage, kind):
     (file,) = module.parent.rglob(f"*.{kind}")
     file.write_bytes(DAMAGES[damage](file.read_bytes()))
@@ -242,7 +242,7 @@ def test_a_damaged_cache_is_made_again(module, damage, kind):
         assert hits(function) == cached
 
 
-@pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7, 0.9])
+@pytest.mark.parametrize("share", few([0.1, 0.3, 0.5, 0.7, 0.9]))
 def test_code_with_a_changed_bit_is_not_run(module, share):
     (file,) = module.parent.rglob("*.nbc")
     data = bytearray(file.read_bytes())

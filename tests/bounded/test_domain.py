@@ -15,6 +15,7 @@ from fracparticles.bounded.given import takes
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.square import Square
 from fracparticles.errors import InvalidInput, NonFiniteSolution
+from sweeps import covering
 
 KINDS = ("interval", "disc", "square")
 
@@ -32,8 +33,7 @@ def bell(*points):
     return np.exp(-4.0 * sum(np.square(part - 0.2) for part in points))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("exterior", ["absorbing", "reflecting"])
+@pytest.mark.parametrize(("kind", "exterior"), covering(KINDS, ["absorbing", "reflecting"]))
 def test_a_source_in_time_is_the_integral_over_what_it_leaves(kind, exterior):
     """Duhamel: of u' = A u + cos(3 t) psi, A psi = -m psi, u = psi (m (cos 3t - e^(-m t)) + 3 sin 3t) / (m^2 + 9)."""
     one = domain(kind, exterior)

@@ -15,6 +15,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.run.dataset import write
+from sweeps import covering, few
 
 ALPHAS = (1.1, 1.5, 1.9)
 LINE = {"alpha": 1.5, "half_width": 1.0, "t_final": 1.0, "exterior": "absorbing"}
@@ -43,9 +44,7 @@ def places(run):
 # --- the interval ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("alpha", "swing"), [(1.1, ""), (1.5, ""), (1.9, ""), (1.1, "*cos(t)"), (1.9, "*cos(t)")]
-)
+@pytest.mark.parametrize(("alpha", "swing"), covering(ALPHAS, ["", "*cos(t)"]))
 def test_the_flux_form_with_a_diffusivity_that_varies(alpha, swing):
     """u = e^-t (1 - x^2)^(alpha/2): grad^beta u = -Gamma(1 + alpha) x e^-t, of D = 1 + x / 2 (cos t)."""
     size = gamma(1.0 + alpha)
@@ -86,8 +85,9 @@ def test_a_problem_comes_to_rest_where_its_flux_is_the_integral_of_the_source(al
     assert mean_error(run, exact) < 1e-6
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
-@pytest.mark.parametrize("speed", ["2 + x", "-8*x", "cos(3*t)*(1 + x)"])
+@pytest.mark.parametrize(
+    ("alpha", "speed"), covering(ALPHAS, ["2 + x", "-8*x", "cos(3*t)*(1 + x)"])
+)
 def test_a_velocity_with_absorbing_ends(alpha, speed):
     """u = e^-t (1 - x^2)^p, p = alpha/2 + 1; a against D from small to large."""
     p = 0.5 * alpha + 1.0
@@ -140,8 +140,7 @@ def test_all_at_once_with_values_given_outside(alpha):
         assert np.abs(run.u.sel(t=time).values - exact).max() < 1e-6
 
 
-@pytest.mark.parametrize("velocity", [None, "1 - x**2"])
-@pytest.mark.parametrize("alpha", [1.1, 1.9])
+@pytest.mark.parametrize(("alpha", "velocity"), covering([1.1, 1.9], [None, "1 - x**2"]))
 def test_reflecting_ends_keep_the_mass_with_all_that_varies(alpha, velocity):
     problem = Problem(
         **{**LINE, "alpha": alpha, "exterior": "reflecting"}, form="exchange",
@@ -219,7 +218,7 @@ def test_a_rotation_of_the_disc_turns_the_solution(alpha):
 
 
 @pytest.mark.parametrize(
-    ("kind", "alpha"), [("disc", 1.2), ("disc", 1.8), ("square", 1.2), ("square", 1.5)]
+    ("kind", "alpha"), few([("disc", 1.8), ("disc", 1.2), ("square", 1.5), ("square", 1.2)])
 )
 def test_a_velocity_in_the_plane(kind, alpha):
     """u = e^-t (1 - r^2)^p, on the disc with p = alpha/2 + 1, on the square zero near its edges, p = 5."""
@@ -435,14 +434,16 @@ def test_a_source_that_starts_after_all_has_left():
     assert_allclose(late.u.values, alone.u.values, atol=1e-5 * float(alone.u.max()))
 
 
-@pytest.mark.parametrize("size", [2.0**-660, 2.0**530])
 @pytest.mark.parametrize(
-    "fields",
-    [
-        {"source": "-40*x*u"},
-        {"velocity": "20*(1 - x**2)"},
-        {"domain": "disc", "velocity": ("-9*y", "9*x")},
-    ],
+    ("size", "fields"),
+    covering(
+        [2.0**-660, 2.0**530],
+        [
+            {"source": "-40*x*u"},
+            {"velocity": "20*(1 - x**2)"},
+            {"domain": "disc", "velocity": ("-9*y", "9*x")},
+        ],
+    ),
 )
 def test_a_strength_of_any_size_has_the_same_steps(size, fields):
     """Its square is no number: the steps were one after another as long as they could be."""

@@ -15,6 +15,7 @@ from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.dataset import write
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import Gaussian
+from sweeps import covering, few
 
 LINE = {
     "alpha": 1.5, "half_width": 50.0, "spacing": 0.1, "order": 12, "far_terms": 3, "t_initial": 1.0, "t_final": 2.0,
@@ -287,8 +288,7 @@ def test_a_linear_field_ends_in_the_stationary_law():
     assert error(run.isel(t=1), exact) < 1e-6
 
 
-@pytest.mark.parametrize("form", ["FPSE", "DD"])
-@pytest.mark.parametrize("source_of_time", [False, True])
+@pytest.mark.parametrize(("form", "source_of_time"), covering(["FPSE", "DD"], [False, True]))
 def test_a_diffusivity_that_varies_in_space_and_time(form, source_of_time):
     """u = exp(-t) / (1 + x^2): D' grad^beta u + D div grad^beta u from the closed forms, as the source in text."""
     d = "(1 + 0.5*exp(-x**2/4)*cos(t))" if source_of_time else "(1 + 0.5*exp(-x**2/4))"
@@ -327,7 +327,7 @@ def test_a_variable_order_that_is_constant_is_the_constant_one():
     assert variable.attrs["title"].endswith("-D (-Laplacian)^(alpha(x)/2) u + f")
 
 
-@pytest.mark.parametrize("form", ["FPSE", "DD"])
+@pytest.mark.parametrize("form", few(["FPSE", "DD"], 1))
 def test_a_diffusivity_that_varies_in_the_plane(form):
     """u = exp(-|x|^2) (1 + t) of a source made for it: of order 12, for FPSE, too, whose printed kernels end at 4."""
     alpha, rise = 1.5, 0.5
