@@ -28,14 +28,14 @@ from test_contributing import FILES
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "config", "profiles", "workflow", "report", "src")
 SMOKE = ("--configfile", "config/smoke.yaml")
-# A few of each kind, the quickest: with runs, variants, tables of others, a benchmark, a study alone; one a document.
+# One or two of each kind, the quickest: with runs, variants, tables of others, a benchmark, a study alone.
 KEPT = {
     "lucchesi": ("rejected_dpse", "lucchesi_table_1", "truncation", "truncation_claims"),
-    "lewandowski": ("marker_shapes",),
+    "lewandowski": (),
     "ghorbani": ("sph_spline",),
-    "particle_note": ("note_particles",),
+    "particle_note": (),
     "run_times": ("scattered_sums",),
-    "beyond": ("dvm_particles",),
+    "beyond": (),
     "problems": (),
     "extremes": (),
 }

@@ -44,7 +44,7 @@ def places(run):
 # --- the interval ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("alpha", "swing"), covering(ALPHAS, ["", "*cos(t)"]))
+@pytest.mark.parametrize(("alpha", "swing"), few([(1.1, ""), (1.1, "*cos(t)"), (1.5, ""), (1.9, ""), (1.9, "*cos(t)")]))
 def test_the_flux_form_with_a_diffusivity_that_varies(alpha, swing):
     """u = e^-t (1 - x^2)^(alpha/2): grad^beta u = -Gamma(1 + alpha) x e^-t, of D = 1 + x / 2 (cos t)."""
     size = gamma(1.0 + alpha)

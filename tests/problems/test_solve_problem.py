@@ -281,7 +281,7 @@ def test_the_checker_of_the_convention_finds_nothing(tmp_path):
 def test_a_linear_field_ends_in_the_stationary_law():
     """After a long time the scale is (D / (alpha theta))^(1/alpha), and stays: nothing grows at the ends."""
     run = solve_problem(
-        Problem(**{**LINE, "spacing": 0.2, "times": (11.0, 41.0), "t_final": 41.0}, velocity="-x")
+        Problem(**{**LINE, "spacing": 0.2, "times": (11.0, 21.0), "t_final": 21.0}, velocity="-x")
     )
     exact = green(run.x.values, 1.0 / 1.5, 1.5)
     assert error(run.isel(t=0), exact) < 1e-6
