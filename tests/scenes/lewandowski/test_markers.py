@@ -22,6 +22,7 @@ from scenes.lewandowski.marker_claims.numbers import _parameters
 from scenes.lewandowski.marker_nonlinear.evolution import Evolution, Markers
 from scenes.lewandowski.marker_square.study import _apart
 from scenes.lewandowski.square_profile import INFINITE, SquareRuns, Starts
+from sweeps import few
 
 CLAIMS = {
     claim.id: claim
@@ -145,7 +146,7 @@ def test_every_claim_is_measured(name):
     assert len(result(name).table)
 
 
-@pytest.mark.parametrize("name", PARAMETERS)
+@pytest.mark.parametrize("name", few(PARAMETERS, 4))  # the smoke run draws all of them
 def test_the_figure_is_drawn(name):
     drawing = figure(name)(result(name).series, result(name).table, PARAMETERS[name])
     drawing.draw_without_rendering()
