@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 
 import pytest
@@ -22,6 +23,12 @@ settings.load_profile("quick")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the complete workflow, which takes longest, so that another process does the rest meanwhile."""
     items.sort(key=lambda item: item.path.stem != "test_workflow")
+
+
+def pytest_collection_finish() -> None:
+    """Leave what is collected, hundreds of thousands of objects that stay, out of all searches for garbage."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(params=COMBINATIONS)
