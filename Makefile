@@ -29,7 +29,7 @@ PYTEST    = OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 NUMBA_NUM_THREADS=1 \
 SHELL         := bash
 .SHELLFLAGS   := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup study test smoke bench verify browser coverage test-slurm mutants lint report lock clean
+.PHONY: help setup study test thorough smoke bench verify browser coverage test-slurm mutants lint report lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -42,6 +42,9 @@ study: $(INSTALLED) ## run the whole study: runs, tables, figures, report
 
 test: $(INSTALLED) ## run the tests
 	$(PYTEST) $(ARGS)
+
+thorough: $(INSTALLED) ## run the tests with whole sweeps and twenty times as many examples
+	$(PYTEST) --hypothesis-profile=thorough $(ARGS)
 
 smoke: $(INSTALLED) ## run the same study on tiny grids, into results-smoke
 	$(SNAKEMAKE) --configfile config/smoke.yaml --config results_dir=$(SMOKE_RESULTS) report_dir=$(SMOKE_RESULTS)/report site_dir=$(SMOKE_RESULTS)/site $(ARGS)

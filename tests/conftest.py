@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 
 import pytest
@@ -13,8 +14,8 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 from combinations import COMBINATIONS  # noqa: E402
 
-# The same examples each time; `--hypothesis-profile=thorough` takes ten times as many.
-settings.register_profile("quick", deadline=None, derandomize=True, max_examples=30)
+# The same examples each time; `--hypothesis-profile=thorough` takes twenty times as many, and whole sweeps.
+settings.register_profile("quick", deadline=None, derandomize=True, max_examples=15)
 settings.register_profile("thorough", settings.get_profile("quick"), max_examples=300)
 settings.load_profile("quick")
 
@@ -22,6 +23,12 @@ settings.load_profile("quick")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the complete workflow, which takes longest, so that another process does the rest meanwhile."""
     items.sort(key=lambda item: item.path.stem != "test_workflow")
+
+
+def pytest_collection_finish() -> None:
+    """Leave what is collected, hundreds of thousands of objects that stay, out of all searches for garbage."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(params=COMBINATIONS)

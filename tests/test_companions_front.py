@@ -40,6 +40,7 @@ from fracparticles.sph import (
     operators,
 )
 from fracparticles.sph.particles import ParticleLine
+from sweeps import at_once
 
 MODULES = {
     "lagrangian": lagrangian,
@@ -419,7 +420,7 @@ BAD |= {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CALLS)
+@at_once(CALLS)
 def test_the_good_call_works(name):
     function, arguments = CALLS[name]
     with warnings.catch_warnings():
@@ -428,10 +429,7 @@ def test_the_good_call_works(name):
         function(**{key: value for key, (value, _) in arguments.items()})
 
 
-@pytest.mark.parametrize(
-    ("name", "argument"),
-    [(name, argument) for name, (_, arguments) in CALLS.items() for argument in arguments],
-)
+@at_once([(name, argument) for name, (_, arguments) in CALLS.items() for argument in arguments])
 def test_what_an_argument_is_not_is_refused(name, argument):
     """InvalidInput with a field, for every bad value; no other exception, no warning, no result."""
     function, arguments = CALLS[name]
@@ -460,7 +458,7 @@ NOT_CALLED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("module", MODULES)
+@at_once(MODULES)
 def test_every_public_name_is_tried(module):
     named = set(MODULES[module].__all__) - NOT_CALLED
     tried = {part for name in CALLS for part in (name, name.rpartition(".")[2])}

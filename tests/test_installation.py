@@ -20,6 +20,7 @@ from numba.core.registry import CPUDispatcher
 
 import fracparticles
 from fracparticles import _compiled, _compiler
+from sweeps import covering, few
 
 PACKAGE = Path(fracparticles.__file__).parent
 PEAK = math.gamma(1.0 + 1.0 / 1.5) / math.pi  # of the fundamental solution of alpha = 1.5 at t = 1
@@ -63,13 +64,12 @@ def peak(done: subprocess.CompletedProcess[str]) -> float:
     return float(done.stdout)
 
 
-@pytest.mark.parametrize("folder", [None, "/dev/null/none", "cache"])
+@pytest.mark.parametrize("folder", ["/dev/null/none", "cache"])
 def test_it_works_where_nothing_can_be_written(site, tmp_path, folder):
     forbid_writing(site)
     if folder == "cache":  # what the user sets is used
         folder = str(tmp_path / "cache")
-    asked = {} if folder is None else {"NUMBA_CACHE_DIR": folder}
-    assert peak(run(site, GREEN, **asked)) == pytest.approx(PEAK, rel=1e-13)
+    assert peak(run(site, GREEN, NUMBA_CACHE_DIR=folder)) == pytest.approx(PEAK, rel=1e-13)
     kept = list(tmp_path.joinpath("cache").rglob("*.nbc"))
     assert bool(kept) == (folder == str(tmp_path / "cache"))
     assert list(site.rglob("*.nb[ic]")) == []
@@ -83,6 +83,7 @@ def test_a_run_works_where_nothing_can_be_written(site):
         "print(fp.solve(case).mass_final.item())"
     )
     assert peak(run(site, program)) == pytest.approx(1.0, abs=0.01)
+    assert list(site.rglob("*.nb[ic]")) == []
 
 
 def test_importing_the_package_imports_no_compiler():
@@ -231,8 +232,7 @@ def module(compiled, tmp_path) -> Path:
     return tmp_path / "summing.py"
 
 
-@pytest.mark.parametrize("damage", DAMAGES)
-@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+@pytest.mark.parametrize(("damage", "kind"), covering(DAMAGES, ["nbi", "nbc"]))
 def test_a_damaged_cache_is_made_again(module, damage, kind):
     (file,) = module.parent.rglob(f"*.{kind}")
     file.write_bytes(DAMAGES[damage](file.read_bytes()))
@@ -242,7 +242,7 @@ def test_a_damaged_cache_is_made_again(module, damage, kind):
         assert hits(function) == cached
 
 
-@pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7, 0.9])
+@pytest.mark.parametrize("share", few([0.1, 0.3, 0.5, 0.7, 0.9]))
 def test_code_with_a_changed_bit_is_not_run(module, share):
     (file,) = module.parent.rglob("*.nbc")
     data = bytearray(file.read_bytes())

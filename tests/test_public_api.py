@@ -10,6 +10,7 @@ import sys
 import pytest
 
 import fracparticles as fp
+from sweeps import at_once, few
 
 HEAVY = {
     *("cyclopts", "finufft", "matplotlib", "netCDF4", "numba", "pandas", "pydantic", "pyfftw"),
@@ -20,13 +21,14 @@ UNNEEDED = {
     *("numba.np.arraymath", "numba.np.arrayobj", "numba.np.linalg"),
     *("scipy.integrate", "scipy.linalg", "scipy.optimize", "scipy.sparse"),
 }
-CASES = {
+WAYS = {
     "GPSE in one step": "scheme='GPSE', dt=1.0, exterior='open', far_terms=3, evaluation='convolution'",
     "DD": "scheme='DD', order=4, dt=0.001",
-    "KPSE": "scheme='KPSE', order=4, dt=0.001, exterior='open'",
     "the gamma kernels": "scheme='KPSE', order=8, integrator='exponential', exterior='open'",
+    "KPSE": "scheme='KPSE', order=4, dt=0.001, exterior='open'",
     "graded particles": "scheme='GPSE', graded_scale=2.0",
 }
+CASES = dict(few(WAYS.items(), 3))
 
 
 def modules_of(program: str) -> set[str]:
@@ -49,13 +51,13 @@ def imported_by(program: str) -> set[str]:
     return HEAVY & modules_of(program)
 
 
-@pytest.mark.parametrize("name", fp.__all__)
+@at_once(fp.__all__)
 def test_every_public_name_resolves(name):
     assert getattr(fp, name) is not None
     assert name in dir(fp)
 
 
-@pytest.mark.parametrize("name", [n for n in fp.__all__ if callable(getattr(fp, n))])
+@at_once([n for n in fp.__all__ if callable(getattr(fp, n))])
 def test_every_public_name_is_documented(name):
     assert inspect.getdoc(getattr(fp, name))
 

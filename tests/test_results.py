@@ -18,6 +18,7 @@ from fracstudy.printed import read_claims, read_printed
 from fracstudy.scene import Scene
 from fracstudy.verdicts import Status
 from scene_functions import configured
+from sweeps import at_once
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -161,7 +162,7 @@ def tracked_markdown() -> list[Path]:
     )
 
 
-@pytest.mark.parametrize("path", tracked_markdown(), ids=lambda path: str(path.relative_to(ROOT)))
+@at_once(tracked_markdown())
 def test_every_row_of_a_markdown_table_has_the_cells_of_its_header(path):
     for rows in markdown_tables(path.read_text("utf-8")):
         assert len(rows) >= 2

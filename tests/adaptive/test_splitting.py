@@ -15,6 +15,7 @@ from fracparticles.adaptive.splitting import Physics, Splitting
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import exchange_limit
+from sweeps import few
 
 WINDOW = (-20.0, 80.0)
 TIMES = (1e-3, 0.1, 1.0)
@@ -107,7 +108,7 @@ def test_logistic_growth_without_diffusion_to_speak_of():
     assert state.at(x) == pytest.approx(exact, rel=1e-6)
 
 
-@pytest.mark.parametrize("alpha", [1.2, 1.6])
+@pytest.mark.parametrize("alpha", few([1.2, 1.6], 1))
 def test_a_diffusivity_that_varies_is_that_of_the_exchange(alpha):
     """1 / (1 + x^2) stays as it is if f = -(D L u + L(D u) - u L D) / 2, D = 1 + u / 2."""
 
@@ -205,7 +206,7 @@ def test_a_source_that_overflows_on_the_way_blows_up():
         )  # fmt: skip
 
 
-@pytest.mark.parametrize("unit", [1e-9, 1e7])
+@pytest.mark.parametrize("unit", few([1e-9, 1e7], 1))
 def test_units_do_not_matter(unit):
     """x in another unit, and t in that of the diffusion: the same particles and strengths."""
     alpha, power = 1.5, unit**1.5

@@ -11,6 +11,7 @@ from fracparticles.adaptive.maps import graded_on_interval
 from fracparticles.adaptive.placement import LineParticles
 from fracparticles.adaptive.weights import near_weights, order_of
 from fracparticles.errors import InvalidInput
+from sweeps import covering
 
 
 @pytest.mark.parametrize("alpha", [1.05, 1.5, 1.95])
@@ -28,8 +29,7 @@ def test_one_neighbour_exchanges_more_by_a_value_of_zeta():
     assert near_weights(1.5, 0).size == 0
 
 
-@pytest.mark.parametrize("alpha", [1.2, 1.5, 1.8])
-@pytest.mark.parametrize("near", [0, 1, 2, 3])
+@pytest.mark.parametrize(("alpha", "near"), covering([1.2, 1.5, 1.8], [0, 1, 2, 3]))
 def test_the_sum_has_the_order_of_its_weights_on_a_map(alpha, near):
     """-(-Laplacian)^(alpha/2) of 1 / (1 + x^2), whose closed form is known, on x = sinh(s) + s / 4."""
     errors = []

@@ -22,6 +22,7 @@ from fracparticles.bounded.disc_rings import (
 )
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special.tails import tail_constant
+from sweeps import covering
 
 ALPHAS = (1.2, 1.5, 1.8)
 
@@ -68,8 +69,7 @@ def test_the_kernel_of_a_ring_is_its_integral(wave, r, other):
     assert ours == pytest.approx(float(exact), rel=1e-11)
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
-@pytest.mark.parametrize("q", [0.15, 0.29, 0.31, 2.0, 20.0])
+@pytest.mark.parametrize(("alpha", "q"), covering(ALPHAS, [0.15, 0.29, 0.31, 2.0, 20.0]))
 def test_the_loss_along_a_line_is_what_other_lines_leave(alpha, q):
     # The exchange with a line at the distance k, c int (1 - cos q t) (k^2 + t^2)^(-1-alpha/2) dt, by Bessel functions
     # of 20 digits.

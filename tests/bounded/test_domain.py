@@ -15,6 +15,7 @@ from fracparticles.bounded.given import takes
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.square import Square
 from fracparticles.errors import InvalidInput, NonFiniteSolution
+from sweeps import covering, few
 
 KINDS = ("interval", "disc", "square")
 
@@ -32,8 +33,7 @@ def bell(*points):
     return np.exp(-4.0 * sum(np.square(part - 0.2) for part in points))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("exterior", ["absorbing", "reflecting"])
+@pytest.mark.parametrize(("kind", "exterior"), covering(KINDS, ["absorbing", "reflecting"]))
 def test_a_source_in_time_is_the_integral_over_what_it_leaves(kind, exterior):
     """Duhamel: of u' = A u + cos(3 t) psi, A psi = -m psi, u = psi (m (cos 3t - e^(-m t)) + 3 sin 3t) / (m^2 + 9)."""
     one = domain(kind, exterior)
@@ -73,7 +73,7 @@ def test_decay_multiplies_by_its_factor(kind):
     assert u == pytest.approx(np.exp(-0.4) * one.evolve(bell, 0.5), abs=1e-8)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", few(KINDS))
 def test_blow_up_says_when(kind):
     with pytest.raises(NonFiniteSolution, match=r"t = (1\.9|2)"):
         domain(kind, "reflecting").react(0.5, 3.0, lambda *a: np.square(a[-1]), tolerance=1e-6)

@@ -26,6 +26,7 @@ from fracparticles.bounded.square_lattice import (
 )
 from fracparticles.bounded.square_outside import mean_outside, outward_rate
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from sweeps import few
 
 ALPHAS = (1.2, 1.5, 1.8)
 
@@ -251,7 +252,7 @@ def test_a_field_given_outside_is_continued_inside(alpha):
     assert orders(errors)[-1] > 1.9
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("alpha", few(ALPHAS))
 def test_the_fitted_lattice_wins_the_order_back(alpha):
     # Against itself at N = 64; the error of the plain lattice is of the first order in h.
     reference = square(alpha, 64).eigenvalues(1)[0]

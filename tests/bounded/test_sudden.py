@@ -11,6 +11,7 @@ from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.square import Square
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.time.sudden import sudden_times
+from sweeps import covering
 
 DOMAINS = {
     "interval": Interval(alpha=1.5, particles=60),
@@ -24,8 +25,7 @@ def bell(*place):
     return np.exp(-4.0 * sum(x * x for x in place))
 
 
-@pytest.mark.parametrize("domain", DOMAINS.values(), ids=DOMAINS)
-@pytest.mark.parametrize("width", [0.01, 0.001])
+@pytest.mark.parametrize(("domain", "width"), covering(DOMAINS.values(), [0.01, 0.001]))
 def test_a_pulse_is_what_it_brings(domain: Domain, width: float):
     """A pulse of total 1 is a bell at its middle, up to second order in its width."""
 

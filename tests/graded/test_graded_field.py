@@ -23,6 +23,7 @@ from fracparticles.graded.field import (
 )
 from fracparticles.graded.particles import graded_particles, green_step
 from fracstudy.race.problems.fundamental import Fundamental
+from sweeps import covering, few
 
 
 def error(beta, count, reach, scale):
@@ -32,13 +33,12 @@ def error(beta, count, reach, scale):
     return problem.error((x,), volumes, matrix @ problem.initial((x,)))
 
 
-@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
-@pytest.mark.parametrize(("count", "reach", "scale", "time"), [
-    (7, 5.0, 1.0, 0.7),
-    (21, 40.0, 0.5, 1.0),
-    (9, 30.0, 5.0, 0.01),
-])  # fmt: skip
-def test_an_entry_is_the_integral_of_kernel_and_sinc(alpha, count, reach, scale, time):
+@pytest.mark.parametrize(
+    ("alpha", "lattice"),
+    covering([1.1, 1.5, 1.9], [(7, 5.0, 1.0, 0.7), (21, 40.0, 0.5, 1.0), (9, 30.0, 5.0, 0.01)]),
+)
+def test_an_entry_is_the_integral_of_kernel_and_sinc(alpha, lattice):
+    count, reach, scale, time = lattice
     x, volumes = graded_particles(count, reach, scale)
     ds = volumes[count // 2] / scale
     matrix = green_step_of_field(count, reach, scale, alpha, time)
@@ -131,14 +131,14 @@ def reference(count, reach, scale, alpha, time, i, columns):
     return [fsum(kernel * np.sinc(place)) for place in from_columns]
 
 
-@pytest.mark.parametrize(("reach", "scale", "alpha", "time"), [
-    (1e4, 1.0, 1.5, 1e-18),
+@pytest.mark.parametrize(("reach", "scale", "alpha", "time"), few([
     (1e4, 1.0, 1.5, 1e-21),
-    (1e4, 1.0, 1.5, 1e-6),
-    (30.0, 1.0, 1.1, 1e-30),
+    (1e4, 1.0, 1.5, 1e-18),
     (5.0, 2.0, 1.9, 1e-40),
+    (30.0, 1.0, 1.1, 1e-30),
+    (1e4, 1.0, 1.5, 1e-6),
     (3e4, 1e3, 1.9, 30.0),  # wider than one, and narrower than its panels are long if not told
-])  # fmt: skip
+], 3))  # fmt: skip
 def test_a_kernel_narrower_than_an_ulp_of_its_place_is_resolved(reach, scale, alpha, time):
     count = 21
     matrix = green_step_of_field(count, reach, scale, alpha, time)

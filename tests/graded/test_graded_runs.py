@@ -10,6 +10,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.graded.field import GRADED_FORMS
 from fracparticles.run.case import Case
 from fracparticles.run.solver import prepare
+from sweeps import covering, few
 
 # As far as it takes for the tails: beta -> half-width and spacing in the middle, for L = 2.
 GRIDS = {0.1: (1e10, 0.125), 0.5: (1e4, 0.2), 0.9: (300.0, 0.2)}
@@ -46,8 +47,7 @@ def test_where_the_scale_is_large_the_particles_are_a_lattice():
     assert prepare(exchange).solve(u0) == pytest.approx(prepare(lattice).solve(u0), abs=1e-13)
 
 
-@pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
-@pytest.mark.parametrize("form", GRADED_FORMS)
+@pytest.mark.parametrize(("beta", "form"), covering([0.1, 0.5, 0.9], GRADED_FORMS))
 def test_a_run_is_the_direct_function(beta, form):
     c = case(beta, graded_form=form, spacing=0.5, diffusivity=2.0, t_final=1.0)
     alpha = 1.0 + beta
@@ -63,7 +63,7 @@ def test_a_run_is_the_direct_function(beta, form):
     assert run.mass_final.item() == pytest.approx(c.volumes @ (matrix @ u0), rel=1e-14)
 
 
-@pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("beta", few([0.1, 0.5, 0.9]))
 def test_the_error_is_small(beta):
     """With nothing said of the form: the step of the field."""
     run = fp.solve(case(beta))

@@ -23,6 +23,7 @@ from fracparticles.kernels.high_order import (
     wavenumber_reach,
 )
 from fracparticles.pse import construct
+from sweeps import covering
 
 ALPHAS = (1.001, 1.1, 1.5, 1.9, 1.9999)
 ODD = ("eta1", "F")
@@ -60,9 +61,7 @@ def exact(name: str, r: float, alpha: float, n: int, order: int) -> tuple[mp.mpf
         return constant * mp.fsum(terms), abs(constant) * size
 
 
-@orders
-@dims
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("name", "n", "order"), covering(NAMES, [1, 2, 3], ORDERS, together=2))
 def test_agrees_with_mpmath(name, n, order):
     """1e-12 of what cancels: the Gaussian costs r^2 roundings, the table those of a piece, where it falls by e^2.
 
@@ -78,9 +77,9 @@ def test_agrees_with_mpmath(name, n, order):
             assert abs(v - reference) <= 1e-14 * largest, (alpha, distance)
 
 
-@orders
-@dims
-@pytest.mark.parametrize("name", ["kappa", "F", "G", "K"])
+@pytest.mark.parametrize(
+    ("name", "n", "order"), covering(["kappa", "F", "G", "K"], [1, 2, 3], ORDERS, together=2)
+)
 def test_far_field(name, n, order):
     """The order has no part in it: eta^ = 1 - O(k^2m) leaves the singularity of |k|^alpha alone.
 
@@ -154,9 +153,7 @@ def wave(z: np.ndarray, n: int, odd: bool) -> np.ndarray:
     return (np.sin(z) - z * np.cos(z)) / z**2 if odd else np.sin(z) / z
 
 
-@orders
-@dims
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("name", "n", "order"), covering(NAMES, [1, 2, 3], ORDERS, together=2))
 def test_kernel_is_the_inverse_transform(name, n, order):
     """K(r) = (2 pi)^-n int K^(k) exp(i k.r) dk, by Gauss-Legendre quadrature in t, k = t^10.
 

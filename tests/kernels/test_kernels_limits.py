@@ -17,6 +17,7 @@ from fracparticles.kernels.families import kernel, kernel_transform
 from fracparticles.kernels.tabulated import tabulated
 from fracparticles.schemes import SCHEMES, Setting, dpse, riesz
 from fracparticles.schemes.spectrum import dense_matrix
+from sweeps import covering
 
 EPS = np.finfo(float).eps
 LIMITS = (1e-12, 1e-6, 1.0 - 1e-6, 1.0 - 1e-12)
@@ -56,9 +57,9 @@ def exact(name: str, r: float, alpha: float, n: int, order: int, family: str):
     return (-1 if name == "G" else 1) * constant * value, constant * size
 
 
-@pytest.mark.parametrize("beta", LIMITS)
-@pytest.mark.parametrize("n", [1, 2, 3])
-@pytest.mark.parametrize("name", ["kappa", "G", "K"])
+@pytest.mark.parametrize(
+    ("name", "n", "beta"), covering(["kappa", "G", "K"], [1, 2, 3], LIMITS, together=2)
+)
 def test_no_kernel_loses_digits_in_the_limits(name, n, beta):
     """The order alpha is taken as the double that it is. Beyond r = 8 what falls like exp(-r^2) is left out."""
     for order, family in FORMS:
@@ -112,9 +113,10 @@ def potential(m: int, alpha: float, order: int, overlap: float):
     return s ** (1 - a) * 2 ** (a - 2) * mp.gamma((a - 1) / 2) / mp.pi * (at - zero)
 
 
-@pytest.mark.parametrize("order", [2, 4])
-@pytest.mark.parametrize("overlap", [0.25, 1.0, 2.0, 8.0])
-@pytest.mark.parametrize("beta", [1e-15, 1e-12, 1e-6, 4.9e-3])
+@pytest.mark.parametrize(
+    ("order", "overlap", "beta"),
+    covering([2, 4], [0.25, 1.0, 2.0, 8.0], [1e-15, 1e-12, 1e-6, 4.9e-3], together=2),
+)
 def test_differences_of_the_potential_keep_their_digits(order, overlap, beta):
     ours = dpse.potential_differences(
         np.arange(400.0), Setting(alpha=1.0 + beta, order=order, overlap=overlap)
@@ -242,10 +244,10 @@ def test_the_regularised_potential_in_the_limits(beta):
             assert ours == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize("beta", LIMITS)
-@pytest.mark.parametrize(("order", "family"), FORMS)
-def test_transforms_in_the_limits(beta, order, family):
+@pytest.mark.parametrize(("beta", "form"), covering(LIMITS, FORMS))
+def test_transforms_in_the_limits(beta, form):
     """K^ from dK^/dk = -k^beta eta^, by quadrature up to exp(-100); G^ and F^ are a power of k times eta^."""
+    order, family = form
     alpha = 1.0 + beta
     ours = kernel_transform("K", np.array([0.0, 1e-3, 0.7, 3.0]), alpha, order=order, family=family)
     with mp.workdps(20):

@@ -11,6 +11,7 @@ from fracparticles.errors import AccuracyWarning
 from fracparticles.markers import SHAPES, MarkerVelocity, diffusion, run, uniform
 from fracparticles.markers.derivatives import flux_ripple
 from fracparticles.markers.kdv import Soliton, kdv
+from sweeps import covering
 
 
 def with_second_derivative(x, fields):
@@ -26,8 +27,7 @@ def ripple_of(velocity, d):
     return seen, 1000.0 * flux_ripple(velocity, x, w)
 
 
-@pytest.mark.parametrize("shape", ["S4", "S6"])
-@pytest.mark.parametrize("per_epsilon", [3.3, 5.7, 9.2])
+@pytest.mark.parametrize(("shape", "per_epsilon"), covering(["S4", "S6"], [3.3, 5.7, 9.2]))
 def test_on_a_lattice_the_ripple_is_that_of_the_sums(shape, per_epsilon):
     """No less than half of it, and no more than twice what closer markers have, whose waves are shorter."""
     velocity = MarkerVelocity(SHAPES[shape], 0.7, with_second_derivative, 2)

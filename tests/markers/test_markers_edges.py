@@ -15,6 +15,7 @@ from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.reliability import Steps
 from fracparticles.markers.resolution import lone
 from fracparticles.markers.stability import extremes
+from sweeps import covering, thorough
 
 SQUARE = uniform(Square().value, (-1.0, 1.0), 1000)
 EPSILON = 0.3
@@ -37,8 +38,9 @@ def field_error(markers, t, shape):
     return error, any("the field jumps" in str(one.message) for one in caught)
 
 
-@pytest.mark.parametrize("shape", ["S2", "S4", "S8"])
-@pytest.mark.parametrize("t", [0.003, 0.01, 0.03, 0.1, 0.3])
+@pytest.mark.parametrize(
+    ("shape", "t"), covering(["S2", "S4", "S8"], [0.003, 0.01, 0.03, 0.1, 0.3])
+)
 def test_the_error_next_to_a_jump_is_the_estimated_one(shape, t):
     """Of a square, which is so wide that its two edges do not feel each other."""
     error, told = field_error(SQUARE, t, shape)
@@ -128,7 +130,7 @@ def test_a_lone_marker_has_its_own_field():
     assert lone(velocity, dense, np.ones(100)) < 1e-14
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(3 if thorough() else 1))
 def test_random_markers_of_a_square_are_warned_of(seed):
     for t, least in ((0.02, 0.15), (0.3, 0.03)):
         error, told = field_error(random(Square(), 2000, np.random.default_rng(seed)), t, "S8")

@@ -20,6 +20,7 @@ from fracparticles.moving.scattered import (
     scattered_sum,
     smooth_kernel,
 )
+from sweeps import covering
 
 EPSILON = 0.3
 # Asked for: 1e-9 of the maximum. The transforms are made with 1e-12; the kernels cancel a little.
@@ -55,8 +56,7 @@ def test_the_naive_sum_is_its_definition(order):
         assert row == pytest.approx(expected, rel=1e-13, abs=1e-13)
 
 
-@pytest.mark.parametrize("alpha", [1.05, 1.5, 1.95])
-@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize(("alpha", "order"), covering([1.05, 1.5, 1.95], [2, 4]))
 def test_the_transform_is_the_naive_sum(alpha, order):
     x, q = scattered(1500)
     z = np.linspace(-45.0, 30.0, 101)

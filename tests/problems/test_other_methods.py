@@ -11,6 +11,7 @@ from spectral import Jacobi, Zernike, circle
 
 from fracparticles.errors import AccuracyWarning
 from fracparticles.problems import Problem, solve_problem
+from sweeps import covering
 
 IN_TIME = 1e-4  # of the greatest |u|: some hundred steps of the default tolerance, 1e-6
 
@@ -41,8 +42,7 @@ def error(run, exact) -> float:
     return float(np.abs(run.u.values - exact).max() / np.abs(exact).max())
 
 
-@pytest.mark.parametrize("alpha", [1.1, 1.8])
-@pytest.mark.parametrize("kind", LINES)
+@pytest.mark.parametrize(("kind", "alpha"), covering(LINES, [1.1, 1.8]))
 def test_the_line(kind, alpha):
     d, a, f = LINES[kind]
     fields = {"alpha": alpha, "half_width": 30.0, "far_terms": 2, "t_final": 0.3}
@@ -79,8 +79,7 @@ def test_the_exchange_across_a_layer_that_two_particles_span(alpha):
     assert error(run, exact(run.x.values)) < 2.0 * float(run.space_error)
 
 
-@pytest.mark.parametrize("alpha", [1.4, 1.8])
-@pytest.mark.parametrize("rate", [1.0, 10.0])
+@pytest.mark.parametrize(("rate", "alpha"), covering([1.0, 10.0], [1.4, 1.8]))
 def test_the_interval(alpha, rate):
     def d(x, t):
         return 1.0 + 0.5 * x * np.cos(5.0 * t)
@@ -102,14 +101,16 @@ def test_the_interval(alpha, rate):
     assert off < (2.0 * float(run.space_error) + IN_TIME) * size
 
 
-@pytest.mark.parametrize("alpha", [1.5, 1.8])
-@pytest.mark.parametrize(
-    "velocity",
-    [lambda x, y: (-20.0 * y, 20.0 * x), lambda x, y: (5.0 + 0.0 * x, -2.0 * x)],
-    ids=["turned", "carried to the edge"],
-)
-def test_the_disc(alpha, velocity):
+MOTIONS = {
+    "turned": lambda x, y: (-20.0 * y, 20.0 * x),
+    "carried to the edge": lambda x, y: (5.0 + 0.0 * x, -2.0 * x),
+}
+
+
+@pytest.mark.parametrize(("motion", "alpha"), covering(MOTIONS, [1.5, 1.8]))
+def test_the_disc(motion, alpha):
     """Turned by a radian, or carried by half the radius."""
+    velocity = MOTIONS[motion]
     a = (lambda x, y: velocity(x, y)[0], lambda x, y: velocity(x, y)[1])
     initial = partial(bell, width=0.5, at=0.2)
     fields = {"alpha": alpha, "half_width": 1.0, "exterior": "absorbing", "domain": "disc"}

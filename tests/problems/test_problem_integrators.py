@@ -10,6 +10,7 @@ from fracparticles.errors import NonFiniteSolution
 from fracparticles.time.krylov import KrylovStep
 from fracparticles.time.stabilised import StabilisedStep, spectral_radius
 from fracparticles.time.steps import EighthOrderStep
+from sweeps import thorough
 
 N = 60
 LAPLACIAN = (np.eye(N, k=1) + np.eye(N, k=-1) - 2.0 * np.eye(N)) * 50.0
@@ -53,7 +54,7 @@ def forced(t: float, u: np.ndarray) -> np.ndarray:
 RATES = np.geomspace(1.0, 1e4, N)
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, *[1e-7] * thorough()])
 def test_stabilised_steps_of_a_stiff_problem_with_time_in_it(tolerance):
     steps = StabilisedStep(forced, tolerance, tolerance)
     u = steps.advance(np.full(N, 2.0), 2.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from functools import partial
 
 import numpy as np
 import pytest
@@ -15,6 +16,10 @@ from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.dataset import write
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import Gaussian
+from sweeps import covering, few
+
+# The error is measured: to estimate it, too, takes as long again.
+solved = partial(solve_problem, estimate=False)
 
 LINE = {
     "alpha": 1.5, "half_width": 50.0, "spacing": 0.1, "order": 12, "far_terms": 3, "t_initial": 1.0, "t_final": 2.0,
@@ -36,7 +41,7 @@ def laplacian_of_gaussian(x: np.ndarray, alpha: float, dim: int = 1) -> np.ndarr
 @pytest.mark.parametrize("alpha", [1.2, 1.5, 1.8])
 @pytest.mark.parametrize("form", ["FPSE", "DD", "exchange"])
 def test_a_uniform_field_shifts_the_solution(alpha, form):
-    run = solve_problem(Problem(**{**LINE, "alpha": alpha}, form=form, velocity=1.0))
+    run = solved(Problem(**{**LINE, "alpha": alpha}, form=form, velocity=1.0))
     assert error(run, green(run.x.values - 1.0, 2.0, alpha)) < 1e-6
     assert run.integrator == "exponential"
 
@@ -45,7 +50,7 @@ def test_a_uniform_field_shifts_the_solution(alpha, form):
 def test_a_linear_field_keeps_the_stable_law(integrator):
     """The scale of the stable law: scale^alpha = e^(-alpha theta t) + D (1 - e^(-alpha theta t)) / (alpha theta)."""
     theta, d, alpha = 0.8, 0.5, 1.5
-    run = solve_problem(
+    run = solved(
         Problem(
             **LINE, velocity="-0.8*x" if integrator == "auto" else "-0.8*x + 0*t", diffusivity=d, integrator=integrator,
             times=(1.3, 2.0),
@@ -63,20 +68,20 @@ def test_the_order_in_the_spacing_is_that_of_the_kernel():
         errors = []
         for h in (0.2, 0.1):
             one = {**LINE, "order": order, "spacing": h, "half_width": 30.0}
-            run = solve_problem(Problem(**one, velocity=1.0))
+            run = solved(Problem(**one, velocity=1.0))
             errors.append(error(run, green(run.x.values - 1.0, 2.0, 1.5)))
         assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.2)
 
 
 def test_a_shear_in_time_is_the_integral_of_its_speed():
-    run = solve_problem(Problem(**LINE, velocity="cos(3*t)"))
+    run = solved(Problem(**LINE, velocity="cos(3*t)"))
     moved = (np.sin(6.0) - np.sin(3.0)) / 3.0
     assert error(run, green(run.x.values - moved, 2.0, 1.5)) < 1e-6
     assert run.integrator == "dop853"
 
 
 def test_diffusion_in_time_is_its_integral():
-    run = solve_problem(Problem(**LINE, diffusivity="t"), lambda x: green(x, 1.0, 1.5))
+    run = solved(Problem(**LINE, diffusivity="t"), lambda x: green(x, 1.0, 1.5))
     assert error(run, green(run.x.values, 2.5, 1.5)) < 1e-6
 
 
@@ -90,7 +95,7 @@ def test_on_a_truncated_lattice_mass_is_conserved_to_round_off(form):
 
 
 def test_what_decays_at_a_rate_has_the_exact_factor():
-    run = solve_problem(Problem(**LINE, source="-0.7*u"))
+    run = solved(Problem(**LINE, source="-0.7*u"))
     assert error(run, np.exp(-0.7) * green(run.x.values, 2.0, 1.5)) < 1e-6
 
 
@@ -146,7 +151,7 @@ def test_a_rotation_carries_a_blob_about_the_origin():
         alpha=1.5, dim=2, form="DD", order=12, half_width=20.0, spacing=0.25, velocity=("-y", "x"), diffusivity=0.2,
         t_final=np.pi / 2.0,
     )  # fmt: skip
-    run = solve_problem(problem, lambda x, y: green(np.hypot(x - 1.5, y), 1.0, 1.5, 2))
+    run = solved(problem, lambda x, y: green(np.hypot(x - 1.5, y), 1.0, 1.5, 2))
     x, y = run.x.values[:, None], run.y.values
     exact = green(np.hypot(x, y - 1.5), 1.0 + 0.1 * np.pi, 1.5, 2)
     assert error(run, exact) < 1e-4
@@ -158,7 +163,7 @@ def test_a_linear_problem_is_linear(fields):
     rng = np.random.default_rng(1)
     bells = [lambda x, c=c: np.exp(-((x - c) ** 2)) for c in rng.normal(size=2)]
     zero, one, two, both = (
-        solve_problem(problem, given).u.values
+        solved(problem, given).u.values
         for given in (lambda x: 0.0 * x, *bells, lambda x: bells[0](x) - 2.0 * bells[1](x))
     )
     assert_allclose(both - zero, (one - zero) - 2.0 * (two - zero), atol=1e-7)
@@ -167,7 +172,7 @@ def test_a_linear_problem_is_linear(fields):
 @pytest.mark.parametrize("fields", [{"source": "u*(1-u)"}, {"diffusivity": "1 + t"}])
 def test_the_ways_of_time_integration_agree(fields):
     every = [
-        solve_problem(
+        solved(
             Problem(**{**LINE, "half_width": 20.0, "rtol": 1e-7}, **fields, integrator=one),
             lambda x: green(x, 1.0, 1.5),
         ).u.values
@@ -279,16 +284,15 @@ def test_the_checker_of_the_convention_finds_nothing(tmp_path):
 
 def test_a_linear_field_ends_in_the_stationary_law():
     """After a long time the scale is (D / (alpha theta))^(1/alpha), and stays: nothing grows at the ends."""
-    run = solve_problem(
-        Problem(**{**LINE, "spacing": 0.2, "times": (11.0, 41.0), "t_final": 41.0}, velocity="-x")
+    run = solved(
+        Problem(**{**LINE, "spacing": 0.2, "times": (11.0, 21.0), "t_final": 21.0}, velocity="-x")
     )
     exact = green(run.x.values, 1.0 / 1.5, 1.5)
     assert error(run.isel(t=0), exact) < 1e-6
     assert error(run.isel(t=1), exact) < 1e-6
 
 
-@pytest.mark.parametrize("form", ["FPSE", "DD"])
-@pytest.mark.parametrize("source_of_time", [False, True])
+@pytest.mark.parametrize(("form", "source_of_time"), covering(["FPSE", "DD"], [False, True]))
 def test_a_diffusivity_that_varies_in_space_and_time(form, source_of_time):
     """u = exp(-t) / (1 + x^2): D' grad^beta u + D div grad^beta u from the closed forms, as the source in text."""
     d = "(1 + 0.5*exp(-x**2/4)*cos(t))" if source_of_time else "(1 + 0.5*exp(-x**2/4))"
@@ -304,7 +308,7 @@ def test_a_diffusivity_that_varies_in_space_and_time(form, source_of_time):
         "far_terms": None,
     }
     problem = Problem(**{**LINE, **fields}, form=form, diffusivity=d, source=source)
-    run = solve_problem(problem, lambda x: 1.0 / (1.0 + x * x))
+    run = solved(problem, lambda x: 1.0 / (1.0 + x * x))
     assert error(run, np.exp(-1.0) / (1.0 + run.x.values**2)) < 1e-6
 
 
@@ -313,21 +317,21 @@ def test_mass_is_conserved_with_all_that_varies():
         alpha=1.5, half_width=20.0, spacing=0.2, t_final=1.0, exterior="truncated",
         diffusivity="1 + 0.5*sin(x)*exp(-t)", velocity="-x*cos(t)",
     )  # fmt: skip
-    run = solve_problem(problem, lambda x: np.exp(-x * x))
+    run = solved(problem, lambda x: np.exp(-x * x))
     assert abs(float(run.mass_final / run.mass_initial) - 1.0) < 1e-12
 
 
 def test_a_variable_order_that_is_constant_is_the_constant_one():
     fields = {**LINE, "form": "DD", "far_terms": None, "velocity": "-x", "half_width": 20.0}
-    constant = solve_problem(Problem(**fields), lambda x: np.exp(-x * x))
+    constant = solved(Problem(**fields), lambda x: np.exp(-x * x))
     del fields["alpha"]
     for text, most in (("1.5 + 0*x", 1e-12), ("1.5 + 1e-9*tanh(x)", 1e-9)):
-        variable = solve_problem(Problem(alpha=text, **fields), lambda x: np.exp(-x * x))
+        variable = solved(Problem(alpha=text, **fields), lambda x: np.exp(-x * x))
         assert_allclose(variable.u, constant.u, atol=most)
     assert variable.attrs["title"].endswith("-D (-Laplacian)^(alpha(x)/2) u + f")
 
 
-@pytest.mark.parametrize("form", ["FPSE", "DD"])
+@pytest.mark.parametrize("form", few(["FPSE", "DD"], 1))
 def test_a_diffusivity_that_varies_in_the_plane(form):
     """u = exp(-|x|^2) (1 + t) of a source made for it: of order 12, for FPSE, too, whose printed kernels end at 4."""
     alpha, rise = 1.5, 0.5
@@ -346,6 +350,6 @@ def test_a_diffusivity_that_varies_in_the_plane(form):
         alpha=alpha, dim=2, form=form, order=12, diffusivity=f"1 + {rise}*exp(-x**2 - y**2)",
         source=source, half_width=10.0, spacing=0.2, t_final=0.5, rtol=1e-7,
     )  # fmt: skip
-    run = solve_problem(problem, lambda x, y: exact(x, y, 0.0))
+    run = solved(problem, lambda x, y: exact(x, y, 0.0))
     x, y = np.meshgrid(run.x, run.y, indexing="ij")
     assert np.abs(run.u.values - exact(x, y, 0.5)).max() < 1e-4 * 1.5

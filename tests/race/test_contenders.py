@@ -17,6 +17,7 @@ from fracstudy.race.contenders.differences import DuoWykZhang, FractionalCentred
 from fracstudy.race.contenders.rational import _functions
 from fracstudy.race.problems import PROBLEMS
 from fracstudy.race.trial import LABELS, VARIABLES, run_trials
+from sweeps import covering
 
 # One choice for each on the mixture, beta 0.5, and the error that it must reach; of those of second order
 # the constants are theirs.
@@ -90,8 +91,9 @@ def centred_weights(alpha: float, count: int) -> np.ndarray:
     )
 
 
-@pytest.mark.parametrize("alpha", [1.1, 1.5, 1.9])
-@pytest.mark.parametrize("kind", [HuangOberman, DuoWykZhang, FractionalCentred])
+@pytest.mark.parametrize(
+    ("kind", "alpha"), covering([HuangOberman, DuoWykZhang, FractionalCentred], [1.1, 1.5, 1.9])
+)
 def test_a_symbol_is_the_sum_of_its_weights(kind, alpha):
     """Against the exponential of the Toeplitz matrix, in the middle of a lattice: its ends are 400 points away."""
     count, tau = 801, 0.7

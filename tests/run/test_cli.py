@@ -15,6 +15,7 @@ import fracparticles as fp
 from fracparticles.run.case import Case
 from fracparticles.run.cli import main
 from fracparticles.run.commands import number_or_text
+from sweeps import covering, few
 
 
 def words_of(text: str) -> list[str]:
@@ -300,8 +301,12 @@ def test_show_what_is_not_a_run(cli, tmp_path):
 SERIES = (*SMALL, "--integrator", "exponential")
 
 
-@pytest.mark.parametrize("flags", ["--times 0.7,1", "--dim 2", "--dim 2 --times 0.7,1", "--dim 3"])
-@pytest.mark.parametrize("name", ["run.png", "run.svg"])
+@pytest.mark.parametrize(
+    ("flags", "name"),
+    covering(
+        ["--times 0.7,1", "--dim 2", "--dim 2 --times 0.7,1", "--dim 3"], ["run.png", "run.svg"]
+    ),
+)
 def test_plot(cli, tmp_path, flags, name):
     spacing = ("--spacing", 1.0)
     given = [word for word in SERIES if word not in ("--spacing", "0.25")]
@@ -630,7 +635,7 @@ def test_a_reader_that_goes_away_is_no_error():
     assert done.stderr == b""
 
 
-@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", few([">&-", "2>&-", "<&- >&- 2>&-"]))
 def test_streams_that_are_closed_spoil_no_file(tmp_path, closed):
     """The first file that is opened would take the place of the stream, and its text."""
     words = [*PROGRAM, "solve", *SMALL, "--dt", "0.5", "-o", str(tmp_path / "run.nc")]

@@ -23,6 +23,7 @@ from fracparticles.run.case import Case
 from fracparticles.run.initial import initial_strengths
 from fracparticles.run.solver import compute
 from fracparticles.special import mean_radius
+from sweeps import covering
 
 GIVEN = {
     "scheme": "KPSE",
@@ -253,8 +254,7 @@ CANNOT_BE_HELD = [
 ]
 
 
-@pytest.mark.parametrize("value", CANNOT_BE_HELD, ids=range(len(CANNOT_BE_HELD)))
-@pytest.mark.parametrize("holder", ["run", "u", "x", "beta"])
+@pytest.mark.parametrize(("value", "holder"), covering(CANNOT_BE_HELD, ["run", "u", "x", "beta"]))
 def test_an_attribute_that_cannot_be_written_is_named_and_leaves_nothing(tmp_path, value, holder):
     run = solved().copy(deep=True)
     (run if holder == "run" else run[holder]).attrs["broken"] = value

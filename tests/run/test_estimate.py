@@ -15,6 +15,7 @@ from fracparticles.run.cli import main
 from fracparticles.run.estimate import ErrorEstimate, estimate_of
 from fracparticles.run.solver import compute
 from fracstudy.race.problems import PROBLEMS
+from sweeps import covering
 
 LINE = {
     "KPSE, order 4": {"scheme": "KPSE", "order": 4, "integrator": "exponential", "exterior": "open"},
@@ -47,18 +48,18 @@ def estimated_and_true(problem, half_width, spacing, **given):
     return estimate, problem.error(tuple(case.positions), case.volumes, run.u)
 
 
-@pytest.mark.parametrize("way", LINE)
-@pytest.mark.parametrize("beta", [0.1, 0.9])  # in the plane 0.5, of mixtures any
-@pytest.mark.parametrize("name", ROUGH)
-def test_on_the_line_it_is_within_a_factor_of_three(name, beta, way):
-    problem = PROBLEMS[name](beta)
-    for widths, spacing in ((4.0, 0.2), (20.0, 0.1)):
-        estimate, true = estimated_and_true(problem, widths * problem.width, spacing, **LINE[way])
-        assert true / 3.0 <= estimate.total <= 3.0 * true + SETTLED
+# In the plane beta is 0.5, of mixtures any.
+@pytest.mark.parametrize(
+    ("name", "way", "beta", "lattice"),
+    covering(ROUGH, LINE, [0.1, 0.9], [(4.0, 0.2), (20.0, 0.1)], together=2),
+)
+def test_on_the_line_it_is_within_a_factor_of_three(name, way, beta, lattice):
+    problem, (widths, spacing) = PROBLEMS[name](beta), lattice
+    estimate, true = estimated_and_true(problem, widths * problem.width, spacing, **LINE[way])
+    assert true / 3.0 <= estimate.total <= 3.0 * true + SETTLED
 
 
-@pytest.mark.parametrize("way", PLANE)
-@pytest.mark.parametrize("name", ROUGH)
+@pytest.mark.parametrize(("name", "way"), covering(ROUGH, PLANE))
 def test_in_the_plane_too(name, way):
     problem = PROBLEMS[name](0.5, 2)
     widths, spacing = (3.0, 0.24) if name == "two scales" else (6.0, problem.width / 8.0)

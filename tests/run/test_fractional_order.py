@@ -9,11 +9,12 @@ import fracparticles as fp
 from fracparticles.errors import InvalidInput
 from fracparticles.run.cli import main
 from fracstudy.run_blocks import RunBlock, expand
+from sweeps import at_once
 
 GIVEN = {"scheme": "KPSE", "half_width": 20.0, "spacing": 0.2, "integrator": "exponential"}
 
 
-@pytest.mark.parametrize("hundredths", range(1, 100))
+@at_once(range(1, 100))
 def test_they_are_the_same_case(hundredths):
     beta = hundredths / 100
     by_beta = fp.Case(**GIVEN, beta=beta)

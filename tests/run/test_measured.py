@@ -16,6 +16,7 @@ import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.cli import main
 from fracparticles.run.interpolated import Measured
+from sweeps import covering
 
 GIVEN = {"scheme": "KPSE", "order": 4, "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "t_initial": 0.0,
          "integrator": "exponential", "exterior": "open"}  # fmt: skip
@@ -53,10 +54,12 @@ def test_the_stated_error_is_that_of_the_interpolation(name, points, uneven):
     assert 0.5 * true <= data.interpolation_error <= 20.0 * true + 1e-12
 
 
-@pytest.mark.parametrize("shift", [0.0, 1.3])
-@pytest.mark.parametrize("name", PROFILES)
-@pytest.mark.parametrize("points", [4, 5, 6, 7, 8, 10, 12, 15, 16, 18, 20, 24])
-@pytest.mark.parametrize("uneven", [False, True])
+@pytest.mark.parametrize(
+    ("points", "name", "uneven", "shift"),
+    covering(
+        [4, 5, 6, 7, 8, 10, 12, 15, 16, 18, 20, 24], PROFILES, [False, True], [0.0, 1.3], together=2
+    ),
+)
 def test_the_stated_error_of_few_points_is_no_accident(name, points, uneven, shift):
     """A third of the true error, or 1, which says that nothing is known: few points may be met by chance."""
     x = np.linspace(-3.0, 3.0, points)

@@ -14,6 +14,7 @@ from fracparticles.run.reliability import between_particles, estimates, wave_err
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solver import compute
 from fracparticles.special.stable import green
+from sweeps import covering
 
 
 def bump(*x):
@@ -283,13 +284,17 @@ def test_the_error_of_a_wave_is_that_of_the_run(order):
 
 
 @pytest.mark.parametrize(
-    ("dim", "half_width", "spacing"),
-    [(1, 20.0, 0.2), (1, 20.0, 0.4), (2, 8.0, 0.2), (2, 8.0, 0.4), (3, 5.0, 0.4)],
+    ("lattice", "order", "scheme"),
+    covering(
+        [(1, 20.0, 0.2), (1, 20.0, 0.4), (2, 8.0, 0.2), (2, 8.0, 0.4), (3, 5.0, 0.4)],
+        [2, 4],
+        ["DD", "FPSE", "KPSE"],
+        together=2,
+    ),
 )
-@pytest.mark.parametrize("order", [2, 4])
-@pytest.mark.parametrize("scheme", ["DD", "FPSE", "KPSE"])
-def test_the_error_of_waves_is_that_of_the_peak(scheme, order, dim, half_width, spacing):
+def test_the_error_of_waves_is_that_of_the_peak(lattice, order, scheme):
     """Of the fundamental solution all waves are in phase at x = 0: the estimate is the error there."""
+    dim, half_width, spacing = lattice
     fields = {
         "half_width": half_width,
         "spacing": spacing,

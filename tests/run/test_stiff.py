@@ -23,6 +23,7 @@ from fracparticles.run.solver import compute, prepare
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.spectrum import dense_matrix, largest_degree
 from fracparticles.time import STEP_POLYNOMIALS, exponential_flow, power_flow
+from sweeps import few
 
 EPS = np.finfo(float).eps
 
@@ -49,7 +50,8 @@ def matrix_run(case: Case, u0: np.ndarray, time: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("order", "time"), [(2, 1e4), (2, 3e5), (2, 1e6), (2, 1e8), (4, 1e6), (12, 1e4), (12, 1e6)]
+    ("order", "time"),
+    few([(2, 1e8), (2, 1e4), (2, 3e5), (2, 1e6), (4, 1e6), (12, 1e4), (12, 1e6)], 4),
 )
 def test_a_conservative_scheme_ends_at_the_mean(order, time):
     case = stiff(scheme="KPSE", order=order, t_final=time)

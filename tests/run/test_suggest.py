@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 import pytest
 
@@ -12,6 +10,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.radius import radius_of
 from fracparticles.run.solver import compute
 from fracstudy.race.problems import PROBLEMS
+from sweeps import covering, few, thorough
 
 
 def asked_and_met(problem, error, **more):
@@ -24,9 +23,10 @@ def asked_and_met(problem, error, **more):
     return case, problem.error(tuple(case.positions), case.volumes, u)
 
 
-@pytest.mark.parametrize("error", [1e-3, 1e-9])
-@pytest.mark.parametrize("beta", [0.1, 0.5, 0.9])
-@pytest.mark.parametrize("name", ["fundamental", "mixture", "other tail"])
+@pytest.mark.parametrize(
+    ("name", "beta", "error"),
+    covering(["fundamental", "mixture", "other tail"], [0.1, 0.5, 0.9], [1e-3, 1e-9], together=2),
+)
 def test_met_on_the_line(name, beta, error):
     _, true = asked_and_met(PROBLEMS[name](beta), error)
     assert true <= error
@@ -43,7 +43,10 @@ def test_met_where_the_data_are_rough(name, beta, error):
 
 @pytest.mark.parametrize(
     ("name", "error"),
-    [*product(["fundamental", "mixture", "other tail"], [1e-3, 1e-6]), ("mixture", 1e-9)],
+    [
+        *covering(["other tail", "mixture", "fundamental"], [1e-3, 1e-6]),
+        *[("mixture", 1e-9)] * thorough(),
+    ],
 )
 def test_met_in_the_plane(name, error):
     _, true = asked_and_met(PROBLEMS[name](0.5, 2), error)
@@ -172,7 +175,7 @@ def test_data_far_narrower_than_they_spread_are_sent_on_at_once():
             )  # fmt: skip
 
 
-@pytest.mark.parametrize("width", [1e3, 1e7, 1e11])
+@pytest.mark.parametrize("width", few([1e3, 1e7, 1e11]))
 def test_data_far_wider_than_they_spread_take_few_particles(width):
     case = fp.suggest(lambda x: np.exp(-((x / width) ** 2)), error=1e-3, alpha=1.5, t_final=1.0)
     assert case.x.size < 100

@@ -14,6 +14,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
 from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.special import green
+from sweeps import covering
 
 BOXED = [
     (name, order)
@@ -69,9 +70,9 @@ def test_conservation_and_symmetry(name, order):
     assert np.abs(turned - np.rot90(operator.apply(u).reshape(13, 13))).max() <= 1e-13 * total
 
 
-@pytest.mark.parametrize(("name", "order"), BOXED)
-@pytest.mark.parametrize("exterior", ["truncated", "open"])
-def test_the_spectral_interval_holds_the_spectrum(name, order, exterior):
+@pytest.mark.parametrize(("one", "exterior"), covering(BOXED, ["truncated", "open"]))
+def test_the_spectral_interval_holds_the_spectrum(one, exterior):
+    name, order = one
     case = Case(
         scheme=name, order=order, beta=0.5, dim=2, truncation=4.0, spacing=0.9,
         exterior=exterior, **({} if name == "GPSE" else {"integrator": "exponential"}),

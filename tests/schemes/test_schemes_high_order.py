@@ -19,6 +19,7 @@ from fracparticles.schemes.spectrum import dense_matrix, spectral_interval
 from fracparticles.schemes.stability import stability_limit, symbol_range
 from fracparticles.schemes.transform import lattice_transform
 from fracparticles.special.stable import central_mass
+from sweeps import covering
 
 EPS = np.finfo(float).eps
 HIGH = ("DD", "FPSE", "KPSE")
@@ -118,11 +119,10 @@ def outside(case: Case) -> tuple[float, float]:
 )
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_interval_holds_every_eigenvalue_and_all_are_real(scheme, order, exterior, overlaps):
-    for beta in (0.1, 0.5, 0.9):
-        for overlap in overlaps:
-            beyond, imaginary = outside(on_sixty(scheme, order, beta, overlap, exterior))
-            # As in test_spectrum: round-off splits a defective eigenvalue by its square root.
-            assert max(beyond, imaginary) <= 10.0 * math.sqrt(EPS), (beta, overlap)
+    for beta, overlap in covering((0.1, 0.5, 0.9), overlaps):
+        beyond, imaginary = outside(on_sixty(scheme, order, beta, overlap, exterior))
+        # As in test_spectrum: round-off splits a defective eigenvalue by its square root.
+        assert max(beyond, imaginary) <= 10.0 * math.sqrt(EPS), (beta, overlap)
 
 
 @pytest.mark.filterwarnings("ignore::fracparticles.errors.StabilityWarning")  # of those modes

@@ -23,6 +23,7 @@ from fracparticles.special import (
     reduced_green,
     tail_mass,
 )
+from sweeps import covering
 
 # As in test_stable: a few hundred roundings of 1.1e-16 in a sum of positive terms; 20 times the
 # roundings of the largest part where n = 5 cancels next to r = 1/2.
@@ -83,8 +84,7 @@ def table_values(r: np.ndarray, alpha: float, n: int) -> tuple[np.ndarray, ...]:
     return density, outside, inside
 
 
-@pytest.mark.parametrize("n", [2, 3, 4, 5])
-@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize(("alpha", "n"), covering(ALPHAS, [2, 3, 4, 5]))
 def test_agrees_with_mpmath(alpha, n):
     r = np.array(NEAR + MIDDLE + FAR)
     for point, density, outside, inside in zip(r, *table_values(r, alpha, n), strict=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from functools import cache
+from itertools import product
 
 import mpmath as mp
 import numpy as np
@@ -25,6 +26,7 @@ from fracparticles.special import (
     reduced_green,
     tail_mass,
 )
+from sweeps import at_once, few
 
 # The worst path is a quadrature: a sum of about 180 positive terms, each with an exponential of an
 # argument up to 40, and then 18 steps of Horner's rule: a few hundred roundings of 1.1e-16.
@@ -70,7 +72,7 @@ def exact(x: float, alpha: float) -> tuple[mp.mpf, mp.mpf]:
             j += 1
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
+@pytest.mark.parametrize("alpha", few(ALPHAS, 6))
 def test_agrees_with_mpmath(alpha):
     x = np.array(NEAR + MIDDLE + FAR)
     density = reduced_green(x, alpha)
@@ -334,10 +336,14 @@ def test_refuses_the_rest():
             green_series(1.0, 1.5, terms)
 
 
-@pytest.mark.parametrize("function", [green, green_slope, green_flux, green_rate, tail_mass])
-@pytest.mark.parametrize("alpha", [1.0 + 1e-15, 1.5, 2.0 - 1e-15])
-@pytest.mark.parametrize("dim", [1, 2, 3])
-@pytest.mark.parametrize("t", [5e-324, 1e-310, 1e-200, 1e-100, 1e200, 1.7e308])
+@at_once(
+    product(
+        [green, green_slope, green_flux, green_rate, tail_mass],
+        [1.0 + 1e-15, 1.5, 2.0 - 1e-15],
+        [1, 2, 3],
+        [5e-324, 1e-310, 1e-200, 1e-100, 1e200, 1.7e308],
+    )
+)
 def test_at_any_time_the_values_are_finite_or_the_time_is_refused(function, alpha, dim, t):
     """Close to t = 0 the peak is above the largest float64, never an infinity, a nan or another's exception."""
     x = np.array([0.0, 1e-300, 1.0, 1e300, np.inf])

@@ -9,21 +9,19 @@ from importlib import import_module
 from pathlib import Path
 from string import Formatter
 
-import pytest
 import yaml
 
 from fracstudy.claims import Sentence, Statement, Value
 from fracstudy.config import StudyConfig
 from fracstudy.printed import read_conventions, read_printed
 from fracstudy.scene_files import read_scenes
+from sweeps import at_once
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = StudyConfig(**yaml.safe_load((ROOT / "config/study.yaml").read_text("utf-8")))
 SCENES = read_scenes(ROOT / "workflow/scenes", list(STUDY.documents), smoke=False)
 FILES = sorted((ROOT / "report/printed").glob("*/*.yaml"))
-each_file = pytest.mark.parametrize(
-    "path", FILES, ids=lambda path: f"{path.parent.name}/{path.stem}"
-)
+each_file = at_once(FILES)
 
 LETTERS = {"lucchesi": "L", "lewandowski": "M", "ghorbani": "S", "particle_note": "P"}
 SHORTEST = 30  # characters of a sentence

@@ -18,11 +18,13 @@ from fracstudy.printed import read_printed
 from fracstudy.report import ReportError, build
 from fracstudy.scene import Scene
 from fracstudy.verdicts import Status
+from sweeps import at_once
 
 ROOT = Path(__file__).parents[2]
 TEMPLATES = ROOT / "report/template"
 FINDINGS = 'A limit is {{ ours("L-T3.DD") }}.'
 SCENES = ROOT / "workflow/scenes"
+CAPTIONS = sorted(SCENES.glob("*/*/caption.md"))
 
 LIMITS = "limits_beta0.5"  # a dot is no suffix
 WORDS = {"much_smaller": Convention(at_most=0.1, means="At most a tenth.")}
@@ -226,9 +228,7 @@ def test_an_item_without_claims_is_refused(study):
 SUPERSCRIPT = re.compile(r"</?su[bp]>")
 
 
-@pytest.mark.parametrize(
-    "caption", sorted(SCENES.glob("*/*/caption.md")), ids=lambda p: p.parent.name
-)
+@at_once(CAPTIONS)
 def test_captions_are_plain_prose(caption):
     """Without headings, which would break the order of the page, and tags but sub and sup."""
     text = caption.read_text("utf-8")
@@ -258,9 +258,7 @@ def plain(number: str) -> str:
     return f"{float(number):g}"
 
 
-@pytest.mark.parametrize(
-    "caption", sorted(SCENES.glob("*/*/caption.md")), ids=lambda p: p.parent.name
-)
+@at_once(CAPTIONS)
 def test_no_result_is_typed_in_a_caption(caption):
     """A number in a caption is looked up, or stands in the grid of the scene or in the document."""
     from scene_functions import scenes

@@ -10,6 +10,7 @@ from scipy.fft import rfftn
 
 import fracparticles as fp
 from fracparticles.time.short_waves import ShortWaves
+from sweeps import covering
 
 
 def of(u: np.ndarray, dim: int) -> ShortWaves:
@@ -60,9 +61,10 @@ def spike(x: np.ndarray, width: float, alpha: float, time: float) -> np.ndarray:
     return np.cos(np.multiply.outer(x, k)) @ (weights * u) / np.pi
 
 
-@pytest.mark.parametrize("hill", [0.0, 20.0, 100.0])
-@pytest.mark.parametrize("width", [0.5, 0.8, 1.5, 2.0])
-@pytest.mark.parametrize("tau", [1e-6, 0.01, 0.3, 3.0])
+@pytest.mark.parametrize(
+    ("hill", "width", "tau"),
+    covering([0.0, 20.0, 100.0], [0.5, 0.8, 1.5, 2.0], [1e-6, 0.01, 0.3, 3.0], together=2),
+)
 def test_a_spike_is_spoken_of_on_a_hill_too(hill, width, tau):
     """The hill has all of the integral; the spike, whose peak is the hill's, is what the lattice does not hold."""
     x, near = np.arange(-400.0, 400.0), np.arange(-6.0, 7.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from numpy.testing import assert_allclose
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.whole_space import WholeSpace, evolve, tail_exponents
+from sweeps import at_once, covering
 
 
 def line(points: int, half_width: float) -> tuple[np.ndarray, float]:
@@ -202,8 +204,7 @@ def test_a_prepared_run_is_refused_alike():
     assert "= 417.7 spacings" in str(error.value)  # 0.9 (1e4)^(2/3)
 
 
-@pytest.mark.parametrize("points", range(8, 17))
-@pytest.mark.parametrize("terms", range(7))
+@at_once(product(range(8, 17), range(7)))
 def test_few_points_will_do(points, terms):
     assert np.isfinite(WholeSpace(points, 1, 1.5, 0.5, terms=terms).solve(np.ones(points))).all()
 
@@ -230,9 +231,10 @@ def bump(dim: int, alpha: float, t: float) -> tuple[np.ndarray, float]:
     return np.asarray(fp.green(r, t, alpha, dim)), h
 
 
-@pytest.mark.parametrize("dim", [1, 2, 3])
-@pytest.mark.parametrize("terms", range(7))
-@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9, 1e-12, np.finfo(float).eps])
+@pytest.mark.parametrize(
+    ("terms", "distance", "dim"),
+    covering(range(7), [1e-3, 1e-6, 1e-9, 1e-12, np.finfo(float).eps], [1, 2, 3]),
+)
 def test_the_tails_near_alpha_two(dim, terms, distance):
     """1 / kappa has a pole at each exponent, of which nothing may be left. The second term is 1e-4 of the first."""
     alpha = 2.0 - distance
@@ -242,8 +244,9 @@ def test_the_tails_near_alpha_two(dim, terms, distance):
     assert np.abs(evolve(start, h, alpha, 1.0, terms=terms) - end).max() <= bound * end.max()
 
 
-@pytest.mark.parametrize("dim", [1, 2, 3])
-@pytest.mark.parametrize("alpha", [1.0 + 1e-9, 1.0 + 1e-6, 1.33333333, 1.5 + 1e-8])
+@pytest.mark.parametrize(
+    ("dim", "alpha"), covering([1, 2, 3], [1.0 + 1e-9, 1.0 + 1e-6, 1.33333333, 1.5 + 1e-8])
+)
 def test_terms_that_nearly_belong_to_no_tail_cost_no_digits(dim, alpha):
     """More terms are no worse than the first alone: they do not magnify the round-off, 1e-16 over their distance."""
     (start, h), (end, _) = bump(dim, alpha, 1.0), bump(dim, alpha, 2.0)

@@ -14,6 +14,7 @@ import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time import continued
 from fracparticles.time.widening import evolve_long
+from sweeps import covering
 
 
 def line(points: int, h: float) -> np.ndarray:
@@ -27,9 +28,10 @@ def blob(points, h, t, alpha, dim, centre) -> np.ndarray:
     return fp.green(r, t, alpha, dim)
 
 
-@pytest.mark.parametrize("alpha", [1.05, 1.3, 1.5, 1.9])
-@pytest.mark.parametrize("points", [800, 801])
-@pytest.mark.parametrize("later", [1.0, 10.0, 1e3, 1e6, 1e12])
+@pytest.mark.parametrize(
+    ("alpha", "points", "later"),
+    covering([1.05, 1.3, 1.5, 1.9], [800, 801], [1.0, 10.0, 1e3, 1e6, 1e12], together=2),
+)
 def test_six_digits_on_the_line(alpha, points, later):
     age = 0.3**alpha
     u, h = evolve_long(blob(points, 0.1, age, alpha, 1, 0.7), 0.1, alpha, later)

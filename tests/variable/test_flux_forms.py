@@ -10,6 +10,7 @@ from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.setting import Setting
 from fracparticles.variable import FORMS, VariableDiffusivity
 from fracparticles.variable.closed_forms import Cauchy, Gaussian, Packet, exchange_limit
+from sweeps import covering
 
 ALPHA = 1.5
 
@@ -110,8 +111,7 @@ def test_a_millionth_on_the_line_and_a_ten_thousandth_in_the_plane(form):
     assert error(form, plane, 3.0) < 1e-4
 
 
-@pytest.mark.parametrize("form", ["FPSE", "DD"])
-@pytest.mark.parametrize("order", [2, 4, 6])
+@pytest.mark.parametrize(("form", "order"), covering(["FPSE", "DD"], [2, 4, 6]))
 def test_converges_in_the_plane_with_the_order_of_the_kernels(form, order):
     h = {2: 0.03, 4: 0.04, 6: 0.04}[order]
     errors = [
@@ -206,9 +206,9 @@ def test_the_exchange_is_symmetric_and_converges_to_another_equation():
     np.testing.assert_allclose(matrix, matrix.T, atol=1e-13 * np.abs(matrix).max())
 
 
-@pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("order", [2, 4, 12])
-@pytest.mark.parametrize("exterior", ["truncated", "open"])
+@pytest.mark.parametrize(
+    ("form", "order", "exterior"), covering(FORMS, [2, 4, 12], ["truncated", "open"], together=2)
+)
 def test_the_spectral_radius_is_an_upper_bound_and_not_far_off(form, order, exterior):
     setting = lattice(0.3, 15.0, order=order, exterior=exterior)
     operator = VariableDiffusivity(form, setting)

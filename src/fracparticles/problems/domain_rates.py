@@ -163,7 +163,10 @@ class DomainRates:
         return self.problem.exterior != "given" and not np.any(made)
 
     def growth(self, t: float) -> float:
-        """Return the greatest real part of an eigenvalue of what is linear in v, without the source; it should not be positive."""
+        """Return the greatest real part of an eigenvalue of what is linear in v, without the source.
+
+        That of the equation is not positive.
+        """
         columns = (self._spread(e, self._now(t)[0]) + self._lower(t, e) for e in self._units())
         return float(np.linalg.eigvals(np.stack([c.reshape(-1) for c in columns])).real.max())
 

@@ -45,9 +45,8 @@ SPACE_ERROR = 0.03
 _HALVINGS = 2
 _LEAST, _UNKNOWN = 1 / 32, 1 / 3  # the factor: at least, and where d_2 is not known
 _FEWEST = {"interval": 16, "square": 8, "disc": 8, None: 8}
-_LEAST_RINGS = (
-    24  # of fewer, half have about as many angles, and do not see what a velocity makes of those
-)
+# Of fewer rings, half have about as many angles, and do not see what a velocity makes of those.
+_LEAST_RINGS = 24
 
 Estimates = dict[str, tuple[list[float], str]]
 Solve = Callable[[Problem, Any], list[np.ndarray]]

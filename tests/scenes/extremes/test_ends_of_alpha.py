@@ -5,7 +5,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 
 PARAMETERS = {
-    "betas": [2.3e-16, 1e-12, 1.0 - 2.3e-16],
+    "betas": [2.3e-16, 1.0 - 2.3e-16],
     "radii": [1.1],
     "orders": [2, 12],
     "dims": [1],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-PARAMETERS = {"kills": 2, "interrupts": 2, "flips": 5, "parts": 2, "seed": 7, "workflow": False}
+PARAMETERS = {"kills": 1, "interrupts": 1, "flips": 3, "parts": 2, "seed": 7, "workflow": False}
 
 
 def test_no_probe_is_bad(bad):

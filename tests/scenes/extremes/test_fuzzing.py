@@ -36,7 +36,7 @@ def test_no_case_that_hypothesis_finds_is_bad(one):
 
 @pytest.fixture(scope="module")
 def table():
-    return study("fuzzing")(Inputs("fuzzing"), cases=150).table
+    return study("fuzzing")(Inputs("fuzzing"), cases=60).table
 
 
 def test_no_case_of_the_study_is_bad(table):

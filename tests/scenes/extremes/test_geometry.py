@@ -5,12 +5,12 @@ from __future__ import annotations
 PARAMETERS = {
     "beta": 0.5,
     "sizes": {"of a few": [1, 2, 3], "prime": [151]},
-    "orders": [2, 12],
+    "orders": [12],
     "overlaps": [0.25, 2.0],
     "half": {1: [0, 1, 4], 2: [0, 1]},
     "beyond": [1, 8],
     "points": {1: [3, 8, 17, 128]},
-    "schemes": {1: ["FPSE", "GPSE", "DVM"], 2: ["KPSE"]},
+    "schemes": {1: ["GPSE", "DVM"], 2: ["KPSE"]},
     "half_widths": {1: 40.0, 2: 8.0},
 }
 

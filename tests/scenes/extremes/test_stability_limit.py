@@ -5,7 +5,7 @@ from __future__ import annotations
 PARAMETERS = {
     "half": 12,
     "overlaps": [0.5, 2.0],
-    "orders": [2, 4],
+    "orders": [4],
     "factors": [0.9, 1.1],
     "map_betas": [0.1, 0.9],
     "map_overlaps": [0.5, 1.0, 2.0],

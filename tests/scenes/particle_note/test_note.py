@@ -24,6 +24,7 @@ from fracstudy.verdicts import Status
 from scene_functions import figure, scenes, study
 from scenes.particle_note.note_lattice_kernel.study import SCHEMES
 from scenes.particle_note.waves import Skewed, arranged, heat_second, wave
+from sweeps import few
 
 PRINTED = Path(__file__).resolve().parents[3] / "report/printed/particle_note"
 CLAIMS = {claim.id: claim for claim in read_claims(PRINTED)}
@@ -114,7 +115,7 @@ def test_second_order_on_irregular_particles_needs_wider_kernels(found):
     assert power["jittered, ε ∝ h^(2/5)"] == pytest.approx(2.0, abs=0.1)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", few(SCENES))  # the smoke run draws all of them
 def test_the_figure_is_drawn(results, name):
     result = results[name]
     drawn = figure(name)(result.series, result.table, SCENES[name])

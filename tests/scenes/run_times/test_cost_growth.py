@@ -16,6 +16,7 @@ from scenes.run_times.cost_growth.figure import figure as draw
 from scenes.run_times.cost_growth.study import exponent, extrapolate
 from scenes.run_times.cost_growth.study import study as cost_growth
 from scenes.run_times.scattered_sums.benchmark import benchmark as scattered
+from sweeps import covering
 
 KINDS = {
     "line": ["KPSE-12-open", "FPSE-4-truncated"],
@@ -83,24 +84,27 @@ def test_study_and_figure_take_what_was_measured_without_memory(growth, tmp_path
     assert (tmp_path / "growth.png").stat().st_size > 0
 
 
-@pytest.mark.parametrize(("kind", "squares", "cubes"), [
-    ("KPSE-2-truncated", (401, 801), (55, 87)),
-    ("KPSE-2-open", (161, 321), (33, 49)),
-])  # fmt: skip
-def test_memory_is_proportional_to_the_particles(kind, squares, cubes):
+SIDES = {
+    ("KPSE-2-truncated", 2): (401, 801),
+    ("KPSE-2-open", 2): (161, 321),
+    ("KPSE-2-truncated", 3): (55, 87),
+    ("KPSE-2-open", 3): (33, 49),
+}
+
+
+@pytest.mark.parametrize(("kind", "dim"), covering(["KPSE-2-truncated", "KPSE-2-open"], [2, 3]))
+def test_memory_is_proportional_to_the_particles(kind, dim):
     """Four times the particles take four times the memory, beyond what the programme itself takes.
 
     Within a factor of 1.5: transform lengths jump by a tenth in each coordinate, and the programme by some megabytes.
     """
-    kinds = {"square": [kind], "cube": [kind]}
+    squares, cubes = (SIDES[kind, dim] if dim == other else () for other in (2, 3))
     limits = {**LIMITS, "naive_particles": 0, "repeats": 1}
+    kinds = {"square": [kind], "cube": [kind]}
     data = measure_growth((), squares, cubes, kinds, memory=True, **limits)
-    for dim, sizes in ((2, squares), (3, cubes)):
-        less, more = (
-            data["memory_per_particle"].values[data["particles"].values == size**dim]
-            for size in sizes
-        )
-        assert less / 1.5 < more < 1.5 * less
+    less, more = data["memory_per_particle"].values
+    assert data["particles"].values.tolist() == [side**dim for side in SIDES[kind, dim]]
+    assert less / 1.5 < more < 1.5 * less
 
 
 @pytest.mark.parametrize("memory", [False, True])
