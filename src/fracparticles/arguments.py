@@ -220,6 +220,8 @@ def real_between(
     good = low < number < high if inside else low <= number <= high
     if not (good and math.isfinite(number)):
         allowed = allowed or f"a finite number with {_interval(field, low, high, inside)}"
+        if isinstance(value, list | tuple | np.ndarray):
+            remedy = "Give one number, not several."
         raise InvalidInput(field, value, allowed, remedy)
     return number
 

@@ -324,6 +324,12 @@ def test_refuses_t(t):
             call()
 
 
+@pytest.mark.parametrize("several", [[1.0, 2.0], (1.0,), np.array([1.0, 2.0])])
+def test_several_times_are_told_that_one_is_meant(several):
+    with pytest.raises(InvalidInput, match=r"^t = .*Give one number, not several\.$"):
+        green(1.0, several, 1.5)
+
+
 def test_refuses_the_rest():
     with pytest.raises(InvalidInput, match="dim"):
         green(1.0, 1.0, 1.5, dim=4)

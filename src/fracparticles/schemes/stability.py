@@ -8,8 +8,8 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
+from fracparticles.arguments import real_between
 from fracparticles.errors import InvalidInput
-from fracparticles.schemes.base import is_number
 from fracparticles.schemes.discovery import scheme
 from fracparticles.schemes.setting import Setting
 
@@ -84,12 +84,13 @@ def symbol_range(
 ) -> tuple[float, float]:
     """Return the least and the largest value of A(theta) h^alpha / D."""
     one = scheme(name)
-    if not (is_number(beta) and 1.0 < 1.0 + beta < 2.0):
-        raise InvalidInput(
-            "beta", beta, "a number between 0 and 1 (exclusive)", "Give such a value."
-        )
-    if not (is_number(overlap) and 0.25 * (1.0 - _SLACK) <= overlap <= 1000.0 * (1.0 + _SLACK)):
-        raise InvalidInput("overlap", overlap, "a number from 0.25 to 1000", "Give such a value.")
+    allowed, remedy = "a number between 0 and 1 (exclusive)", "Give such a value."
+    beta = real_between("beta", beta, 0.0, 1.0, inside=True, allowed=allowed, remedy=remedy)
+    if not 1.0 < 1.0 + beta < 2.0:
+        raise InvalidInput("beta", beta, "a number with 1 < 1 + beta < 2 in float64", remedy)
+    low, high = 0.25 * (1.0 - _SLACK), 1000.0 * (1.0 + _SLACK)
+    allowed = "a number from 0.25 to 1000"
+    overlap = real_between("overlap", overlap, low, high, allowed=allowed, remedy=remedy)
     one.check(dim, order, family)
     alpha, order, dim = 1.0 + float(beta), int(order), int(dim)
     kernels = Setting(alpha=alpha, order=order, overlap=float(overlap), dim=dim, family=family)
