@@ -114,7 +114,7 @@ def test_a_jump_in_a_square_and_a_disc(domain, particles, finer, as_array):
         assert off > said / 8.0
 
 
-@pytest.mark.parametrize(("domain", "particles"), [("interval", 320), ("square", 40)])
+@pytest.mark.parametrize(("domain", "particles"), [("interval", 320), ("square", 72)])
 def test_more_particles_than_have_thrice_as_many(domain, particles):
     """The box has its error from fewer; a bell that fewer would not see has none."""
     fields = {"alpha": 1.5, "half_width": 1.0, "exterior": "absorbing", "domain": domain}
