@@ -19,6 +19,7 @@ from fracparticles.schemes import SCHEMES, Setting, dpse
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special import green
 from fracparticles.time import STEP_POLYNOMIALS, ChebyshevSeries, exponential, power, step
+from sweeps import few
 
 INTEGRATORS = ["euler", "rk2", "rk4"]
 
@@ -165,7 +166,7 @@ def non_normality(beta, order, n=60) -> float:
 )
 @pytest.mark.parametrize("kind", ["smooth", "random"])
 def test_series_and_stepping_give_the_same(combination, integrator, kind):
-    for beta in (0.1, 0.5, 0.9):
+    for beta in few((0.1, 0.5, 0.9)):
         stepping, series, start = both(combination, beta, integrator, 0.9, 400, kind)
         room = 1e-12 * (non_normality(beta, combination[1]) if combination[0] == "DPSE" else 1.0)
         assert np.abs(series - stepping).max() <= room * start, beta
