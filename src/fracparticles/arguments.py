@@ -4,7 +4,7 @@ A check takes the name of an argument and what was given, and returns it as a nu
 raises `InvalidInput` with that name before any work starts. Nothing else is raised, whatever was given.
 
 - One number: `finite_real`, `positive_real`, `real_between`, `scale`, `place`, `not_negative`, `whole_number`,
-  `positive_integer`, `dimension`, `fractional_order`.
+  `positive_integer`, `dimension`, `fractional_order`. An array without axes is the number that it holds, `plain`.
 - Arrays: `real_array` (infinite entries too), `finite_array`, `vector`, `places`, `positions`, and `within` for their
   range; `of_shape` for arrays that belong to others, `together` for those that are broadcast, `operand` for the
   arrays of an inner loop, whose entries are not looked at.
@@ -192,11 +192,18 @@ def _interval(field: str, low: float, high: float, inside: bool) -> str:
 # --- one number -----------------------------------------------------------------------------------
 
 
+def plain(value: Any) -> Any:
+    """Return what an array without axes, labelled or not, or a NumPy scalar holds; anything else as it is."""
+    bare = getattr(value, "shape", None) == () and hasattr(value, "dtype")
+    return value.item() if bare and not isinstance(value, np.ma.MaskedArray) else value
+
+
 def _real(value: Any) -> float:
     """The number as a float; nan if it is none."""
     if type(value) is float:
         return value
-    if not isinstance(value, Real) or isinstance(value, bool | np.bool_):
+    value = plain(value)
+    if not isinstance(value, Real) or isinstance(value, bool):
         return np.nan
     try:
         with np.errstate(over="ignore"):
@@ -260,7 +267,8 @@ def fractional_order(alpha: Any) -> float:
 
 def whole_number(field: str, value: Any, least: int = 0, most: int | None = None) -> int:
     """Return a whole number from `least` on, to `most` if given, as an int; 2.0 and True are none."""
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    value = plain(value)
+    whole = isinstance(value, int) and not isinstance(value, bool)
     if not (whole and least <= value and (most is None or value <= most)):
         allowed = f"a whole number from {least} " + ("on" if most is None else f"to {most}")
         raise InvalidInput(field, value, allowed, "Give such a number.")

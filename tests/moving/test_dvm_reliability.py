@@ -65,6 +65,35 @@ def test_a_fine_run_says_nothing(recwarn):
     assert not recwarn.list
 
 
+@pytest.mark.parametrize("ratio", [0.5, 0.9, 1.1, 2.0])
+def test_a_spacing_that_is_not_that_of_the_places_is_warned_of(ratio):
+    """The strengths are h u: the field comes out as many times too large as the spacing is."""
+    x, u = cloud()
+    with pytest.warns(
+        AccuracyWarning, match=f"spacing = {0.1 * ratio:.4g}, and the places are 0.1 "
+    ):
+        run = dvm.run(x, u, spacing=0.1 * ratio, alpha=ALPHA, dt=1e-3, steps=5, order=4)
+    assert run.strength.sum() == pytest.approx(ratio * 0.1 * u.sum(), rel=1e-3)
+
+
+def test_the_places_may_come_in_any_order_and_be_shaken_and_share_a_place(recwarn):
+    x, u = cloud()
+    rng = np.random.default_rng(0)
+    shaken = x + rng.uniform(-0.02, 0.02, x.size)
+    moved(shaken, green(shaken, START, ALPHA), order=4)
+    moved(x[::-1], u[::-1])
+    moved(np.concatenate([x, x]), np.concatenate([0.5 * u, 0.5 * u]), remeshing="none")
+    assert not recwarn.list
+
+
+def test_data_that_the_kernels_smooth_are_warned_of():
+    """Of a Gaussian of width w the kernel exp(-(x/eps)^2) leaves the peak (1 + (eps/w)^2)^(-1/2)."""
+    x, _ = cloud()
+    peak = (1.0 + (0.2 / 0.18) ** 2) ** -0.5
+    with pytest.warns(AccuracyWarning, match=f"not u at the start, by {1.0 - peak:.2g} "):
+        moved(x, np.exp(-np.square(x / 0.18)), dt=1e-4, steps=1, threshold=1e-4)
+
+
 def test_what_a_threshold_takes_away_is_warned_of():
     x, u = cloud()
     with pytest.warns(AccuracyWarning, match=r"held 0\.\d+ of the total"):

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import fracparticles as fp
 from fracparticles.errors import InvalidInput, one_of, spelled
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import choices_of, field_table, label_of, takes_numbers
@@ -426,3 +427,20 @@ def test_a_copy_with_another_value_is_a_case_of_its_own():
     assert other.time_step == 0.5
     with pytest.raises(InvalidInput, match="dt"):
         case.model_copy(update={"dt": -1.0})
+
+
+def test_the_scalars_of_a_run_make_a_case():
+    """Each is a coordinate, an array without axes; so are output times with one."""
+    given = {"half_width": 20.0, "spacing": 0.2, "t_initial": 0.0, "integrator": "exponential"}
+    case = fp.Case(scheme="KPSE", order=4, beta=0.5, times=[0.5, 1.0], **given)
+    run = fp.solve(case, lambda x: np.exp(-np.square(x)))
+    again = fp.Case(
+        times=run.t,
+        **{name: run[name] for name in ("scheme", "order", "beta", "half_width", "spacing")},
+        **{name: run[name] for name in ("t_initial", "integrator")},
+    )
+    assert again.path == case.path
+    with pytest.raises(InvalidInput, match="order = True"):
+        fp.Case(scheme="KPSE", order=np.array(True), beta=0.5, t_final=1.0, **given)
+    with pytest.raises(InvalidInput, match="beta = masked"):
+        fp.Case(scheme="KPSE", beta=np.ma.masked, t_final=1.0, **given)

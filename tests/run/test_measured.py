@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from contextlib import suppress
 
@@ -402,3 +403,30 @@ def test_arrays_that_do_not_belong_together_or_overflow_are_refused(data, words)
     """No error of a library comes through, and no integral that is zero because it underflows."""
     with pytest.raises(fp.InvalidInput, match=words):
         fp.measured(data)
+
+
+@pytest.mark.parametrize("first", ["", "sample"])
+def test_a_column_that_is_no_place_is_left_out_by_names(tmp_path, first):
+    """`DataFrame.to_csv` writes a first column of row numbers, without a heading."""
+    rows = [f"{k},{x},{math.exp(-x * x)}" for k, x in enumerate(np.linspace(-3.0, 3.0, 16))]
+    path = tmp_path / "profile.csv"
+    path.write_text("\n".join([f"{first},depth [m],salt [g/L]", *rows]))
+    with pytest.raises(
+        InvalidInput, match=r"and 'depth', here of 16 x 16 points.*x='.*', u='salt'"
+    ):
+        fp.measured(path)
+    assert fp.measured(path, x="depth", u="salt").units == ("m", "g/L")
+
+
+def test_headings_alone_are_no_table(tmp_path):
+    path = tmp_path / "profile.csv"
+    path.write_text("x,u\n")
+    with pytest.raises(InvalidInput, match="It has headings only"):
+        fp.measured(path)
+
+
+@pytest.mark.parametrize("x", ["a", np.nan])
+def test_interpolated_data_are_asked_for_at_numbers(x):
+    data = fp.measured((np.arange(5.0), np.ones(5)))
+    with pytest.raises(InvalidInput, match=r"^x = "):
+        data(x)

@@ -309,6 +309,39 @@ def test_the_error_of_waves_is_that_of_the_peak(lattice, order, scheme):
     assert run.estimates["wave_error"][0] == pytest.approx(error, rel=0.1, abs=2e-4)
 
 
+@pytest.mark.parametrize("scheme", ["DD", "FPSE", "KPSE"])
+def test_an_early_output_time_is_judged_as_a_run_that_ends_there(scheme):
+    """At the last time the waves that came out wrong have decayed: FPSE errs by two fifths of the peak at the first."""
+    fields = {"half_width": 100.0, "spacing": 0.2, "exterior": "open"}
+    several = case_of(scheme=scheme, times=[0.3, 30.0], **fields)
+
+    def peak(x):
+        return np.exp(-np.square(x / 0.5))
+
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        run = compute(several, peak)
+    first = compute(several.until(0.3), peak)
+    assert run.estimates["wave_error"][0] >= first.estimates["wave_error"][0] > 0.05
+    assert any("come out wrong" in str(one.message) for one in said)
+
+
+@pytest.mark.parametrize("times", [[1.8], [3.6], [1.8, 3.6], [1.8, 18.0]])
+def test_a_narrow_peak_stays_where_little_is_exchanged_on_a_truncated_lattice(times):
+    """The share b of a peak that has nowhere to go is kept in each of n exchanges, b^n of it at least in all."""
+    fields = {"beta": 0.16, "half_width": 14.5, "spacing": 0.1, "dt": 1.8}
+    case = case_of(scheme="GPSE", times=times, **fields)
+    wide = case_of(scheme="GPSE", times=times[:1], exterior="open", **fields)
+    run, better = (compute(one, lambda x: np.exp(-np.square(x / 0.2))) for one in (case, wide))
+    middle = np.s_[0, case.n]
+    error = abs(run.outputs.u[middle] - better.outputs.u[middle]) / run.outputs.u[middle]
+    kept = run.estimates["kept"][0]
+    assert 0.05 < kept < error + 0.05
+    if times[0] == 1.8:
+        # The rest is what other particles keep for themselves: a share b = 0.05 of it.
+        assert kept == pytest.approx(error, abs=0.05)
+
+
 # --- what hides, what decays, and units ------------------------------------------------------------------------------
 
 

@@ -7,7 +7,9 @@ from functools import lru_cache
 from itertools import product
 
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
@@ -381,3 +383,66 @@ def test_without_a_tail_the_miss_is_the_value_at_the_ends_over_the_greatest():
     u, miss, _ = WholeSpace(64, 1, 1.5, h**-1.5, terms=0).solve_and_judge(mixture(x, 0.5, 1.5))
     assert miss == pytest.approx(max(abs(u[0]), abs(u[-1])) / u.max(), rel=1e-14)
     assert miss > 1e-3
+
+
+# --- data with labels ---------------------------------------------------------------------------------
+
+
+def labelled(x, u):
+    return xr.DataArray(u, dims="x", coords={"x": x})
+
+
+@pytest.mark.parametrize("of", ["rising", "falling", "single precision", "no places", "numbered"])
+def test_labelled_data_are_their_values(of):
+    x, h = line(200, 10.0)
+    u = np.exp(-np.square(x - 1.0))
+    given = {
+        "rising": labelled(x, u),
+        "falling": labelled(x[::-1], u),
+        "single precision": labelled((x + 500.0).astype(np.float32), u),
+        "no places": xr.DataArray(u, dims="x"),
+        "numbered": pd.Series(u),
+    }[of]
+    assert np.array_equal(evolve(given, h, 1.5, 0.5), evolve(u, h, 1.5, 0.5))
+
+
+@pytest.mark.parametrize("run", [evolve, fp.evolve_long])
+@pytest.mark.parametrize(
+    "places",
+    [
+        lambda x: 2.0 * x,
+        lambda x: x + 1e-4 * np.sin(x),
+        lambda x: np.roll(x, 50),
+        lambda x: np.resize(x[:2], x.size),
+        lambda x: 0.0 * x,
+    ],
+)
+def test_labels_that_are_not_a_spacing_apart_are_refused(run, places):
+    x, h = line(200, 10.0)
+    u = np.exp(-np.square(x))
+    for data in (labelled(places(x), u), pd.Series(u, index=places(x))):
+        with pytest.raises(
+            InvalidInput, match=r"^u = .* values at points a spacing apart, 0.1, in order"
+        ):
+            run(data, h, 1.5, 0.5)
+
+
+def test_numbers_that_a_run_holds_are_taken():
+    """A scalar coordinate of a data set is an array without axes."""
+    x, h = line(200, 10.0)
+    u = labelled(x, np.exp(-np.square(x)))
+    found = evolve(u, u.x[1] - u.x[0], xr.DataArray(1.5), np.array(0.5), dim=np.array(1))
+    assert_allclose(found, evolve(u.values, h, 1.5, 0.5), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "wrong", [3.0, lambda theta: np.ones(3), lambda theta: np.log(theta) if theta.any() else theta]
+)
+@pytest.mark.parametrize("terms", [0, 2])
+def test_an_amplification_is_a_number_for_each_wave(wrong, terms):
+    with np.errstate(divide="ignore"), pytest.raises(InvalidInput, match=r"^amplification = "):
+        WholeSpace(20, 1, 1.5, 3.0, amplification=wrong, terms=terms)
+
+
+def test_a_run_made_ready_says_what_it_was_made_with():
+    assert repr(WholeSpace(400, 2, 1.5, 3.0)) == "WholeSpace(400, 2, 1.5, 3)"

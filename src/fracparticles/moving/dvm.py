@@ -54,7 +54,9 @@ from fracparticles.moving.reliability import (
     warn_of_misfit,
     warn_of_ripple,
     warn_of_round_off,
+    warn_of_smoothing,
     warn_of_step,
+    warn_of_volumes,
 )
 
 __all__ = [
@@ -114,8 +116,16 @@ def run(
     steps: int,
     **parameters: Any,
 ) -> ParticleRun:
-    """Advance the field u by `steps` midpoint steps: `run_to_outputs` with a single leg."""
-    return run_to_outputs(x, u, spacing=spacing, alpha=alpha, legs=[(dt, steps)], **parameters)[-1]
+    """Advance the field u by `steps` midpoint steps: `run_to_outputs` with a single leg.
+
+    Warns with `AccuracyWarning`, too, if the kernels smooth the data.
+    """
+    (end,) = run_to_outputs(x, u, spacing=spacing, alpha=alpha, legs=[(dt, steps)], **parameters)
+    x, u = real_array("x", x), finite_array("u", u)
+    places, which = np.unique(x, return_inverse=True)  # particles in one place make one field
+    held = end.velocity.field(x, strengths_of(u, spacing), places)
+    warn_of_smoothing(held, np.bincount(which, u))
+    return end
 
 
 def run_to_outputs(
@@ -174,8 +184,8 @@ def run_to_outputs(
     StabilityWarning
         If the step is larger than `DiffusionVelocity.largest_stable_step`.
     AccuracyWarning
-        If the particles are too far apart for the smoothing length, much of the strength has been left out, or the far
-        field of an open exterior is not what lies beyond.
+        If the particles are not `spacing` apart, or too far for the smoothing length; if much of the strength has been
+        left out, or the far field of an open exterior is not what lies beyond.
     """
     spacing, overlap = scale("spacing", spacing), positive_real("overlap", overlap)
     x = real_array("x", x)
@@ -210,6 +220,7 @@ def run_to_outputs(
         history = own if history is None else history.followed_by(own)
         runs.append(ParticleRun(x, strength, history, velocity))
         start += dt * steps
+    warn_of_volumes(initial, given, spacing, stacklevel=3)
     states = ((initial, given), (x, strength))
     found = max(ripple(p, q, velocity.epsilon, velocity.transform) for p, q in states)
     warn_of_ripple(

@@ -8,6 +8,10 @@ ripple
 round-off
     Every step rounds a place x by half an ulp of it, or does not move it at all if it would move by less.
 
+volumes
+    The strengths say that each particle stands for a length h; the places say for which, `cells`. Both make an integral
+    of |u|, and a run goes wrong by as much as they differ.
+
 smoothing
     The field of the particles at the start is the data smoothed by the kernel: it differs from them, over their peak.
 """
@@ -30,9 +34,11 @@ __all__ = [
     "warn_of_round_off",
     "warn_of_smoothing",
     "warn_of_step",
+    "warn_of_volumes",
 ]
 
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
+_OTHER = 0.05  # of the integral of |u|: the error of a run is this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
 _ROUNDED = 0.02  # epsilon: of the places, by all steps together
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
@@ -109,6 +115,29 @@ def warn_of_round_off(x: np.ndarray, steps: int, epsilon: float) -> None:
         )
 
 
+def warn_of_volumes(x: np.ndarray, u: np.ndarray, spacing: float, stacklevel: int) -> None:
+    """Warn if the volume h of each particle is not the length of line that it has, on the mean weighted by |u|.
+
+    Particles in one place share its length.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    places, which = np.unique(x, return_inverse=True)
+    size = np.bincount(which, np.abs(u) / (np.abs(u).max() or 1.0))
+    if places.size < 2 or not size.any():
+        return
+    length = float(size @ cells(places) / size.sum())
+    if abs(length - spacing) > _OTHER * length:
+        warnings.warn(
+            f"each particle is given the volume spacing = {spacing:.4g}, and the places are {length:.4g} apart where u "
+            "is: the field is wrong in this ratio. Give the spacing of x, of particles that are equally far apart.",
+            AccuracyWarning,
+            stacklevel=stacklevel + 1,
+        )
+
+
 def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
     """Warn if the field `held` at the start is not the data u, of the same shape, by a tenth of their peak.
 
@@ -120,7 +149,7 @@ def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
     if missed > _SMOOTHED * peak:
         warnings.warn(
             f"the field of the particles is not u at the start, by {missed / peak:.2g} of its peak: the kernels smooth "
-            "it. Take a smaller spacing, an overlap of 2, or order 4.",
+            "it, or the particles are not a spacing apart. Take a smaller spacing, an overlap of 2, or order 4.",
             AccuracyWarning,
             stacklevel=3,
         )

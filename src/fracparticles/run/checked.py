@@ -6,9 +6,9 @@ import json
 from collections.abc import Mapping
 from typing import Any, Self
 
-import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from fracparticles.arguments import plain
 from fracparticles.errors import InvalidInput
 from fracparticles.run.complaints import allowed, first_complaint
 
@@ -34,12 +34,13 @@ class Checked(BaseModel):
 
     @classmethod
     def _plain_values(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """Return the fields with NumPy scalars taken for what they hold; True is no number."""
+        """Return the fields with scalars of NumPy and xarray taken for what they hold; True is no number."""
+        data = {name: plain(value) for name, value in data.items()}
         for name, field in cls.model_fields.items():
-            truth = isinstance(data.get(name), bool | np.bool_)  # True == 1, which Literal takes
+            truth = isinstance(data.get(name), bool)  # True == 1, which Literal takes
             if truth and field.annotation is not Any:
                 raise InvalidInput(name, data[name], allowed(field), "Give such a value.")
-        return {name: v.item() if isinstance(v, np.generic) else v for name, v in data.items()}
+        return data
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return it with other values of some fields, checked as a new one; raises as that.

@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.arguments import places
 from fracparticles.errors import AccuracyWarning, InvalidInput
 
 __all__ = ["Measured"]
@@ -65,12 +66,12 @@ class Measured:
         Raises
         ------
         InvalidInput
-            If there are more or fewer coordinates than the data have.
+            If there are more or fewer coordinates than the data have, or one is not finite.
         """
         if len(x) != len(self.axes):
             dims = f"data on {len(x)} axes for dim = {len(x)}, and these are on {len(self.axes)}"
             raise InvalidInput(_FIELD, self.source, dims, "Give dim to match.")
-        points = [np.asarray(one, dtype=float) for one in x]
+        points = [places(name, one) for name, one in zip("xyz", x, strict=False)]
         inside = np.ones(np.broadcast_shapes(*(one.shape for one in points)), dtype=bool)
         for one, axis in zip(points, self.axes, strict=True):
             inside &= (one >= axis[0]) & (one <= axis[-1])

@@ -145,8 +145,13 @@ def _of_columns(
         raise InvalidInput(_FIELD, source, twice, "Take the mean, or leave one out.")
     if values.size != grid.size or np.isnan(grid).any():
         sides = " x ".join(map(str, shape))
-        allowed = f"a rectangular grid, here of {sides} points, and there are {values.size} values"
-        raise InvalidInput(_FIELD, source, allowed, "Put scattered points onto a grid first.")
+        grids = f"a rectangular grid of {spelled(map(repr, x), ' and ')}, here of {sides} points"
+        remedy = (
+            f"Say which columns are meant, fp.measured(data, x={x[0]!r}, u={u!r}), or put scattered points onto a grid "
+            "first."
+        )
+        counted = f"{grids}, and there are {values.size} values"
+        raise InvalidInput(_FIELD, source, counted, remedy)
     unit = _one_unit([units.get(name, "") for name in x], source)
     return _checked(axes, grid, (unit, units.get(u, "")), source)
 

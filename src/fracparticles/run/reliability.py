@@ -14,6 +14,7 @@ wave_error
     sum |u^| |p(A dt)^n - exp(-T D |k|^alpha)| / sum |u^| exp(-T D |k|^alpha), with p from the symbol of A and the
     transform u^ of the initial data: the error of a peak, where all waves are in phase, over the peak. It sees a
     lattice too coarse, an overlap too small, a first order, a coarse time step. Of DVM it is what the field (7) lacks.
+    Of several output times it is the largest: waves that come out wrong at an early one have decayed at the last.
 growth
     max |u(t_f)| / max |u(t_i)|, or int |u(t_f)| / int |u(t_i)| on the lattice less the share of u(t_i) that lies beyond
     it: both are at most 1 for the equation.
@@ -23,8 +24,8 @@ outside_share
     The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles; on a
     truncated lattice at least what of a point mass leaves it during the run: ends that absorb leave nothing there.
 kept
-    int_{|x| > L} of the fundamental solution for the time of the run, times max |u(t_i)| / max |u(t_f)|: of a run in
-    one exchange on a truncated lattice.
+    (int_{|x| > L} of the fundamental solution for a step)^n times max |u(t_i)| / max |u|, of n exchanges by GPSE on a
+    truncated lattice; of several output times the largest.
 tail_misfit
     How far the powers that continue u in an open exterior are from strengths that they were not made to meet.
 far_field_error
@@ -43,6 +44,7 @@ solution, has these of u(t_i), and `wave_error`; see also `moving.dvm`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +85,13 @@ ULPS = 64.0  # measured, of a Chebyshev series, with sums by transforms and with
 _SURFACE = {1: 2.0, 2: 2.0 * np.pi, 3: 4.0 * np.pi}  # of the unit sphere
 
 
-def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) -> Estimates:
+def estimates(
+    case: Case,
+    u0: np.ndarray,
+    u: np.ndarray,
+    initial: Any = None,
+    outputs: Iterable[np.ndarray] | None = None,
+) -> Estimates:
     """Return each estimate by name, with what it is in words.
 
     Parameters
@@ -93,7 +101,10 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
         Initial and final strengths.
     initial : optional
         What the initial strengths were given as: if it is a function, it is asked between the particles, too.
+    outputs : optional
+        The strengths at each of the `times`.
     """
+    kept = _kept(case, u0, [u] if outputs is None else outputs) if _keeps(case) else None
     greatest, hidden = growth(u0, u), between_particles(case, u0, initial)
     u0, u = _unit(u0), _unit(u)  # sums of them do not overflow
     outside = outside_share(case, u0)
@@ -121,8 +132,7 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
     if case.exterior == "truncated":
         outside = max(outside, _beyond(case, case.reach))
     found["outside_share"] = (outside, "estimated share of |u| beyond the lattice")
-    if _keeps(case):
-        kept = _ratio(_beyond(case, case.reach), greatest)
+    if kept is not None:
         found["kept"] = (kept, "what each particle keeps for places beyond the lattice")
     if case.exterior == "open":
         misfit = max(tail_misfit(case, u0), tail_misfit(case, u))
@@ -135,10 +145,16 @@ def estimates(case: Case, u0: np.ndarray, u: np.ndarray, initial: Any = None) ->
 
 
 def _keeps(case: Case) -> bool:
-    """Whether the run is one exchange, in which a particle keeps what it would give beyond the ends."""
+    """Whether the steps are exchanges, in which a particle keeps what it would give beyond the ends."""
     form = "exchange" if not case.is_graded else case.graded_form
-    one_step = case.kind.self_timed and case.is_one_step
-    return one_step and case.exterior == "truncated" and form == "exchange"
+    return case.kind.self_timed and case.exterior == "truncated" and form == "exchange"
+
+
+def _kept(case: Case, u0: np.ndarray, outputs: Iterable[np.ndarray]) -> float:
+    return max(
+        _ratio(_beyond(one, one.reach, one.time_step) ** one.steps, growth(u0, u))
+        for one, u in zip(outputs_of(case), outputs, strict=True)
+    )
 
 
 def _of_the_operator(case: Case, u0: np.ndarray, u: np.ndarray) -> Estimates:
@@ -253,27 +269,33 @@ def tail_misfit(case: Case, u: np.ndarray) -> float:
 
 def wave_error(case: Case, u: np.ndarray) -> float:
     """Return how much of a peak the errors in the amplitudes of its waves may make; see the module."""
-    tau, theta = case.setting.rate * case.span, waves(u)
+    theta = waves(u)
     if not theta.size:
         return 0.0
+    return max(_wave_error_at_the_end(one, theta) for one in outputs_of(case))
+
+
+def outputs_of(case: Case) -> list[Case]:
+    """Return the run to each of its output times: an early one may hold waves that have decayed at the last."""
+    return [case] if case.times is None else [case.until(time) for time in case.times]
+
+
+def _wave_error_at_the_end(case: Case, theta: np.ndarray) -> float:
+    tau = case.setting.rate * case.span
     exact = np.exp(-tau * theta**case.alpha)
     if case.kind.moving:
         wrong = np.abs(1.0 - _of_the_field(case, theta)) * exact
-    else:
-        along = theta if case.dim == 1 else theta[:, None] * np.eye(case.dim)[0]
-        symbol = SCHEMES[case.scheme].symbol(along, case.setting)
-        with np.errstate(over="ignore"):
-            if case.steps:
-                z, polynomial = (
-                    symbol * tau / case.steps,
-                    STEP_POLYNOMIALS[case.resolved_integrator],
-                )
-                sign, exponent = polynomial.log_power(z, case.steps)
-                amplitude = sign * np.exp(exponent)
-            else:
-                amplitude = np.exp(tau * symbol)
-        wrong = np.abs(amplitude - exact)
-    return _ratio(wrong.sum(), exact.sum())
+        return _ratio(wrong.sum(), exact.sum())
+    along = theta if case.dim == 1 else theta[:, None] * np.eye(case.dim)[0]
+    symbol = SCHEMES[case.scheme].symbol(along, case.setting)
+    with np.errstate(over="ignore"):
+        if case.steps:
+            polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
+            sign, exponent = polynomial.log_power(symbol * tau / case.steps, case.steps)
+            amplitude = sign * np.exp(exponent)
+        else:
+            amplitude = np.exp(tau * symbol)
+    return _ratio(np.abs(amplitude - exact).sum(), exact.sum())
 
 
 def waves(u: np.ndarray, count: int = 64) -> np.ndarray:
@@ -297,9 +319,9 @@ def _of_the_field(case: Case, theta: np.ndarray) -> np.ndarray:
     return np.asarray(kernel_transform("eta", k, case.alpha, order=case.order))
 
 
-def _beyond(case: Case, radius: float) -> float:
-    """int_{|x| > radius} of the fundamental solution for the time of the run."""
-    time = case.diffusivity * case.span
+def _beyond(case: Case, radius: float, span: float | None = None) -> float:
+    """int_{|x| > radius} of the fundamental solution for a time, that of the run if left out."""
+    time = case.diffusivity * (case.span if span is None else span)
     return 1.0 - float(central_mass(radius, time, case.alpha, case.dim))
 
 

@@ -59,7 +59,7 @@ def compute(
         if case.times is not None:
             outputs = Outputs(case.times, u, np.array([case.integral(one) for one in u]))
             u = u[-1]
-    found = estimates(case, u0, u, source)
+    found = estimates(case, u0, u, source, None if outputs is None else outputs.u)
     if isinstance(source, Measured):
         found |= source.estimates
     warn_if_doubtful(case, u0, u, found)

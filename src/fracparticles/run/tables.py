@@ -61,7 +61,9 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     else:
         rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
     headings = None if _is_number(rows[0][0], comma) else rows.pop(0)
-    count = len(rows[0]) if rows else 0
+    if not rows:
+        raise InvalidInput("file", str(path), "a table with numbers", "It has headings only.")
+    count = len(rows[0])
     if headings is not None and separator is None:
         headings = _names_between_blanks(lines[0])
     if headings is None:

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.arguments import plain
 from fracparticles.errors import InvalidInput
 
 __all__ = ["Outputs", "legs", "parts", "steps_in", "with_times"]
@@ -55,13 +56,13 @@ def with_times(fields: dict[str, Any]) -> dict[str, Any]:
     given = fields.get("times")
     if given is None:
         return fields
-    listed = given.tolist() if isinstance(given, np.ndarray) else given
+    listed = np.asarray(given).tolist() if hasattr(given, "dtype") else given
     if isinstance(listed, str) or not isinstance(listed, Iterable):
         raise InvalidInput("times", given, _ALLOWED, "Give a list of them.")
-    plain = [one.item() if isinstance(one, np.generic) else one for one in listed]
-    if not plain or any(isinstance(one, bool) or not isinstance(one, int | float) for one in plain):
+    each = [plain(one) for one in listed]
+    if not each or any(isinstance(one, bool) or not isinstance(one, int | float) for one in each):
         raise InvalidInput("times", given, _ALLOWED, "Give a list of them.")
-    times = tuple(float(one) for one in plain)
+    times = tuple(float(one) for one in each)
     if any(not late > early for early, late in pairwise(times)):
         raise InvalidInput("times", times, _ALLOWED, "Sort them; each once.")
     if fields.get("t_final") not in (None, times[-1]):

@@ -12,6 +12,7 @@ from functools import reduce
 import numpy as np
 from scipy.fft import irfft, irfftn, rfft, rfftn
 
+from fracparticles.arguments import finite_array, function, of_shape
 from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["Amplification", "Circle", "Look", "unseen"]
@@ -99,7 +100,11 @@ def _amplification(
     """Return f at theta = 2 pi m / L, the last axis as of a real transform."""
     last = np.arange(points // 2 + 1) * (2.0 * np.pi / points)
     if given is not None:
-        return given(last) if dim == 1 else given(_waves(last, points, dim))
+        waves = last if dim == 1 else _waves(last, points, dim)
+        values = function("amplification", given)(waves)
+        values = finite_array("amplification", values, complex_too=True)
+        shape = last.shape if dim == 1 else waves.shape[:-1]
+        return of_shape("amplification", values, shape, "a number for each wave")
     if dim == 1:
         last **= alpha
         last *= -tau

@@ -25,6 +25,7 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.circle import Amplification, Circle, Look, unseen
 from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import MOST_TERMS, later_exponents, powers, tail_exponents
+from fracparticles.time.labels import check_labels
 from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["WholeSpace", "evolve", "tail_exponents"]
@@ -56,6 +57,7 @@ def evolve(
     ----------
     u : array, shape (..., N, .., N)
         Values on a uniform lattice, the same number along each axis; further axes before these are different data.
+        The coordinates of labelled data must be the spacing apart.
     spacing : float
         h.
     alpha : float
@@ -96,10 +98,11 @@ def evolve(
     >>> x = np.linspace(-20.0, 20.0, 401)
     >>> u = evolve(np.exp(-x * x), x[1] - x[0], alpha=1.5, time=1.0, tail=())
     """
-    u = check.finite_array("u", u)
+    given, u = u, check.finite_array("u", u)
     dim = _dimension_of(u) if dim is None else check.dimension(dim)
     alpha, h = check.fractional_order(alpha), check.scale("spacing", spacing)
     span = check.scale("time", time) * check.scale("diffusivity", diffusivity)
+    check_labels(given, dim, h)
     points = u.shape[-1] if u.ndim else 0
     if u.shape[-dim:] != (points,) * dim:
         _refuse_shape(u.shape, f"as many points along each of its last {dim} axes, those of space")
@@ -195,6 +198,10 @@ class WholeSpace:
             )
         else:
             self._circle = Circle(length, dim, alpha, scaled_time, amplification)
+
+    def __repr__(self) -> str:
+        """Return what it was made with."""
+        return f"WholeSpace({self._points}, {self._dim}, {self._alpha:.6g}, {self._tau:.6g})"
 
     def solve(self, u: np.ndarray) -> np.ndarray:
         """Return the solution from u, both of shape (..., N, .., N).

@@ -30,6 +30,7 @@ from fracparticles import arguments as check
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.time.continued import Continued
 from fracparticles.time.exponents import later_exponents, powers, tail_exponents
+from fracparticles.time.labels import check_labels
 from fracparticles.time.short_waves import ShortWaves
 from fracparticles.time.whole_space import FEWEST
 
@@ -74,7 +75,7 @@ def evolve_long(
     ----------
     u : array, shape (N, .., N), one to three axes
         Values at x_i = (i - N // 2) h along each axis; integrable on the whole space. The powers start at the centre
-        of |u|.
+        of |u|. The coordinates of labelled data must be the spacing apart.
     spacing : float
         h.
     alpha : float
@@ -109,7 +110,7 @@ def evolve_long(
     >>> x = (np.arange(800) - 400) * 0.1
     >>> u, h = evolve_long(np.exp(-x * x), 0.1, alpha=1.5, time=1.0e6, tail=())
     """
-    u = check.finite_array("u", u)
+    given, u = u, check.finite_array("u", u)
     alpha, h = check.fractional_order(alpha), check.scale("spacing", spacing)
     left = check.scale("time", time) * check.scale("diffusivity", diffusivity)  # D t
     if u.ndim not in (1, 2, 3) or len(set(u.shape)) != 1:
@@ -117,6 +118,7 @@ def evolve_long(
             "u", u.shape, "as many points along each of one to three axes", "Pad it."
         )
     points, dim = check.whole_number("points", u.shape[0], FEWEST), u.ndim
+    check_labels(given, dim, h)
     exponent = int(np.frexp(np.abs(u).max(initial=0.0))[1])
     # Of order one: sums of the greatest numbers would overflow.
     u = np.asarray(np.ldexp(u, -exponent))
