@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import fracparticles as fp
-from fracparticles.run.cli import main
+from fracparticles.command_line.cli import main
 
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 

@@ -134,7 +134,7 @@ def test_a_run_needs_no_figures_and_no_command_line(loaded):
 
 
 def test_the_help_of_the_command_line_is_light():
-    program = "from fracparticles.run.cli import main\nmain(['--help'])"
+    program = "from fracparticles.command_line.cli import main\nmain(['--help'])"
     assert imported_by(program) == {"cyclopts"}
 
 

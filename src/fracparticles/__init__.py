@@ -41,7 +41,7 @@ _HOME = {
     "green_step_of_field": "graded.field",
     "kernel": "kernels.families",
     "mean_radius": "special.stable",
-    "measured": "run.measured",
+    "measured": "data.measured",
     "prepare": "run.solver",
     "read_run": "run.dataset",
     "solve": "run.solve",

@@ -383,7 +383,7 @@ def test_names_as_long_as_they_may_be(tmp_path, name):
 
 _FULL_DISK = (
     "import sys, warnings, fracparticles as fp\n"
-    "from fracparticles.run.cli import main\n"
+    "from fracparticles.command_line.cli import main\n"
     "{limit}\n"
     "sys.exit(main(sys.argv[1:]))"
 )

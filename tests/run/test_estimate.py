@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.run.cli import main
 from fracparticles.run.estimate import ErrorEstimate, estimate_of
 from fracparticles.run.solver import compute
 from fracstudy.race.problems import PROBLEMS

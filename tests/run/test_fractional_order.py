@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
 from fracparticles.errors import InvalidInput
-from fracparticles.run.cli import main
 from fracstudy.run_blocks import RunBlock, expand
 from sweeps import at_once
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
 from fracparticles.errors import FracparticlesError, InvalidInput
-from fracparticles.run.cli import main
 from fracparticles.run.solver import compute
 from fracparticles.time.chebyshev import exponential
 from fracparticles.time.snapshots import exponential_snapshots

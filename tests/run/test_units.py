@@ -8,8 +8,8 @@ import pytest
 import xarray as xr
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
 from fracparticles.errors import InvalidInput
-from fracparticles.run.cli import main
 
 mpl.use("Agg")
 GIVEN = {

@@ -1,1 +1,1 @@
-"""One run: the case, its checks, the solver, the data set, the command line."""
+"""One run: the case, its checks, the solver, the data set."""

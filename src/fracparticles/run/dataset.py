@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fracparticles import __version__
+from fracparticles.data.tables import not_a_table
 from fracparticles.errors import InvalidInput, reason_of
 from fracparticles.files import load_netcdf, replacing, seal, uninterrupted
 from fracparticles.graded.field import INTERPOLATED
@@ -21,7 +22,6 @@ from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.complaints import label_of
 from fracparticles.run.initial import case_of_run
 from fracparticles.run.solution import Solution, relative_l1_error
-from fracparticles.run.tables import not_a_table
 from fracparticles.special.stable import mean_radius
 
 if TYPE_CHECKING:

@@ -24,10 +24,10 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.data.interpolated import Measured
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
 from fracparticles.run.case import FUNDAMENTAL, Case, a_case
 from fracparticles.run.initial import Initial, resolved
-from fracparticles.run.interpolated import Measured
 from fracparticles.run.prepared import scheme_amplification
 from fracparticles.run.solution import Solution
 from fracparticles.run.solver import compute

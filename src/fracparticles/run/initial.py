@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from fracparticles.arguments import real_array
+from fracparticles.data.interpolated import Measured
+from fracparticles.data.measured import MEASURED, measured
+from fracparticles.data.tables import is_table
 from fracparticles.errors import AccuracyWarning, InvalidInput, spelled
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.run.interpolated import Measured
-from fracparticles.run.measured import MEASURED, measured
-from fracparticles.run.tables import is_table
 from fracparticles.special.stable import green
 
 if TYPE_CHECKING:

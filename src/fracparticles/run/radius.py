@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.data.interpolated import Measured
 from fracparticles.errors import InvalidInput
 from fracparticles.run.case import Case
 from fracparticles.run.initial import Initial
-from fracparticles.run.interpolated import Measured
 
 __all__ = ["radius_of"]
 

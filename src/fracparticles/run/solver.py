@@ -8,12 +8,12 @@ from collections.abc import Callable
 import numpy as np
 
 from fracparticles import arguments as check
+from fracparticles.data.interpolated import Measured
 from fracparticles.moving.lagrangian import Observer
 from fracparticles.run.advection import advect, advect_to_outputs
 from fracparticles.run.case import Case, a_case
 from fracparticles.run.doubts import warn_if_doubtful
 from fracparticles.run.initial import Initial, initial_strengths, resolved
-from fracparticles.run.interpolated import Measured
 from fracparticles.run.prepared import Prepared, in_range, matrix_of, prepare
 from fracparticles.run.reliability import estimates
 from fracparticles.run.solution import Solution

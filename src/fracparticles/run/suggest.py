@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from fracparticles.arguments import dimension, positive_real, real_between
+from fracparticles.data.interpolated import Measured
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.estimate import estimate_of
 from fracparticles.run.initial import Initial, resolved
-from fracparticles.run.interpolated import Measured
 from fracparticles.run.radius import radius_of
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fracparticles.data.interpolated import Measured
 from fracparticles.errors import InvalidInput
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.run.interpolated import Measured
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
+from fracparticles.command_line.cli import main
 from fracparticles.errors import InvalidInput
-from fracparticles.run.cli import main
 from fracparticles.run.dataset import read_run
 from fracparticles.run.solver import compute
 from fracstudy.probe import HELD, REFUSED, Kind, Probe

@@ -13,11 +13,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from fracparticles.command_line.cli import main
+from fracparticles.command_line.program import app
 from fracparticles.files import replacing
 from fracparticles.run.case import Case
-from fracparticles.run.cli import main
 from fracparticles.run.dataset import to_dataset, write
-from fracparticles.run.program import app
 from fracparticles.run.solver import compute
 from fracstudy.probe import HELD, Kind, Probe
 from scenes.extremes.faults.processes import begun, counted, ended, forked, moments

@@ -15,8 +15,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
 from fracparticles.errors import InvalidInput
-from fracparticles.run.cli import main
 from scenes.extremes.fuzzing.cases import as_given, cases, refuse_dear
 from scenes.extremes.fuzzing.harness import always
 from scenes.extremes.fuzzing.strategies import chance, fields_of, texts
@@ -148,7 +148,7 @@ def _is_whole(file: Path) -> bool:
 
 def _refuse_dear_words(words: list[str]) -> None:
     """Read the flags as the command line does, and leave out what would take too long here."""
-    from fracparticles.run.commands import number_or_text
+    from fracparticles.command_line.commands import number_or_text
 
     names = dict(zip(_FLAGS, fp.Case.model_fields, strict=True))
     given = dict(word.split("=", 1) for word in words if "=" in word)

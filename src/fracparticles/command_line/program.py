@@ -25,7 +25,7 @@ _COMMANDS = {
     "commands:limit": "Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.",
 }
 for _place, _help in _COMMANDS.items():
-    app.command(f"fracparticles.run.{_place}", name=_place.split(":")[1], help=_help)
+    app.command(f"fracparticles.command_line.{_place}", name=_place.split(":")[1], help=_help)
 # Those of other packages that are there, of the study for one.
 for _entry in entry_points(group="fracparticles.commands"):
     if find_spec(_entry.module.split(".")[0]) is not None:

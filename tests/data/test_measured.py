@@ -14,9 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
+from fracparticles.data.interpolated import Measured
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.run.cli import main
-from fracparticles.run.interpolated import Measured
 from sweeps import covering
 
 GIVEN = {"scheme": "KPSE", "order": 4, "beta": 0.5, "half_width": 20.0, "spacing": 0.1, "t_initial": 0.0,

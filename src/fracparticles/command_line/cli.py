@@ -35,7 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(arguments: Sequence[str] | None) -> int:
     from cyclopts import CycloptsError
 
-    from fracparticles.run.program import app
+    from fracparticles.command_line.program import app
 
     with warnings.catch_warnings():
         warnings.showwarning = _show_warning

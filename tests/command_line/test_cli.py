@@ -12,9 +12,9 @@ import pytest
 import xarray as xr
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
+from fracparticles.command_line.commands import number_or_text
 from fracparticles.run.case import Case
-from fracparticles.run.cli import main
-from fracparticles.run.commands import number_or_text
 from sweeps import covering, few
 
 
@@ -27,7 +27,7 @@ CASE = Case(scheme="KPSE", order=4, beta=0.5, half_width=10.0, spacing=0.25, dt=
 PROGRAM = [
     sys.executable,
     "-c",
-    "import sys; from fracparticles.run.cli import main; sys.exit(main())",
+    "import sys; from fracparticles.command_line.cli import main; sys.exit(main())",
 ]
 
 
@@ -318,7 +318,7 @@ def test_plot(cli, tmp_path, flags, name):
 
 
 def test_what_a_plot_shows(cli):
-    from fracparticles.run.picture import draw
+    from fracparticles.command_line.picture import draw
 
     run = fp.solve(CASE.until(0.7, 2.0), units=fp.Units("m", "d", "mg/L"))
     (axes,) = draw(run).axes
@@ -350,7 +350,7 @@ def test_what_cannot_be_plotted(cli):
 
 
 def test_a_plot_says_that_it_needs_matplotlib(cli, monkeypatch):
-    monkeypatch.setattr("fracparticles.run.picture.find_spec", lambda name: None)
+    monkeypatch.setattr("fracparticles.command_line.picture.find_spec", lambda name: None)
     cli("solve", *SERIES, "-o", "run.nc")
     assert refused(cli("plot", "run.nc"), "pip install matplotlib", status=1)
 
@@ -483,7 +483,7 @@ def test_a_line_of_progress_begins_late_and_goes(monkeypatch, capsys):
 
 
 def test_a_pipe_is_told_nothing():
-    from fracparticles.run.progress import on_terminal
+    from fracparticles.command_line.progress import on_terminal
 
     with on_terminal("solving") as told:
         assert told is None
@@ -655,11 +655,11 @@ def test_a_name_that_cannot_be_printed(tmp_path):
 
 
 def test_an_interrupt_while_it_starts(cli, monkeypatch):
-    monkeypatch.delitem(sys.modules, "fracparticles.run.program")
+    monkeypatch.delitem(sys.modules, "fracparticles.command_line.program")
 
     class Interrupting:
         def find_spec(self, name, *_):
-            if name == "fracparticles.run.program":
+            if name == "fracparticles.command_line.program":
                 raise KeyboardInterrupt
 
     monkeypatch.setattr(sys, "meta_path", [Interrupting(), *sys.meta_path])

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Required, TypedDict
 from cyclopts import Parameter
 
 from fracparticles.arguments import positive_real
+from fracparticles.data.tables import not_a_table
 from fracparticles.errors import InvalidInput, spelled
 from fracparticles.files import replaceable
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import choices_of, takes_lists, takes_numbers
 from fracparticles.run.fractional_order import ALPHA, with_beta
-from fracparticles.run.tables import not_a_table
 from fracparticles.schemes import scheme as find_scheme
 from fracparticles.schemes.stability import stability_limit
 
@@ -88,8 +88,8 @@ def solve(
     target = _writable(output)
     case = Case(**_values(flags or {}))
 
+    from fracparticles.command_line.progress import on_terminal
     from fracparticles.run.dataset import write
-    from fracparticles.run.progress import on_terminal
     from fracparticles.run.solve import solve as run
     from fracparticles.run.units import Units
 

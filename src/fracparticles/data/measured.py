@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fracparticles.arguments import SIZES, finite_array
+from fracparticles.data.interpolated import Measured
+from fracparticles.data.tables import is_table, name_and_unit, read_table
 from fracparticles.errors import InvalidInput, one_of, spelled
 from fracparticles.files import load_netcdf
-from fracparticles.run.interpolated import Measured
-from fracparticles.run.tables import is_table, name_and_unit, read_table
 
 if TYPE_CHECKING:
     import xarray as xr

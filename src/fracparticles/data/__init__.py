@@ -1,0 +1,1 @@
+"""Measured data: tables of numbers, and values between their points."""
