@@ -466,7 +466,7 @@ def test_progress_of_particles_that_move():
 
 
 def test_a_line_of_progress_begins_late_and_goes(monkeypatch, capsys):
-    from fracparticles.run import progress
+    from fracparticles.command_line import progress
 
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     monkeypatch.setattr(progress, "_FIRST", 0.0)
