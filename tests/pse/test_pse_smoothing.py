@@ -108,8 +108,8 @@ def test_the_strengths_that_are_exchanged(kernel, jitter):
     points = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
     middle = (np.abs(points - 2.0) < 0.7).all(axis=1)
     moved = points + h * np.random.default_rng(2).uniform(-jitter, jitter, points.shape)
+    exact = pse.StrengthExchange(points, h * h, epsilon, kernel)
     for k in (0.25, 1.0, 2.5, 5.0, 10.0):
-        exact = pse.StrengthExchange(points, h * h, epsilon, kernel)
         waves = [h * h * np.exp(1j * k * x[:, 0]) for x in (points, moved)]
         off = np.abs(exact.apply(waves[0]) / waves[0] / -(k * k) - 1.0)[middle].max()
         exchange = pse.StrengthExchange(moved, h * h, epsilon, kernel)
