@@ -444,3 +444,13 @@ def test_the_scalars_of_a_run_make_a_case():
         fp.Case(scheme="KPSE", order=np.array(True), beta=0.5, t_final=1.0, **given)
     with pytest.raises(InvalidInput, match="beta = masked"):
         fp.Case(scheme="KPSE", beta=np.ma.masked, t_final=1.0, **given)
+
+
+@pytest.mark.parametrize("field", ["t_final", "spacing", "order", "dt"])
+def test_several_numbers_are_not_one(field):
+    given = {"scheme": "KPSE", "beta": 0.5, "half_width": 8.0, "spacing": 0.5, field: [2, 4]}
+    with pytest.raises(
+        InvalidInput, match=rf"^{field} = \[2, 4\] .* one number, not several"
+    ) as refused:
+        fp.Case(**given)
+    assert ("times=" in str(refused.value)) == (field == "t_final")

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, Literal, get_args, get_origin
 
+import numpy as np
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
@@ -37,6 +38,10 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
         remedy = _remedy(fields[name]) or f"Give {name}."
         return InvalidInput(name, None, allowed(fields[name]), remedy)
     remedy = closest(value, choices_of(fields[name].annotation)) or _remedy(fields[name])
+    several = isinstance(value, list | tuple | np.ndarray)
+    if several and takes_numbers(kind := fields[name].annotation) and not takes_lists(kind):
+        times = " Output times are given by times=." if name == "t_final" else ""
+        remedy = f"Give one number, not several.{times}"
     return InvalidInput(name, value, allowed(fields[name]), remedy or "Give such a value.")
 
 
