@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Mapping
+from decimal import ROUND_FLOOR, Context
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Required, TypedDict
 
@@ -104,6 +105,9 @@ def solve(
         _note(f"estimated relative error {spelled((f'{e:.1e}' for e in errors), ', ')}{at}")
 
 
+_DOWN = Context(prec=6, rounding=ROUND_FLOOR)  # what is printed must be a stable step, too
+
+
 def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
     """Print the stability limit a of Eq. (55), and with --spacing the largest stable time step.
 
@@ -123,7 +127,8 @@ def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
     lines = [f"a = {a:.6g}"]
     if "spacing" in given:
         h = positive_real("spacing", given["spacing"])
-        lines.append(f"dt = {a * h ** (1.0 + given['beta']) / rate:.6g}")
+        dt = a * h ** (1.0 + given["beta"]) / rate
+        lines.append(f"dt = {float(_DOWN.create_decimal(dt)):.6g}")
     print("\n".join(lines))
     if scheme.self_timed:
         whole = f"a single step of {scheme.name}, over the whole time, has no limit"
