@@ -146,3 +146,7 @@ def test_what_is_refused(kind):
     for outside in (None, lambda *place: place[0] * np.nan):
         with pytest.raises(InvalidInput, match=r"^outside = "):
             given.evolve(1.0, 1.0, outside=outside)
+
+
+def test_a_domain_says_what_it_is():
+    assert repr(domain("disc", "reflecting")) == "<Disc: reflecting, alpha = 1.5, 384 particles>"

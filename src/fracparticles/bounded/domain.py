@@ -45,6 +45,13 @@ EXTERIORS = ("absorbing", "reflecting", "given")
 class Domain(DomainOperator):
     """Particles in a bounded domain, and the problems that can be solved on them."""
 
+    def __repr__(self) -> str:
+        """Return what it is in a line."""
+        count = self.volumes.size
+        return (
+            f"<{type(self).__name__}: {self.exterior}, alpha = {self.alpha:.6g}, {count} particles>"
+        )
+
     def stationary(self, source: Any = 0.0, outside: Any = None) -> FloatArray:
         """Return u of D A u + f = 0; of reflecting edges the one of total 0.
 
