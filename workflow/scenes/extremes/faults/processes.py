@@ -32,6 +32,7 @@ def begun(work: Callable[[], int]) -> tuple[int, int]:
             os.dup2(write, 1)
             os.dup2(write, 2)
             sys.stdout, sys.stderr = os.fdopen(1, "w"), os.fdopen(2, "w", buffering=1)
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # until it is at work
             os.write(write, b"!")
             status = work()
         except BaseException as error:

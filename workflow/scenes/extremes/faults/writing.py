@@ -123,8 +123,10 @@ def _interrupted(setup: Setup, moment: float) -> bool:
 
 def _command(setup: Setup) -> int:
     try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         status = main([*FLAGS, str(setup.path)])
         sys.stdout.flush()
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     except KeyboardInterrupt as error:
         # In the instant before it began, or after it ended: it was not at work.
         if "_run" in {frame.name for frame in traceback.extract_tb(error.__traceback__)}:
