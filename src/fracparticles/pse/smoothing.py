@@ -41,6 +41,8 @@ def warn_of_exchange(
 ) -> None:
     """Warn if twice the radius changes E by more than three times what is allowed.
 
+    Of a stencil, which knows one radius, and of more than 2^25 pairs at twice the radius, nothing is known or said.
+
     Parameters
     ----------
     points : array, shape (N, d)
