@@ -23,6 +23,7 @@ from sweeps import covering
 # the constants are theirs.
 CHOICES = {
     "exact symbol, periodic": ({"variant": "", "points": 4000, "half_width": 400.0}, 1e-5),
+    "WholeSpace": ({"variant": "", "points": 96, "half_width": 20.0, "terms": 4}, 1e-7),
     "evolve": ({"variant": "", "points": 96, "half_width": 20.0, "terms": 4}, 1e-7),
     "rational functions": ({"variant": "", "points": 64, "scale": 6.0}, 1e-6),
     "mapped Fourier": ({"variant": "", "points": 65, "scale": 3.0}, 1e-4),

@@ -182,9 +182,10 @@ class WholeSpace:
         if length != points:
             self._inside = (..., *(slice(self._start, self._start + points),) * dim)
         middle, steps = points // 2, [points**k for k in reversed(range(dim))]
-        self._ends = [  # the middles of the faces, of N^n points in a row
+        middles = [
             middle * (sum(steps) - step) + at * step for at in (0, points - 1) for step in steps
         ]
+        self._ends = np.array(middles)  # of the faces, of N^n points in a row
         self._alpha, self._tau = alpha, scaled_time
         self._changed = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
         self._circle: Circle | Continued

@@ -12,10 +12,12 @@ from scipy.fft import next_fast_len
 
 from fracstudy.race.problem import Points, Problem
 
-__all__ = ["Contender", "Grids", "Mapped", "Ready", "Trials", "lattices", "sweep"]
+__all__ = ["Contender", "Grids", "Mapped", "Ready", "Solve", "Trials", "lattices", "sweep"]
 
 Trials = Generator[dict[str, Any], float | None, None]
 """Keywords of `prepare` to try; the error of each may be sent back."""
+Solve = Callable[[np.ndarray], np.ndarray]
+"""From the data at the points to the solution there."""
 Grids = Mapping[tuple[int, int], dict[str, Any]]
 """Keywords of grids, by how fine and how wide they are: 0, 1, .."""
 
@@ -35,8 +37,7 @@ class Ready:
         Its points, one array a coordinate.
     volumes : array or float
         What each of them stands for.
-    solve : callable
-        From the data at the points to the solution there.
+    solve : Solve
     batched : bool
         Whether `solve` takes several data at once, along a first axis.
     linear : bool
@@ -49,11 +50,11 @@ class Ready:
 
     x: Points
     volumes: np.ndarray | float
-    solve: Callable[[np.ndarray], np.ndarray]
+    solve: Solve
     batched: bool = False
     linear: bool = True
     scale: float = 1.0
-    result: Callable[[np.ndarray], np.ndarray] | None = None
+    result: Solve | None = None
 
     @property
     def points(self) -> int:

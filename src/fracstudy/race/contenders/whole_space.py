@@ -1,24 +1,22 @@
-"""Ours where one symbol does it: `fp.evolve`, the exact symbol with tails in closed form."""
+"""Ours where one symbol does it: the exact symbol with tails in closed form, judged (`fp.evolve`) or not."""
 
 from __future__ import annotations
 
-import numpy as np
-
 from fracparticles.arguments import finite_array
 from fracparticles.time.whole_space import WholeSpace
-from fracstudy.race.contender import Contender, Ready, Trials, lattices, sweep
+from fracstudy.race.contender import Contender, Ready, Solve, Trials, lattices, sweep
 from fracstudy.race.problem import Problem, lattice
 
 _TRUNCATIONS = (1.5, 2.2, 3.0, 4.1, 5.0, 8.0, 12.0, 20.0)
 
 
-class Evolve(Contender):
-    """`fracparticles.evolve`."""
+class Unjudged(Contender):
+    """`fracparticles.WholeSpace.solve`: like the peers it says nothing of its errors."""
 
-    name, label = "evolve", "fp.evolve (exact symbol, tails continued)"
+    name, label = "WholeSpace", "fp.WholeSpace (exact symbol, tails continued)"
     reference = "this library"
     group, place, dims = "ours", 0, (1, 2, 3)
-    colour, marker = "#7B3294", "o"
+    colour, marker = "#C2A5CF", "v"
 
     def trials(self, problem: Problem) -> Trials:
         """Yield the lattices of the exact symbol without terms, and smaller ones with terms."""
@@ -34,8 +32,17 @@ class Evolve(Contender):
         dim, h = problem.dim, 2.0 * half_width / points
         tau = problem.time * h**-problem.alpha
         run = WholeSpace(points, dim, problem.alpha, tau, terms=terms, tail=problem.tail)
+        return Ready(lattice(points, half_width, dim), h**dim, self._solve(run), batched=True)
 
-        def solve(u0: np.ndarray) -> np.ndarray:
-            return run.solve_and_judge(finite_array("u", u0))[0]  # as `evolve` does
+    def _solve(self, run: WholeSpace) -> Solve:
+        return run.solve
 
-        return Ready(lattice(points, half_width, dim), h**dim, solve, batched=True)
+
+class Evolve(Unjudged):
+    """`fracparticles.evolve`: the same, which estimates what the tail and the lattice miss, and warns of it."""
+
+    name, label = "evolve", "fp.evolve (the same, judged)"
+    colour, marker = "#7B3294", "o"
+
+    def _solve(self, run: WholeSpace) -> Solve:
+        return lambda u0: run.solve_and_judge(finite_array("u", u0))[0]  # as `evolve` does
