@@ -21,3 +21,5 @@ rule all:
         rules.figures.input,
         rules.site.output,
         rules.collect.output,
+    message:
+        "All of it is there."

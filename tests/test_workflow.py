@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -47,11 +48,11 @@ def environment(project: Path) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))}
 
 
-def planned(project: Path, *arguments: str) -> str:
-    """The rules that a call would run, from a dry run."""
+def planned(project: Path, *arguments: str) -> set[str]:
+    """The rules that a call would run, from the counts of a dry run."""
     succeeded, said = call(project, *arguments, "--dry-run")
     assert succeeded, said
-    return said
+    return {name.rstrip("_0123456789") for name in re.findall(r"^(\w+) +\d+$", said, re.MULTILINE)}
 
 
 def copy(target: Path) -> Path:
@@ -90,6 +91,8 @@ def finished(project):
         check=False,
     )
     assert done.returncode == 0, done.stderr[-4000:]
+    longest = max(done.stderr.splitlines(), key=len)
+    assert len(longest) < 300, longest  # a job says what it does, and does not list its files
     return project
 
 
@@ -145,15 +148,14 @@ def test_the_ledger_judges_every_claim_and_the_report_shows_it(reported):
 def test_another_meaning_of_a_word_is_judged_anew_and_nothing_measured(reported):
     with changed(reported / "report/printed/conventions.yaml"):
         jobs = planned(reported, "report", *SMOKE)
-    assert "rule ledger:" in jobs
-    assert "rule report:" in jobs
-    assert "rule make_" not in jobs
+    assert {"ledger", "report"} <= jobs
+    assert "make_part" not in jobs
 
 
 def test_nothing_is_left_to_do_and_nothing_half_written(finished):
     """A second workflow may look meanwhile: that does no harm."""
     with claimed(finished):
-        assert "Nothing to be done" in planned(finished, *TARGETS, *SMOKE)
+        assert not planned(finished, *TARGETS, *SMOKE)
     stray = [path for path in (finished / "results-smoke").rglob(".*") if path.name != ".compiled"]
     assert not stray
 
@@ -161,16 +163,14 @@ def test_nothing_is_left_to_do_and_nothing_half_written(finished):
 def test_editing_a_plot_reruns_its_scene_and_no_solver(finished):
     with changed(finished / "workflow/scenes/lucchesi/rejected_dpse/figure.py"):
         jobs = planned(finished, *TARGETS, *SMOKE)
-    assert "rule make_part_" in jobs
-    assert "rule solve_" not in jobs
-    assert "rule compile:" not in jobs
+    assert "make_part" in jobs
+    assert not {"solve_part", "compile"} & jobs
 
 
 def test_editing_a_solver_reruns_its_runs(finished):
     with changed(finished / "src/fracparticles/time/chebyshev.py"):
         jobs = planned(finished, "rejected_dpse", *SMOKE)
-    assert "rule solve_part_1:" in jobs
-    assert "rule make_part_" in jobs
+    assert {"solve_part", "make_part"} <= jobs
 
 
 def test_a_second_workflow_in_the_same_folder_is_refused_in_one_line(finished):

@@ -11,7 +11,14 @@ from pathlib import Path
 
 from fracstudy.ledger_text import read_ledger, summary_line
 
-__all__ = ["already", "slowest", "summary"]
+__all__ = ["already", "shortly", "slowest", "summary"]
+
+
+def shortly(names: Iterable[str], most: int = 5) -> str:
+    """Return names in one line; of many the first, and how many more there are."""
+    shown = sorted(names)
+    more = len(shown) - most
+    return ", ".join(shown) if more <= 1 else f"{', '.join(shown[:most])} and {more} more"
 
 
 def slowest(metadata: Path, since: float, count: int = 5) -> list[tuple[float, str]]:

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from fracstudy.ledger_text import read_ledger, summary_line
-from fracstudy.summary import already, slowest, summary
+from fracstudy.summary import already, shortly, slowest, summary
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,6 +28,12 @@ def test_the_summary_says_what_came_of_it_and_where_to_look(tmp_path):
     assert "overlap 9 s" in text
     assert "gone" not in text
     assert summary(tmp_path / "gone", [], []) == ""
+
+
+def test_names_are_said_in_one_line():
+    assert shortly("cab") == "a, b, c"
+    assert shortly("fedcba") == "a, b, c, d, e, f"
+    assert shortly("gfedcba") == "a, b, c, d, e and 2 more"
 
 
 def test_what_is_there_already_is_counted_whole(tmp_path):

@@ -19,6 +19,8 @@ for job, names in BENCHMARK_JOBS.items():
         params:
             code=code(*(SCENES[name].file("benchmark.py") for name in names)),
             scenes=[SCENES[name].packed() for name in names],
+        message:
+            f"Time {shortly(names)}."
         script:
             "../scripts/benchmark.py"
 
@@ -26,3 +28,5 @@ for job, names in BENCHMARK_JOBS.items():
 rule bench:
     input:
         expand(RESULTS / "tables/{scene}.csv", scene=FROM_TIMES),
+    message:
+        "All run times are there."

@@ -23,7 +23,7 @@ from fracstudy.criteria import CONVENTIONS
 from fracstudy.make import made
 from fracstudy.report import pages
 from fracstudy.sources import sources_of
-from fracstudy.summary import already, slowest, summary
+from fracstudy.summary import already, shortly, slowest, summary
 
 if problem := next((c for c in " '\"" if c in str(Path.cwd())), None):
     raise WorkflowError(

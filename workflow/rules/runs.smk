@@ -14,6 +14,8 @@ rule compile:
         mem_mb=1500,
     params:
         code=code(SOLVER),
+    message:
+        "Compile the functions of the package, once."
     script:
         "../scripts/compile.py"
 
@@ -36,6 +38,8 @@ for batch, cases in BATCHES.items():
             mem_mb=2000,
         params:
             cases=[case.to_json() for case in cases],
+        message:
+            f"Solve {len(cases)} cases of {shortly({case.scheme for case in cases})}."
         script:
             "../scripts/solve.py"
 
@@ -54,5 +58,7 @@ rule collect:
         mem_mb=1500,
     params:
         code=code("src/fracstudy/collect.py"),
+    message:
+        "Collect all runs in one data set, {output}."
     script:
         "../scripts/collect.py"

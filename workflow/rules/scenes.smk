@@ -37,6 +37,8 @@ for job, names in JOBS.items():
             code=code(
                 "src/fracstudy/make.py", *(SCENES[n].file(f) for n in names for f in FUNCTIONS)
             ),
+        message:
+            f"Make {shortly(names)}."
         script:
             "../scripts/make.py"
 
@@ -49,6 +51,8 @@ for target, names in targets(SCENES).items():
             target
         input:
             [files_of(name) for name in names],
+        message:
+            f"{target} is there."
 
 
 rule ledger:
@@ -67,6 +71,8 @@ rule ledger:
     params:
         smoke=STUDY.smoke,
         code=code("src/fracstudy/ledger.py", "src/fracstudy/ledger_text.py"),
+    message:
+        "Judge every claim: {output.csv}."
     script:
         "../scripts/ledger.py"
 
@@ -75,6 +81,8 @@ rule tables:
     input:
         expand(RESULTS / "tables/{scene}.csv", scene=SCENES),
         LEDGER,
+    message:
+        "All tables are there."
 
 
 rule figures:
@@ -85,6 +93,8 @@ rule figures:
             if scene.file("figure.py")
             for kind in STUDY.figure_formats
         ],
+    message:
+        "All figures are there."
 
 
 rule report:
@@ -106,5 +116,7 @@ rule report:
         scenes=[scene.packed(runs=True) for scene in SCENES.values()],
         code=code("src/fracstudy/report.py"),
         documents=STUDY.model_dump(mode="json")["documents"],
+    message:
+        "Write the report."
     script:
         "../scripts/report.py"

@@ -15,6 +15,8 @@ rule examples:
         mem_mb=2000,
     params:
         code=code(SOLVER),
+    message:
+        "Run the examples."
     script:
         "../scripts/examples.py"
 
@@ -40,5 +42,7 @@ rule site:
         documents=STUDY.model_dump(mode="json")["documents"],
         report=str(REPORT),
         api=STUDY.site_api,
+    message:
+        "Build the site, {output}."
     script:
         "../scripts/site.py"

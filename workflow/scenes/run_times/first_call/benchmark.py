@@ -14,6 +14,7 @@ _CALLS = {
     "exact symbol in numpy and scipy": "import numpy as np\nfrom scipy.fft import irfft, rfft, rfftfreq\n"
     + _DATA
     + "irfft(rfft(u0) * np.exp(-(2.0 * np.pi * rfftfreq(400, 0.1)) ** 1.5), 400)",
+    "numba, xarray, pydantic and pyfftw alone": "import numba, pydantic, pyfftw, scipy.special, xarray",
     "fp.evolve": "import numpy as np, fracparticles as fp\n"
     + _DATA
     + "fp.evolve(u0, 0.1, 1.5, 1.0)",
