@@ -12,6 +12,7 @@ from hypothesis import settings
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
+gc.disable()  # until all is collected: nothing of that is garbage
 from combinations import COMBINATIONS  # noqa: E402
 
 # The same examples each time; `--hypothesis-profile=thorough` takes twenty times as many, and whole sweeps.
@@ -29,6 +30,8 @@ def pytest_collection_finish() -> None:
     """Leave what is collected, hundreds of thousands of objects that stay, out of all searches for garbage."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(10_000)
+    gc.enable()
 
 
 @pytest.fixture(params=COMBINATIONS)
