@@ -131,8 +131,9 @@ def name_ticks(ax: Axes, values: Iterable[float], axis: str = "x", form: str = "
 
 
 def plain_times(ax: Axes) -> None:
-    """Label the powers of ten along a logarithmic axis of times as plain numbers, 0.1, 1, 10, and nothing between."""
-    ax.xaxis.set_major_locator(LogLocator(numticks=8))
+    """Label a logarithmic axis of times by plain numbers: powers of ten, 0.1, 1, 10; of a short axis 2 and 5, too."""
+    low, high = ax.get_xlim()
+    ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 20 * low else (1,), numticks=8))
     ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
 
@@ -239,7 +240,7 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
     corner = (x, top) if above else (right, y)
     ax.plot([x, right, corner[0], x], [y, top, corner[1], y], color="0.35", linewidth=0.8)
     ax.annotate(
-        f"{slope:g}",
+        f"{slope:g}".replace("-", "−"),
         (corner[0], np.sqrt(y * top)),
         xytext=(-4 if above else 4, 0),
         textcoords="offset points",
@@ -253,11 +254,12 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
 def guide(
     ax: Axes, x: Sequence[float], through: tuple[float, float], slope: float, label: str = ""
 ) -> None:
-    """Draw a dotted line of that slope on log-log axes between two `x`, through a point; its label at the right end."""
+    """Draw a dotted line of that slope on log-log axes between two `x`, through a point; its label at the upper end."""
     ends = np.array([min(x), max(x)])
     y = through[1] * (ends / through[0]) ** slope
     ax.plot(ends, y, color="0.45", linewidth=0.9, linestyle=":")
-    note(ax, label, (ends[1], y[1]), (0, 4), ha="right")
+    upper = int(np.argmax(y))
+    note(ax, label, (ends[upper], y[upper]), (0, 4), ha=("left", "right")[upper])
 
 
 def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) -> None:

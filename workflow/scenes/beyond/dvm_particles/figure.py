@@ -60,7 +60,15 @@ def _spacings(ax: Axes, series: pd.DataFrame) -> None:
     rest = series[~series["series"].isin(["none", "exact"])]
     draw(ax, rest, label="remeshed (just before)", **_DOTS)
     ax.axhline(_ABOVE, color="0.5", linewidth=0.8, linestyle=":")
-    note(ax, f"remesh above {_ABOVE:g}", (1.0, _ABOVE), (0, -2), ha="right", va="top", **_NOTE)
+    note(
+        ax,
+        f"remesh above {_ABOVE:g}",
+        (1.0, _ABOVE),
+        (0, -2),
+        ha="right",
+        va="top",
+        **_NOTE | {"fontsize": 7},
+    )
     ax.set(xlabel="position $x$", ylabel=r"spacing $\Delta x / h$")
     _legend(ax, 3, columnspacing=1.0)
 

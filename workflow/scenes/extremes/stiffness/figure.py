@@ -26,6 +26,6 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             style.draw(ax, pick(series, panel=panel, series=way), label=way, **look)
         style.log_log(ax, xlabel=r"stiffness $T\,|\lambda|$", ylabel=label)
     x = np.array([series["x"].min(), series["x"].max()])
-    axes[1].plot(x, 64.0 * EPS * x, color="0.5", linewidth=0.9, linestyle=":")
+    style.guide(axes[1], x, (x[0], 64.0 * EPS * x[0]), 1.0, r"$64\,T\,|\lambda|\,\epsilon$")
     style.legend_below(drawn, axes[0])
     return drawn

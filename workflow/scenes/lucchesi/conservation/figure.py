@@ -36,7 +36,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             draw(ax, points, label=f"DVM, {name}", **look)
     ax.axhline(2.0 * _FLOOR, color="0.5", linewidth=0.8, linestyle=":")
     style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "top", "color": "0.35"}
-    note(ax, "one unit in the last place", (1.0, 2.0 * _FLOOR), (0, -3), **style)
+    note(ax, "one unit in the last place", (1.0, _FLOOR), (0, -6), **style)
     log_log(ax, xlabel=r"time $t_f - t_0$", ylim=(_FLOOR / 10.0, 0.1))
     ax.set_ylabel(r"change of the total strength, $|M(t_f) / M(t_0) - 1|$")
     ax.set_xlim(right=1.6 * series["x"].max())

@@ -13,6 +13,7 @@ _TITLES = (
     "decay in the disc",
     "truncated schemes",
 )
+_RIGHT: style.Look = {"xycoords": ("axes fraction", "data"), "ha": "right"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -36,7 +37,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     for name, points in truncated.groupby("series", sort=False):
         colour = COLOURS[str(name)]
         style.draw(axes[3], points, label=str(name), color=colour, marker=MARKERS[str(name)])
-        axes[3].axhline(points["exact"].iloc[0], color=colour, linestyle=":", marker="")
+        exact, kind = points["exact"].iloc[0], "absorbing" if name == "DD" else "reflecting"
+        axes[3].axhline(exact, color=colour, linestyle=":", marker="")
+        style.note(axes[3], f"{kind} square", (1.0, exact), (0, 3), color=colour, **_RIGHT)
     axes[3].set(xlabel="$1/n$", ylabel="decay of the longest wave")
     axes[3].set_xlim(0.0, 1.15 * truncated["x"].max())
     axes[3].set_ylim(0.0, 1.15 * truncated[["y", "exact"]].to_numpy().max())

@@ -42,10 +42,9 @@ def _front(ax: Axes, part: pd.DataFrame) -> None:
     last = pick(part, series=names[-1])
     far = last.iloc[(last["x"] - 0.5 * last["x"].max()).abs().argmin()]
     ends: list[Any] = [0.1 * last["x"].max(), last["x"].max()]
-    style.guide(ax, ends, (far["x"], 3.0 * far["y"]), -2.5)
-    top = 3.0 * far["y"] * (far["x"] / ends[0]) ** 2.5
-    style.note(ax, "$x^{-1-\\alpha}$", (ends[0], top), (5, -2))
+    style.guide(ax, ends, (far["x"], 3.0 * far["y"]), -2.5, r"$x^{-1-\alpha}$")
     style.log_log(ax, xlabel="position $x$", ylabel="$u(x, t)$")
+    ax.set_ylim(top=30.0)  # room for the label of the guide
     style.small_legend(ax, "lower left")
 
 

@@ -42,7 +42,7 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
             _slope(ax, points.sort_values("x"), float(order))
     ticks = sorted(part["x"].unique())
     style.log_log(ax, xlabel="particle spacing $h$", xlim=(0.6 * ticks[0], 1.3 * ticks[-1]))
-    style.name_ticks(ax, ticks)
+    style.name_ticks(ax, ticks[::-2])
 
 
 def _slope(ax: Axes, points: pd.DataFrame, order: float) -> None:
@@ -69,5 +69,5 @@ def _right_hand_sides(ax: Axes, part: pd.DataFrame) -> None:
 def _gap(ax: Axes, part: pd.DataFrame) -> None:
     style.draw(ax, part, color="0.2")
     end = part.iloc[-1]
-    style.guide(ax, list(part["x"]), (end["x"], 0.5 * end["y"]), 1.0)
+    style.guide(ax, list(part["x"]), (end["x"], 0.15 * end["y"]), 1.0, "slope 1")
     style.log_log(ax, xlabel=r"$2 - \alpha$", ylabel="largest relative distance")
