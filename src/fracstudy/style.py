@@ -13,18 +13,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from fracparticles.files import replacing
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.inputs import NUMERALS
 
 __all__ = [
+    "ALONG",
     "BLUE",
     "COLOURS",
+    "DOTTED",
     "ERROR",
     "GREEN",
     "MARKERS",
@@ -37,19 +37,20 @@ __all__ = [
     "Figure",
     "Look",
     "axes_row",
+    "border",
     "curves",
     "draw",
     "entry",
     "guide",
     "legend_below",
     "legend_entries",
+    "legend_under",
     "log_log",
     "name_ticks",
     "note",
     "note_below",
     "panel_title",
     "plain_times",
-    "save",
     "scheme_legend",
     "scheme_lines",
     "scheme_style",
@@ -69,13 +70,16 @@ PINK, SKY, ORANGE = "#CC79A7", "#56B4E9", "#E69F00"
 COLOURS = {name: scheme.colour for name, scheme in ALL_SCHEMES.items()} | {"exact": "#000000"}
 MARKERS = {name: scheme.marker for name, scheme in ALL_SCHEMES.items()} | {"exact": ""}
 
+DOTTED: Look = {"color": "0.5", "linewidth": 0.8, "linestyle": ":"}
+"""A value that means something: a limit, a border, an order."""
 UNDERLAID: Look = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 """The exact solution, below what is computed."""
 ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 
+ALONG: Look = {"xycoords": ("axes fraction", "data")}
+"""A place of a text: how far along the panel, and at what value."""
+
 _CURVES = "osD^vPX"
-_FORMATS: dict[str, dict[str, Any]] = {"svg": {"metadata": {"Date": None}}, "png": {"dpi": 160}}
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def axes_row(
@@ -123,9 +127,12 @@ def log_log(ax: Axes, **more: Any) -> None:
     ax.set(xscale="log", yscale="log", **more)
 
 
-def name_ticks(ax: Axes, values: Iterable[float], axis: str = "x", form: str = "g") -> None:
-    """Put ticks at these values of an axis, as plain numbers, and nowhere else."""
-    named = {value: f"{value:{form}}" for value in values}
+def name_ticks(
+    ax: Axes, values: Iterable[float], axis: str = "x", form: str = "g", inside: bool = False
+) -> None:
+    """Put ticks at these values of an axis, or those `inside` the panel, as plain numbers, and nowhere else."""
+    low, high = sorted(getattr(ax, f"get_{axis}lim")())
+    named = {v: f"{v:{form}}" for v in values if not inside or low <= v <= high}
     ax.set(**{f"{axis}ticks": list(named), f"{axis}ticklabels": list(named.values())})
     getattr(ax, f"{axis}axis").minorticks_off()
 
@@ -142,6 +149,14 @@ def note(ax: Axes, text: str, at: tuple[Any, Any], shift: tuple[float, float], *
     """Write a text in small print, `shift` points from a place."""
     style = {"color": "0.3", "fontsize": 8, "textcoords": "offset points", **more}
     ax.annotate(text, at, xytext=shift, **style)
+
+
+def border(ax: Axes, value: float, text: str = "", along: float = 1.0, **more: Any) -> None:
+    """Draw a dotted line at a value of y, and name it above, in small print, up to a place along the panel."""
+    ax.axhline(value, **DOTTED)
+    if text:
+        shift, style = more.pop("shift", (0, 2)), {**ALONG, "ha": "right", "color": "0.35", **more}
+        note(ax, text, (along, value), shift, **style)
 
 
 def scheme_style(scheme: str, order: int | str | None = None, **more: Any) -> dict[str, Any]:
@@ -221,6 +236,11 @@ def legend_below(
     figure.legend(handles=handles, loc="outside lower center", ncols=ncols)
 
 
+def legend_under(ax: Axes, columns: int = 2, **more: Any) -> None:
+    """Put a legend below one panel of several."""
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=columns, **more)
+
+
 def note_below(figure: Figure, text: str) -> None:
     """Write what was timed, and on what machine, in small print: above the legend, or below the panels without one."""
     if not figure.legends:
@@ -260,45 +280,3 @@ def guide(
     ax.plot(ends, y, color="0.45", linewidth=0.9, linestyle=":")
     upper = int(np.argmax(y))
     note(ax, label, (ends[upper], y[upper]), (0, 4), ha=("left", "right")[upper])
-
-
-def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) -> None:
-    """Write <stem>.svg and <stem>.png, or one of them, each under a temporary name first."""
-    stem = Path(stem)
-    for ax in figure.axes:
-        _plain_powers(ax.xaxis)
-        _plain_powers(ax.yaxis)
-    # The layout is found once, not once for each format.
-    layout = figure.get_layout_engine()
-    if layout is not None:
-        layout.execute(figure)
-        if figure.subfigs:
-            _settle(figure)
-        figure.set_layout_engine(None)  # "none" does nothing, and has the figure drawn twice
-    for kind in formats:
-        with replacing(stem.with_suffix(f".{kind}")) as temporary:
-            figure.savefig(temporary, format=kind, **_FORMATS[kind])
-
-
-def _settle(figure: Figure) -> None:
-    """Round what the layout has found: its solver puts a corner at 0 or -4e-16, by what was drawn before."""
-    for part in figure.subfigs:
-        part.bbox_relative.set_points(np.round(part.bbox_relative.get_points(), 12) + 0.0)
-    for ax in figure.axes:
-        ax.set_position(np.round(ax.get_position().bounds, 12) + 0.0)
-
-
-def _plain_powers(axis: Axis) -> None:
-    """Label a logarithmic axis of more than a decade with plain text, 10⁻⁴.
-
-    The usual labels are formulas, and to typeset them takes longer than all else in a figure.
-    """
-    low, high = sorted(axis.get_view_interval())
-    if isinstance(axis.get_major_formatter(), LogFormatterSciNotation) and high > 10.0 * low > 0.0:
-        axis.set_major_formatter(FuncFormatter(_power_of_ten))
-        axis.set_minor_formatter(NullFormatter())
-
-
-def _power_of_ten(value: float, _: int | None = None) -> str:
-    exponent = round(np.log10(value))
-    return f"10{str(exponent).translate(_SUPERSCRIPTS)}"

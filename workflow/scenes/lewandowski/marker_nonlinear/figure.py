@@ -59,8 +59,7 @@ def _steps(ax: Axes, series: pd.DataFrame, printed: float) -> None:
     for place, text in ((limit, r"$\eta\epsilon^2 e / D_0$"), (printed, "printed")):
         ax.axvline(place, color="0.4", linewidth=0.9, linestyle="--")
         note(ax, text, (place, 1.0), (-4, -4), **beside)
-    low, high = 0.99 * scan["x"].min(), 1.01 * scan["x"].max()
-    style.name_ticks(ax, [t for t in (0.0025, 0.003, 0.004, 0.006, 0.01, 0.02) if low <= t <= high])
+    style.name_ticks(ax, (0.0025, 0.003, 0.004, 0.006, 0.01), inside=True)
     ax.set(xlabel=r"time step $\Delta t$", ylabel=r"max $|F - f_\infty|$ in the core / peak")
     ax.legend(loc="center left", bbox_to_anchor=(0.4, 0.5), **_SMALL)
 

@@ -13,7 +13,6 @@ _TITLES = (
     "decay in the disc",
     "truncated schemes",
 )
-_RIGHT: style.Look = {"xycoords": ("axes fraction", "data"), "ha": "right"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -39,7 +38,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         style.draw(axes[3], points, label=str(name), color=colour, marker=MARKERS[str(name)])
         exact, kind = points["exact"].iloc[0], "absorbing" if name == "DD" else "reflecting"
         axes[3].axhline(exact, color=colour, linestyle=":", marker="")
-        style.note(axes[3], f"{kind} square", (1.0, exact), (0, 3), color=colour, **_RIGHT)
+        look: style.Look = {"ha": "right", "color": colour, **style.ALONG}
+        style.note(axes[3], f"{kind} square", (1.0, exact), (0, 3), **look)
     axes[3].set(xlabel="$1/n$", ylabel="decay of the longest wave")
     axes[3].set_xlim(0.0, 1.15 * truncated["x"].max())
     axes[3].set_ylim(0.0, 1.15 * truncated[["y", "exact"]].to_numpy().max())
