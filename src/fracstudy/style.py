@@ -41,6 +41,7 @@ __all__ = [
     "curves",
     "draw",
     "entry",
+    "finest_slope",
     "guide",
     "legend_below",
     "legend_entries",
@@ -269,6 +270,16 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
         color="0.25",
         fontsize=8,
     )
+
+
+def finest_slope(ax: Axes, errors: pd.DataFrame, order: float) -> bool:
+    """Draw the triangle of an order above the finest piece of a curve, if it is the steepest: it ends at no floor."""
+    h, error = errors.sort_values("x")[["x", "y"]].to_numpy().T
+    slopes = np.diff(np.log(error)) / np.diff(np.log(h))
+    steepest = slopes.size > 0 and slopes.argmax() == 0
+    if steepest:
+        slope_triangle(ax, h[0], 1.8 * error[0], order, above=True)
+    return bool(steepest)
 
 
 def guide(
