@@ -50,7 +50,6 @@ __all__ = [
     "name_ticks",
     "note",
     "note_below",
-    "panel_title",
     "plain_times",
     "scheme_legend",
     "scheme_lines",
@@ -118,11 +117,6 @@ def curves(
         draw(ax, own, *line, **{"color": f"C{k}", "marker": _CURVES[k], "label": label, **style})
 
 
-def panel_title(ax: Axes, letter: str, text: str) -> None:
-    """Title a panel "(a) text", at the left."""
-    ax.set_title(f"({letter}) {text}", loc="left")
-
-
 def log_log(ax: Axes, **more: Any) -> None:
     """Make both axes logarithmic, and set what else is given: labels, limits."""
     ax.set(xscale="log", yscale="log", **more)
@@ -177,17 +171,10 @@ def scheme_style(scheme: str, order: int | str | None = None, **more: Any) -> di
     return {"color": colour, "marker": MARKERS[scheme], **line, **more}
 
 
-def scheme_lines(
-    ax: Axes,
-    frame: pd.DataFrame,
-    x: str = "x",
-    y: str = "y",
-    by: Sequence[str] = ("scheme", "order"),
-    **more: Any,
-) -> None:
-    """Draw one column against another, a line a scheme, or a scheme and order, in `scheme_style`."""
-    for key, points in frame.sort_values(x).groupby(list(by)):
-        ax.plot(points[x], points[y], **scheme_style(*key, **more))
+def scheme_lines(ax: Axes, frame: pd.DataFrame, x: str = "x", y: str = "y", **more: Any) -> None:
+    """Draw one column against another, a line a scheme and order, in `scheme_style`."""
+    for (scheme, order), points in frame.sort_values(x).groupby(["scheme", "order"]):
+        ax.plot(points[x], points[y], **scheme_style(scheme, order, **more))
 
 
 def entry(label: str, **style: Any) -> Line2D:
@@ -195,9 +182,7 @@ def entry(label: str, **style: Any) -> Line2D:
     return Line2D([], [], label=label, **style)
 
 
-def legend_entries(
-    pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]], **more: Any
-) -> list[Line2D]:
+def legend_entries(pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]]) -> list[Line2D]:
     """Return an entry for each scheme and order; those of a frame are in its columns `scheme` and `order`.
 
     The order is not named if it is None, nor for GPSE, which has none.
@@ -209,7 +194,7 @@ def legend_entries(
         words = [scheme]
         if order is not None and scheme != "GPSE":
             words.append(order if isinstance(order, str) else NUMERALS[order])
-        entries.append(entry(" ".join(words), **scheme_style(scheme, order, **more)))
+        entries.append(entry(" ".join(words), **scheme_style(scheme, order)))
     return entries
 
 
@@ -217,10 +202,9 @@ def scheme_legend(
     figure: Figure,
     pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]],
     extra: Iterable[Line2D] = (),
-    columns: int | None = None,
 ) -> None:
     """Name schemes and orders, see `legend_entries`, and what else is given below the panels."""
-    legend_below(figure, [*legend_entries(pairs), *extra], columns)
+    legend_below(figure, [*legend_entries(pairs), *extra])
 
 
 def small_legend(ax: Axes, place: Any, **more: Any) -> None:

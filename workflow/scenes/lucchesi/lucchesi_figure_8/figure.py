@@ -2,7 +2,6 @@
 
 import pandas as pd
 
-from fracstudy import style
 from fracstudy.panels import pick
 from fracstudy.style import UNDERLAID, Axes, Figure, Look, entry, legend_below, note, scheme_style
 from scenes.plane import DISK
@@ -21,7 +20,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         edge = here["r"].max()
         _profiles(column[0], pick(here, exterior="truncated"), lowest)
         _errors(column[1], here)
-        style.panel_title(column[0], letter, f"along ${line}$")
+        column[0].set_title(f"({letter}) along ${line}$", loc="left")
         for ax in column:
             ax.axvline(edge, color="0.6", linewidth=0.8)
             ax.axvline(DISK, color="0.6", linewidth=0.8, linestyle=":")

@@ -69,10 +69,10 @@ def _row(
     return row
 
 
-def front(x: np.ndarray, u: np.ndarray, level: float = _LEVEL) -> float:
+def front(x: np.ndarray, u: np.ndarray) -> float:
     """Return the largest x at which u, given at x > 0, falls below the level; between particles by a power of x."""
-    i = int(np.flatnonzero((u[:-1] >= level) & (u[1:] < level))[-1])
-    share = np.log(u[i] / level) / np.log(u[i] / u[i + 1])
+    i = int(np.flatnonzero((u[:-1] >= _LEVEL) & (u[1:] < _LEVEL))[-1])
+    share = np.log(u[i] / _LEVEL) / np.log(u[i] / u[i + 1])
     return float(x[i] * (x[i + 1] / x[i]) ** share)
 
 
