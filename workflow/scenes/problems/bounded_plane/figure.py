@@ -25,8 +25,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         style.name_ticks(ax, np.unique(part["x"]))
         style.small_legend(ax, "lower left")
     style.curves(axes[1], plain, name=None, linestyle="--", markersize=4.0)
-    axes[0].set(xlabel="rings $N$", ylabel="error of the first eigenvalue, relative")
-    axes[1].set_xlabel("particles along a side $N$")
+    error = "error of the first eigenvalue, relative"
+    axes[0].set(xlabel="rings $N$", ylabel=error)
+    axes[1].set(xlabel="particles along a side $N$", ylabel=error)
     decay = pick(series, panel="decay")
     axes[2].plot(decay["x"], decay["exact"], color="black", marker="", label="spectral method")
     style.draw(axes[2], decay, "o", color=BLUE, label="rings of particles")

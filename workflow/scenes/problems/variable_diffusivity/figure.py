@@ -20,7 +20,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     drawn, axes = style.axes_row(_TITLES, height=3.9, width=3.4)
     for ax, panel in zip(axes, ("line", "plane"), strict=False):
         _errors(ax, pick(series, panel=panel))
-    axes[0].set_ylabel("error of $du/dt$ / its largest value")
+        ax.set_ylabel("error of $du/dt$ / its largest value")
     _right_hand_sides(axes[2], pick(series, panel="right-hand side"))
     _gap(axes[3], pick(series, panel="gap"))
     schemes = [
