@@ -64,7 +64,7 @@ def make(
     write_table(pd.DataFrame() if result.series is None else result.series, series)
     write_table(result.table, csv, md)
     if figures:
-        from fracstudy.style import save
+        from fracstudy.figure_files import save
 
         drawn = call(scene.function("figure"), _read(series), _read(csv), **scene.parameters)
         save(drawn, figures[0].with_suffix(""), figure_formats)

@@ -1,4 +1,4 @@
-"""Observed orders in a table of errors."""
+"""Observed orders and powers, of the errors in a table."""
 
 from __future__ import annotations
 
@@ -6,11 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from fracparticles.run.orders import observed_order
 from fracstudy.inputs import ORDERS
 
-__all__ = ["observed", "orders_by", "orders_of"]
+__all__ = ["fitted_power", "observed", "orders_by", "orders_of"]
+
+
+def fitted_power(x: ArrayLike, y: ArrayLike) -> float:
+    """Return the p of the law y = c x^p that comes nearest to the points, in the squares of their logarithms."""
+    return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 
 def observed(h: Sequence[float], errors: Sequence[float]) -> list[float]:

@@ -13,18 +13,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from fracparticles.files import replacing
 from fracparticles.schemes import ALL_SCHEMES
 from fracstudy.inputs import NUMERALS
 
 __all__ = [
+    "ALONG",
     "BLUE",
     "COLOURS",
+    "DOTTED",
     "ERROR",
     "GREEN",
     "MARKERS",
@@ -37,19 +37,20 @@ __all__ = [
     "Figure",
     "Look",
     "axes_row",
+    "border",
     "curves",
     "draw",
     "entry",
+    "finest_slope",
     "guide",
     "legend_below",
     "legend_entries",
+    "legend_under",
     "log_log",
     "name_ticks",
     "note",
     "note_below",
-    "panel_title",
     "plain_times",
-    "save",
     "scheme_legend",
     "scheme_lines",
     "scheme_style",
@@ -69,13 +70,16 @@ PINK, SKY, ORANGE = "#CC79A7", "#56B4E9", "#E69F00"
 COLOURS = {name: scheme.colour for name, scheme in ALL_SCHEMES.items()} | {"exact": "#000000"}
 MARKERS = {name: scheme.marker for name, scheme in ALL_SCHEMES.items()} | {"exact": ""}
 
+DOTTED: Look = {"color": "0.5", "linewidth": 0.8, "linestyle": ":"}
+"""A value that means something: a limit, a border, an order."""
 UNDERLAID: Look = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 """The exact solution, below what is computed."""
 ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 
+ALONG: Look = {"xycoords": ("axes fraction", "data")}
+"""A place of a text: how far along the panel, and at what value."""
+
 _CURVES = "osD^vPX"
-_FORMATS: dict[str, dict[str, Any]] = {"svg": {"metadata": {"Date": None}}, "png": {"dpi": 160}}
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def axes_row(
@@ -113,26 +117,25 @@ def curves(
         draw(ax, own, *line, **{"color": f"C{k}", "marker": _CURVES[k], "label": label, **style})
 
 
-def panel_title(ax: Axes, letter: str, text: str) -> None:
-    """Title a panel "(a) text", at the left."""
-    ax.set_title(f"({letter}) {text}", loc="left")
-
-
 def log_log(ax: Axes, **more: Any) -> None:
     """Make both axes logarithmic, and set what else is given: labels, limits."""
     ax.set(xscale="log", yscale="log", **more)
 
 
-def name_ticks(ax: Axes, values: Iterable[float], axis: str = "x", form: str = "g") -> None:
-    """Put ticks at these values of an axis, as plain numbers, and nowhere else."""
-    named = {value: f"{value:{form}}" for value in values}
+def name_ticks(
+    ax: Axes, values: Iterable[float], axis: str = "x", form: str = "g", inside: bool = False
+) -> None:
+    """Put ticks at these values of an axis, or those `inside` the panel, as plain numbers, and nowhere else."""
+    low, high = sorted(getattr(ax, f"get_{axis}lim")())
+    named = {v: f"{v:{form}}" for v in values if not inside or low <= v <= high}
     ax.set(**{f"{axis}ticks": list(named), f"{axis}ticklabels": list(named.values())})
     getattr(ax, f"{axis}axis").minorticks_off()
 
 
 def plain_times(ax: Axes) -> None:
-    """Label the powers of ten along a logarithmic axis of times as plain numbers, 0.1, 1, 10, and nothing between."""
-    ax.xaxis.set_major_locator(LogLocator(numticks=8))
+    """Label a logarithmic axis of times by plain numbers: powers of ten, 0.1, 1, 10; of a short axis 2 and 5, too."""
+    low, high = ax.get_xlim()
+    ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 20 * low else (1,), numticks=8))
     ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
     ax.xaxis.set_minor_formatter(NullFormatter())
 
@@ -141,6 +144,14 @@ def note(ax: Axes, text: str, at: tuple[Any, Any], shift: tuple[float, float], *
     """Write a text in small print, `shift` points from a place."""
     style = {"color": "0.3", "fontsize": 8, "textcoords": "offset points", **more}
     ax.annotate(text, at, xytext=shift, **style)
+
+
+def border(ax: Axes, value: float, text: str = "", along: float = 1.0, **more: Any) -> None:
+    """Draw a dotted line at a value of y, and name it above, in small print, up to a place along the panel."""
+    ax.axhline(value, **DOTTED)
+    if text:
+        shift, style = more.pop("shift", (0, 2)), {**ALONG, "ha": "right", "color": "0.35", **more}
+        note(ax, text, (along, value), shift, **style)
 
 
 def scheme_style(scheme: str, order: int | str | None = None, **more: Any) -> dict[str, Any]:
@@ -160,17 +171,10 @@ def scheme_style(scheme: str, order: int | str | None = None, **more: Any) -> di
     return {"color": colour, "marker": MARKERS[scheme], **line, **more}
 
 
-def scheme_lines(
-    ax: Axes,
-    frame: pd.DataFrame,
-    x: str = "x",
-    y: str = "y",
-    by: Sequence[str] = ("scheme", "order"),
-    **more: Any,
-) -> None:
-    """Draw one column against another, a line a scheme, or a scheme and order, in `scheme_style`."""
-    for key, points in frame.sort_values(x).groupby(list(by)):
-        ax.plot(points[x], points[y], **scheme_style(*key, **more))
+def scheme_lines(ax: Axes, frame: pd.DataFrame, x: str = "x", y: str = "y", **more: Any) -> None:
+    """Draw one column against another, a line a scheme and order, in `scheme_style`."""
+    for (scheme, order), points in frame.sort_values(x).groupby(["scheme", "order"]):
+        ax.plot(points[x], points[y], **scheme_style(scheme, order, **more))
 
 
 def entry(label: str, **style: Any) -> Line2D:
@@ -178,9 +182,7 @@ def entry(label: str, **style: Any) -> Line2D:
     return Line2D([], [], label=label, **style)
 
 
-def legend_entries(
-    pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]], **more: Any
-) -> list[Line2D]:
+def legend_entries(pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]]) -> list[Line2D]:
     """Return an entry for each scheme and order; those of a frame are in its columns `scheme` and `order`.
 
     The order is not named if it is None, nor for GPSE, which has none.
@@ -192,7 +194,7 @@ def legend_entries(
         words = [scheme]
         if order is not None and scheme != "GPSE":
             words.append(order if isinstance(order, str) else NUMERALS[order])
-        entries.append(entry(" ".join(words), **scheme_style(scheme, order, **more)))
+        entries.append(entry(" ".join(words), **scheme_style(scheme, order)))
     return entries
 
 
@@ -200,10 +202,9 @@ def scheme_legend(
     figure: Figure,
     pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]],
     extra: Iterable[Line2D] = (),
-    columns: int | None = None,
 ) -> None:
     """Name schemes and orders, see `legend_entries`, and what else is given below the panels."""
-    legend_below(figure, [*legend_entries(pairs), *extra], columns)
+    legend_below(figure, [*legend_entries(pairs), *extra])
 
 
 def small_legend(ax: Axes, place: Any, **more: Any) -> None:
@@ -218,6 +219,11 @@ def legend_below(
     handles = entries.get_legend_handles_labels()[0] if isinstance(entries, Axes) else list(entries)
     ncols = len(handles) if columns is None else columns
     figure.legend(handles=handles, loc="outside lower center", ncols=ncols)
+
+
+def legend_under(ax: Axes, columns: int = 2, **more: Any) -> None:
+    """Put a legend below one panel of several."""
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=columns, **more)
 
 
 def note_below(figure: Figure, text: str) -> None:
@@ -239,7 +245,7 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
     corner = (x, top) if above else (right, y)
     ax.plot([x, right, corner[0], x], [y, top, corner[1], y], color="0.35", linewidth=0.8)
     ax.annotate(
-        f"{slope:g}",
+        f"{slope:g}".replace("-", "−"),
         (corner[0], np.sqrt(y * top)),
         xytext=(-4 if above else 4, 0),
         textcoords="offset points",
@@ -250,53 +256,22 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
     )
 
 
+def finest_slope(ax: Axes, errors: pd.DataFrame, order: float) -> bool:
+    """Draw the triangle of an order above the finest piece of a curve, if it is the steepest: it ends at no floor."""
+    h, error = errors.sort_values("x")[["x", "y"]].to_numpy().T
+    slopes = np.diff(np.log(error)) / np.diff(np.log(h))
+    steepest = slopes.size > 0 and slopes.argmax() == 0
+    if steepest:
+        slope_triangle(ax, h[0], 1.8 * error[0], order, above=True)
+    return bool(steepest)
+
+
 def guide(
     ax: Axes, x: Sequence[float], through: tuple[float, float], slope: float, label: str = ""
 ) -> None:
-    """Draw a dotted line of that slope on log-log axes between two `x`, through a point; its label at the right end."""
+    """Draw a dotted line of that slope on log-log axes between two `x`, through a point; its label at the upper end."""
     ends = np.array([min(x), max(x)])
     y = through[1] * (ends / through[0]) ** slope
     ax.plot(ends, y, color="0.45", linewidth=0.9, linestyle=":")
-    note(ax, label, (ends[1], y[1]), (0, 4), ha="right")
-
-
-def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) -> None:
-    """Write <stem>.svg and <stem>.png, or one of them, each under a temporary name first."""
-    stem = Path(stem)
-    for ax in figure.axes:
-        _plain_powers(ax.xaxis)
-        _plain_powers(ax.yaxis)
-    # The layout is found once, not once for each format.
-    layout = figure.get_layout_engine()
-    if layout is not None:
-        layout.execute(figure)
-        if figure.subfigs:
-            _settle(figure)
-        figure.set_layout_engine(None)  # "none" does nothing, and has the figure drawn twice
-    for kind in formats:
-        with replacing(stem.with_suffix(f".{kind}")) as temporary:
-            figure.savefig(temporary, format=kind, **_FORMATS[kind])
-
-
-def _settle(figure: Figure) -> None:
-    """Round what the layout has found: its solver puts a corner at 0 or -4e-16, by what was drawn before."""
-    for part in figure.subfigs:
-        part.bbox_relative.set_points(np.round(part.bbox_relative.get_points(), 12) + 0.0)
-    for ax in figure.axes:
-        ax.set_position(np.round(ax.get_position().bounds, 12) + 0.0)
-
-
-def _plain_powers(axis: Axis) -> None:
-    """Label a logarithmic axis of more than a decade with plain text, 10⁻⁴.
-
-    The usual labels are formulas, and to typeset them takes longer than all else in a figure.
-    """
-    low, high = sorted(axis.get_view_interval())
-    if isinstance(axis.get_major_formatter(), LogFormatterSciNotation) and high > 10.0 * low > 0.0:
-        axis.set_major_formatter(FuncFormatter(_power_of_ten))
-        axis.set_minor_formatter(NullFormatter())
-
-
-def _power_of_ten(value: float, _: int | None = None) -> str:
-    exponent = round(np.log10(value))
-    return f"10{str(exponent).translate(_SUPERSCRIPTS)}"
+    upper = int(np.argmax(y))
+    note(ax, label, (ends[upper], y[upper]), (0, 4), ha=("left", "right")[upper])

@@ -7,7 +7,16 @@ import pandas as pd
 import pytest
 
 from fracstudy.panels import Panels, pick
-from fracstudy.style import axes_row, curves, log_log, plain_times, small_legend
+from fracstudy.style import (
+    axes_row,
+    border,
+    curves,
+    guide,
+    log_log,
+    name_ticks,
+    plain_times,
+    small_legend,
+)
 
 
 def test_points_are_kept_in_order_with_what_else_is_said_of_them():
@@ -72,3 +81,42 @@ def test_times_are_plain_numbers():
     figure.canvas.draw()
     labels = [label.get_text() for label in ax.get_xticklabels()]
     assert [label for label in labels if 0.03 <= float(label) <= 300.0] == ["0.1", "1", "10", "100"]
+
+
+def test_a_short_axis_of_times_has_twos_and_fives():
+    figure, (ax,) = axes_row()
+    ax.plot([400.0, 3000.0], [1.0, 1.0])
+    log_log(ax)
+    plain_times(ax)
+    figure.canvas.draw()
+    labels = [label.get_text() for label in ax.get_xticklabels()]
+    assert [label for label in labels if 400.0 <= float(label) <= 3000.0] == ["500", "1000", "2000"]
+
+
+@pytest.mark.parametrize(("slope", "end", "side"), [(1.0, 100.0, "right"), (-1.0, 1.0, "left")])
+def test_the_name_of_a_guide_stands_at_its_upper_end(slope, end, side):
+    _, (ax,) = axes_row()
+    log_log(ax)
+    guide(ax, (1.0, 100.0), (10.0, 1.0), slope, "a law")
+    (text,) = ax.texts
+    assert text.xy == (end, pytest.approx(10.0))
+    assert text.get_ha() == side
+
+
+def test_a_border_has_a_name_if_it_is_given_one():
+    _, (ax,) = axes_row()
+    border(ax, 1.0)
+    assert not ax.texts
+    border(ax, 2.0, "no more")
+    assert [text.get_text() for text in ax.texts] == ["no more"]
+    assert [line.get_linestyle() for line in ax.lines] == [":", ":"]
+
+
+def test_ticks_inside_a_panel_do_not_widen_it():
+    _, (ax,) = axes_row()
+    ax.set_xlim(0.0, 1.0)
+    name_ticks(ax, (-1.0, 0.5, 2.0), inside=True)
+    assert [text.get_text() for text in ax.get_xticklabels()] == ["0.5"]
+    assert ax.get_xlim() == (0.0, 1.0)
+    name_ticks(ax, (0.5, 2.0))
+    assert ax.get_xlim()[1] >= 2.0

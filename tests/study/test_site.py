@@ -104,19 +104,17 @@ def study(tmp_path_factory):
     return {"scenes": scenes, "documents": documents, "root": root, "rows": rows}
 
 
+def built(study, folder, **more):
+    root = study["root"]
+    folders = {"results": root / "results", "report": root / "report", "sources": folder / "pages"}
+    site = folder / "s"
+    build(study["scenes"], study["documents"], root, **folders, site=site, **more)
+    return site
+
+
 @pytest.fixture(scope="module")
 def site(study):
-    root = study["root"]
-    folders = {"results": root / "results", "report": root / "report"}
-    build(
-        study["scenes"],
-        study["documents"],
-        root,
-        **folders,
-        sources=root / "pages",
-        site=root / "s",
-    )
-    return root / "s"
+    return built(study, study["root"])
 
 
 def test_every_link_of_every_page_leads_somewhere_on_the_site(site):
@@ -168,9 +166,7 @@ def test_the_numbers_of_the_tables_are_not_searched(site):
 
 
 def test_a_site_without_the_api_has_no_page_of_it_and_none_leads_there(study, tmp_path):
-    root, out = study["root"], tmp_path / "s"
-    folders = {"results": root / "results", "report": root / "report", "sources": tmp_path / "p"}
-    build(study["scenes"], study["documents"], root, **folders, site=out, api=False)
+    out = built(study, tmp_path, api=False)
     assert not (out / "api").exists()
     assert "api/" not in (out / "index.html").read_text("utf-8")
 
@@ -185,20 +181,11 @@ def test_a_row_of_the_ledger_says_what_the_filters_look_for(study):
 
 
 def test_a_link_that_leads_nowhere_is_named(study, tmp_path):
-    root = study["root"]
-    page = root / "docs/how.md"
+    page = study["root"] / "docs/how.md"
     kept = page.read_text()
     page.write_text("# How\n\nBack [home](../gone.md).\n")
-    folders = {"results": root / "results", "report": root / "report"}
     with pytest.raises(SiteError, match=r"how\.md: the link \.\./gone\.md leads nowhere"):
-        build(
-            study["scenes"],
-            study["documents"],
-            root,
-            **folders,
-            sources=tmp_path / "pages",
-            site=tmp_path / "s",
-        )
+        built(study, tmp_path)
     page.write_text(kept)
 
 

@@ -6,7 +6,7 @@ import pandas as pd
 
 from fracstudy.style import Axes, log_log, name_ticks
 
-DISK = 5.0  # radius of the disk of (59)
+DISC = 5.0  # radius of the disc of (59)
 
 
 def particles_per_side(runs: pd.DataFrame) -> pd.Series:

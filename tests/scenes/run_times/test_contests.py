@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from fracparticles.errors import FracparticlesError
+from fracstudy.figure_files import save
 from fracstudy.inputs import Inputs
-from fracstudy.style import save
 from scene_functions import figure, measured, study
 from scenes.run_times.contests import best, columns, duration, front, trials_of
 from scenes.run_times.first_call import benchmark as programs

@@ -8,8 +8,8 @@ import pytest
 
 from fracparticles.moving.scattered import NonuniformFourierSum
 from fracparticles.run.dataset import read_benchmark, write
+from fracstudy.figure_files import save
 from fracstudy.inputs import Inputs
-from fracstudy.style import save
 from scene_functions import measured
 from scenes.run_times.cost_growth.benchmark import benchmark as measure_growth
 from scenes.run_times.cost_growth.figure import figure as draw

@@ -10,8 +10,8 @@ from fracparticles.lattice.fourier import FourierConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
 from fracparticles.time import STEP_POLYNOMIALS
 from fracparticles.time.rkc import stages_for
+from fracstudy.figure_files import save
 from fracstudy.inputs import Inputs
-from fracstudy.style import save
 from scene_functions import measured
 from scenes.run_times.time_integration import benchmark as integration_benchmark
 from scenes.run_times.time_integration.figure import figure as draw_integrations

@@ -1,20 +1,28 @@
 """The particles of DVM: paths and lattice."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 from matplotlib import colormaps
 
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, RED, Axes, Figure, Look, axes_row, draw, entry, note
+from fracstudy.style import (
+    COLOURS,
+    RED,
+    Axes,
+    Figure,
+    Look,
+    axes_row,
+    border,
+    draw,
+    entry,
+    legend_under,
+)
 
 _ABOVE = 1.5  # the spacing that calls for remeshing, in units of h
 _DASHES: Look = {"linewidth": 0.7, "linestyle": (0, (4, 3))}
 _EXACT = {"color": "0.15", **_DASHES}
 _DOTS: Look = {"color": RED, "marker": "o", "markersize": 2.5, "linestyle": ""}
 _DOTS |= {"alpha": 0.5, "markeredgewidth": 0.0}
-_NOTE: Look = {"xycoords": ("axes fraction", "data"), "color": "0.35"}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
@@ -25,10 +33,6 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     _spacings(axes[1], pick(series, panel="spacing"))
     _overlaps(axes[2], pick(series, panel="overlap"))
     return drawn
-
-
-def _legend(ax: Axes, columns: int = 2, **options: Any) -> None:
-    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=columns, **options)
 
 
 def _paths(ax: Axes, series: pd.DataFrame) -> None:
@@ -45,7 +49,7 @@ def _paths(ax: Axes, series: pd.DataFrame) -> None:
         entry("the last ones", color=RED),
         entry(r"exact, $x\propto t^{1/\alpha}$", **{**_EXACT, "linestyle": "--"}),
     ]
-    _legend(ax, handles=handles)
+    legend_under(ax, handles=handles)
 
 
 def _spacings(ax: Axes, series: pd.DataFrame) -> None:
@@ -59,10 +63,9 @@ def _spacings(ax: Axes, series: pd.DataFrame) -> None:
         ax.plot([0.0, stretched["x"]], [stretched["y"]] * 2, color=shade, **_DASHES)
     rest = series[~series["series"].isin(["none", "exact"])]
     draw(ax, rest, label="remeshed (just before)", **_DOTS)
-    ax.axhline(_ABOVE, color="0.5", linewidth=0.8, linestyle=":")
-    note(ax, f"remesh above {_ABOVE:g}", (1.0, _ABOVE), (0, -2), ha="right", va="top", **_NOTE)
+    border(ax, _ABOVE, f"remesh above {_ABOVE:g}", shift=(0, -2), va="top", fontsize=7)
     ax.set(xlabel="position $x$", ylabel=r"spacing $\Delta x / h$")
-    _legend(ax, 3, columnspacing=1.0)
+    legend_under(ax, 3, columnspacing=1.0)
 
 
 def _overlaps(ax: Axes, series: pd.DataFrame) -> None:
@@ -76,7 +79,6 @@ def _overlaps(ax: Axes, series: pd.DataFrame) -> None:
     remeshed = {**_DOTS, "label": "remeshed (just before), ends"}
     for name, part in series.sort_values("x").groupby("series"):
         draw(ax, part, **looks.get(name, remeshed))
-    ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle=":")
-    note(ax, "no overlap below 1", (0.2, 1.0), (0, 2), va="bottom", **_NOTE)
+    border(ax, 1.0, "no overlap below 1", 0.2, ha="left", va="bottom")
     ax.set(xlabel="time $t$", ylabel=r"overlap $\epsilon / \Delta x$", ylim=(0.0, 2.1))
-    _legend(ax, columnspacing=1.0)
+    legend_under(ax, columnspacing=1.0)

@@ -4,7 +4,18 @@ import pandas as pd
 
 from fracstudy import style
 from fracstudy.panels import pick
-from fracstudy.style import Axes, Figure, Look, axes_row, draw, entry, log_log, name_ticks, note
+from fracstudy.style import (
+    Axes,
+    Figure,
+    Look,
+    axes_row,
+    border,
+    draw,
+    entry,
+    legend_under,
+    log_log,
+    name_ticks,
+)
 
 _REMESHINGS = {  # colour, marker, label
     "M4'": (style.BLUE, "o", "$M_4'$"),
@@ -12,7 +23,6 @@ _REMESHINGS = {  # colour, marker, label
     "none": (style.GREEN, "^", "none"),
 }
 _KINDS = {"II, field (7)": "-", "II, strengths": ":", "IV, field (7)": "--"}
-_BELOW: Look = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.15), "ncols": 2}
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: float) -> Figure:
@@ -47,8 +57,8 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
     if len(spacings) > 1:
         x = spacings[-2]
         style.slope_triangle(ax, x, 0.2 * series.loc[series["x"] == x, "y"].min(), 2.0)
-    _plain_ticks(ax, [0.01, 0.02, 0.05, 0.1, 0.2, 0.5])
-    ax.legend(handles=names + lines, **_BELOW)
+    name_ticks(ax, (0.01, 0.02, 0.05, 0.1, 0.2, 0.5), inside=True)
+    legend_under(ax, handles=names + lines)
 
 
 def _deviations(ax: Axes, series: pd.DataFrame) -> None:
@@ -64,7 +74,7 @@ def _deviations(ax: Axes, series: pd.DataFrame) -> None:
     name_ticks(ax, (-10.0, -1.0, -0.1, 0.0, 0.1, 1.0, 10.0), "y")
     ax.set_xlabel("position $x$")
     ax.set_ylabel("deviation from the exact solution, %\n(linear between -0.1 and 0.1)")
-    ax.legend(**_BELOW)
+    legend_under(ax)
 
 
 def _steps(ax: Axes, series: pd.DataFrame) -> None:
@@ -72,16 +82,8 @@ def _steps(ax: Axes, series: pd.DataFrame) -> None:
     for (h, name), part in series.groupby(["h", "remeshing"]):
         look = _look(name) if h == series["h"].max() else {**_look(name), **finer}
         draw(ax, part, label=rf"{_REMESHINGS[name][2]}, $h = {h:.3g}$", **look)
-    ax.axhline(1e-3, color="0.5", linewidth=0.8, linestyle=":")
-    place = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "bottom"}
-    note(ax, "a thousandth", (1.0, 1e-3), (0, 2), color="0.35", **place)
+    border(ax, 1e-3, "a thousandth", va="bottom")
     log_log(ax, xlabel=r"time step $\Delta t$")
     ax.set_ylabel("change from the smallest step / error (48)")
-    _plain_ticks(ax, sorted(series["x"].unique()))
-    ax.legend(**_BELOW)
-
-
-def _plain_ticks(ax: Axes, ticks: list[float]) -> None:
-    """Those of the ticks of a logarithmic x axis that are in view, as plain numbers."""
-    low, high = ax.get_xlim()
-    name_ticks(ax, [tick for tick in ticks if low <= tick <= high])
+    name_ticks(ax, sorted(series["x"].unique()), inside=True)
+    legend_under(ax)

@@ -11,13 +11,13 @@ from matplotlib.patches import Circle
 from fracstudy.inputs import ORDERS
 from fracstudy.panels import pick
 from fracstudy.style import Axes, Figure, Look
-from scenes.plane import DISK
+from scenes.plane import DISC
 
 _EXTERIORS = {"truncated": "truncated", "open": "open exterior"}
 _ERRORS = 10.0 ** np.arange(-4.0, 1.1, 0.5)  # two steps of colour a decade
-_COLOURS: dict[str, dict[str, str]] = {  # of the maps, and of the disk of (59)
-    "u": {"cmap": "viridis", "disk": "white"},
-    "error": {"cmap": "magma", "disk": "0.9"},
+_COLOURS: dict[str, dict[str, str]] = {  # of the maps, and of the disc of (59)
+    "u": {"cmap": "viridis", "disc": "white"},
+    "error": {"cmap": "magma", "disc": "0.9"},
 }
 _BARS: dict[str, Look] = {
     "u": {"label": r"strength $u(\mathbf{x}, t_f)$", "shrink": 0.9, "aspect": 18, "extend": "min"},
@@ -55,14 +55,14 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, maps: list[list[Any]]) 
 
 
 def _map(ax: Axes, part: pd.DataFrame, norm: Normalize, what: str) -> None:
-    colours, ticks = _COLOURS[what], [-DISK, 0.0, DISK]
+    colours, ticks = _COLOURS[what], [-DISC, 0.0, DISC]
     x, field = _whole(part)
     look: Look = {"norm": norm, "cmap": colours["cmap"], "shading": "nearest"}
     ax.pcolormesh(x, x, field.T, rasterized=True, **look)
     # What is not positive has no place on a logarithmic scale.
     ax.set_facecolor("#D55E00")
-    disk = {"fill": False, "color": colours["disk"], "linewidth": 0.9, "linestyle": "--"}
-    ax.add_patch(Circle((0.0, 0.0), DISK, **disk))
+    disc = {"fill": False, "color": colours["disc"], "linewidth": 0.9, "linestyle": "--"}
+    ax.add_patch(Circle((0.0, 0.0), DISC, **disc))
     ax.set_aspect("equal")
     ax.grid(visible=False)
     labels = [f"{tick:g}".replace("-", "−") for tick in ticks]

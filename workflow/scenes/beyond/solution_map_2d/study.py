@@ -10,7 +10,7 @@ from fracparticles.special.plane import square_exchange_error, square_tail_mass
 from fracparticles.special.stable import green
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.panels import Panels
-from scenes.plane import DISK, particles_per_side
+from scenes.plane import DISC, particles_per_side
 
 NEEDS = {"exterior": ["truncated", "open"]}
 
@@ -18,7 +18,7 @@ _OUTER = 0.8  # of the half-width: beyond it, what the tables call the outer fif
 
 
 def study(inputs: Inputs, *, maps: list[list[str | int]]) -> Result:
-    """Maps of u and of its relative error at t_f, truncated and open; a table of the errors in the disk and outside.
+    """Maps of u and of its relative error at t_f, truncated and open; a table of the errors in the disc and outside.
 
     Each of the `maps` is a scheme, its order, and what is shown, "u" or "error". Only the quadrant x, y >= 0 goes into
     the series: the rest is its mirror image.
@@ -58,7 +58,7 @@ def _row(
         "N": run.N,
         "error (59)": run.relative_l1_error,
         "truncation error, predicted": predicted if exchange else np.nan,
-        "largest relative error, r <= 5": error[r <= DISK * (1.0 + 1e-12)].max(),
+        "largest relative error, r <= 5": error[r <= DISC * (1.0 + 1e-12)].max(),
         "median relative error, outer fifth": np.median(error[outer]),
         "largest relative error": error.max(),
         "least u / largest u": u.min() / u.max(),

@@ -10,19 +10,13 @@ from scipy.linalg import expm, toeplitz
 
 import fracparticles as fp
 from fracstudy.probe import EPS, HELD, REFUSED, Kind, Probe, off
+from scenes.extremes.dense import exchange
 from scenes.extremes.ends_of_alpha import kernels
 from scenes.extremes.ends_of_alpha.references import written
 from scenes.extremes.ends_of_alpha.runs import TIME, compute_at
 
 _N, _H, _OVERLAP = 20, 0.25, 2.0  # 41 particles
 _ROUND_OFF = 64.0 * EPS  # of T |lambda|, measured, see `run.reliability`
-
-
-def _exchange(w: np.ndarray) -> np.ndarray:
-    """Return the matrix of sum_j w_{i-j} (u_j - u_i)."""
-    matrix = toeplitz(w)
-    np.fill_diagonal(matrix, 0.0)
-    return matrix - np.diag(matrix.sum(axis=1))
 
 
 def _matrix(scheme: str, beta: float, order: int) -> np.ndarray:
@@ -32,14 +26,14 @@ def _matrix(scheme: str, beta: float, order: int) -> np.ndarray:
     at = [kernels.exact(name, float(x), alpha, 1, order, family)[0] for x in r]
     values = np.array(at, dtype=float)
     if scheme == "KPSE":
-        return _exchange(alpha * s ** (-1.0 - alpha) * values)
+        return exchange(toeplitz(alpha * s ** (-1.0 - alpha) * values))
     if scheme == "DD":
         return toeplitz(s ** (-1.0 - alpha) * values)
     # Only differences of the potential enter: the constant 1 / beta is taken off where there are digits for it.
     with mp.workdps(40):
         potential = np.array([float(value - at[0]) for value in at]) * s ** (1.0 - alpha)
     laplacian = 2.0 * s**-3.0 * 2.0 / np.sqrt(np.pi) * np.exp(-r * r)  # (16), (17)
-    return _exchange(laplacian) @ toeplitz(potential)
+    return exchange(toeplitz(laplacian)) @ toeplitz(potential)
 
 
 def _against_matrix(scheme: str, beta: float, order: int) -> float:

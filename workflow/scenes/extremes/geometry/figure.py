@@ -4,10 +4,12 @@ import pandas as pd
 
 from fracstudy.style import (
     BLUE,
+    DOTTED,
     RED,
     Figure,
     Look,
     axes_row,
+    border,
     draw,
     entry,
     legend_below,
@@ -27,8 +29,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     drawn, (ax,) = axes_row(1, height=4.0, width=6.0)
     for (kind, said), points in series.groupby(["panel", "series"]):
         draw(ax, points, color=_SAID[said][0], marker=_KINDS[kind], **_POINT)
-    ax.axvline(1.0, color="0.5", linewidth=0.8, linestyle=":")
-    ax.axhline(OF_A_FUNCTION, color="0.5", linewidth=0.8, linestyle=":")
+    ax.axvline(1.0, **DOTTED)
+    border(ax, OF_A_FUNCTION)
     log_log(ax, xlabel="largest estimate / its limit", ylabel="true relative error in the 1-norm")
     place: Look = {"xycoords": "axes fraction", "va": "top", "fontsize": 9}
     note(ax, "wrong without a warning: empty", (0.02, 0.98), (0, 0), **place)

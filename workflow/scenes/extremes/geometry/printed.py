@@ -16,6 +16,8 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.special import eval_genlaguerre, j0
 
+from scenes.extremes.dense import exchange
+
 # kappa, G and K by 1F1: sign, alpha less the power, and b.
 _CONFLUENT = {"kappa": (1.0, 2.0, 0), "G": (-1.0, 0.0, 0), "K": (1.0, 0.0, 2)}
 _EXACT = {"limit": 2000, "epsabs": 1e-15, "epsrel": 1e-13}
@@ -96,10 +98,6 @@ def matrix(scheme: str, kernels: Kernels, n: int, overlap: float) -> np.ndarray:
         distinct, where = np.unique(square, return_inverse=True)
         values = np.array([kernels.values(name, sqrt(m) / s) for m in distinct.tolist()])
         return volume * values[where].reshape(square.shape)
-
-    def exchange(weights: np.ndarray) -> np.ndarray:
-        others = weights - np.diag(np.diag(weights))  # u_i - u_i is zero
-        return others - np.diag(others.sum(axis=1))
 
     if scheme == "DD":
         return s**-alpha * sums("G")

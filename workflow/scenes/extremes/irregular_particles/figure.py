@@ -48,5 +48,5 @@ def _spacing(ax: Axes, part: pd.DataFrame) -> None:
     style.log_log(ax, xlabel=r"particle spacing $h$", ylabel=r"relative error of $du/dt$")
     style.name_ticks(ax, sorted(part["x"].unique()))
     finest = pick(part, series="lattice").sort_values("x").iloc[0]
-    style.slope_triangle(ax, 1.2 * finest["x"], 0.6 * finest["y"], 2.0)
+    style.slope_triangle(ax, 1.2 * finest["x"], 0.22 * finest["y"], 2.0)
     style.small_legend(ax, "lower right")

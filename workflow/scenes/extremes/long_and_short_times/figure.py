@@ -27,6 +27,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, betas: list[float]) -> 
     style.log_log(profile, xlabel=distance, ylabel=r"scaled strength $t^{1/\alpha} u$")
     profile.set_ylim(1e-12, 1.0)
     style.log_log(error, xlabel=distance, ylabel="error / peak")
-    style.guide(profile, (30.0, 3000.0), (30.0, 30.0 ** (-1.0 - alpha)), -1.0 - alpha)
+    fall, near = -1.0 - alpha, 30.0
+    style.guide(profile, (near, 3000.0), (near, near**fall), fall, rf"slope ${fall:g}$")
     style.legend_below(drawn, profile)
     return drawn

@@ -10,6 +10,7 @@ import numpy as np
 import fracparticles as fp
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
+from fracstudy.orders import fitted_power
 from fracstudy.panels import Panels
 from fracstudy.probe import EPS, REFUSED, Kind, Probe, off
 from scenes.extremes.long_and_short_times.profile import rate, solution, tail_constant
@@ -108,11 +109,11 @@ def _graded_error(beta: float, ratio: float, form: str) -> float:
 
 
 def _graded_tail(beta: float, ratio: float) -> float:
-    """The exponent of the tail, from 10 to 1000 widths, by a straight line through its logarithms."""
+    """The exponent of the tail, from 30 to 1000 widths, by a straight line through its logarithms."""
     run = _graded(beta, ratio)
     r = run.x / ratio ** (1.0 / (1.0 + beta))
     part = (r > 30.0) & (r < 1000.0)
-    slope = np.polyfit(np.log(r[part]), np.log(np.maximum(run.u[part], 1e-300)), 1)[0]
+    slope = fitted_power(r[part], np.maximum(run.u[part], 1e-300))
     return float(abs(slope + 2.0 + beta))
 
 

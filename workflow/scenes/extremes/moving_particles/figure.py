@@ -15,7 +15,6 @@ _LOOKS: dict[str, Look] = {
 }
 _POINTS: Look = {"linestyle": "none"}
 _HOLLOW: Look = {"linestyle": "none", "markerfacecolor": "none"}
-_BORDER: Look = {"color": "0.5", "linewidth": 0.8, "linestyle": ":"}
 _ASKED = 0.05
 
 
@@ -38,8 +37,8 @@ def _growth(ax: Axes, part: pd.DataFrame) -> None:
         look = _LOOKS[str(name)]
         ax.plot(points["x"], points["predicted"], color=look["color"], linewidth=0.9)
         style.draw(ax, points, **look, **_HOLLOW)
-    ax.axvline(1.0, **_BORDER)
-    ax.axhline(1.0, **_BORDER)
+    ax.axvline(1.0, **style.DOTTED)
+    style.border(ax, 1.0)
     ax.set_xlabel(r"time step $\Delta t$ / stability limit")
     ax.set_ylabel("growth of the fastest wave per step")
 
@@ -50,6 +49,6 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
         style.draw(ax, points, color=look["color"], linewidth=0.9)
         for spoke, some in points.groupby("spoke"):
             style.draw(ax, some, **look, **(_HOLLOW if spoke else _POINTS))
-    ax.axhline(_ASKED, **_BORDER)
+    style.border(ax, _ASKED)
     style.log_log(ax, xlabel=r"smoothing length / spacing, $\epsilon / h$")
     ax.set_ylabel("relative error of the run")

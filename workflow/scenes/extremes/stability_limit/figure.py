@@ -53,7 +53,9 @@ def _map(ax: Axes, points: pd.DataFrame, colours: Any) -> Any:
     shown = ax.pcolormesh(*field, norm=colours, **how)
     if limit.shape[0] > 2 and limit.shape[1] > 2:
         lines = ax.contour(*field, levels=_LEVELS, colors="white", linewidths=0.7)
-        ax.clabel(lines, fmt="%g", fontsize=7)
+        for text in ax.clabel(lines, fmt="%g", fontsize=7):
+            across, up = ax.transLimits.transform(text.get_position())
+            text.set_visible(0.05 < across < 0.95 and 0.05 < up < 0.95)  # the frame would cut it
     return shown
 
 

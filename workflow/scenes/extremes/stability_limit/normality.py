@@ -11,6 +11,7 @@ from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.schemes.spectrum import dense_matrix, eigenvalue_bounds, scheme_matrix
 from fracparticles.schemes.stability import stability_limit
 from fracstudy.probe import EPS, HELD, Kind, Probe
+from scenes.extremes.dense import step
 
 _TIMES = np.geomspace(1e-2, 1e6, 17)
 _STEPS = 2 ** np.arange(15)
@@ -60,8 +61,7 @@ def transient_growth(half: int) -> Iterator[Probe]:
         bounded = Kind("transient growth", expected, 1e-8, must=HELD)
         flow = lambda: _worst([expm(t * matrix) for t in _TIMES], condition, reach)
         yield bounded(f"{name}, exp(A t)", flow, source="scipy")
-        dt, one = 0.99 * stability_limit(scheme, 0.5, order), np.eye(len(matrix))
-        p = one + dt * matrix @ (one + 0.5 * dt * matrix)
+        p = step(matrix, 0.99 * stability_limit(scheme, 0.5, order), "rk2")
         power = np.linalg.matrix_power
         steps = lambda: _worst([power(p, int(n)) for n in _STEPS], condition, reach)
         yield bounded(f"{name}, p(A dt)^n, rk2, dt = 0.99 a", steps, source="dense matrix")

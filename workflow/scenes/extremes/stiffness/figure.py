@@ -1,6 +1,5 @@
 """Operator applications and error over the stiffness, for each way of the time integration."""
 
-import numpy as np
 import pandas as pd
 
 from fracstudy import style
@@ -25,7 +24,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         for way, look in _LOOK.items():
             style.draw(ax, pick(series, panel=panel, series=way), label=way, **look)
         style.log_log(ax, xlabel=r"stiffness $T\,|\lambda|$", ylabel=label)
-    x = np.array([series["x"].min(), series["x"].max()])
-    axes[1].plot(x, 64.0 * EPS * x, color="0.5", linewidth=0.9, linestyle=":")
+    least, most = series["x"].min(), series["x"].max()
+    bound = least, 64.0 * EPS * least
+    style.guide(axes[1], (least, most), bound, 1.0, r"$64\,T\,|\lambda|\,\epsilon$")
     style.legend_below(drawn, axes[0])
     return drawn

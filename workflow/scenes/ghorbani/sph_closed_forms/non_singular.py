@@ -11,6 +11,7 @@ from scipy.special import gamma
 from fracparticles.sph.closed_forms import FUNCTIONS
 from fracparticles.sph.definition import defining_integral
 from fracstudy.findings import Finding, measured
+from fracstudy.orders import fitted_power
 from scenes.ghorbani.operators import CURVATURES, LABELS, SLOPES, Order, central_slope, order_at
 from scenes.ghorbani.sph_closed_forms import definitions as by
 
@@ -76,7 +77,7 @@ def findings(x: np.ndarray, orders: list[float], variable: dict[str, float]) -> 
 def _at_the_end(orders: list[float]) -> Finding:
     """The power of x with which (35) grows towards x = a."""
     powers = {
-        (name, o): np.polyfit(np.log(_NEAR), np.log(np.abs(by.derivative(name, _NEAR, o))), 1)[0]
+        (name, o): fitted_power(_NEAR, np.abs(by.derivative(name, _NEAR, o)))
         for name, o in product(FUNCTIONS, orders)
     }
     infinite = [name for name in FUNCTIONS if by.at_zero(name)]

@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 
 from fracparticles.markers import Gaussian, MarkerVelocity, accuracy, shape_function, uniform
 from fracstudy.findings import Finding, measured
+from fracstudy.orders import fitted_power
 
 _H, _LENGTH = 0.1, math.sqrt(5.0)  # of the markers of a Gaussian, exp(-x^2 / 5) after t = 1
 
@@ -46,7 +47,8 @@ def _best(optimum: pd.DataFrame) -> Iterator[Finding]:
     finite = finite.rename(columns={"x": "h"}).set_index(["S", "h"])
     robust, plain = (finite[column] / finite["predicted"] for column in ("ours", "plain"))
     # The predicted one is a power of h, M / (k + M), so that the factor is to be none.
-    power, strict = (r.groupby(level="S").agg(_power).abs() for r in (robust, plain))
+    of_h = lambda r: fitted_power(r.index.get_level_values("h"), r)
+    power, strict = (r.groupby(level="S").agg(of_h).abs() for r in (robust, plain))
     yield measured(
         "M-C3.optimum",
         power=power,
@@ -66,11 +68,6 @@ def _best(optimum: pd.DataFrame) -> Iterator[Finding]:
         )
         miss[name, f"h = {h:g}"] = abs(np.exp(least.x) / predicted - 1.0)
     yield measured("M-C3.formula", miss=max(miss.values()), number=len(miss))
-
-
-def _power(of_h: pd.Series) -> float:
-    """The power of h that fits best."""
-    return float(np.polyfit(np.log(of_h.index.get_level_values("h")), np.log(of_h), 1)[0])
 
 
 def lattice_error(name: str, epsilon: float, h: float) -> tuple[float, float]:

@@ -82,5 +82,6 @@ def _denominator(ax: Axes, series: pd.DataFrame) -> None:
     note(ax, f"F = {depth}\nat a marker", (x, y), (-62, -8), arrowprops=arrow, **centred)
     ax.set(xlabel="$x$", ylabel="$F$, the denominator of (7)")
     ax.set_yscale("symlog", linthresh=1e-3)
+    ax.set_ylim(top=3.0 * series["y"].max())  # room for the strokes
     t = series["t"].iloc[0]
     ax.set_title(rf"(d) $S_8$ from random positions, $t \approx {t:.2f}$", loc="left")

@@ -5,7 +5,7 @@ from itertools import chain
 import pandas as pd
 
 from fracstudy.panels import pick
-from fracstudy.style import BLUE, RED, Axes, Figure, draw, legend_below
+from fracstudy.style import BLUE, DOTTED, RED, Axes, Figure, draw, legend_below
 from scenes.lewandowski.marker_style import EXACT, SHAPE_COLOURS
 
 _LOADINGS = {"uniform": ("uniform", BLUE, ":"), "equal": ("equal weight", RED, "--")}
@@ -43,7 +43,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, support: float, shown: 
             label = f"{name}: ${shape}$" + (r", $2\varepsilon$" if wider == 2.0 else "")
             curve = pick(series, panel="error", series=f"{name}, {loading}")
             draw(ax, curve, line, color=hue, label=label)
-        ax.axvline(shown, color="0.5", linewidth=0.8, linestyle=":")
+        ax.axvline(shown, **DOTTED)
         ax.set(yscale="log", ylim=(5e-3, 0.3), xlabel="end of the interval $x_0$")
         ax.set_title(title, loc="left", color=colour)
         if column == 0:

@@ -42,7 +42,7 @@ def _profiles(ax: Axes, series: pd.DataFrame) -> None:
         look = {"color": colour, "markerfacecolor": face, "markeredgewidth": 0.8}
         size = 3.2 if name == "printed" else 4.2
         draw(ax, part, marker, label=label + when, markersize=size, **look)
-    ax.set(xlabel="$x$", ylabel="$F$ at the markers", xlim=(-3.0, 3.0), ylim=(-0.1, 2.55))
+    ax.set(xlabel="$x$", ylabel="$F$ at the markers", xlim=(-3.0, 3.0), ylim=(-0.1, 1.75))
     ax.legend(loc="upper left", **_SMALL)
 
 
@@ -59,8 +59,7 @@ def _steps(ax: Axes, series: pd.DataFrame, printed: float) -> None:
     for place, text in ((limit, r"$\eta\epsilon^2 e / D_0$"), (printed, "printed")):
         ax.axvline(place, color="0.4", linewidth=0.9, linestyle="--")
         note(ax, text, (place, 1.0), (-4, -4), **beside)
-    low, high = 0.99 * scan["x"].min(), 1.01 * scan["x"].max()
-    style.name_ticks(ax, [t for t in (0.0025, 0.003, 0.004, 0.006, 0.01, 0.02) if low <= t <= high])
+    style.name_ticks(ax, (0.0025, 0.003, 0.004, 0.006, 0.01), inside=True)
     ax.set(xlabel=r"time step $\Delta t$", ylabel=r"max $|F - f_\infty|$ in the core / peak")
     ax.legend(loc="center left", bbox_to_anchor=(0.4, 0.5), **_SMALL)
 
@@ -89,7 +88,7 @@ def _approach(ax: Axes, series: pd.DataFrame) -> None:
     log_log(ax, xlabel="time $t$", ylabel="deviation from the steady state")
     ax.set_ylim(0.6 * core["y"].min(), 2.0 * excess["y"].max())
     above, below = (part[["x", "y"]].iloc[len(part) // 2] for part in (excess, core))
-    note(ax, r"mass in the flanks, minus that of $f_\infty$", above, (0, 12), color=GREEN)
+    note(ax, "mass in the flanks,\nminus that of $f_\\infty$", above, (0, 12), color=GREEN)
     text, look = r"max $|F - f_\infty|$ in the core", {"ha": "right", "va": "top"}
     note(ax, text, below, (-6, -12), color=BLUE, **look)
     style.slope_triangle(ax, 0.3 * excess["x"].iloc[-1], 0.62 * excess["y"].iloc[-2], -0.25)

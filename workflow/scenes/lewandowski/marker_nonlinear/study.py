@@ -13,6 +13,7 @@ from fracparticles.time.rkc import stages_for
 from fracstudy.errors import off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import fitted_power
 from fracstudy.panels import Panels
 from scenes.lewandowski.marker_nonlinear.evolution import Evolution, Markers
 
@@ -166,7 +167,7 @@ def _long_time(setting: Markers, stable: Evolution, lost: Sequence[float]) -> It
     times = np.array(stable.times[1:])
     late = times >= 0.05 * stable.last
     excess = np.array([setting.excess(x) for x in stable.positions[1:]])[late]
-    slope = np.polyfit(np.log(times[late]), np.log(excess), 1)[0] if late.sum() > 1 else 0.0
+    slope = fitted_power(times[late], excess) if late.sum() > 1 else 0.0
     part, end = lost[0] / stable.last, stable.last
     yield measured("M-F18.demonstrated", part=part, lost=lost[0], end=end)
     yield measured(

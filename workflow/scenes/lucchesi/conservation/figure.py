@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from fracstudy.style import Figure, Look, axes_row, draw, log_log, name_ticks, note, scheme_style
+from fracstudy.style import Figure, Look, axes_row, border, draw, log_log, name_ticks, scheme_style
 
 _FLOOR = float(np.finfo(float).eps) / 2.0  # a change of zero is drawn here
 _OUTFLOW: Look = {"color": "black", "linewidth": 4.0, "alpha": 0.25}
@@ -34,9 +34,8 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
             name = exterior.replace("M4'", "$M_4'$").replace("remeshing none", "no remeshing")
             look = scheme_style("DVM", **_FREE if exterior == "remeshing none" else {})
             draw(ax, points, label=f"DVM, {name}", **look)
-    ax.axhline(2.0 * _FLOOR, color="0.5", linewidth=0.8, linestyle=":")
-    style = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "top", "color": "0.35"}
-    note(ax, "one unit in the last place", (1.0, 2.0 * _FLOOR), (0, -3), **style)
+    # Below what lies on the line, and on the floor.
+    border(ax, 2.0 * _FLOOR, "one unit in the last place", shift=(0, -12), va="top")
     log_log(ax, xlabel=r"time $t_f - t_0$", ylim=(_FLOOR / 10.0, 0.1))
     ax.set_ylabel(r"change of the total strength, $|M(t_f) / M(t_0) - 1|$")
     ax.set_xlim(right=1.6 * series["x"].max())

@@ -28,7 +28,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         ax.set_xlim(right=right)
         ax.axvline(1.0, color="0.5", linewidth=0.8)
         ax.set_xlabel(r"step over the limit of DD, $D\,\Delta t / (a\,h^\alpha)$")
-        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
+        style.legend_under(ax)
     return drawn
 
 
@@ -47,7 +47,7 @@ def _factors(ax: Axes, series: pd.DataFrame) -> None:
             ax.plot(fine, 1.0 + z + 0.5 * z * z, color=COLOURS["DD"], label=predicted)
     part = pick(series, run="GPSE").query("factor <= 1.05 * @largest")
     ax.plot(part["factor"], part["predicted"], color=COLOURS["GPSE"], label="GPSE, short waves")
-    ax.axhline(1.0, color="0.5", linewidth=0.8, linestyle=":")
+    style.border(ax, 1.0)
     ax.set(xlim=(0.0, 1.03 * largest), ylim=(0.0, None), ylabel="factor of a wave in a step")
 
 
@@ -61,6 +61,5 @@ def _errors(ax: Axes, series: pd.DataFrame) -> None:
             marks, label = [_STOPPED] * len(stopped), "stopped: $u$ changes sign"
             ax.plot(stopped, marks, color=_LOOKS[name]["color"], label=label, **_CROSS)
     log_log(ax)
-    low, high = ax.get_xlim()
-    style.name_ticks(ax, [tick for tick in (0.25, 0.5, 1.0, 2.0, 4.0) if low <= tick <= high])
+    style.name_ticks(ax, (0.25, 0.5, 1.0, 2.0, 4.0), inside=True)
     ax.set_ylabel(ERROR)

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 
 from fracstudy.panels import pick
-from fracstudy.style import COLOURS, Figure, Look, axes_row, entry, legend_below, log_log
+from fracstudy.style import COLOURS, Figure, Look, axes_row, border, entry, legend_below, log_log
 
 _FLOOR = 2.0**-54  # where errors of zero are drawn
 _CEILING = 1e6  # above both panels, below where the axes would overflow
@@ -33,7 +33,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, alpha: float) -> Figure
             left.plot(curve["x"], inside, **style, **every)
             right.plot(curve["x"], np.clip(error, _FLOOR, _CEILING), **style, **every)
             entries.append(entry(f"{symbol} = {terms}", **style))
-    right.axhline(1e-3, color="0.5", linewidth=0.8, linestyle=":")
+    border(right, 1e-3)
     for ax in (left, right):
         log_log(ax, xlim=(0.1, 30.0), xlabel="distance $x$")
     left.set_ylim(0.3 * exact.min(), 8.0 * exact.max())

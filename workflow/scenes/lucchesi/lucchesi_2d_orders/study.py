@@ -11,20 +11,20 @@ from fracparticles.run.orders import self_convergence_order
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import pick
-from scenes.plane import DISK, particles_per_side, stored_field
+from scenes.plane import DISC, particles_per_side, stored_field
 
 NEEDS = {"scheme": ["DD", "FPSE"]}
 
 _OURS = "ours, h as middle level"  # of the three of (49)
 # |x| up to which the sum runs; round-off must not leave out a particle.
-_REGIONS = {"r <= 5": DISK * (1.0 + 1e-12), "all particles": np.inf}
+_REGIONS = {"r <= 5": DISC * (1.0 + 1e-12), "all particles": np.inf}
 
 # By N: h, |x|, and u of the field (7) and of the strengths.
 _Levels = dict[int, tuple[float, np.ndarray, dict[str, np.ndarray]]]
 
 
 def study(inputs: Inputs, *, particles: dict[str, int]) -> Result:
-    """The printed orders, ours from the field (7) over the disk with h as middle level, and the other readings.
+    """The printed orders, ours from the field (7) over the disc with h as middle level, and the other readings.
 
     `particles` has the N that each printed h belongs to.
     """
@@ -107,6 +107,6 @@ def _findings(
         order=order["field (7)", "r <= 5"],
         others={
             "the strengths for the field (7)": {"difference": strengths},
-            "all particles for the disk": {"difference": everywhere},
+            "all particles for the disc": {"difference": everywhere},
         },
     )

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, Figure, axes_row, log_log, note
+from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, Figure, axes_row, border, log_log, note
 
 _FLOOR = 2.0**-53  # where smaller deviations are drawn
 # By dimension: colour, name, and the power of the tail, with the side of the curve that it is named on.
@@ -38,7 +38,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: float, reach: lis
     for name, (colour, style, label) in _WAYS.items():
         curve = curves[name].dropna().clip(lower=_FLOOR)
         deviation.plot(curve.index, curve, color=colour, linestyle=style, label=label)
-    deviation.axhline(_FLOOR, color="0.5", linewidth=0.8, linestyle=":")
+    border(deviation, _FLOOR)
     log_log(deviation, xlim=reach, ylim=(3e-17, 3.0))
     deviation.set_ylabel(r"relative deviation from our $\Phi_{2,\alpha}(r)$")
     deviation.legend(loc="upper left", fontsize=7.5)

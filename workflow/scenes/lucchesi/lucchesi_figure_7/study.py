@@ -14,7 +14,7 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import Panels
-from scenes.plane import DISK
+from scenes.plane import DISC
 
 _ERROR, _ORDER = "largest error / largest value, r <= 5", "observed order"
 _QUANTITIES = {"flux": "flux (19), FPSE"} | {s: f"diffusion rate, {s}" for s in ("DD", "FPSE")}
@@ -61,7 +61,7 @@ def study(
             panels.add(**where, x=r, y=profile[kept], exact=exact)
     series = panels.frame.rename(columns={"x": "r"})
     table = _table(series)
-    shown = (series["r"] <= DISK) & (series["N"] <= max(particles))
+    shown = (series["r"] <= DISC) & (series["N"] <= max(particles))
     drawn = series[shown | (series["N"] == series["N"].max())]
     return Result(table, inputs.judged(_findings(table, particles)), drawn)
 
@@ -75,7 +75,7 @@ def _table(series: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for name, words in _QUANTITIES.items():
         for count, part in series[series["quantity"] == name].groupby("N"):
-            inside = part["r"] <= DISK
+            inside = part["r"] <= DISC
             error = (part["y"] - part["exact"]).abs() / part["exact"].abs().max()
             row = {
                 "quantity": words,

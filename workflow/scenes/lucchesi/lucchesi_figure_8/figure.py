@@ -2,10 +2,9 @@
 
 import pandas as pd
 
-from fracstudy import style
 from fracstudy.panels import pick
 from fracstudy.style import UNDERLAID, Axes, Figure, Look, entry, legend_below, note, scheme_style
-from scenes.plane import DISK
+from scenes.plane import DISC
 
 _NOTE: Look = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"}
 _OPEN = {"linestyle": "--", "marker": ""}
@@ -21,17 +20,17 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         edge = here["r"].max()
         _profiles(column[0], pick(here, exterior="truncated"), lowest)
         _errors(column[1], here)
-        style.panel_title(column[0], letter, f"along ${line}$")
+        column[0].set_title(f"({letter}) along ${line}$", loc="left")
         for ax in column:
             ax.axvline(edge, color="0.6", linewidth=0.8)
-            ax.axvline(DISK, color="0.6", linewidth=0.8, linestyle=":")
+            ax.axvline(DISC, color="0.6", linewidth=0.8, linestyle=":")
             ax.set_xlim(0.0, 1.02 * edge)
         column[0].set(yscale="log", ylim=(lowest, highest))
         column[1].set(yscale="log", ylim=(1e-5, 60.0), xlabel="distance $r$ from the origin")
     rows[0, 0].set_ylabel(r"strength $u(r, t_f)$")
     rows[1, 0].set_ylabel(r"relative error $|u\,/\,G - 1|$")
     edge = pick(series, line="y = 0")["r"].max()
-    for text, r in (("edge of\nthe square", edge), ("disk of (59)", DISK)):
+    for text, r in (("edge of\nthe square", edge), ("disc of (59)", DISC)):
         note(rows[0, 0], text, (r, 1.0), (-4, -4), color="0.4", fontsize=7.5, **_NOTE)
     schemes = list(dict.fromkeys(series["scheme"]))
     entries = [entry("exact", **UNDERLAID)]

@@ -10,7 +10,7 @@ from fracparticles.special.stable import green
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
 from fracstudy.panels import pick
-from scenes.plane import DISK
+from scenes.plane import DISC
 
 NEEDS = {"scheme": ["DD", "FPSE"], "exterior": ["truncated", "open"]}
 
@@ -51,7 +51,7 @@ def study(inputs: Inputs) -> Result:
 
 def _row(part: pd.DataFrame, half: float) -> dict[str, float]:
     r, error = part["r"], part["error"]
-    far, outer = r > DISK, r > _OUTER * r.max()
+    far, outer = r > DISC, r > _OUTER * r.max()
     return {
         "relative error at r = 0": error.iloc[0],
         _NEAR: error[~far].abs().max(),
@@ -115,29 +115,29 @@ def _findings(series: pd.DataFrame, table: pd.DataFrame, files: list[str]) -> It
 
 
 def _plotted(part: pd.DataFrame) -> float:
-    """The largest |log10(u / exact)| from the disk to the outer fifth of a line."""
-    between = (part["r"] > DISK) & (part["r"] <= _OUTER * part["r"].max())
+    """The largest |log10(u / exact)| from the disc to the outer fifth of a line."""
+    between = (part["r"] > DISC) & (part["r"] <= _OUTER * part["r"].max())
     return float(np.abs(np.log10(1.0 + part["error"][between])).max())
 
 
 def _anisotropy(curves: _Curves, scheme: str) -> float:
     """Largest relative difference of u on the two lines at the same r, interpolated as u / exact, r <= 5."""
     axis, diagonal = curves[scheme, "y = 0"], curves[scheme, "y = x"]
-    inside = diagonal[diagonal["r"] <= DISK]
+    inside = diagonal[diagonal["r"] <= DISC]
     other = np.interp(inside["r"], axis["r"], axis["error"])
     return float(np.abs((1.0 + inside["error"]) / (1.0 + other) - 1.0).max())
 
 
 def _slope(part: pd.DataFrame, column: str) -> float:
     """The logarithmic slope between r = 2.5 and 5."""
-    values = np.interp([0.5 * DISK, DISK], part["r"], np.log(part[column].abs()))
+    values = np.interp([0.5 * DISC, DISC], part["r"], np.log(part[column].abs()))
     return float((values[1] - values[0]) / np.log(2.0))
 
 
 def _directions(curves: _Curves, scheme: str) -> tuple[float, float]:
-    """Outside the disk: the mean error on y = 0 over that on y = x at the same r; from which r on it is the larger."""
+    """Outside the disc: the mean error on y = 0 over that on y = x at the same r; from which r on it is the larger."""
     axis, diagonal = curves[scheme, "y = 0"], curves[scheme, "y = x"]
-    far = axis[axis["r"] > DISK]
+    far = axis[axis["r"] > DISC]
     other = np.interp(far["r"], diagonal["r"], diagonal["error"].abs())
     # The last point where y = 0 is the more accurate one.
     last = np.flatnonzero(far["error"].abs() <= other)

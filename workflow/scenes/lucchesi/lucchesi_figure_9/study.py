@@ -14,7 +14,7 @@ from fracstudy.findings import Finding, measured
 from fracstudy.inputs import ORDERS, Inputs, Result
 from fracstudy.orders import orders_by
 from fracstudy.panels import pick
-from scenes.plane import DISK, particles_per_side, stored_field
+from scenes.plane import DISC, particles_per_side, stored_field
 
 _PAPER = ["DD", "FPSE"]
 NEEDS: dict[str, list[Any]] = {"scheme": _PAPER, "dim": [1, 2], "exterior": ["truncated", "open"]}
@@ -69,7 +69,7 @@ def _field_error(run: Any) -> float:
     _, r, u = stored
     field, volume = smoothed_field(u, run.overlap), run.particle_spacing**2
     time, alpha = run.diffusivity * run.t_final, 1.0 + run.beta
-    return relative_l1_deviation(field, r, volume, DISK, time=time, alpha=alpha, dim=2)
+    return relative_l1_deviation(field, r, volume, DISC, time=time, alpha=alpha, dim=2)
 
 
 def _shift(runs: pd.DataFrame) -> pd.DataFrame:
@@ -83,10 +83,10 @@ def _shift(runs: pd.DataFrame) -> pd.DataFrame:
             fields = [stored_field(files[exterior]) for exterior in NEEDS["exterior"]]
             (_, r, truncated), (_, _, opened) = (field for field in fields if field)
             run = pair.iloc[0]
-            inside = r <= DISK * (1.0 + 1e-12)
+            inside = r <= DISC * (1.0 + 1e-12)
             volume = run["particle_spacing"] ** run["dim"]
             change = volume * np.abs(truncated - opened)[inside].sum()
-            mass = central_mass(DISK, run["t_final"], 1.0 + run["beta"], run["dim"])
+            mass = central_mass(DISC, run["t_final"], 1.0 + run["beta"], run["dim"])
             shift.loc[key] = change / mass
     return shift
 

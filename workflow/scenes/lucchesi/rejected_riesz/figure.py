@@ -38,7 +38,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
                     ax, f"{alpha:g}", at, (-5, 0), ha="right", va="center", color=look["color"]
                 )
         style.log_log(ax, xlabel=r"particle spacing $h = \epsilon / 2$")
+        ax.set_ylabel(rf"relative $L_1$ error of the {panel}, $|x| \leq 5 R_\alpha$")
         ax.set_xlim(left=here["x"].min() / 1.8)
-    axes[1].set_ylabel(r"relative $L_1$ error, $|x| \leq 5 R_\alpha$")
     style.legend_below(figure, _LEGEND)
     return figure

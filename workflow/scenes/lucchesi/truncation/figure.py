@@ -19,5 +19,6 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     middle = points.iloc[len(points) // 2]
     through = (middle["x"], 4.0 * middle["y"])
     guide(axes[0], points["x"], through, -(1.0 + middle["beta"]), r"$C^{-\alpha}$")
+    axes[0].set_ylim(top=30.0 * points["y"].max())  # room for its label
     scheme_legend(figure, series)
     return figure

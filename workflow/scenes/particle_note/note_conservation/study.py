@@ -16,6 +16,7 @@ from fracparticles.time import STEP_POLYNOMIALS, step
 from fracstudy.errors import EPS, off
 from fracstudy.findings import Finding, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import fitted_power
 from fracstudy.panels import Panels
 from scenes.particle_note.waves import (
     CENTRE,
@@ -234,7 +235,7 @@ def _anywhere(
             np.mean([_tried(kind, 2 * n, domain, s, e)[-1] for s in range(tries * seeds)])
             for n, e in zip(numbers, radii, strict=True)
         ]
-        power[f"{kind}, {rule}"] = float(np.polyfit(np.log(radii), np.log(error), 1)[0])
+        power[f"{kind}, {rule}"] = fitted_power(radii, error)
     short = {case: 2.0 - p for case, p in power.items()}
     solution = order("solution error", "jittered")
     return measured("P-C3.arbitrary_positions", short=short, power=power, solution=solution)

@@ -15,6 +15,7 @@ from fracparticles.pse.construction import taylor_constant
 from fracparticles.run.orders import observed_order
 from fracstudy.findings import Finding, each, measured
 from fracstudy.inputs import Inputs, Result
+from fracstudy.orders import fitted_power
 from fracstudy.panels import Panels
 from scenes.particle_note.waves import wave
 
@@ -185,7 +186,7 @@ def _power_of_maxima(x: np.ndarray, y: np.ndarray) -> float:
     chosen = [int(np.argmax(np.where((x >= n) & (x < n + 1.0), y, -np.inf))) for n in whole]
     if len(chosen) < 3:
         chosen = list(range(x.size))
-    return float(np.polyfit(np.log(x[chosen]), np.log(y[chosen]), 1)[0])
+    return fitted_power(x[chosen], y[chosen])
 
 
 def _of_quadrature(rows: pd.DataFrame, epsilon: float) -> Iterator[Finding]:

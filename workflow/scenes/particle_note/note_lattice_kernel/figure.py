@@ -28,7 +28,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, claimed_moment: list[in
     draw(shape, seen, "o", color=_BLUE, markersize=6)
     for i, eta in zip(seen["x"], seen["y"], strict=True):
         if i >= 0 and eta > 0:
-            note(shape, rf"$\eta({i:g}) = {eta:g}$", (i, eta), (7, 2), color=_BLUE)
+            note(shape, rf"$\eta({i:g}) = {eta:g}$", (i, eta), (13, 1), color=_BLUE)
     shape.annotate("Gaussian (20)", (-0.8, 1.6), xytext=(-2.9, 1.9), color=_RED, fontsize=8)
     shape.annotate("kernel (27)", (-1.0, 1.0), xytext=(-2.9, 0.85), color=_BLUE, fontsize=8)
     shape.set(xlabel="$z = x / \\epsilon$", ylabel=r"kernel $\eta(z)$", ylim=(-0.1, 2.45))

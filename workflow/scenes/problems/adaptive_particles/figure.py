@@ -7,7 +7,7 @@ from fracstudy.style import Figure, axes_row, curves, log_log, name_ticks, small
 
 
 def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
-    """Draw (a) errors against particles, (b) errors in time, (c) distances of neighbours."""
+    """Draw (a) errors against particles, (b) errors in time, (c) volumes."""
     count, time, spacing = (pick(series, panel=panel) for panel in ("count", "time", "spacing"))
     titles = [
         f"error and particles at $t = {time['x'].min():g}$",

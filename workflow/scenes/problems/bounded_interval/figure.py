@@ -7,19 +7,21 @@ from fracstudy.panels import pick
 from fracstudy.style import COLOURS, MARKERS, Axes, Figure
 
 _ENDS = {"absorbing": "-", "reflecting": "--", "given": "-.", "no flux, final state": ":"}
-_TITLES = (
-    "first eigenvalue, absorbing ends",
-    "truncated schemes: problem and deviation",
-    "a bump at $t = 0.2$, and where FPSE ends",
-)
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, bump: dict[str, float]) -> Figure:
     """Draw (a) errors of the eigenvalue, (b) of truncated schemes, (c) profiles."""
-    drawn, axes = style.axes_row(_TITLES, height=3.7, width=4.0)
+    titles = [
+        "first eigenvalue, absorbing ends",
+        "truncated schemes: problem and deviation",
+        f"a bump at $t = {bump['time']:g}$, and where FPSE ends",
+    ]
+    drawn, axes = style.axes_row(titles, height=3.7, width=4.0)
     _eigenvalues(axes[0], pick(series, panel="eigenvalue"))
     _truncated(axes[1], pick(series, panel="truncated"))
     _profiles(axes[2], pick(series, panel="profile"))
+    given = f"given: {bump['outside']:g} outside"
+    style.note(axes[2], given, (0.0, 0.02), (0, 0), ha="center")
     return drawn
 
 
@@ -49,5 +51,4 @@ def _profiles(ax: Axes, part: pd.DataFrame) -> None:
     for name, line in _ENDS.items():
         style.draw(ax, pick(part, series=name), linestyle=line, marker="", label=name)
     ax.set(xlabel="position $x$", ylabel="$u$", ylim=(0.0, 1.5 * part["y"].median() + 0.4))
-    style.note(ax, "given: 0.2 outside", (0.0, 0.02), (0, 0), ha="center")
     style.small_legend(ax, "upper left", ncols=2)

@@ -36,6 +36,7 @@ def study(
     particles: int,
     halves: list[int],
     overlap: float,
+    bump: dict[str, float],
 ) -> Result:
     """A row for each number that is known."""
     panels = Panels()
@@ -44,7 +45,7 @@ def study(
         *(row for alpha in alphas for row in _closed_forms(alpha, particles)),
         *_truncated(drawn, halves, overlap, panels),
     ]
-    _profiles(drawn, particles, panels)
+    _profiles(drawn, particles, bump, panels)
     known = ["exact", "ours", "error", "order", "of theory"]
     table = pd.DataFrame(rows, columns=["ends", "quantity", "alpha", "particles", *known])
     return Result(table, (), panels.frame)
@@ -160,13 +161,14 @@ def _last_level(matrix: np.ndarray, h: float) -> float:
     return float((expm(_LATE * matrix) @ start)[n] / (h * start.sum()))
 
 
-def _profiles(alpha: float, particles: int, panels: Panels) -> None:
+def _profiles(alpha: float, particles: int, bump: dict[str, float], panels: Panels) -> None:
     """A bump, after a time, with each kind of end; and where FPSE ends."""
     for exterior in ("absorbing", "reflecting", "given"):
         line = Interval(alpha=alpha, particles=particles, exterior=exterior)
         start = np.exp(-20.0 * (line.x - _BUMP) ** 2)
-        outside = 0.2 if exterior == "given" else None
-        panels.add("profile", exterior, line.x, line.evolve(start, 0.2, outside=outside))
+        outside = bump["outside"] if exterior == "given" else None
+        u = line.evolve(start, bump["time"], outside=outside)
+        panels.add("profile", exterior, line.x, u)
     inner = line.x[np.abs(line.x) < 0.995]
     mass = line.total(start)
     panels.add("profile", "no flux, final state", inner, no_flux_state(inner, alpha, mass))

@@ -25,8 +25,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
         style.name_ticks(ax, np.unique(part["x"]))
         style.small_legend(ax, "lower left")
     style.curves(axes[1], plain, name=None, linestyle="--", markersize=4.0)
-    axes[0].set(xlabel="rings $N$", ylabel="error of the first eigenvalue, relative")
-    axes[1].set_xlabel("particles along a side $N$")
+    error = "error of the first eigenvalue, relative"
+    axes[0].set(xlabel="rings $N$", ylabel=error)
+    axes[1].set(xlabel="particles along a side $N$", ylabel=error)
     decay = pick(series, panel="decay")
     axes[2].plot(decay["x"], decay["exact"], color="black", marker="", label="spectral method")
     style.draw(axes[2], decay, "o", color=BLUE, label="rings of particles")
@@ -36,7 +37,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     for name, points in truncated.groupby("series", sort=False):
         colour = COLOURS[str(name)]
         style.draw(axes[3], points, label=str(name), color=colour, marker=MARKERS[str(name)])
-        axes[3].axhline(points["exact"].iloc[0], color=colour, linestyle=":", marker="")
+        exact, kind = points["exact"].iloc[0], "absorbing" if name == "DD" else "reflecting"
+        axes[3].axhline(exact, color=colour, linestyle=":", marker="")
+        look: style.Look = {"ha": "right", "color": colour, **style.ALONG}
+        style.note(axes[3], f"{kind} square", (1.0, exact), (0, 3), **look)
     axes[3].set(xlabel="$1/n$", ylabel="decay of the longest wave")
     axes[3].set_xlim(0.0, 1.15 * truncated["x"].max())
     axes[3].set_ylim(0.0, 1.15 * truncated[["y", "exact"]].to_numpy().max())

@@ -18,8 +18,9 @@ def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float) -> Figure
     style.slope_triangle(line, 1.1 * first["x"], 2e-3 * first["y"], drawn - 8.0)
     for domain, dashes in (("disc", "-"), ("square", "--")):
         style.curves(plane, pick(errors, panel=domain), name=f"{domain}: {{}}", linestyle=dashes)
-    style.log_log(line, xlabel="particles $N$", ylabel="mean error at $t = 1$, relative")
-    style.log_log(plane, xlabel="rings, particles along a side $N$")
+    error = "mean error at $t = 1$, relative"
+    style.log_log(line, xlabel="particles $N$", ylabel=error)
+    style.log_log(plane, xlabel="rings, particles along a side $N$", ylabel=error)
     style.small_legend(line, "upper right")
     style.small_legend(plane, "lower left")
     for ax, domains in ((line, ["interval"]), (plane, ["disc", "square"])):

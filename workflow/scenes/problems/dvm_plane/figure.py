@@ -8,7 +8,7 @@ from fracstudy.style import BLUE, RED, Figure, axes_row, draw, log_log, name_tic
 _TITLES = {
     "none, open": "open, not remeshed",
     "Lambda3, open": r"open, remeshed by $\Lambda_3$",
-    "M4', truncated": "truncated, by M4'",
+    "M4', truncated": "truncated, by $M_4'$",
     "Lambda6,4, truncated": r"truncated, by $\Lambda_{6,4}$",
 }
 

@@ -10,18 +10,18 @@ from fracstudy.panels import pick
 from fracstudy.style import BLUE, Axes, Figure
 
 _STEPS = {"dop853": "order 8 (DOP853)", "rkc2": "stabilised (RKC2)"}
-_TITLES = (
-    r"front, $\alpha = 1.5$",
-    r"rate of the front, and $1 / (n + \alpha)$",
-    "decay: error and work",
-    "rate of the front, by particles",
-)
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float) -> Figure:
     """Draw (a) the front, (b) its rate, (c) errors against evaluations, (d) how close particles come to the rate."""
-    drawn, axes = style.axes_row(_TITLES, height=3.6, width=3.4)
-    _front(axes[0], pick(series, panel="front"))
+    titles = [
+        rf"front, $\alpha = {drawn:g}$",
+        r"rate of the front, and $1 / (n + \alpha)$",
+        "decay: error and work",
+        "rate of the front, by particles",
+    ]
+    figure, axes = style.axes_row(titles, height=3.6, width=3.4)
+    _front(axes[0], pick(series, panel="front"), -1.0 - drawn)
     _rates(axes[1], pick(series, panel="rate"))
     style.curves(axes[2], pick(series, panel="tolerance").replace({"series": _STEPS}))
     work, error = "evaluations of the right-hand side", "error relative to the greatest $u$"
@@ -31,10 +31,10 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     style.curves(axes[3], pick(series, panel="followed"))
     axes[3].set(xlabel="time $t$", ylabel="relative distance from $1/(1+\\alpha)$", yscale="log")
     style.small_legend(axes[3], "lower left")
-    return drawn
+    return figure
 
 
-def _front(ax: Axes, part: pd.DataFrame) -> None:
+def _front(ax: Axes, part: pd.DataFrame, slope: float) -> None:
     names = list(part["series"].unique())
     for name, shade in zip(names, np.linspace(0.35, 1.0, len(names)), strict=True):
         label = f"t = {float(name):g}"
@@ -42,10 +42,9 @@ def _front(ax: Axes, part: pd.DataFrame) -> None:
     last = pick(part, series=names[-1])
     far = last.iloc[(last["x"] - 0.5 * last["x"].max()).abs().argmin()]
     ends: list[Any] = [0.1 * last["x"].max(), last["x"].max()]
-    style.guide(ax, ends, (far["x"], 3.0 * far["y"]), -2.5)
-    top = 3.0 * far["y"] * (far["x"] / ends[0]) ** 2.5
-    style.note(ax, "$x^{-1-\\alpha}$", (ends[0], top), (5, -2))
+    style.guide(ax, ends, (far["x"], 3.0 * far["y"]), slope, r"$x^{-1-\alpha}$")
     style.log_log(ax, xlabel="position $x$", ylabel="$u(x, t)$")
+    ax.set_ylim(top=30.0)  # room for the label of the guide
     style.small_legend(ax, "lower left")
 
 

@@ -20,7 +20,6 @@ from fracstudy.panels import Panels
 
 _solved = partial(solve_problem, estimate=False)  # the errors are measured
 _LEVEL = 0.5  # of the front
-_DRAWN = 1.5  # the order whose front is drawn
 _LINE: dict[str, Any] = {"alpha": 1.5, "half_width": 50.0, "far_terms": 3}
 
 
@@ -28,6 +27,7 @@ def study(
     inputs: Inputs,
     *,
     alphas: list[float],
+    drawn: float,
     half_width: float,
     spacing: float,
     until: list[int],
@@ -46,7 +46,7 @@ def study(
     with quiet():  # of narrow lattices; what lies beyond is in the table
         for alpha, last in zip(alphas, until, strict=True):
             one = {"alpha": alpha, "half_width": half_width, "spacing": spacing}
-            rows.append(_front_row(one, last, panels))
+            rows.append(_front_row(one, last, panels, shown=alpha == drawn))
         for alpha, last in zip(alphas, followed_until, strict=True):
             rows.append(_followed_row(alpha, last, followed_reach, panels))
         plane = {"alpha": 1.5, "half_width": plane_half_width, "spacing": plane_spacing}
@@ -69,14 +69,16 @@ def _row(
     return row
 
 
-def front(x: np.ndarray, u: np.ndarray, level: float = _LEVEL) -> float:
+def front(x: np.ndarray, u: np.ndarray) -> float:
     """Return the largest x at which u, given at x > 0, falls below the level; between particles by a power of x."""
-    i = int(np.flatnonzero((u[:-1] >= level) & (u[1:] < level))[-1])
-    share = np.log(u[i] / level) / np.log(u[i] / u[i + 1])
+    i = int(np.flatnonzero((u[:-1] >= _LEVEL) & (u[1:] < _LEVEL))[-1])
+    share = np.log(u[i] / _LEVEL) / np.log(u[i] / u[i + 1])
     return float(x[i] * (x[i + 1] / x[i]) ** share)
 
 
-def _front_row(fields: dict[str, Any], last: int, panels: Panels) -> dict[str, Any]:
+def _front_row(
+    fields: dict[str, Any], last: int, panels: Panels, shown: bool = False
+) -> dict[str, Any]:
     """Fisher-KPP, f = u (1 - u): the front runs like exp(f'(0) t / (n + alpha)), f'(0) = 1."""
     dim, alpha = fields.get("dim", 1), fields["alpha"]
     times = tuple(float(t) for t in range(2, last + 1))
@@ -89,7 +91,7 @@ def _front_row(fields: dict[str, Any], last: int, panels: Panels) -> dict[str, A
     rates = np.diff(np.log(places))
     name = f"α = {alpha:g}" + (", plane" if dim > 1 else "")
     panels.add("rate", name, times[1:], rates, exact=1.0 / (dim + alpha))
-    if dim == 1 and alpha == _DRAWN:
+    if shown:
         some = np.unique(np.geomspace(1, x.size, 150).astype(int)) - 1
         for time, u in list(zip(times, right.values, strict=True))[1::4]:
             panels.add("front", f"{time:g}", x[some], u[some])

@@ -10,13 +10,24 @@ from fracstudy.panels import pick
 from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, SKY, Axes, Figure
 
 _TIMES = (SKY, GREEN, ORANGE, RED)
+_DASHED = {"linestyle": "--"}
 _WAYS: dict[str, dict[str, Any]] = {
     "lattice, order 4": {"color": SKY, "marker": "^"},
     "lattice, order 8": {"color": GREEN, "marker": "D"},
     "lattice, order 12": {"color": BLUE, "marker": "o"},
-    "particles, Lambda3": {"color": RED, "marker": "s", "linestyle": "--"},
-    "particles, Lambda6,4": {"color": ORANGE, "marker": "P", "linestyle": "--"},
-    "particles, M4'": {"color": PINK, "marker": "v", "linestyle": "--"},
+    "particles, Lambda3": {
+        "label": r"particles, $\Lambda_3$",
+        "color": RED,
+        "marker": "s",
+        **_DASHED,
+    },
+    "particles, Lambda6,4": {
+        "label": r"particles, $\Lambda_{6,4}$",
+        "color": ORANGE,
+        "marker": "P",
+        **_DASHED,
+    },
+    "particles, M4'": {"label": "particles, $M_4'$", "color": PINK, "marker": "v", **_DASHED},
 }
 _TITLES = ("linear field $a = -x$", "uniform field, error", "linear field, error", "rotation")
 _LEVELS = (0.03, 0.05)
@@ -29,12 +40,12 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     for ax, field in zip(axes[1:3], ("uniform", "linear"), strict=True):
         part = pick(series, panel=f"error, {field}")
         for way, points in part.groupby("series", sort=False):
-            style.draw(ax, points, label=way, **_WAYS[str(way)])
+            style.draw(ax, points, **{"label": way, **_WAYS[str(way)]})
         style.log_log(ax, xlabel="particle spacing $h$", ylim=(3e-11, 1.0))
         style.name_ticks(ax, sorted(part["x"].unique()))
     axes[1].set_ylabel("error / largest $u$")
     _rotation(axes[3], pick(series, panel="rotation"))
-    style.legend_below(drawn, axes[1], columns=5)
+    style.legend_below(drawn, axes[1], columns=6)
     return drawn
 
 

@@ -1,6 +1,5 @@
 """Errors of the forms on the line and in the plane, and the two equations."""
 
-import numpy as np
 import pandas as pd
 
 from fracstudy import style
@@ -21,7 +20,7 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     drawn, axes = style.axes_row(_TITLES, height=3.9, width=3.4)
     for ax, panel in zip(axes, ("line", "plane"), strict=False):
         _errors(ax, pick(series, panel=panel))
-    axes[0].set_ylabel("error of $du/dt$ / its largest value")
+        ax.set_ylabel("error of $du/dt$ / its largest value")
     _right_hand_sides(axes[2], pick(series, panel="right-hand side"))
     _gap(axes[3], pick(series, panel="gap"))
     schemes = [
@@ -38,21 +37,12 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
         dotted = form == "exchange" and not str(equation).startswith("div")
         look = {"color": COLOURS[scheme], "marker": MARKERS[scheme], "markersize": 4.0}
         style.draw(ax, points, linestyle=":" if dotted else "-", **look)
-        if form == "FPSE":
-            _slope(ax, points.sort_values("x"), float(order))
+        if form == "FPSE" and not style.finest_slope(ax, points, float(order)) and len(points) > 1:
+            h, error = points.sort_values("x")[["x", "y"]].to_numpy()[1]
+            style.note(ax, f"order {order:g}", (h, error), (9, -3), ha="left")
     ticks = sorted(part["x"].unique())
     style.log_log(ax, xlabel="particle spacing $h$", xlim=(0.6 * ticks[0], 1.3 * ticks[-1]))
-    style.name_ticks(ax, ticks)
-
-
-def _slope(ax: Axes, points: pd.DataFrame, order: float) -> None:
-    """A triangle above the finest piece of a curve, if it is the steepest."""
-    h, error = points["x"].to_numpy(), points["y"].to_numpy()
-    slopes = np.diff(np.log(error)) / np.diff(np.log(h))
-    if slopes.size and slopes.argmax() == 0:
-        style.slope_triangle(ax, h[0], 1.8 * error[0], order, above=True)
-    elif slopes.size:  # it ends at round-off
-        style.note(ax, f"order {order:g}", (h[1], error[1]), (9, -3), ha="left")
+    style.name_ticks(ax, ticks[::-2])
 
 
 def _right_hand_sides(ax: Axes, part: pd.DataFrame) -> None:
@@ -69,5 +59,5 @@ def _right_hand_sides(ax: Axes, part: pd.DataFrame) -> None:
 def _gap(ax: Axes, part: pd.DataFrame) -> None:
     style.draw(ax, part, color="0.2")
     end = part.iloc[-1]
-    style.guide(ax, list(part["x"]), (end["x"], 0.5 * end["y"]), 1.0)
+    style.guide(ax, list(part["x"]), (end["x"], 0.15 * end["y"]), 1.0, "slope 1")
     style.log_log(ax, xlabel=r"$2 - \alpha$", ylabel="largest relative distance")

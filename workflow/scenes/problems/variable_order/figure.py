@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.ticker import MaxNLocator
 
@@ -41,16 +40,12 @@ def _errors(ax: Axes, part: pd.DataFrame) -> None:
     for points, name, look in _styled(part):
         plane = points["dim"].iloc[0] == 2
         style.draw(ax, points, linestyle="--" if plane else "-", label=name, **look)
-        h, error = points.sort_values("x")[["x", "y"]].to_numpy().T
-        slopes = np.diff(np.log(error)) / np.diff(np.log(h))
-        if not plane and slopes.size and slopes.argmax() == 0:  # it does not end at round-off
-            style.slope_triangle(
-                ax, h[0], 1.8 * error[0], float(points["order"].iloc[0]), above=True
-            )
+        if not plane:
+            style.finest_slope(ax, points, float(points["order"].iloc[0]))
     ticks = sorted(part["x"].unique())
     style.log_log(ax, xlabel="particle spacing $h$", ylabel="error of $du/dt$, relative")
     ax.set_xlim(0.6 * ticks[0], 1.3 * ticks[-1])
-    style.name_ticks(ax, ticks)
+    style.name_ticks(ax, ticks[::-2])
     style.small_legend(ax, "lower right")
 
 

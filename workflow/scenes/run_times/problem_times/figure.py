@@ -50,20 +50,19 @@ def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
     rows = -(-len(problems) // _COLUMNS)
     blank = [""] * (rows * _COLUMNS - len(problems))
     titles = [_TITLES[problem] for problem in problems] + blank
-    drawn, axes = style.axes_row(titles, 3.1 + 1.2 / rows, 3.4, rows, sharey=True)
+    drawn, axes = style.axes_row(titles, 3.1 + 1.2 / rows, 3.4, rows, sharey="row")
     for ax, problem in zip(axes, problems, strict=False):
         part = pick(series, problem=problem)
         for name, points in part[part["front"].astype(bool)].groupby("contender", sort=False):
             line = points.sort_values("time")
             ax.plot(1e3 * line["time"], line["error"].clip(lower=_FLOOR), **_look(points, name))
         style.log_log(ax, xlabel="set-up and solve / ms")
+        ax.yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
         style.plain_times(ax)
     for ax in axes[::_COLUMNS]:
         ax.set_ylabel("relative error")
     for ax in axes[len(problems) :]:
         ax.set_visible(False)
-    axes[0].set_ylim(0.5 * _FLOOR, 2.0)
-    axes[0].yaxis.set_major_locator(LogLocator(base=100.0, numticks=20))
     there = {name: pick(series, contender=name) for name in _LOOKS}
     entries = [
         style.entry(name, **_look(own, name)) for name, own in there.items() if not own.empty

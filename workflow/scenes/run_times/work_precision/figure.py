@@ -52,5 +52,5 @@ def _panel(ax: Axes, part: pd.DataFrame, contenders: Mapping[str, type[Contender
         look |= _HOLLOW if contender.group in ("peers", "papers") else {"linewidth": 1.4}
         ax.plot(shown["time"], shown["error"], label=contender.label, markersize=4.0, **look)
     log_log(ax, ylim=(_FLOOR, 2.0), xlabel="")
-    ax.xaxis.set_major_locator(LogLocator(numticks=20))
+    ax.xaxis.set_major_locator(LogLocator(numticks=8))
     ax.grid(visible=True, which="major", color="0.92", linewidth=0.6)

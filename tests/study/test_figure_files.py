@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fracstudy.style import Figure, save
+from fracstudy.figure_files import save
+from fracstudy.style import Figure
 
 
 def drawn(stem):

@@ -1,0 +1,61 @@
+"""The files of a figure: the same bytes for what is the same, whatever was drawn before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
+
+from fracparticles.files import replacing
+
+__all__ = ["save"]
+
+_FORMATS: dict[str, dict[str, Any]] = {"svg": {"metadata": {"Date": None}}, "png": {"dpi": 160}}
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) -> None:
+    """Write <stem>.svg and <stem>.png, or one of them, each under a temporary name first."""
+    stem = Path(stem)
+    for ax in figure.axes:
+        _plain_powers(ax.xaxis)
+        _plain_powers(ax.yaxis)
+    # The layout is found once, not once for each format.
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)
+        if figure.subfigs:
+            _settle(figure)
+        figure.set_layout_engine(None)  # "none" does nothing, and has the figure drawn twice
+    for kind in formats:
+        with replacing(stem.with_suffix(f".{kind}")) as temporary:
+            figure.savefig(temporary, format=kind, **_FORMATS[kind])
+
+
+def _settle(figure: Figure) -> None:
+    """Round what the layout has found: its solver puts a corner at 0 or -4e-16, by what was drawn before."""
+    for part in figure.subfigs:
+        part.bbox_relative.set_points(np.round(part.bbox_relative.get_points(), 12) + 0.0)
+    for ax in figure.axes:
+        ax.set_position(np.round(ax.get_position().bounds, 12) + 0.0)
+
+
+def _plain_powers(axis: Axis) -> None:
+    """Label a logarithmic axis of more than a decade with plain text, 10⁻⁴.
+
+    The usual labels are formulas, and to typeset them takes longer than all else in a figure.
+    """
+    low, high = sorted(axis.get_view_interval())
+    if isinstance(axis.get_major_formatter(), LogFormatterSciNotation) and high > 10.0 * low > 0.0:
+        axis.set_major_formatter(FuncFormatter(_power_of_ten))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def _power_of_ten(value: float, _: int | None = None) -> str:
+    exponent = round(np.log10(value))
+    return f"10{str(exponent).translate(_SUPERSCRIPTS)}"
