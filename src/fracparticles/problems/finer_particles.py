@@ -2,7 +2,7 @@
 
 A kink between the particles has its error from the first moment on, which half of the particles cannot tell, see
 `frozen`. Three times as many along each axis have a third of it, so that two thirds are known. Without a velocity and a
-source a step may have any length.
+source, and with a D that rests, a step may have any length: see `steady_diffusion`.
 
 Where three times as many take more than a second, and the data are rough, fewer are given the same data, and their
 error falls with the spacing: of n' particles for n it is taken n' / n times. This is how a jump falls once u has spread
@@ -21,6 +21,7 @@ from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems.fewer_particles import Solve, among, axes_of
 from fracparticles.problems.interpolants import interpolants, is_rough
 from fracparticles.problems.problem import Problem
+from fracparticles.problems.steady_diffusion import diffused
 
 __all__ = ["errors_of_diffusion", "values_of"]
 
@@ -29,6 +30,9 @@ _MOST = {
     "square": 32,
     "disc": 24,
 }  # particles of which thrice as many take a second
+_MOST_IN_ONE = (
+    16  # rings likewise, where D varies in space and all their modes are those of one matrix
+)
 _WRAPPED = 12  # places that an angle goes on beyond a turn
 
 
@@ -40,7 +44,7 @@ def errors_of_diffusion(
     Parameters
     ----------
     problem : Problem
-        Of a bounded domain. Of a D that changes in time nothing is known.
+        Of a bounded domain.
     initial : callable or array
         The initial data: a function, or values at the particles, see `interpolants`.
     fields : list of arrays
@@ -49,21 +53,18 @@ def errors_of_diffusion(
         From a problem and its initial data to such a list.
     """
     nothing: list[list[np.ndarray]] = [[] for _ in fields]
-    if "t" in problem.diffusion.depends_on:
-        return nothing
     count = fields[0].shape[0]
-    few = count // -(-count // _MOST[str(problem.domain)])
+    few = count // -(-count // _most(problem))
     try:
-        alone = problem.model_copy(update={"velocity": None, "source": None})
-        some, many = (alone.model_copy(update={"particles": n}) for n in (few, 3 * few))
+        some, many = (problem.model_copy(update={"particles": n}) for n in (few, 3 * few))
         if few < count and not is_rough(values_of(problem, initial)):
             return nothing
         values = values_of(some, initial) if callable(initial) else among(problem, some, initial)
         given = [initial] if callable(initial) else []
         if few < count or not callable(initial):
             given += _interpolated(some, many, values)
-        made = solve(some, values)
-        finer = [[among(many, some, w) for w in solve(many, one)] for one in given]
+        made = diffused(some, values, solve)
+        finer = [[among(many, some, w) for w in diffused(many, one, solve)] for one in given]
     except (InvalidInput, NonFiniteSolution):  # a function that knows its own particles alone
         return nothing
     sizes = [
@@ -74,6 +75,11 @@ def errors_of_diffusion(
         [few / count * size * _placed(some, problem, v - w) for w in each]
         for size, v, *each in zip(sizes, made, *finer, strict=True)
     ]
+
+
+def _most(problem: Problem) -> int:
+    in_one = problem.domain == "disc" and problem.diffusion.depends_on - {"t"}
+    return _MOST_IN_ONE if in_one else _MOST[str(problem.domain)]
 
 
 def values_of(problem: Problem, initial: Any) -> np.ndarray:

@@ -38,7 +38,8 @@ def solve_problem(
         Left out, the fundamental solution at `t_initial`, of a problem with a constant order and diffusivity.
     estimate : bool
         Whether to solve on fewer particles, too, for the error that the particles leave, `space_error`: see
-        `fewer_particles`. It takes some half as long again, on an interval up to a second more.
+        `fewer_particles`. It takes some half as long again, on an interval up to a second more; on a bounded domain
+        with a D of the place and the time up to twice as long.
 
     Returns
     -------
