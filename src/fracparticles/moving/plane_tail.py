@@ -27,7 +27,7 @@ REACH = 7.0  # smoothing lengths: exp(-49 / 2) of a kernel of order IV is 2e-11
 _DEGREE = 11  # in each square
 _ANGLES, _RADII = 24, 24  # nodes for each of the sides
 _FAR = 1e6  # where F is its far field
-_MOST = 2**24  # particles with those around them: rows that all but coincide would need any number
+_MOST = 2**12  # rows of those around: rows that all but coincide would need any number
 
 
 class PlaneTail:
@@ -53,7 +53,7 @@ class PlaneTail:
         Raises `InvalidInput` if the outermost rows have met, or are too close for so many.
         """
         gap = float(min(np.diff(x, axis=0)[[0, -1]].min(), np.diff(y, axis=1)[:, [0, -1]].min()))
-        closest = 2.0 * REACH * self._epsilon / (_MOST**0.5 - len(x))
+        closest = REACH * self._epsilon / _MOST
         if not gap > closest:
             shown = f"outermost rows with particles {gap:.4g} apart"
             allowed = f"rows in order and more than {closest:.4g} apart, for this smoothing length"
