@@ -149,8 +149,11 @@ def write_text(path: Any, text: str) -> None:
 def seal(path: Path) -> None:
     """End a file with the digest of what it holds, a line "sha256 ..."."""
     with open(path, "rb+") as file:
-        digest = file_digest(file, "sha256")  # reads to the end
-        file.write(_SEAL + digest.hexdigest().encode() + b"\n")
+        file.write(_seal_of(file_digest(file, "sha256")))  # which reads to the end
+
+
+def _seal_of(digest: Any) -> bytes:
+    return _SEAL + digest.hexdigest().encode() + b"\n"
 
 
 def intact(path: Path) -> Path:
@@ -159,14 +162,14 @@ def intact(path: Path) -> Path:
     Raises
     ------
     InvalidInput
-        If its digest is another one.
+        If its digest is another one, or the seal is cut short, or more stands behind it.
     OSError
         If it cannot be read.
     """
     with open(path, "rb") as file:
         content = file.read()
-    body, end = memoryview(content)[:-_LENGTH], content[-_LENGTH:]
-    if end.startswith(_SEAL) and end[len(_SEAL) :] != sha256(body).hexdigest().encode() + b"\n":
+    at = content.rfind(_SEAL, max(0, len(content) - 2 * _LENGTH))
+    if at >= 0 and content[at:] != _seal_of(sha256(memoryview(content)[:at])):
         readable = "a readable NetCDF file (it has changed since it was written, says its digest)"
         raise InvalidInput("file", str(path), readable, "Write or copy it again.")
     return path

@@ -304,7 +304,7 @@ SERIES = (*SMALL, "--integrator", "exponential")
 @pytest.mark.parametrize(
     ("flags", "name"),
     covering(
-        ["--times 0.7,1", "--dim 2", "--dim 2 --times 0.7,1", "--dim 3"], ["run.png", "run.svg"]
+        ["--times 0.7,1", "--dim 2", "--dim 2 --times 0.7,1", "--dim 3"], ["run.png", "run.SVG"]
     ),
 )
 def test_plot(cli, tmp_path, flags, name):

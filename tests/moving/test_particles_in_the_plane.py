@@ -9,7 +9,12 @@ import pytest
 from scipy.integrate import dblquad
 
 import fracparticles as fp
-from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
+from fracparticles.errors import (
+    AccuracyWarning,
+    InvalidInput,
+    NonFiniteSolution,
+    StabilityWarning,
+)
 from fracparticles.moving.dvm_plane import PlaneVelocity, run_in_plane
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracparticles.moving.plane_remeshing import remesh_plane
@@ -235,6 +240,18 @@ def test_a_field_of_two_signs_is_refused_with_the_time():
     x, y = lattice(0.5, 4.0)
     with pytest.raises(FieldNotPositive, match=r"^step 1 of 3, from t = 2 to 2\.1: the field is"):
         run_in_plane(x * exact(x, y), spacing=0.5, alpha=ALPHA, dt=0.1, steps=3, start=2.0)
+
+
+def test_outermost_rows_that_have_met_are_refused_with_the_time():
+    """Of rows that have changed places, or nearly meet, no number of rows goes on with the last gap."""
+    x, y = lattice(0.2, 2.0)
+    data = {"u": np.exp(-(x**2) - y**2), "spacing": 0.2, "alpha": 1.01, "dt": 0.0593, "steps": 5}
+    with pytest.raises(NonFiniteSolution, match=r"^step 1 of 5, .*outermost rows .* Remesh"):
+        run_in_plane(**data, order=4, overlap=1.5, exterior="open")
+    far = PlaneTail(ALPHA, 2, 0.4)
+    x[0] = x[1] - 1e-9
+    with pytest.raises(InvalidInput, match=r"particles 1e-09 apart"):
+        far.continued(x, y, np.ones_like(x))
 
 
 def test_a_step_that_is_too_large_is_said():

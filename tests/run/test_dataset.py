@@ -563,6 +563,22 @@ def test_a_changed_bit_is_refused(run_file, share):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.parametrize("end", [slice(None, -1), slice(None, -64)], ids=["cut", "half"])
+@pytest.mark.parametrize("more", [b"", b"\n"], ids=["", "longer"])
+def test_a_damaged_digest_is_refused(run_file, end, more):
+    """It would not be seen that a number has changed, too."""
+    run_file.write_bytes(run_file.read_bytes()[end] + more + more)
+    with pytest.raises(InvalidInput, match="it has changed since it was written"):
+        fp.read_run(run_file)
+
+
+@pytest.mark.parametrize("said", ["hello", "[1]", 3], ids=repr)
+def test_a_file_whose_case_cannot_be_read_is_no_run(run_file, said):
+    fp.read_run(run_file).assign_attrs(case=said).to_netcdf(run_file)
+    with pytest.raises(InvalidInput, match=r"^file = .* a run written by fracparticles"):
+        fp.read_run(run_file)
+
+
 def test_another_program_may_change_a_file(run_file):
     """It removes the digest, a last line that the NetCDF libraries do not know."""
     import netCDF4

@@ -387,6 +387,18 @@ def test_the_case_stored_with_a_file_says_what_it_is_when_the_coordinates_do_not
     u0_of(case(beta=0.25, t_initial=1.0), bare)
 
 
+def test_a_file_of_another_program_is_what_it_says(tmp_path):
+    """By alpha for beta, and by one time as by several."""
+    c = case(t_initial=1.0)
+    foreign = fp.solve(case(t_final=1.0))[["u"]].drop_attrs()
+    foreign = foreign.drop_vars([name for name in foreign.coords if name != "x"])
+    told = foreign.assign_coords(alpha=c.alpha, t=1.0)
+    assert np.array_equal(u0_of(c, told), foreign.u.values)
+    refused(c, stored(tmp_path, told.assign_coords(alpha=1.9)), "alpha = 1.5", "Set alpha = 1.9")
+    for late in (told.assign_coords(t=7.0), told.assign_coords(t=7.0).expand_dims("t")):
+        refused(c, stored(tmp_path, late), "t_initial = 1", "t_final = 7")
+
+
 def test_a_plane_does_not_go_on_as_a_line(tmp_path):
     refused(case(t_initial=1.0), fp.solve(square(t_final=1.0)), "dim = 1", "dim = 2")
 

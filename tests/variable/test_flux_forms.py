@@ -232,7 +232,6 @@ def test_the_spectral_radius_is_an_upper_bound_in_the_plane(form):
     ({"diffusivity": 2.0}, "DD", "setting.diffusivity"),
     ({"dim": 3}, "FPSE", "dim"),
     ({"dim": 2, "exterior": "open"}, "exchange", "exterior"),
-    ({"exterior": "periodic"}, "DD", "exterior"),
     ({"order": 3}, "DD", "order"),
 ])  # fmt: skip
 def test_what_there_is_not_is_refused(setting, form, field):

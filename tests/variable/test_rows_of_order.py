@@ -149,7 +149,6 @@ def test_an_order_that_is_none_is_refused(alpha):
 @pytest.mark.parametrize(("setting", "more", "field"), [
     ({"dim": 3}, {}, "dim"),
     ({"order": 3}, {}, "order"),
-    ({"exterior": "periodic"}, {}, "exterior"),
     ({}, {"tail": 2.0}, "tail"),
     ({}, {"tolerance": 0.0}, "tolerance"),
     ({"exterior": "open", "far_terms": 2}, {}, "far_terms"),

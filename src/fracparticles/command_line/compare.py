@@ -9,12 +9,12 @@ u of the first run and v of the second.
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fracparticles.errors import spelled
+from fracparticles.run.checked import stored_fields
 from fracparticles.run.dataset import read_run
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def _with_times(run: xr.Dataset) -> xr.DataArray:
 def _told(run: xr.Dataset) -> dict[str, Any]:
     """The scalars of a run, what its case or problem says beside them, its initial data and its units."""
     told = _scalars(run)
-    stored = json.loads(run.attrs.get("case") or run.attrs.get("problem") or "{}")
+    stored = stored_fields(run.attrs.get("case", run.attrs.get("problem"))) or {}
     told |= {
         name: value for name, value in stored.items() if name not in (*run.variables, *_NOT_TOLD)
     }

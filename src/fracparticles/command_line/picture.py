@@ -46,7 +46,8 @@ def plot(
         A logarithmic axis for u.
     """
     target = Path(file).with_suffix(".png") if output is None else Path(output)
-    if target.suffix not in _KINDS:
+    kind = target.suffix.lower()
+    if kind not in _KINDS:
         kinds = f"a file that ends in {spelled(_KINDS)}"
         raise InvalidInput("output", str(target), kinds, "Give such a name.")
     replaceable(target, "output")
@@ -57,7 +58,7 @@ def plot(
     run = read_run(file)
     figure = draw(run, log=log)
     with replacing(target) as temporary:
-        figure.savefig(temporary, dpi=150, bbox_inches="tight", format=target.suffix[1:])
+        figure.savefig(temporary, dpi=150, bbox_inches="tight", format=kind[1:])
     print(target)
 
 
@@ -76,7 +77,7 @@ def draw(run: xr.Dataset, *, log: bool = False) -> Any:
     u = run[name]
     outputs = u if "t" in u.dims else u.expand_dims(t=[float(run.t_final)])
     drawn = _map(outputs[-1], log) if outputs.ndim > 2 else _lines(outputs, _known(run), log)
-    drawn.axes.set_title(run.attrs["title"], fontsize=9, wrap=True)
+    drawn.axes.set_title(run.attrs.get("title", ""), fontsize=9, wrap=True)
     return drawn.figure
 
 

@@ -18,6 +18,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import kernel
 
 __all__ = ["PlaneTail", "far_flux"]
@@ -26,6 +27,7 @@ REACH = 7.0  # smoothing lengths: exp(-49 / 2) of a kernel of order IV is 2e-11
 _DEGREE = 11  # in each square
 _ANGLES, _RADII = 24, 24  # nodes for each of the sides
 _FAR = 1e6  # where F is its far field
+_MOST = 2**12  # rows of those around: rows that all but coincide would need any number
 
 
 class PlaneTail:
@@ -46,8 +48,16 @@ class PlaneTail:
     def continued(
         self, x: np.ndarray, y: np.ndarray, strength: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the particles, shape (N, N), with those around them."""
-        gap = min(np.diff(x, axis=0)[[0, -1]].min(), np.diff(y, axis=1)[:, [0, -1]].min())
+        """Return the particles, shape (N, N), with those around them.
+
+        Raises `InvalidInput` if the outermost rows have met, or are too close for so many.
+        """
+        gap = float(min(np.diff(x, axis=0)[[0, -1]].min(), np.diff(y, axis=1)[:, [0, -1]].min()))
+        closest = REACH * self._epsilon / _MOST
+        if not gap > closest:
+            shown = f"outermost rows with particles {gap:.4g} apart"
+            allowed = f"rows in order and more than {closest:.4g} apart, for this smoothing length"
+            raise InvalidInput("x", shown, allowed, "Remesh, take a smaller dt or overlap.")
         more = int(np.ceil(REACH * self._epsilon / gap))
         wide_x, wide_y = _extended(x, more), _extended(y, more)
         last = np.pad(strength, more, mode="edge")

@@ -12,7 +12,7 @@ from fracparticles.arguments import plain
 from fracparticles.errors import InvalidInput
 from fracparticles.run.complaints import allowed, first_complaint
 
-__all__ = ["Checked"]
+__all__ = ["Checked", "stored_fields"]
 
 
 class Checked(BaseModel):
@@ -52,12 +52,18 @@ class Checked(BaseModel):
     @classmethod
     def _read(cls, text: str) -> dict[str, Any]:
         """Return the fields that `to_json` wrote."""
-        try:
-            fields = json.loads(text)
-        except (TypeError, ValueError, RecursionError):
-            fields = None
-        if not isinstance(fields, dict):
+        fields = stored_fields(text)
+        if fields is None:
             name = cls.__name__
             remedy = f"Give what {name}.to_json returns."
             raise InvalidInput(name.lower(), text, "a JSON object", remedy)
         return fields
+
+
+def stored_fields(text: Any) -> dict[str, Any] | None:
+    """Return the fields of a JSON object, as a file holds them; None if it is no such text."""
+    try:
+        fields = json.loads(text)
+    except (TypeError, ValueError, RecursionError):
+        return None
+    return fields if isinstance(fields, dict) else None

@@ -19,6 +19,7 @@ from fracparticles.errors import InvalidInput, reason_of
 from fracparticles.files import load_netcdf, replacing, seal, uninterrupted
 from fracparticles.graded.field import INTERPOLATED
 from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.checked import stored_fields
 from fracparticles.run.complaints import label_of
 from fracparticles.run.initial import case_of_run
 from fracparticles.run.solution import Solution, relative_l1_error
@@ -271,7 +272,8 @@ def read_run(path: str | Path) -> xr.Dataset:
     if not isinstance(path, str | os.PathLike):
         raise InvalidInput("file", path, "the path of a file", "Give such a path.")
     dataset = load_netcdf(Path(os.fsdecode(path)))
-    if not {"case", "problem"} & set(dataset.attrs) or "mass_final" not in dataset:
+    parameters = dataset.attrs.get("case", dataset.attrs.get("problem"))
+    if stored_fields(parameters) is None or "mass_final" not in dataset:
         remedy = "Make one with `fracparticles solve`."
         raise InvalidInput("file", str(path), "a run written by fracparticles", remedy)
     return dataset

@@ -8,7 +8,6 @@ be a solution of the same equation at `t_initial`.
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import os
 import sys
@@ -26,6 +25,7 @@ from fracparticles.data.tables import is_table
 from fracparticles.errors import AccuracyWarning, InvalidInput, spelled
 from fracparticles.files import load_netcdf
 from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.checked import stored_fields
 from fracparticles.special.stable import green
 
 if TYPE_CHECKING:
@@ -47,7 +47,13 @@ _FLOAT64 = np.dtype(float)
 _AXES = ("x", "y", "z")
 _GIVEN = "given, sha256 "  # of a stored case whose data came with the call
 # What a run says of itself -> the field of the case that must be the same.
-_SAYS = {"beta": "beta", "diffusivity": "diffusivity", "dim": "dim", "t_final": "t_initial"}
+_SAYS = {
+    "beta": "beta",
+    "alpha": "alpha",
+    "diffusivity": "diffusivity",
+    "dim": "dim",
+    "t_final": "t_initial",
+}
 
 
 def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.ndarray, str]:
@@ -301,16 +307,13 @@ def _check_equation(case: Case, told: dict[str, float], name: str) -> None:
 
 def _told(data: xr.Dataset) -> dict[str, float]:
     """What the data say of themselves by scalar variables, or else by the case that they were stored with."""
-    try:
-        stored = json.loads(data.attrs.get("case", "{}"))
-    except (TypeError, ValueError, RecursionError):
-        stored = {}
-    told = {} if not isinstance(stored, dict) else {name: stored.get(name) for name in _SAYS}
+    stored = stored_fields(data.attrs.get("case")) or {}
+    told = {name: stored.get(name) for name in _SAYS}
     for name in _SAYS:
         if name in data.variables and data.variables[name].size == 1:
             told[name] = data.variables[name].values.item()
-    if "t" in data.variables and data.variables["t"].size == 1 and "t_final" in told:
-        told["t_final"] = data.variables["t"].values.item()  # one of the output times of that run
+    if "t" in data.variables and data.variables["t"].size == 1:
+        told["t_final"] = data.variables["t"].values.item()  # one of the output times
     return {
         name: float(value)
         for name, value in told.items()

@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from fracparticles import arguments as check
 from fracparticles.kernels.families import kernel
 from fracparticles.kernels.tabulated import tabulated
+from fracparticles.lattice.sums import SUMMATIONS
 
 __all__ = ["Setting"]
+
+
+_CHECKS: dict[str, Callable[[str, Any], Any]] = {
+    "alpha": lambda _, alpha: check.fractional_order(alpha),
+    "order": check.positive_integer,
+    "overlap": check.scale,
+    "dim": lambda _, dim: check.dimension(dim),
+    "n": check.whole_number,
+    "spacing": check.scale,
+    "diffusivity": check.scale,
+    "summation": partial(check.choice, names=tuple(SUMMATIONS)),
+    "exterior": partial(check.choice, names=("truncated", "open")),
+    "far_terms": partial(check.whole_number, least=1, most=3),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,6 +36,8 @@ class Setting:
     """One scheme on one lattice x_i = i h, i = -n .. n in each of `dim` coordinates.
 
     A Fourier symbol is that of the infinite lattice and depends only on the first five attributes.
+
+    Raises `InvalidInput` if a value is not allowed. Whether a scheme exists for it, `Scheme.check` says.
 
     Attributes
     ----------
@@ -59,6 +79,9 @@ class Setting:
     exterior: str = "truncated"
     far_terms: int = 1
     kernel_table: float | None = None
+
+    def __post_init__(self) -> None:
+        check.fields(self, **_CHECKS)
 
     @property
     def size(self) -> int:

@@ -209,7 +209,6 @@ def _check(form: str, setting: Setting) -> None:
         raise InvalidInput("dim", setting.dim, "1 or 2", "Take the line or the plane.")
     if setting.diffusivity != 1.0:
         raise InvalidInput("setting.diffusivity", setting.diffusivity, "1", "Put it into D.")
-    choice("exterior", setting.exterior, ("truncated", "open"))
     if form == "exchange" and setting.dim > 1 and setting.is_open:
         raise InvalidInput(
             "exterior",

@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import choice, finite_array, instance, operand, real_between
+from fracparticles.arguments import finite_array, instance, operand, real_between
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.base import OnePass
@@ -108,7 +108,6 @@ class VariableOrder:
         scheme.check(setting.dim, setting.order, setting.family)
         if setting.dim > 2:
             raise InvalidInput("dim", setting.dim, "1 or 2", "Take the line or the plane.")
-        choice("exterior", setting.exterior, scheme.exteriors)
         tolerance = real_between("tolerance", tolerance, 1e-15, 0.1)
         alpha = finite_array("alpha", alpha, setting.shape)
         least, greatest = float(alpha.min()), float(alpha.max())
