@@ -39,7 +39,7 @@ def solve_problem(
     estimate : bool
         Whether to solve on fewer particles, too, for the error that the particles leave, `space_error`: see
         `fewer_particles`. It takes some half as long again, on an interval up to a second more; on a bounded domain
-        with a D of the place and the time up to twice as long.
+        with a D of the place and the time up to three times as long.
 
     Returns
     -------

@@ -14,12 +14,15 @@ from fracparticles.lattice.exterior import far_field
 from fracparticles.lattice.exterior_box import box_far_field
 from fracparticles.lattice.operators import ConvolutionOperator, FarField, LatticeOperator
 from fracparticles.lattice.sums import BOX_SUMMATIONS, SUMMATIONS, sums_of_weights
+from fracparticles.schemes.agreement import refuse_disagreement
 from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.transform import lattice_transform
 
 __all__ = ["Exchange", "LatticeScheme", "OnePass", "Scheme", "Sum", "one_pass_operator", "radius"]
 
 Function = Callable[[np.ndarray], np.ndarray]
+
+_OWN = ("values", "transform", "weights", "scaled_transform")  # what a scheme may bring of its own
 
 
 class Scheme:
@@ -156,6 +159,9 @@ class OnePass(LatticeScheme):
 
     def _operator(self, setting: Setting, exchange_sum: float | None) -> LatticeOperator:
         exact = replace(setting, kernel_table=None)
+        if any(getattr(type(self), name) is not getattr(OnePass, name) for name in _OWN):
+            claimed = self.symbol if exchange_sum is None else self.scaled_transform
+            refuse_disagreement(self.name, self.weights, claimed, setting)
         return one_pass_operator(
             setting,
             lambda m: self.weights(m, setting),
