@@ -102,8 +102,9 @@ def evolve_long(
     Warns
     -----
     AccuracyWarning
-        If more than some 1e-5 of the greatest value may be wrong: the powers do not say what lies beyond the lattice, or
-        it does not resolve the data; or data of both signs have cancelled down to what is not known of their integral and their first moment.
+        If more than some 1e-5 of the greatest value may be wrong: the powers do not say what lies beyond the lattice,
+        or it does not resolve the data; or data of both signs have cancelled down to what is not known of their
+        integral and their first moment.
 
     Examples
     --------
