@@ -27,7 +27,7 @@ _NOT_YET = Timing(())
 _SLACK = 1.5
 _FAR = 10.0  # nor if one of anybody is so much faster and as good: noise cannot put it ahead
 # What leads, or may be said to be so much slower than what does, is timed at more moments: a machine has slow ones.
-_LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 9
+_LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 5
 _MATRIX = 600  # points up to which the whole run may be one matrix
 _MOST = 2**19  # numbers in a block
 
@@ -95,7 +95,7 @@ def run_trials(
 
     A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, within a
     factor of 10 of the front of all, and does not take a quarter of a second. The rounds go through all of them, so
-    that each is measured at several moments; the best of each contender are in eight times as many rounds more. The
+    that each is measured at several moments; the best of each contender are in four times as many rounds more. The
     memory is that of the trials on the front of all.
 
     Parameters

@@ -16,7 +16,7 @@ class Unjudged(Contender):
     name, label = "WholeSpace", "fp.WholeSpace (exact symbol, tails continued)"
     reference = "this library"
     group, place, dims = "ours", 0, (1, 2, 3)
-    colour, marker = "#C2A5CF", "v"
+    colour, marker = "#7B3294", "v"
 
     def trials(self, problem: Problem) -> Trials:
         """Yield the lattices of the exact symbol without terms, and smaller ones with terms."""
@@ -42,7 +42,7 @@ class Evolve(Unjudged):
     """`fracparticles.evolve`: the same, which estimates what the tail and the lattice miss, and warns of it."""
 
     name, label = "evolve", "fp.evolve (the same, judged)"
-    colour, marker = "#7B3294", "o"
+    colour, marker = "#B07CC6", "o"
 
     def _solve(self, run: WholeSpace) -> Solve:
         return lambda u0: run.solve_and_judge(finite_array("u", u0))[0]  # as `evolve` does
