@@ -30,9 +30,8 @@ _MOST = {
     "square": 32,
     "disc": 24,
 }  # particles of which thrice as many take a second
-_MOST_IN_ONE = (
-    16  # rings likewise, where D varies in space and all their modes are those of one matrix
-)
+# Rings likewise, where D varies in space: all their modes are in one matrix.
+_MOST_IN_ONE = 16
 _WRAPPED = 12  # places that an angle goes on beyond a turn
 
 
