@@ -24,6 +24,7 @@ Grids = Mapping[tuple[int, int], dict[str, Any]]
 SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
 TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)
 _LEFT = 0.9  # of an error that is not due to what was refined
+_ENOUGH = 1e-10  # an error of which no smaller one is asked for
 _MOST = {1: 2**16, 2: 2**20, 3: 2**21}  # points
 
 
@@ -63,13 +64,17 @@ class Ready:
 
 
 class Contender:
-    """A method with a `name`, in a module of the folder; `trials` says what is tried, `prepare` makes one ready."""
+    """A method with a `name`, in a module of the folder; `trials` says what is tried, `prepare` makes one ready.
+
+    One that `follows` another, of which it differs by no error, tries only what is near the front of that one.
+    """
 
     name: str
     label: str  # in figures
     reference: str  # where it was published
     group = "peers"  # or "ours", "schemes" (of the papers, as this library runs them), "papers" (as the papers do)
     place = 100
+    follows: str | None = None
     colour, marker = "#000000", "o"
     dims: tuple[int, ...] = (1,)
 
@@ -106,7 +111,7 @@ def lattices(
     """Return `points` an axis and `half_width` D = C R_alpha t_f^(1/alpha): each spacing with each truncation factor C.
 
     Spacings are those of a problem with details of the size 1, and smaller for finer ones. The number of points is the
-    next even one that transforms fast; the spacing falls with it.
+    next even one that transforms fast; the spacing falls with it. Grids of few points come first.
     """
     grids: dict[tuple[int, int], dict[str, Any]] = {}
     for (fine, spacing), (wide, truncation) in product(
@@ -117,14 +122,15 @@ def lattices(
         grid = {"points": points, "half_width": half_width}
         if points**problem.dim <= _MOST[problem.dim] and grid not in grids.values():
             grids[fine, wide] = grid
-    return grids
+    return dict(sorted(grids.items(), key=lambda one: one[1]["points"]))
 
 
 def sweep(grids: Grids, **fields: Any) -> Trials:
-    """Yield the fields with each grid, the coarse and the narrow first, without those that gain nothing.
+    """Yield the fields with each grid, those of few points first, without those that gain nothing.
 
-    Where two widenings at a spacing have left nine tenths of the error, it is not due to the width, and wider grids of
-    that spacing are not tried. The same holds of two refinements at a width. One is not enough: errors may cross zero.
+    None is tried after one whose error is as small as anybody asks for. Where two widenings at a spacing have left nine
+    tenths of the error, it is not due to the width, and wider grids of that spacing are not tried. The same holds of
+    two refinements at a width. One is not enough: errors may cross zero.
     """
     errors: dict[tuple[int, int], float] = {}
     for (fine, wide), grid in grids.items():
@@ -136,3 +142,5 @@ def sweep(grids: Grids, **fields: Any) -> Trials:
             errors[fine, wide] = min(idle)
         elif (error := (yield {**fields, **grid})) is not None:
             errors[fine, wide] = error
+            if error < _ENOUGH:
+                return

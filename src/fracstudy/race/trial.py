@@ -15,7 +15,7 @@ import numpy as np
 from fracparticles.errors import FracparticlesError
 from fracstudy.errors import quiet
 from fracstudy.race.clock import LONG, Timing, forget_tables, measure, measure_warm
-from fracstudy.race.contender import Contender, Ready
+from fracstudy.race.contender import Contender, Ready, Trials
 from fracstudy.race.problem import Problem
 
 __all__ = ["BLOCK", "LABELS", "VARIABLES", "run_trials"]
@@ -29,7 +29,7 @@ _FAR = 10.0  # nor if one of anybody is so much faster and as good: noise cannot
 # What leads, or may be said to be so much slower than what does, is timed at more moments: a machine has slow ones.
 _LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 5
 _MATRIX = 600  # points up to which the whole run may be one matrix
-_MOST = 2**19  # numbers in a block
+_MOST = 2**17  # numbers in a block
 
 LABELS = {
     "problem": "initial data",
@@ -111,8 +111,10 @@ def run_trials(
     records: list[_Record] = []
     for contender in contenders:
         if contender.takes(problem):
-            records += islice(_tried(problem, contender), most)
-    judged = [record for record in records if np.isfinite(record.row.get("error", np.nan))]
+            followed = [one for one in _judged(records) if one.contender.name == contender.follows]
+            trials = _again(followed) if followed else contender.trials(problem)
+            records += islice(_tried(problem, contender, trials), most)
+    judged = _judged(records)
     worth = [record for record in _near_own(judged, _SLACK) if record.times[1] < LONG]
     again = list(compress(worth, _near(worth, judged, 1, _FAR)))
     for k in range(_MOMENTS * rounds):
@@ -132,9 +134,18 @@ def run_trials(
     return [record.finished() for record in records]
 
 
-def _tried(problem: Problem, contender: Contender) -> Iterator[_Record]:
-    """Try what a contender says, which hears of each error."""
-    trials = contender.trials(problem)
+def _judged(records: Iterable[_Record]) -> list[_Record]:
+    return [record for record in records if np.isfinite(record.row.get("error", np.nan))]
+
+
+def _again(records: Iterable[_Record]) -> Trials:
+    """Yield what was near the front of one contender."""
+    for record in _near_own(records, _SLACK):
+        yield record.given
+
+
+def _tried(problem: Problem, contender: Contender, trials: Trials) -> Iterator[_Record]:
+    """Make the trials of a contender, which hear of each error."""
     given = next(trials)
     _first(problem, contender, given)  # does once what a process does once
     with suppress(StopIteration):

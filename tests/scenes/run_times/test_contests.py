@@ -197,7 +197,7 @@ def test_goals_are_met_or_not():
         "first call": 0.7,
     }
     races = {f"work_precision{where}": frame() for where in ("", "_plane", "_space")}
-    calls = pd.DataFrame({"call": ["an empty program", "fp.evolve"], "process_time": [0.01, 0.8]})
+    calls = pd.DataFrame({"call": ["an empty program", "fp.evolve"], "run_time": [0.01, 0.8]})
     given = inputs(**races, reference_times=reference(), first_call=calls)
     table = study("run_time_goals")(given, goals=goals, errors=[1e-4, 1e-9]).table
     assert list(table["measured"]) == pytest.approx([2.0, 2.0] * 3 + [1.0, 0.1, 2e4, 0.8])

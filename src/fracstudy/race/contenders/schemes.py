@@ -21,12 +21,13 @@ _NAIVE_STEPS = 2
 
 
 def _lattices(problem: Problem) -> Grids:
-    return {
+    grids = {
         (fine, wide): {"spacing": spacing, "truncation": truncation}
         for fine, spacing in enumerate(_SPACINGS)
         for wide, truncation in enumerate(_TRUNCATIONS[problem.dim])
         if (2.0 * truncation * problem.width / spacing) ** problem.dim <= _MOST[problem.dim]
     }
+    return dict(sorted(grids.items(), key=lambda one: one[1]["truncation"] / one[1]["spacing"]))
 
 
 _WAYS = tuple(
@@ -129,8 +130,8 @@ class PapersWay(Contender):
 
     def trials(self, problem: Problem) -> Trials:
         """Yield the schemes and orders on truncated lattices."""
-        grids = product(("DD", "FPSE", "KPSE"), (2, 4), (20.0, 160.0), (0.2, 0.1))
-        for scheme, order, truncation, spacing in grids:
+        grids = product(("DD", "FPSE", "KPSE"), (2, 4), ((20.0, 0.2), (160.0, 0.1)))
+        for scheme, order, (truncation, spacing) in grids:
             fields = {"scheme": scheme, "order": order, "spacing": spacing}
             yield {"variant": f"{scheme} {order}", "truncation": truncation, **fields}
 

@@ -42,6 +42,7 @@ class Evolve(Unjudged):
     """`fracparticles.evolve`: the same, which estimates what the tail and the lattice miss, and warns of it."""
 
     name, label = "evolve", "fp.evolve (the same, judged)"
+    follows = Unjudged.name
     colour, marker = "#B07CC6", "o"
 
     def _solve(self, run: WholeSpace) -> Solve:

@@ -42,12 +42,12 @@ def benchmark(repeats: int) -> Measurements:
         for name, program in _CALLS.items():
             times[name] += measure(partial(_run, program))[0]
     rows: list[dict[str, Any]] = [
-        {"call": name, **timing.columns("process")} for name, timing in times.items()
+        {"call": name, **timing.columns("run")} for name, timing in times.items()
     ]
     variables = {
-        "process_time": ("from the start of the process to its end, minimum", "s"),
-        "process_time_median": ("the same, median", "s"),
-        "processs": ("processes that were timed", "1"),
+        "run_time": ("from the start of the process to its end, minimum", "s"),
+        "run_time_median": ("the same, median", "s"),
+        "runs": ("processes that were timed", "1"),
     }
     title = "The first call of a fresh process"
     return timings_dataset(

@@ -21,7 +21,7 @@ _OURS = ("ours", "schemes")
 def study(inputs: Inputs, *, goals: dict[str, float], errors: list[float]) -> Result:
     """List what was asked, by the name of the goal, and what was measured."""
     rows = [*_races(inputs, errors), *_reference(inputs.benchmarks["reference_times"])]
-    calls = inputs.benchmarks["first_call"].set_index("call")["process_time"]
+    calls = inputs.benchmarks["first_call"].set_index("call")["run_time"]
     rows += [
         (f"process with {call} / s", "first call", calls[call])
         for call in calls.index
