@@ -95,8 +95,8 @@ def run_trials(
 
     A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, within a
     factor of 10 of the front of all, and does not take a quarter of a second. The rounds go through all of them, so
-    that each is measured at several moments; the best of each contender are in four times as many rounds more. The
-    memory is that of the trials on the front of all.
+    that each is measured at several moments; the best of each contender are in four times as many rounds more, in the
+    fewer the longer they take. The memory is that of the trials on the front of all.
 
     Parameters
     ----------
@@ -122,6 +122,8 @@ def run_trials(
             leading = _near_own(again, _LEAD)
             again = list(compress(leading, _near(leading, judged, 1, _BEHIND)))
         for record in again:
+            if k * record.times[1] > LONG:
+                continue
             prepare = partial(record.contender.prepare, problem, **record.given)
             setup, ready = measure(prepare, repeats, seconds, before=forget_tables)
             solve, _ = measure(partial(ready.solve, record.u0), repeats, seconds)
