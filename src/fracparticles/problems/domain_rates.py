@@ -12,7 +12,6 @@ it is beside them, like all else.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
@@ -161,17 +160,6 @@ class DomainRates:
         start = self.problem.t_initial
         made = 0.0 if self.source is None else self.source(start, np.zeros(self.shape))
         return self.problem.exterior != "given" and not np.any(made)
-
-    def growth(self, t: float) -> float:
-        """Return the greatest real part of an eigenvalue of what is linear in v, without the source.
-
-        That of the equation is not positive.
-        """
-        columns = (self._spread(e, self._now(t)[0]) + self._lower(t, e) for e in self._units())
-        return float(np.linalg.eigvals(np.stack([c.reshape(-1) for c in columns])).real.max())
-
-    def _units(self) -> Iterator[np.ndarray]:
-        return (e.reshape(self.shape) for e in np.eye(self.domain.volumes.size))
 
     def slowest(self) -> float:
         """Return the lowest eigenvalue of -D A with the least D of the run."""
