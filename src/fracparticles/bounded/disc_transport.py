@@ -124,11 +124,9 @@ def _smooth(rings: Rings) -> _Across:
 
 
 def _around(f: FloatArray) -> FloatArray:
-    """df/dtheta along the rings, but of the shortest wave, whose sine is nothing at an even number of angles."""
+    """df/dtheta along the rings; `irfft` takes no sine of the shortest wave of an even number of angles."""
     count = f.shape[1]
     waves = 1j * np.arange(count // 2 + 1)
-    if count % 2 == 0:
-        waves[-1] = 0.0
     return np.asarray(np.fft.irfft(waves * np.fft.rfft(f, axis=1), count, axis=1))
 
 
