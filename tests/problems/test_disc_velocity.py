@@ -7,12 +7,19 @@ import warnings
 import numpy as np
 import pytest
 
-from fracparticles.errors import AccuracyWarning, FracparticlesWarning
+from fracparticles.errors import (
+    AccuracyWarning,
+    FracparticlesWarning,
+    NonFiniteSolution,
+    StabilityWarning,
+)
+from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.problems.fewer_particles import among
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.solve import solve_problem
 
 FIELDS = {"half_width": 1.0, "exterior": "absorbing", "domain": "disc"}
+ONTO_A_RING = ("x*(20 - 40*(x**2 + y**2))", "y*(20 - 40*(x**2 + y**2))")
 CELLS = ("2.58*sin(pi*x)*cos(pi*y)", "-2.58*cos(pi*x)*sin(pi*y)")
 
 
@@ -34,6 +41,19 @@ def test_a_layer_that_the_rings_do_not_resolve_is_said_and_adds_nothing(rings):
     norm = problem.bounded_domain.norm
     sizes = [norm(u) for u in (dome(*problem.bounded_domain.points), *run.u.values)]
     assert sizes[0] > sizes[1] > sizes[2]
+
+
+@pytest.mark.parametrize(("until", "said"), [(0.4, StabilityWarning), (3.0, NonFiniteSolution)])
+def test_a_wave_that_grows_where_u_is_pressed_together_is_said_or_refused(until, said):
+    """Onto the ring r = 0.7, where eight rings are too few; of the equation int |u| falls."""
+    problem = Problem(**FIELDS, alpha=1.05, particles=8, velocity=ONTO_A_RING, t_final=until)
+    found = DomainRates(problem).growth(0.0)
+    assert found > 0.0
+    expected = pytest.raises if said is NonFiniteSolution else pytest.warns
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        with expected(said, match=rf"grow by exp\({found * until:.3g}\).*presses u together"):
+            solve_problem(problem, dome)
 
 
 def test_a_layer_that_they_resolve_is_not_said():

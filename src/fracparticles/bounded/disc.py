@@ -119,17 +119,25 @@ class Disc(ModalDomain):
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -div(a u), u = v + base: skew in v, so that no wave of it grows, see `disc_transport`.
+        """Return -div(a u), u = v + base: but for div a it is skew in v, see `disc_transport`.
 
         Where nothing leaves, the sum of all is kept.
         """
-        a_x, a_y = (np.broadcast_to(one, v.shape) for one in velocity)
-        cos, sin = self._direction
-        outwards, around = a_x * cos + a_y * sin, a_y * cos - a_x * sin
-        moved = self._transport.carried(v, outwards, around)
+        along = self._polar(velocity)
+        moved = self._transport.carried(v, *along)
         if base.any():
-            moved += self._transport.of_smooth(base, outwards, around)
+            moved += self._transport.of_smooth(base, *along)
         return moved / self.radius
+
+    def divergence(self, velocity: Sequence[FloatArray]) -> FloatArray:
+        """Return div a, as `carried` has it."""
+        return self._transport.divergence(*self._polar(velocity)) / self.radius
+
+    def _polar(self, velocity: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """a_r and a_theta."""
+        a_x, a_y = (np.broadcast_to(one, self.volumes.shape) for one in velocity)
+        cos, sin = self._direction
+        return a_x * cos + a_y * sin, a_y * cos - a_x * sin
 
     @cached_property
     def _transport(self) -> DiscTransport:

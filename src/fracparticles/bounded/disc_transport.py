@@ -69,21 +69,21 @@ class DiscTransport:
         b = self._r * outwards
         parts = self._adjoint(b * u) + b * self._skew.of(u)
         parts += _around(around * u) + around * _around(u)
-        return np.asarray(-0.5 * (parts / self._r + self._divergence(outwards, around) * u))
+        return np.asarray(-0.5 * (parts / self._r + self.divergence(outwards, around) * u))
 
     def of_smooth(self, u: FloatArray, outwards: FloatArray, around: FloatArray) -> FloatArray:
         """Return -div(a u) of a u that is known and smooth up to the edge, and not zero there."""
-        return -self._divergence(outwards * u, around * u)
+        return -self.divergence(outwards * u, around * u)
+
+    def divergence(self, outwards: FloatArray, around: FloatArray) -> FloatArray:
+        """Return div a, of what is smooth up to the edge; where nothing leaves the one that keeps the total."""
+        if self._reflecting:
+            return np.asarray((self._adjoint(self._r * outwards) + _around(around)) / self._r)
+        return np.asarray(self._smooth.of(outwards) + (outwards + _around(around)) / self._r)
 
     def _adjoint(self, f: FloatArray) -> FloatArray:
         """M f."""
         return np.asarray(-self._skew.transposed(self._slope * f) / self._slope)
-
-    def _divergence(self, outwards: FloatArray, around: FloatArray) -> FloatArray:
-        """div a, of what is smooth up to the edge; where nothing leaves the one that keeps the total."""
-        if self._reflecting:
-            return np.asarray((self._adjoint(self._r * outwards) + _around(around)) / self._r)
-        return np.asarray(self._smooth.of(outwards) + (outwards + _around(around)) / self._r)
 
 
 class _Across(NamedTuple):

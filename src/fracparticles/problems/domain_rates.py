@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.given import Outside
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.modal import ModalDomain
@@ -160,6 +161,20 @@ class DomainRates:
         start = self.problem.t_initial
         made = 0.0 if self.source is None else self.source(start, np.zeros(self.shape))
         return self.problem.exterior != "given" and not np.any(made)
+
+    def growth(self, t: float) -> float:
+        """Return the greatest real part of an eigenvalue of what is linear in v, without the source.
+
+        That of the equation is not positive.
+        """
+        each = (e.reshape(self.shape) for e in np.eye(self.domain.volumes.size))
+        columns = (self._spread(e, self._now(t)[0]) + self._lower(t, e) for e in each)
+        return float(np.linalg.eigvals(np.stack([c.reshape(-1) for c in columns])).real.max())
+
+    def pressed(self, t: float) -> float:
+        """Return max(-div a) / 2 on a disc, which `growth` and the slowest rate of the diffusion do not exceed."""
+        assert isinstance(self.domain, Disc)
+        return -0.5 * float(self.domain.divergence(self._now(t)[2]).min())
 
     def slowest(self) -> float:
         """Return the lowest eigenvalue of -D A with the least D of the run."""

@@ -22,7 +22,7 @@ from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Held
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
-from fracparticles.problems.disc_waves import high_waves
+from fracparticles.problems.disc_waves import high_waves, warn_of_growth
 from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.problems.fewer_particles import SPACE_ERROR, Estimates, with_space_error
 from fracparticles.problems.finer_particles import errors_of_diffusion, values_of
@@ -54,6 +54,7 @@ def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Datase
     _look_at_coefficients(problem)
     probe_source(problem, u0)
     rates = DomainRates(problem)
+    warn_of_growth(problem, rates)
     held = _held(problem, rates, u0)
     result = _integrated(problem, rates, u0, held)
     fields = result.u
