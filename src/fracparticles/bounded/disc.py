@@ -26,14 +26,11 @@ import numpy as np
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import Rings, exterior_rate
+from fracparticles.bounded.disc_transport import DiscTransport
 from fracparticles.bounded.domain import EXTERIORS
 from fracparticles.bounded.given import Lift
 from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Modes
-from fracparticles.bounded.plane_differences import (
-    differences_through_centre,
-    one_sided_differences,
-)
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 
 __all__ = ["Disc"]
@@ -122,42 +119,29 @@ class Disc(ModalDomain):
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -div(a u) = -((r a_r u)_r + (a_theta u)_theta) / r, u = v + base.
+        """Return -div(a u), u = v + base: but for div a it is skew in v, see `disc_transport`.
 
-        Across rings by differences in the variable of the map, after (1 - r^2)^(alpha/2), as v is at the edge, and
-        through the centre; along them by the Fourier transform. Where nothing leaves, what the sum of all is off by is
-        taken off evenly.
+        Where nothing leaves, the sum of all is kept.
         """
-        (across, vanishing), r = self._slopes, self.radius * self._rings.r[:, None]
-        a_x, a_y = velocity
+        along = self._polar(velocity)
+        moved = self._transport.carried(v, *along)
+        if base.any():
+            moved += self._transport.of_smooth(base, *along)
+        return moved / self.radius
+
+    def divergence(self, velocity: Sequence[FloatArray]) -> FloatArray:
+        """Return div a, as `carried` has it."""
+        return self._transport.divergence(*self._polar(velocity)) / self.radius
+
+    def _polar(self, velocity: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """a_r and a_theta."""
+        a_x, a_y = (np.broadcast_to(one, self.volumes.shape) for one in velocity)
         cos, sin = self._direction
-        outwards, around = a_x * cos + a_y * sin, a_y * cos - a_x * sin
-        bent = across if self.exterior == "reflecting" else vanishing
-        waves = np.arange(self.angular // 2 + 1)
-        turned = 1j * waves * self._transformed(around * (v + base))
-        if self.angular % 2 == 0:
-            turned[:, -1] = 0.0
-        for slopes, part in ((bent, v), (across, base)):
-            flux = self._transformed(r * outwards * part)
-            for odd in (0, 1):
-                turned[:, odd::2] += slopes[odd] @ flux[:, odd::2]
-        out = -self._back(turned) / r
-        return np.asarray(out - self._mean(out) if self.exterior == "reflecting" else out)
+        return a_x * cos + a_y * sin, a_y * cos - a_x * sin
 
     @cached_property
-    def _slopes(self) -> tuple[FloatArray, FloatArray]:
-        """d/dr of what is smooth, and of what is like (1 - r^2)^(alpha/2) at the edge, both of shape (2, N, N).
-
-        The first of two is for the even waves along a ring, the other for the odd ones.
-        """
-        rings, power = self._rings, 0.5 * self.alpha
-        along = np.stack(2 * [one_sided_differences(self.radial) / rings.slope[:, None]])
-        through = differences_through_centre(rings.r)
-        along[:, : through.shape[1]] = through
-        depth = rings.edge * (1.0 + rings.r)
-        bent = depth[:, None] ** power * along / depth**power
-        bent -= np.diag(self.alpha * rings.r / depth)
-        return along / self.radius, bent / self.radius
+    def _transport(self) -> DiscTransport:
+        return DiscTransport(self._rings, self.exterior == "reflecting")
 
     def modes_with(self, d: FloatArray, form: str) -> Modes:
         """Return all modes of the negative of `spread`, of a symmetric matrix between all particles."""

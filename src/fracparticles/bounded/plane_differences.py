@@ -1,4 +1,4 @@
-"""Derivatives by polynomials through the nearest seven points: of order 6."""
+"""Derivatives by polynomials through the nearest points: seven of them, of order 6, if not said otherwise."""
 
 from __future__ import annotations
 
@@ -11,31 +11,29 @@ __all__ = ["differences_through_centre", "one_sided_differences"]
 _POINTS = 7
 
 
-def one_sided_differences(count: int) -> FloatArray:
+def one_sided_differences(count: int, points: int = _POINTS) -> FloatArray:
     """Return d/di of f_i between the values at i = 0 .. count - 1, shape (count, count); one-sided at the ends."""
     d = np.zeros((count, count))
     for i in range(count):
-        first = min(max(i - _POINTS // 2, 0), count - _POINTS)
-        at = np.arange(first, first + _POINTS)
+        first = min(max(i - points // 2, 0), count - points)
+        at = np.arange(first, first + points)
         d[i, at] = _weights((at - i).astype(float))
     return d
 
 
-def differences_through_centre(r: FloatArray) -> FloatArray:
-    """Return d/dr at the first three radii, for fields that are even and for those that are odd, shape (2, 3, len(r)).
+def differences_through_centre(r: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return d/dr at the first three radii, by the values at all radii, shape (3, len(r)), and opposite, (3, 3).
 
-    Along a diameter a smooth field goes on through the centre: a wave cos(l theta) of it has f(-r) = (-1)^l f(r).
+    Along a diameter a smooth field goes on through the centre, to the first radii on the other side of it.
     """
     most = _POINTS // 2
     line = np.concatenate([-r[most - 1 :: -1], r])  # from the other side of the centre
-    d = np.zeros((2, most, r.size))
+    near, opposite = np.zeros((most, r.size)), np.zeros((most, most))
     for i in range(most):
         weights = _weights(line[i : i + _POINTS] - r[i])
-        opposite, near = weights[: most - i], weights[most - i :]
-        d[:, i, : near.size] = near
-        d[0, i, : opposite.size] += opposite[::-1]
-        d[1, i, : opposite.size] -= opposite[::-1]
-    return d
+        near[i, : _POINTS - most + i] = weights[most - i :]
+        opposite[i, : most - i] = weights[: most - i][::-1]
+    return near, opposite
 
 
 def _weights(offsets: FloatArray) -> FloatArray:

@@ -1,12 +1,9 @@
 """Waves that a velocity makes on a disc of few particles.
 
-Some grow: what is carried to the edge faster than it spreads gathers there in a layer of the width
-
-    (D / |a|)^(1 / (alpha - 1)),
-
-in which u falls to what is outside. Where the rings do not resolve it, differences of order 6 make waves of it that
-grow, although nothing of u_t = D A u - div(a u) does: int |u| falls, or stays. So no eigenvalue has a positive real
-part, and one that has is the particles' own.
+Some may grow, but no faster than u is pressed together, see `bounded.disc_transport`: at max(-div a) / 2, less the
+lowest rate of the diffusion. Where div a = 0 none does. Nor does any of u_t = D A u - div(a u): int |u| falls, or
+stays, while int u^2 grows. So an eigenvalue with a positive real part is the particles' own, of a layer that is pressed
+together to less than the distance of rings.
 
 Others are too short for the angles. A velocity takes each wave along the rings for its neighbours, and those beyond the
 shortest for others. In the modes a high wave may be slow, so that its rate does not tell.
@@ -33,7 +30,7 @@ _ROUND_OFF = -np.log(np.finfo(float).eps)  # what makes of the last digit the fi
 
 
 def warn_of_growth(problem: Problem, rates: DomainRates) -> None:
-    """Look for waves that grow on a disc of few particles, by the velocity at three times.
+    """Look for waves that grow on a disc of few particles, by the velocity at three times, if they can.
 
     Raises
     ------
@@ -49,13 +46,18 @@ def warn_of_growth(problem: Problem, rates: DomainRates) -> None:
         return
     varies = any("t" in one.depends_on for one in (problem.diffusion, *problem.transport))
     shares = (0.0, 0.5, 1.0) if varies else (0.0,)
-    found = max(rates.growth(problem.t_initial + share * problem.span) for share in shares)
+    times = [problem.t_initial + share * problem.span for share in shares]
+    least = rates.slowest()
+    found = max(
+        (rates.growth(t) for t in times if (rates.pressed(t) - least) * problem.span > _GROWTH),
+        default=0.0,
+    )
     if found * problem.span <= _GROWTH:
         return
     text = (
-        f"waves that the particles do not resolve grow by exp({found * problem.span:.3g}) on the disc, because u is "
-        "carried faster than it spreads. Take a smaller velocity, a larger diffusivity or alpha, an earlier end, or "
-        "the square."
+        f"waves that the particles do not resolve grow by exp({found * problem.span:.3g}) on the disc, because the "
+        "velocity presses u together faster than it spreads. Take more rings, a smaller velocity, a larger diffusivity "
+        "or alpha, or an earlier end."
     )
     if found * problem.span > _ROUND_OFF:
         raise NonFiniteSolution(text)

@@ -12,12 +12,12 @@ it is beside them, like all else.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.given import Outside
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.modal import ModalDomain
@@ -167,11 +167,14 @@ class DomainRates:
 
         That of the equation is not positive.
         """
-        columns = (self._spread(e, self._now(t)[0]) + self._lower(t, e) for e in self._units())
+        each = (e.reshape(self.shape) for e in np.eye(self.domain.volumes.size))
+        columns = (self._spread(e, self._now(t)[0]) + self._lower(t, e) for e in each)
         return float(np.linalg.eigvals(np.stack([c.reshape(-1) for c in columns])).real.max())
 
-    def _units(self) -> Iterator[np.ndarray]:
-        return (e.reshape(self.shape) for e in np.eye(self.domain.volumes.size))
+    def pressed(self, t: float) -> float:
+        """Return max(-div a) / 2 on a disc, which `growth` and the slowest rate of the diffusion do not exceed."""
+        assert isinstance(self.domain, Disc)
+        return -0.5 * float(self.domain.divergence(self._now(t)[2]).min())
 
     def slowest(self) -> float:
         """Return the lowest eigenvalue of -D A with the least D of the run."""

@@ -10,10 +10,11 @@ r = d_1 / d_2 of the distance before. All those that are still to come are the r
 
 of an order p d_1 / (2^p - 1), but at least d_1 / 32, and d_1 where r >= 1/2. So kinks and jumps of a coefficient, where
 the order is one or two whatever that of the kernels, have their own factor. The quarter is taken only where d_1 is
-large; else, or where a quarter is too few, the rest is d_1 / 3, that of the order two. Where half of the particles make
-something infinite, nothing is known of the error: it is infinite. Fields are compared where the fewer particles are, by
-splines between the others; their distance is the larger of the greatest difference over the greatest |u|, and of
-int |difference| over int |u|, which sees what is beside a peak at an end.
+large; else, or where a quarter is too few, the rest is d_1 / 3, that of the order two, and on a disc with a velocity
+d_1, since waves that its angles are too few for have no order. Where half of the particles make something infinite,
+nothing is known of the error: it is infinite. Fields are compared where the fewer particles are, by splines between the
+others; their distance is the larger of the greatest difference over the greatest |u|, and of int |difference| over
+int |u|, which sees what is beside a peak at an end.
 """
 
 from __future__ import annotations
@@ -86,8 +87,8 @@ def space_errors(
         max((_distance(problem, u, u - e) for e in each), default=0.0)
         for u, each in zip(fields, errors, strict=True)
     ])  # fmt: skip
-    blind = problem.domain == "disc" and problem.transport and _count(problem) < _LEAST_RINGS
-    for _ in range(0 if blind else _HALVINGS):
+    carried = problem.domain == "disc" and bool(problem.transport)
+    for _ in range(0 if carried and _count(problem) < _LEAST_RINGS else _HALVINGS):
         try:
             fewer = halved(problem)
             if not (initial is None or callable(initial)):
@@ -110,7 +111,7 @@ def space_errors(
         problem, fields, errors = fewer, coarse, coarse_errors
     if not apart:  # what is known is a part of the error alone: said where it is large
         return list(least) if least.max() > SPACE_ERROR else None
-    factor = np.full(len(fields), _UNKNOWN)
+    factor = np.full(len(fields), 1.0 if carried else _UNKNOWN)
     if len(apart) > 1:
         factor = _still_to_come(*apart)
     return list(least + apart[0] * factor)
