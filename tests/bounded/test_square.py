@@ -24,7 +24,7 @@ from fracparticles.bounded.square_lattice import (
     rate_of_all,
     weights,
 )
-from fracparticles.bounded.square_outside import mean_outside, outward_rate
+from fracparticles.bounded.square_outside import Outside, outward_rate
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from sweeps import few
 
@@ -208,9 +208,8 @@ def test_the_mean_outside_is_that_of_the_integral():
 
     with mpmath.workdps(8):
         exact = float(integral(True) / integral(False))
-    found = mean_outside(
-        lambda x, y: np.exp(-(x**2) / 4.0), np.array([x]), np.array([y]), 1.0, alpha
-    )
+    outside = Outside(np.array([x]), np.array([y]), 1.0, alpha)
+    found = outside.mean(lambda x, y: np.exp(-(x**2) / 4.0))
     assert found[0] == pytest.approx(exact, rel=1e-4)
 
 

@@ -39,7 +39,7 @@ from fracparticles.bounded.square_lattice import (
     rate_of_all,
     weights,
 )
-from fracparticles.bounded.square_outside import mean_outside, outward_rate
+from fracparticles.bounded.square_outside import Outside, outward_rate
 from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.box import BoxConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
@@ -272,19 +272,26 @@ class Square(Domain):
 
     def _rate_of_smooth(self, g: Callable[..., Any]) -> FloatArray:
         """L g in the square, in the unit of the lattice: a lattice twice as wide, and the mean beyond."""
-        n, h = self.side, 2.0 * self.half_width / self.side
-        margin = n // 2
+        n, h, margin = self.side, 2.0 * self.half_width / self.side, self._margin
         wide = h * (np.arange(n + 2 * margin) - 0.5 * (n + 2 * margin - 1))
         values = check.sampled("outside", g, *np.meshgrid(wide, wide, indexing="ij"))
         own = values[margin : margin + n, margin : margin + n]
-        sums = BoxConvolution([weights(self.alpha, n + margin)], [None], n + 2 * margin, n)
+        sums, sums_of_one, beyond = self._of_smooth
         # The level is taken off first: a constant is one to the last digit.
         level = float(own.mean())
-        gained = sums(values - level)[0].copy()
-        lost = (own - level) * sums(np.ones_like(values))[0]
-        half = 0.5 * n + margin
-        beyond = mean_outside(
-            lambda x, y: g(h * x, h * y), self.x / h, self.y / h, half, self.alpha
-        )
-        kappa = outward_rate(self.x / h, self.y / h, half, self.alpha)
-        return np.asarray(gained - lost + kappa * (beyond - own))
+        gained = sums(values - level)[0] - (own - level) * sums_of_one
+        mean = beyond.mean(lambda x, y: g(h * x, h * y))
+        return np.asarray(gained + beyond.rate * (mean - own))
+
+    @property
+    def _margin(self) -> int:
+        """Cells that the wider lattice has beyond each edge."""
+        return self.side // 2
+
+    @cached_property
+    def _of_smooth(self) -> tuple[BoxConvolution, FloatArray, Outside]:
+        """The sums on the wider lattice, those of one, and what is beyond."""
+        n, h, margin = self.side, 2.0 * self.half_width / self.side, self._margin
+        sums = BoxConvolution([weights(self.alpha, n + margin)], [None], n + 2 * margin, n)
+        of_one = sums(np.ones((n + 2 * margin,) * 2))[0].copy()
+        return sums, of_one, Outside(self.x / h, self.y / h, 0.5 * n + margin, self.alpha)

@@ -20,7 +20,7 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import plane_constant
 
-__all__ = ["mean_outside", "outward_rate"]
+__all__ = ["Outside", "outward_rate"]
 
 _DIRECTIONS, _DISTANCES = 12, 12  # nodes for each side
 
@@ -33,24 +33,36 @@ def outward_rate(x: FloatArray, y: FloatArray, half: float, alpha: float) -> Flo
     return plane_constant(alpha) / alpha * total
 
 
-def mean_outside(
-    g: Callable[..., Any], x: FloatArray, y: FloatArray, half: float, alpha: float
-) -> FloatArray:
-    """Return the mean of g(x, y) outside, with the weight |x - y|^(-2-alpha), for each point inside."""
-    nodes, shares = _legendre(_DIRECTIONS)
-    stretch, parts = _legendre(_DISTANCES)
-    stretch = stretch ** (-1.0 / alpha)
-    total, whole = np.zeros(np.broadcast(x, y).shape), np.zeros(np.broadcast(x, y).shape)
-    for outward, along, d, low, high in _sides(x, y, half, alpha):
-        size, step = d**-alpha * (high - low), np.multiply.outer(stretch, d)
-        whole += size
-        for node, weight in zip(nodes, shares, strict=True):
-            slope = _slope(low + node * (high - low), alpha)
-            at_x = x + step * (outward[0] + slope * along[0])
-            at_y = y + step * (outward[1] + slope * along[1])
-            values = check.sampled("outside", g, at_x, at_y)
-            total += weight * size * np.tensordot(parts, values, 1)
-    return np.asarray(total / whole)
+class Outside:
+    """Means over what lies outside the square |x|, |y| < half, for points x, y inside; the rays are found once."""
+
+    def __init__(self, x: FloatArray, y: FloatArray, half: float, alpha: float) -> None:
+        self._x, self._y = x, y
+        self.rate = outward_rate(x, y, half, alpha)
+        nodes, shares = _legendre(_DIRECTIONS)
+        stretch, self._parts = _legendre(_DISTANCES)
+        self._stretch = stretch ** (-1.0 / alpha)
+        whole = alpha / plane_constant(alpha) * self.rate
+        # Of each side: outward and along it, the distance, and the weight and slope of each direction.
+        self._rays = [
+            (outward, along, d, [
+                (share * d**-alpha * (high - low) / whole, _slope(low + node * (high - low), alpha))
+                for node, share in zip(nodes, shares, strict=True)
+            ])
+            for outward, along, d, low, high in _sides(x, y, half, alpha)
+        ]  # fmt: skip
+
+    def mean(self, g: Callable[..., Any]) -> FloatArray:
+        """Return the mean of g(x, y) outside, with the weight |x - y|^(-2-alpha), for each point inside."""
+        total = np.zeros(self.rate.shape)
+        for outward, along, d, directions in self._rays:
+            step = np.multiply.outer(self._stretch, d)
+            for weight, slope in directions:
+                at_x = self._x + step * (outward[0] + slope * along[0])
+                at_y = self._y + step * (outward[1] + slope * along[1])
+                values = check.sampled("outside", g, at_x, at_y)
+                total += weight * np.tensordot(self._parts, values, 1)
+        return total
 
 
 def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
