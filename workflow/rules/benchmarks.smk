@@ -12,6 +12,7 @@ for job, names in BENCHMARK_JOBS.items():
             [RESULTS / f"benchmarks/{name}.nc" for name in names],
         log:
             RESULTS / f"logs/benchmark_{job}.log",
+        priority: 1 if STUDY.smoke else 0  # the long ones first, where the time does not matter
         threads: 1 if STUDY.smoke else workflow.cores  # all: nothing else runs while the clock does
         resources:
             runtime=60,
