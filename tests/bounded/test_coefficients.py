@@ -135,19 +135,6 @@ def test_one_sided_differences_are_exact_for_the_sixth_power():
         assert d @ x**power == pytest.approx(power * x ** (power - 1), rel=1e-8, abs=1e-8)
 
 
-def test_transport_of_what_vanishes_at_the_edges_of_a_square():
-    """u = w e^x, w = depth^(alpha/2), a = (1, 0): -u_x, singular at the edge, in the mean."""
-    errors = []
-    for count in (16, 32):
-        one = Square(1.5, count)
-        x, y = one.points
-        u = ((1.0 - x**2) * (1.0 - y**2)) ** 0.75 * np.exp(x)
-        ours = one.carried(u, 0.0 * u, (np.ones_like(x), np.zeros_like(x)))
-        errors.append(one.total(np.abs(ours + u * (1.0 - 1.5 * x / (1.0 - x**2)))))
-    assert errors[-1] < 2e-5
-    assert orders(errors)[0] > 5.0
-
-
 @pytest.mark.parametrize("one", [Disc(1.5, 12, 8, "reflecting"), Square(1.5, 12, "reflecting")])
 def test_where_nothing_leaves_transport_and_exchange_keep_the_total(one):
     rng = np.random.default_rng(3)
