@@ -5,27 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flows import PRESSED, constant, inward, mean, shear, transport, whole
 from fracparticles.bounded.disc import Disc
 from sweeps import covering
 
 EPS = np.finfo(float).eps
 ALPHAS = (1.05, 1.3, 1.9)
-
-
-def constant(x, y):
-    return 5.0 + 0.0 * x, -2.0 + 0.0 * x
-
-
-def inward(x, y):
-    return -5.0 * x, -5.0 * y
-
-
-def outward(x, y):
-    return 5.0 * x, 5.0 * y
-
-
-def shear(x, y):
-    return 5.0 * y, 0.0 * x
 
 
 def eddies(x, y):
@@ -41,27 +26,6 @@ def eddies(x, y):
 def side(x, y):
     """Zero at the edge, and not without divergence."""
     return 5.0 * (1.0 - x**2 - y**2), 0.0 * x
-
-
-PRESSED = {constant: 0.0, shear: 0.0, outward: -10.0, inward: 10.0}  # max(-div a)
-
-
-def matrix(one, f):
-    """The matrix of f between the particles."""
-    columns = (f(e.reshape(one.x.shape)).ravel() for e in np.eye(one.x.size))
-    return np.stack(list(columns), axis=1)
-
-
-def transport(one, velocity):
-    return matrix(one, lambda v: one.carried(v, 0.0 * v, velocity))
-
-
-def whole(one, flow):
-    return matrix(one, one.applied) + transport(one, flow(one.x, one.y))
-
-
-def mean(one, u):
-    return one.total(np.abs(u)) / one.volumes.sum()
 
 
 # --- what is skew ---------------------------------------------------------------------------------

@@ -38,13 +38,14 @@ import numpy as np
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import Rings
 from fracparticles.bounded.plane_differences import (
+    REACH,
     differences_through_centre,
+    differences_with_beyond,
     one_sided_differences,
 )
 
 __all__ = ["DiscTransport"]
 
-_REACH = 3  # rings on the other side of the centre that differences see, and as many at the edge
 _AT_EDGE = 5  # points of one-sided differences: the adjoint of seven is worse by a factor of two on few rings
 
 
@@ -94,7 +95,7 @@ class _Across(NamedTuple):
 
     def of(self, f: FloatArray) -> FloatArray:
         out = self.near @ f
-        out[:_REACH] += self.opposite @ _half_a_turn(f[:_REACH])
+        out[:REACH] += self.opposite @ _half_a_turn(f[:REACH])
         return np.asarray(out)
 
     def transposed(self, f: FloatArray) -> FloatArray:
@@ -103,23 +104,23 @@ class _Across(NamedTuple):
 
 def _skew(rings: Rings, reflecting: bool) -> _Across:
     """P."""
-    count, r, slope = rings.r.size, rings.r[:_REACH], rings.slope[:_REACH]
-    whole = one_sided_differences(count + 2 * _REACH)[_REACH:-_REACH]  # none of these is one-sided
-    near = whole[:, _REACH:-_REACH]
-    opposite = whole[:_REACH, _REACH - 1 :: -1]
+    count, r, slope = rings.r.size, rings.r[:REACH], rings.slope[:REACH]
+    whole = differences_with_beyond(count)
+    near = whole[:, REACH:-REACH]
+    opposite = whole[:REACH, REACH - 1 :: -1]
     if reflecting:
-        near[-_REACH:] = one_sided_differences(count, _AT_EDGE)[-_REACH:]
+        near[-REACH:] = one_sided_differences(count, _AT_EDGE)[-REACH:]
     # Of odd waves M r = -(near - opposite)^T r / r' is to be 1.
-    missing = slope + (near.T @ rings.r)[:_REACH] - opposite.T @ r
+    missing = slope + (near.T @ rings.r)[:REACH] - opposite.T @ r
     more = np.diag(-0.5 * missing / r)
-    near[:_REACH, :_REACH] += more
+    near[:REACH, :REACH] += more
     return _Across(near / rings.slope[:, None], (opposite - more) / slope[:, None])
 
 
 def _smooth(rings: Rings) -> _Across:
     """d/dr of what points outwards and is smooth up to the edge and through the centre, where outwards turns round."""
     near = one_sided_differences(rings.r.size) / rings.slope[:, None]
-    near[:_REACH], opposite = differences_through_centre(rings.r)
+    near[:REACH], opposite = differences_through_centre(rings.r)
     return _Across(near, -opposite)
 
 

@@ -36,7 +36,7 @@ from fracparticles.adaptive.weights import MOST_NEAR
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import EXTERIORS
 from fracparticles.bounded.given import Lift
-from fracparticles.bounded.interval_differences import differences
+from fracparticles.bounded.interval_differences import differences, transported
 from fracparticles.bounded.interval_outside import OutsideValues, loss_rates
 from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Modes
@@ -215,9 +215,14 @@ class Interval(ModalDomain):
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -(a u)', u = v + base; where nothing leaves the sum of V times it is zero."""
-        walls = self.exterior == "reflecting"
-        return -differences(velocity[0] * (v + base), walls) / self.volumes
+        """Return -(a u)', u = v + base: of v no wave grows that is not pressed together, see `interval_differences`.
+
+        Where nothing leaves the sum of V times it is zero.
+        """
+        a = np.broadcast_to(velocity[0], v.shape)
+        if self.exterior == "reflecting":
+            return -differences(a * (v + base), walls=True) / self.volumes
+        return -(transported(v, a) + differences(a * base)) / self.volumes
 
     def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
         """Return the exchange with the mean of d, by the differences of pairs."""

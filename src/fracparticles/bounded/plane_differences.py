@@ -6,9 +6,15 @@ import numpy as np
 
 from fracparticles.arguments import FloatArray
 
-__all__ = ["differences_through_centre", "one_sided_differences"]
+__all__ = [
+    "REACH",
+    "differences_through_centre",
+    "differences_with_beyond",
+    "one_sided_differences",
+]
 
 _POINTS = 7
+REACH = _POINTS // 2  # of those that are not one-sided
 
 
 def one_sided_differences(count: int, points: int = _POINTS) -> FloatArray:
@@ -21,12 +27,17 @@ def one_sided_differences(count: int, points: int = _POINTS) -> FloatArray:
     return d
 
 
+def differences_with_beyond(count: int) -> FloatArray:
+    """Return d/di of f_i at i = 0 .. count - 1, by the values at i = -3 .. count + 2, shape (count, count + 6)."""
+    return one_sided_differences(count + 2 * REACH)[REACH:-REACH]
+
+
 def differences_through_centre(r: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return d/dr at the first three radii, by the values at all radii, shape (3, len(r)), and opposite, (3, 3).
 
     Along a diameter a smooth field goes on through the centre, to the first radii on the other side of it.
     """
-    most = _POINTS // 2
+    most = REACH
     line = np.concatenate([-r[most - 1 :: -1], r])  # from the other side of the centre
     near, opposite = np.zeros((most, r.size)), np.zeros((most, most))
     for i in range(most):

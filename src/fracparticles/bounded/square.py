@@ -30,7 +30,6 @@ from fracparticles.arguments import FloatArray
 from fracparticles.bounded.domain import EXTERIORS, Domain
 from fracparticles.bounded.given import Lift
 from fracparticles.bounded.modes import Held, Rest
-from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 from fracparticles.bounded.square_lattice import (
     edge_exchange,
@@ -40,6 +39,7 @@ from fracparticles.bounded.square_lattice import (
     weights,
 )
 from fracparticles.bounded.square_outside import Outside, outward_rate
+from fracparticles.bounded.square_transport import SquareTransport
 from fracparticles.errors import FracparticlesError
 from fracparticles.lattice.box import BoxConvolution
 from fracparticles.lattice.operators import ConvolutionOperator
@@ -97,7 +97,7 @@ class Square(Domain):
         self.half_width = check.scale("half_width", half_width)
         self.diffusivity = check.scale("diffusivity", diffusivity)
         fitted = check.flag("fitted", fitted)
-        h = 2.0 * self.half_width / self.side
+        h = self._spacing = 2.0 * self.half_width / self.side
         # Of the operator on a lattice of spacing one.
         self._rate = self.diffusivity * h**-self.alpha
         middle = h * (np.arange(self.side) - 0.5 * (self.side - 1))
@@ -106,6 +106,7 @@ class Square(Domain):
         if fitted and exterior != "reflecting":
             line = edge_volumes(self.alpha, self.side)
             line = line * line[::-1]
+        self._line = line
         volumes = np.multiply.outer(line, line)
         self.volumes = h * h * volumes
         # Between the values of V^(1/2) u the operator is symmetric.
@@ -164,24 +165,24 @@ class Square(Domain):
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -div(a u), u = v + base, by differences after d^(alpha/2), d = R^2 - x^2, as v is at the edges.
+        """Return -div(a u), u = v + base: of v no wave grows that is not pressed together, see `square_transport`.
 
-        Where nothing leaves, what the sum of all is off by is taken off evenly.
+        Where nothing leaves, the sum of all is kept.
         """
-        along, vanishing = self._slopes
-        bent = along if self.exterior == "reflecting" else vanishing
-        a_x, a_y = velocity
-        out = bent @ (a_x * v) + along @ (a_x * base) + (a_y * v) @ bent.T + (a_y * base) @ along.T
-        return np.asarray(self._mean(out) - out if self.exterior == "reflecting" else -out)
+        every = [np.broadcast_to(one, self.volumes.shape) for one in velocity]
+        moved = self._transport.carried(v, *every)
+        if base.any():
+            moved += self._transport.of_smooth(base, *every)
+        return moved / self._spacing
+
+    def divergence(self, velocity: Sequence[FloatArray]) -> FloatArray:
+        """Return div a, as `carried` has it."""
+        every = (np.broadcast_to(one, self.volumes.shape) for one in velocity)
+        return self._transport.divergence(*every) / self._spacing
 
     @cached_property
-    def _slopes(self) -> tuple[FloatArray, FloatArray]:
-        """d/dx of what is smooth, and of what is like (R^2 - x^2)^(alpha/2) at the edges, both of shape (N, N)."""
-        x, power = self.x[:, 0], 0.5 * self.alpha
-        along = one_sided_differences(self.side) * (0.5 * self.side / self.half_width)
-        depth = self.half_width**2 - x**2
-        bent = depth[:, None] ** power * along / depth**power
-        return along, bent - np.diag(self.alpha * x / depth)
+    def _transport(self) -> SquareTransport:
+        return SquareTransport(self.alpha, self._line, self.exterior == "reflecting")
 
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the least eigenvalues of -D L, in order, each as often as it occurs: up to 20 of them."""
