@@ -25,9 +25,10 @@ BLOCK = 1000
 _NOT_YET = Timing(())
 # A trial is timed again if no other one of its contender is so much faster and as good.
 _SLACK = 1.5
-_FAR = 10.0  # nor if one of anybody is so much faster and as good: noise cannot put it ahead
+_FAR = 4.0  # nor if one of anybody is so much faster and as good: noise cannot put it ahead
 # What leads, or may be said to be so much slower than what does, is timed at more moments: a machine has slow ones.
-_LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 5
+_LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 20
+_SPENT = 0.05  # seconds on it, after which there are no more
 _MATRIX = 600  # points up to which the whole run may be one matrix
 _MOST = 2**17  # numbers in a block
 
@@ -94,9 +95,9 @@ def run_trials(
     """Run every trial once, then time those that matter in `rounds` rounds, set-ups and solves; one row a trial.
 
     A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, within a
-    factor of 10 of the front of all, and does not take a quarter of a second. The rounds go through all of them, so
-    that each is measured at several moments; the best of each contender are in four times as many rounds more, in the
-    fewer the longer they take. The memory is that of the trials on the front of all.
+    factor of 4 of the front of all, and does not take a quarter of a second. The rounds go through all of them, so
+    that each is measured at several moments; the best of each contender are in up to twenty times as many, in the fewer
+    the longer they take. The memory is that of the trials on the front of all.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ def run_trials(
             leading = _near_own(again, _LEAD)
             again = list(compress(leading, _near(leading, judged, 1, _BEHIND)))
         for record in again:
-            if k * record.times[1] > LONG:
+            if k * repeats * record.times[1] > _SPENT:
                 continue
             prepare = partial(record.contender.prepare, problem, **record.given)
             setup, ready = measure(prepare, repeats, seconds, before=forget_tables)

@@ -103,10 +103,9 @@ class MovingParticles(Contender):
 
     def trials(self, problem: Problem) -> Trials:
         """Yield a few lattices and steps."""
-        for order in (2, 4):
-            for spacing, steps in ((0.1788, 250), (0.0894, 1000)):
-                fields = {"order": order, "spacing": spacing, "dt": 1.0 / steps, "truncation": 10.0}
-                yield {"variant": f"order {order}", **fields}
+        for spacing, steps in ((0.1788, 250), (0.0894, 1000)):
+            fields = {"order": 4, "spacing": spacing, "dt": 1.0 / steps, "truncation": 10.0}
+            yield {"variant": "order 4", **fields}
 
     def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
         """Return the run made ready; its solution is the field (7) where the particles began."""
