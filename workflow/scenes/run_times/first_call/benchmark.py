@@ -29,15 +29,9 @@ _CALLS = {
 
 
 def benchmark(repeats: int) -> Measurements:
-    """Time processes; each program has run once before, so that what is compiled or cached on disk is there.
-
-    Of a single repeat, which has no say in a time, the run before is left out.
-    """
+    """Time processes, each program in turn; the first round leaves what is compiled or cached on disk."""
     one_core()
     times = dict.fromkeys(_CALLS, Timing(()))
-    if repeats > 1:
-        for program in _CALLS.values():
-            _run(program)
     for _ in range(repeats):
         for name, program in _CALLS.items():
             times[name] += measure(partial(_run, program))[0]
