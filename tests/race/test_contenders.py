@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import time
 from contextlib import suppress
 
 import numpy as np
@@ -141,11 +142,47 @@ def test_rows_of_trials():
     rows = run_trials(PROBLEMS["fundamental"](0.5), [Echo()], rounds=2, repeats=3, seconds=1.0)
     assert [row["error"] for row in rows] == pytest.approx([0.0, 0.5], abs=1e-15)
     assert set(rows[0]) <= {*LABELS, *VARIABLES}
-    # One that leads: once, in two rounds, and in four times as many rounds more.
-    assert rows[0]["setups"] == rows[0]["solves"] == 1 + 5 * 2 * 3
+    # One that leads, and is short: once, and in twenty times as many rounds.
+    assert rows[0]["setups"] == rows[0]["solves"] == 1 + 20 * 2 * 3
     assert rows[0]["block_time"] > 0.0
     assert rows[0]["peak_memory"] > 0.0
     assert rows[0]["points"] == 41
+
+
+class Slow(Echo):
+    """Takes 20 ms to be made ready."""
+
+    name, follows = "slow", Echo.name
+
+    def prepare(self, problem, variant, size):
+        time.sleep(0.02)
+        return super().prepare(problem, variant, size)
+
+
+def test_what_takes_long_is_timed_at_fewer_moments():
+    rows = run_trials(PROBLEMS["fundamental"](0.5), [Slow()], rounds=1, repeats=3, seconds=1.0)
+    assert rows[0]["setups"] == rows[0]["solves"] == 1 + 3  # three more take more than 0.05 s
+
+
+def test_who_follows_tries_what_is_near_the_front_of_the_other():
+    contenders = Echo(), Slow()
+    rows = run_trials(PROBLEMS["fundamental"](0.5), contenders, rounds=1, repeats=1, seconds=1.0)
+    errors = {
+        name: [r["error"] for r in rows if r["contender"] == name] for name in ("echo", "slow")
+    }
+    assert len(errors["echo"]) == 2
+    assert 0 < len(errors["slow"]) <= 2
+    assert min(errors["slow"]) < 1e-15
+
+
+def test_a_sweep_ends_with_an_error_that_is_small_enough():
+    grids = {(fine, 0): {"points": 2**fine} for fine in range(6)}
+    trials = sweep(grids, variant="a")
+    tried = [next(trials)["points"]]
+    with suppress(StopIteration):
+        for error in (1e-3, 1e-9, 1e-11, 1e-13):
+            tried.append(trials.send(error)["points"])
+    assert tried == [1, 2, 4]
 
 
 def test_a_sweep_leaves_out_what_gains_nothing():
