@@ -38,5 +38,13 @@ def whole(one, flow):
     return matrix(one, one.applied) + transport(one, flow(one.x, one.y))
 
 
+def fastest(one, flow):
+    """The greatest rate at which sum V v^2 / 2 can grow, over sum V v^2, and the round-off in it."""
+    root = np.sqrt(one.volumes.reshape(-1))
+    form = root[:, None] * whole(one, flow) / root
+    rate = np.linalg.eigvalsh(0.5 * (form + form.T))[-1]
+    return rate, 100.0 * np.finfo(float).eps * np.abs(form).max()
+
+
 def mean(one, u):
     return one.total(np.abs(u)) / one.volumes.sum()
