@@ -72,8 +72,12 @@ class BoxConvolution:
 
         wave_numbers = -(-half // COLUMNS) * COLUMNS
         self._spectrum = np.zeros((*(sources,) * (dim - 1), wave_numbers), dtype=complex)
+        # The first result takes the place of the sources: wave numbers are copied before they are overwritten.
         self._spectra = [
-            np.zeros((*(targets,) * (dim - 1), wave_numbers), dtype=complex) for _ in weights
+            self._spectrum
+            if sources == targets and not number
+            else np.zeros((*(targets,) * (dim - 1), wave_numbers), dtype=complex)
+            for number in range(len(weights))
         ]
         self._half = half
         self._out = np.empty((len(weights), *(targets,) * dim))

@@ -24,6 +24,8 @@ PLAN = ("FFTW_ESTIMATE",)
 _CLOSE = 1.03  # a power of two is taken up to this ratio
 _SHORT = 1000  # up to here the next length counts more than its factors
 _FACTOR = 128  # of every complex length
+# Complex numbers from which a transform in its own place is as fast as one into another: both leave the cache.
+_IN_PLACE = 2**17
 
 
 class FourierConvolution:
@@ -54,10 +56,6 @@ class FourierConvolution:
         self.size, self.pad = size, pad
         length = complex_length(size + pad)
         numbers = pyfftw.empty_aligned(length, dtype=complex)
-        self._spectrum = pyfftw.empty_aligned(length, dtype=complex)
-        self._forward = pyfftw.FFTW(numbers, self._spectrum, flags=PLAN)
-        back = {"direction": "FFTW_BACKWARD", "flags": PLAN}
-        self._backward = pyfftw.FFTW(self._spectrum, numbers, **back)
         real = numbers.view(float)
         self._before, self._after = real[:pad], real[pad + size :]
         self._particles, self._sums = real[pad : pad + size], real[: size + 2 * pad]
@@ -66,13 +64,13 @@ class FourierConvolution:
         real[:] = 0.0
         real[: reach + 1] = weights
         real[2 * length - reach :] = parity * weights[:0:-1]
-        transform = rfft(real)
-        symbol = (transform.real if parity > 0 else transform.imag) / length
-        a = 0.5 * (symbol + parity * symbol[::-1])
-        b = 0.5 * (symbol - parity * symbol[::-1])
-        angle = np.pi / length * np.arange(length + 1)
-        self._own, self._mirrored = a - b * np.sin(angle), (b * np.cos(angle))[: length // 2 + 1]
+        self._own, self._mirrored = _factors(real, parity)
         self._multiply = _multiply_even if parity > 0 else _multiply_odd
+
+        self._spectrum = numbers if length >= _IN_PLACE else pyfftw.empty_aligned(length, complex)
+        self._forward = pyfftw.FFTW(numbers, self._spectrum, flags=PLAN)
+        back = {"direction": "FFTW_BACKWARD", "flags": PLAN}
+        self._backward = pyfftw.FFTW(self._spectrum, numbers, **back)
 
     def __call__(self, u: np.ndarray) -> np.ndarray:
         """Return y, shape (N + 2 pad,): a view of a buffer that the next call overwrites."""
@@ -84,6 +82,26 @@ class FourierConvolution:
         self._multiply(self._spectrum, self._own, self._mirrored)
         self._backward.execute()
         return self._sums
+
+
+def _factors(weights: np.ndarray, parity: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return, of the 2 M weights of a circle, a_k - b_k sin(pi k / M), k = 0 .. M, and b_k cos(pi k / M), to M / 2.
+
+    Step by step, so that no more than three arrays of M numbers are there beside the transform.
+    """
+    length = weights.size // 2
+    transform = rfft(weights)
+    symbol = (transform.real if parity > 0 else transform.imag) / length
+    del transform
+    own = 0.5 * (symbol + parity * symbol[::-1])
+    half_difference = 0.5 * (symbol - parity * symbol[::-1])
+    del symbol
+    angle = np.pi / length * np.arange(length + 1)
+    mirrored = half_difference[: length // 2 + 1] * np.cos(angle[: length // 2 + 1])
+    np.sin(angle, out=angle)
+    angle *= half_difference
+    own -= angle
+    return own, mirrored
 
 
 def line_plans(real: np.ndarray, spectrum: np.ndarray) -> tuple[pyfftw.FFTW, pyfftw.FFTW]:

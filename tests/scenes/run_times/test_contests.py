@@ -195,13 +195,25 @@ def test_goals_are_met_or_not():
         "printed lattice": 0.3,
         "naive": 1e4,
         "first call": 0.7,
+        "growth": 1.1,
+        "memory truncated": 12.0,
+        "memory open": 40.0,
     }
     races = {f"work_precision{where}": frame() for where in ("", "_plane", "_space")}
     calls = pd.DataFrame({"call": ["an empty program", "fp.evolve"], "run_time": [0.01, 0.8]})
-    given = inputs(**races, reference_times=reference(), first_call=calls)
+    growth = pd.DataFrame(
+        [
+            (1, kind, n, 1e-8 * n, 1e-9 * n**power, memory * (1.0 + 1e3 / n))
+            for kind, power, memory in (("KPSE-2-truncated", 1.0, 80.0), ("KPSE-12-open", 1.2, 400.0))
+            for n in (1e6, 1e4)
+        ],
+        columns=["dim", "kind", "particles", "setup_time", "application_time", "memory_per_particle"],
+    )  # fmt: skip
+    given = inputs(**races, reference_times=reference(), first_call=calls, cost_growth=growth)
     table = study("run_time_goals")(given, goals=goals, errors=[1e-4, 1e-9]).table
-    assert list(table["measured"]) == pytest.approx([2.0, 2.0] * 3 + [1.0, 0.1, 2e4, 0.8])
-    assert list(table["met"]) == ["no"] * 6 + ["yes", "yes", "yes", "no"]
+    grown = [1.0, 1.2, 10.01, 50.05]
+    assert list(table["measured"]) == pytest.approx([2.0, 2.0] * 3 + [1.0, 0.1, 2e4, 0.8, *grown])
+    assert list(table["met"]) == ["no"] * 6 + ["yes", "yes", "yes", "no"] + ["yes", "no"] * 2
 
 
 def test_who_does_not_get_there_is_infinitely_behind():

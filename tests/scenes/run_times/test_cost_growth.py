@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from fracparticles.moving.scattered import NonuniformFourierSum
 from fracparticles.run.dataset import read_benchmark, write
+from fracparticles.run.solver import prepare
 from fracstudy.figure_files import save
 from fracstudy.inputs import Inputs
 from scene_functions import measured
+from scenes.run_times.cost_growth.benchmark import _SHORT, _START, _case, _strengths
 from scenes.run_times.cost_growth.benchmark import benchmark as measure_growth
 from scenes.run_times.cost_growth.figure import figure as draw
 from scenes.run_times.cost_growth.study import exponent, extrapolate
@@ -105,6 +109,19 @@ def test_memory_is_proportional_to_the_particles(kind, dim):
     less, more = data["memory_per_particle"].values
     assert data["particles"].values.tolist() == [side**dim for side in SIDES[kind, dim]]
     assert less / 1.5 < more < 1.5 * less
+
+
+@pytest.mark.parametrize(("dim", "size"), [(1, 200_001), (2, 401), (3, 101)])
+def test_a_truncated_run_takes_at_most_twelve_doubles_a_particle(dim, size):
+    """What numpy allocates for the data, the run and the solution; FFTW and the program take more."""
+    case = _case("KPSE-2-truncated", dim, size, _START + _SHORT)
+    tracemalloc.start()
+    try:
+        prepare(case).solve(_strengths(case))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak <= 12.0 * 8.0 * case.particles
 
 
 @pytest.mark.parametrize("memory", [False, True])

@@ -8,6 +8,7 @@ import pandas as pd
 
 from fracstudy.inputs import Inputs, Result
 from scenes.run_times.contests import best, trials_of
+from scenes.run_times.cost_growth.study import exponent
 
 _RACES = {
     "work_precision": "line",
@@ -16,6 +17,8 @@ _RACES = {
 }
 _AT_LEAST = ("naive",)
 _OURS = ("ours", "schemes")
+_GROWING = {"setup_time": "set-up", "application_time": "an application"}
+_DOUBLE = 8.0  # bytes
 
 
 def study(inputs: Inputs, *, goals: dict[str, float], errors: list[float]) -> Result:
@@ -27,6 +30,7 @@ def study(inputs: Inputs, *, goals: dict[str, float], errors: list[float]) -> Re
         for call in calls.index
         if call.startswith("fp.")
     ]
+    rows += _growth(inputs.benchmarks["cost_growth"])
     return Result(pd.DataFrame([_held(*row, goals[row[1]]) for row in rows]))
 
 
@@ -51,6 +55,19 @@ def _reference(runs: pd.DataFrame) -> Iterator[tuple[str, str, float]]:
     kpse = runs[(runs["scheme"] == "KPSE") & (runs["order"] == 2)]
     what = "printed setting, KPSE II: naive time / ours"
     yield what, "naive", kpse["naive_over_series"].iloc[0]
+
+
+def _growth(runs: pd.DataFrame) -> Iterator[tuple[str, str, float]]:
+    """The greatest exponents of time against the number of particles, and the most memory that a lattice takes."""
+    for dim, part in runs.groupby("dim"):
+        each = [one.sort_values("particles") for _, one in part.groupby("kind")]
+        for column, what in _GROWING.items():
+            steepest = max(exponent(*one[["particles", column]].to_numpy().T) for one in each)
+            yield f"{dim} dimension{'s' * (dim > 1)}: exponent of {what}", "growth", steepest
+    largest = runs.loc[runs.groupby(["dim", "kind"])["particles"].idxmax()]
+    for exterior in ("truncated", "open"):
+        held = largest.loc[largest["kind"].str.endswith(exterior), "memory_per_particle"] / _DOUBLE
+        yield f"{exterior}, largest lattices: doubles a particle", f"memory {exterior}", held.max()
 
 
 def _held(what: str, name: str, got: float, goal: float) -> dict[str, Any]:
