@@ -12,20 +12,21 @@ __all__ = [
     "PLAN",
     "FourierConvolution",
     "complex_length",
+    "complex_plans",
     "line_plans",
     "transform_length",
     "valid_convolution",
 ]
 
-# FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths chosen below its plans take up to a tenth longer to run
-# (`benchmarks.reference`), but they are made in milliseconds instead of seconds, and they are the same every time, so
-# that the same case gives the same bytes.
+# FFTW_ESTIMATE and not FFTW_MEASURE: at the lengths chosen below its plans take up to a third longer to run (the scene
+# `reference_times` times both), but they are made in milliseconds instead of seconds, and they are the same every time,
+# so that the same case gives the same bytes.
 PLAN = ("FFTW_ESTIMATE",)
 _CLOSE = 1.03  # a power of two is taken up to this ratio
 _SHORT = 1000  # up to here the next length counts more than its factors
 _FACTOR = 128  # of every complex length
-# Complex numbers from which a transform in its own place is as fast as one into another: both leave the cache.
-_IN_PLACE = 2**17
+# Complex numbers from which a transform in its own place is faster than one into another: two arrays leave the cache.
+_IN_PLACE = 2**16
 
 
 class FourierConvolution:
@@ -67,10 +68,7 @@ class FourierConvolution:
         self._own, self._mirrored = _factors(real, parity)
         self._multiply = _multiply_even if parity > 0 else _multiply_odd
 
-        self._spectrum = numbers if length >= _IN_PLACE else pyfftw.empty_aligned(length, complex)
-        self._forward = pyfftw.FFTW(numbers, self._spectrum, flags=PLAN)
-        back = {"direction": "FFTW_BACKWARD", "flags": PLAN}
-        self._backward = pyfftw.FFTW(self._spectrum, numbers, **back)
+        self._spectrum, self._forward, self._backward = complex_plans(numbers)
 
     def __call__(self, u: np.ndarray) -> np.ndarray:
         """Return y, shape (N + 2 pad,): a view of a buffer that the next call overwrites."""
@@ -102,6 +100,17 @@ def _factors(weights: np.ndarray, parity: int) -> tuple[np.ndarray, np.ndarray]:
     angle *= half_difference
     own -= angle
     return own, mirrored
+
+
+def complex_plans(numbers: np.ndarray) -> tuple[np.ndarray, pyfftw.FFTW, pyfftw.FFTW]:
+    """Return the spectrum of complex numbers, which are the spectrum if there are many, and the ways there and back."""
+    spectrum = numbers if numbers.size >= _IN_PLACE else pyfftw.empty_aligned(numbers.size, complex)
+    back = {"direction": "FFTW_BACKWARD", "flags": PLAN}
+    return (
+        spectrum,
+        pyfftw.FFTW(numbers, spectrum, flags=PLAN),
+        pyfftw.FFTW(spectrum, numbers, **back),
+    )
 
 
 def line_plans(real: np.ndarray, spectrum: np.ndarray) -> tuple[pyfftw.FFTW, pyfftw.FFTW]:

@@ -11,7 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import _lru_cache_wrapper, lru_cache
+from functools import _lru_cache_wrapper, cache, lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -48,7 +48,9 @@ __all__ = [
 LONG = 0.25
 """Seconds; what takes longer is timed once."""
 _SHORT = 0.1  # seconds of clock, of which nothing is said
-_TICKS = os.sysconf("SC_CLK_TCK")  # a second, of /proc/stat
+_COUNTERS = Path("/proc/stat")
+_TICKS = os.sysconf("SC_CLK_TCK")  # a second, of the counters
+_LINE = 256  # bytes, more than the first line of the counters has
 _LIBRARIES = ("mkl_fft", "numba", "numpy", "pyfftw", "scipy")
 
 
@@ -121,12 +123,18 @@ _WATCHED = {"clock": 0.0, "others": 0.0}
 
 def _seconds_of_others() -> float:
     """What all processes but this one have taken of the cores since the start of the system; nan outside Linux."""
-    counters = Path("/proc/stat")
-    if not counters.exists():
+    counters = _open_counters()
+    if counters is None:
         return float("nan")
-    with counters.open() as lines:
-        user, nice, system, _idle, _waiting, *interrupts = map(int, lines.readline().split()[1:9])
+    line = os.pread(counters, _LINE, 0).split(b"\n", 1)[0]
+    user, nice, system, _idle, _waiting, *interrupts = map(int, line.split()[1:9])
     return (user + nice + system + sum(interrupts)) / _TICKS - time.process_time()
+
+
+@cache
+def _open_counters() -> int | None:
+    """Kept open for the life of the process: they are read around each measurement."""
+    return os.open(_COUNTERS, os.O_RDONLY) if _COUNTERS.exists() else None
 
 
 def other_load() -> float:

@@ -12,7 +12,17 @@ from scipy.fft import next_fast_len
 
 from fracstudy.race.problem import Points, Problem
 
-__all__ = ["Contender", "Grids", "Mapped", "Ready", "Solve", "Trials", "lattices", "sweep"]
+__all__ = [
+    "ENOUGH",
+    "Contender",
+    "Grids",
+    "Mapped",
+    "Ready",
+    "Solve",
+    "Trials",
+    "lattices",
+    "sweep",
+]
 
 Trials = Generator[dict[str, Any], float | None, None]
 """Keywords of `prepare` to try; the error of each may be sent back."""
@@ -23,8 +33,9 @@ Grids = Mapping[tuple[int, int], dict[str, Any]]
 
 SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
 TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)
+ENOUGH = 1e-10
+"""An error of which no smaller one is asked for."""
 _LEFT = 0.9  # of an error that is not due to what was refined
-_ENOUGH = 1e-10  # an error of which no smaller one is asked for
 _MOST = {1: 2**16, 2: 2**20, 3: 2**21}  # points
 
 
@@ -142,5 +153,5 @@ def sweep(grids: Grids, **fields: Any) -> Trials:
             errors[fine, wide] = min(idle)
         elif (error := (yield {**fields, **grid})) is not None:
             errors[fine, wide] = error
-            if error < _ENOUGH:
+            if error < ENOUGH:
                 return

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fracparticles.graded.field import INTERPOLATED, graded_step
 from fracparticles.graded.particles import graded_particles
-from fracstudy.race.contender import Contender, Ready, Trials
+from fracstudy.race.contender import ENOUGH, Contender, Ready, Trials
 from fracstudy.race.problem import Problem
 
 _COUNTS = (25, 35, 49, 69, 97, 137, 193, 273)
-_MANY = 97  # from here on set-ups take long, and the worse half of the scales is left out each time
+_MANY = 49  # from here on set-ups take long, and the worse half of the scales is left out each time
 _REACHES = (200.0, 5000.0)
 _SCALES = (0.01, 0.1, 1.0, 3.0)
 
@@ -28,10 +30,11 @@ class Graded(Contender):
             for count in _COUNTS:
                 errors = []
                 for scale in scales:
-                    errors.append(
-                        (yield {"variant": "", "count": count, "reach": reach, "scale": scale})
-                    )
-                if count >= _MANY and None not in errors:
+                    error = yield {"variant": "", "count": count, "reach": reach, "scale": scale}
+                    errors.append(np.inf if error is None else error)
+                if min(errors) < ENOUGH:
+                    break
+                if count >= _MANY and min(errors) < np.inf:
                     better = sorted(zip(errors, scales, strict=True))
                     scales = [scale for _, scale in better[: max(2, len(better) // 2)]]
 

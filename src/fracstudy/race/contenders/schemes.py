@@ -17,7 +17,7 @@ from fracstudy.race.problem import Problem
 _SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
 _TRUNCATIONS = {1: (4.1, 5.0, 7.0, 10.0, 20.0), 2: (2.3, 4.0, 8.0), 3: (2.3, 4.0)}
 _MOST = {1: 20000, 2: 60000, 3: 100000}
-_NAIVE_STEPS = 2
+_NAIVE_STEPS = 1
 
 
 def _lattices(problem: Problem) -> Grids:
@@ -116,7 +116,7 @@ class MovingParticles(Contender):
 
 
 class PapersWay(Contender):
-    """Sums over all pairs and midpoint steps of 5e-5: a few steps timed, the rest extrapolated."""
+    """Sums over all pairs and midpoint steps of 5e-5: a step timed, the rest extrapolated."""
 
     name = label = "papers' way"
     reference = "Lucchesi et al. (2020), Sec. 4.1"
@@ -128,14 +128,14 @@ class PapersWay(Contender):
         return problem.dim == 1 and problem.name == "fundamental"
 
     def trials(self, problem: Problem) -> Trials:
-        """Yield the schemes and orders on truncated lattices."""
-        grids = product(("DD", "FPSE", "KPSE"), (2, 4), ((20.0, 0.2), (160.0, 0.1)))
-        for scheme, order, (truncation, spacing) in grids:
-            fields = {"scheme": scheme, "order": order, "spacing": spacing}
-            yield {"variant": f"{scheme} {order}", "truncation": truncation, **fields}
+        """Yield the schemes on truncated lattices, of order IV: a step of order II takes as long."""
+        lattices = ((20.0, 0.2), (160.0, 0.1))
+        for scheme, (truncation, spacing) in product(("DD", "FPSE", "KPSE"), lattices):
+            fields = {"scheme": scheme, "order": 4, "spacing": spacing}
+            yield {"variant": f"{scheme} 4", "truncation": truncation, **fields}
 
     def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
-        """Return a few steps made ready, and the whole run by FFT for the error."""
+        """Return a step made ready, and the whole run by FFT for the error."""
         case = Case(beta=problem.beta, dt=5.0e-5, **fields)
         few = few_steps(case, _NAIVE_STEPS, "naive")
         ready = Ready((case.x,), case.volumes, prepare(few).solve, scale=case.steps / _NAIVE_STEPS)

@@ -20,7 +20,7 @@ import numpy as np
 import pyfftw
 import scipy.fft
 
-from fracparticles.lattice.fourier import complex_length
+from fracparticles.lattice.fourier import complex_length, complex_plans
 from fracparticles.run.case import Case
 from fracparticles.run.solver import compute, initial_strengths, prepare
 from fracstudy.errors import off
@@ -110,9 +110,7 @@ def transform_pairs(length: int, measured_plans: bool = True) -> dict[str, Actio
 
 
 def _complex_pair(length: int) -> Action:
-    numbers, spectrum = (pyfftw.zeros_aligned(length, dtype=complex) for _ in range(2))
-    forward = pyfftw.FFTW(numbers, spectrum, flags=("FFTW_ESTIMATE",))
-    backward = pyfftw.FFTW(spectrum, numbers, direction="FFTW_BACKWARD", flags=("FFTW_ESTIMATE",))
+    _, forward, backward = complex_plans(pyfftw.zeros_aligned(length, dtype=complex))
     return lambda: (forward.execute(), backward.execute())
 
 
