@@ -30,35 +30,32 @@ __all__ = ["differences", "transported"]
 
 _WEIGHTS = np.array([4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0])
 _MOST = _WEIGHTS.size
+_STENCIL = np.concatenate([-_WEIGHTS[::-1], [0.0], _WEIGHTS])
 
 
 def differences(f: FloatArray, walls: bool = False) -> FloatArray:
     """Return Delta f, shape (N,); between `walls` of a flux that is zero there."""
-    wide = np.pad(f, _MOST, mode="symmetric" if walls else "edge")
     if walls:
-        wide[:_MOST] *= -1.0
-        wide[-_MOST:] *= -1.0
-    return _inside(wide)
+        return _inside(f, -f[_MOST - 1 :: -1], -f[: -_MOST - 1 : -1])
+    return _inside(f, f[0], f[-1])
 
 
 def transported(u: FloatArray, a: FloatArray) -> FloatArray:
     """Return V d(a u)/dx of what vanishes at the ends, both of shape (N,)."""
-    out = _inside(np.pad(a * u, _MOST)) + a * _inside(np.pad(u, _MOST)) + differences(a) * u
+    out = _inside(a * u) + a * _inside(u) + differences(a) * u
     out *= 0.5
     out[:_MOST] += max(-a[0], 0.0) * (_OUTFLOW @ u[:_MOST])
     out[: -_MOST - 1 : -1] += max(a[-1], 0.0) * (_OUTFLOW @ u[: -_MOST - 1 : -1])
     return out
 
 
-def _inside(wide: FloatArray) -> FloatArray:
-    """Delta f of an f with four values beyond either end."""
-    n = wide.size - 2 * _MOST
-    return np.asarray(
-        sum(
-            c * (wide[_MOST + m : _MOST + m + n] - wide[_MOST - m : _MOST - m + n])
-            for m, c in enumerate(_WEIGHTS, 1)
-        )
-    )
+def _inside(
+    f: FloatArray, left: FloatArray | float = 0.0, right: FloatArray | float = 0.0
+) -> FloatArray:
+    """Delta f of an f that goes on as `left` and `right`, four values or the same four times."""
+    wide = np.empty(f.size + 2 * _MOST)
+    wide[:_MOST], wide[_MOST:-_MOST], wide[-_MOST:] = left, f, right
+    return np.correlate(wide, _STENCIL)
 
 
 def _outflow() -> FloatArray:
