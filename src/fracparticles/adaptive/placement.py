@@ -33,6 +33,7 @@ from fracparticles import arguments as check
 from fracparticles._compiled import njit
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput
+from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = [
     "MOST",
@@ -138,7 +139,7 @@ def place_particles(
     low, high = check.pair("ends", (low, high), rising=True)
     step = check.real_between("step", step, 1e-3, 1.0)
     edges = _panels(length, low, high, 2.0 * step * MOST)
-    t, w = legendre.leggauss(_NODES)
+    t, w = gauss_legendre(_NODES)
     half = 0.5 * np.diff(edges)
     x = (edges[:-1] + half) + half * t[:, None]
     rates = (half / length(x.ravel()).reshape(x.shape)).T

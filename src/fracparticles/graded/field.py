@@ -34,6 +34,7 @@ from fracparticles._compiled import njit
 from fracparticles.arguments import choice, fractional_order, positive_real
 from fracparticles.graded.particles import FORMS, graded_particles, green_step, refuse_many
 from fracparticles.special import green
+from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = ["GRADED_FORMS", "INTERPOLATED", "graded_step", "green_step_of_field"]
 
@@ -88,7 +89,7 @@ def green_step_of_field(
     step = volumes[half] / scale
     # A panel spans at most arcsinh(1) in s; waves of pi / ds take a node for each radian of half the panel's phase.
     span = np.arcsinh(min(x[-1] / scale, 1.0))
-    rule = np.polynomial.legendre.leggauss(_NODES + math.ceil(0.5 * np.pi * span / step))
+    rule = gauss_legendre(_NODES + math.ceil(0.5 * np.pi * span / step))
     epsilon = time ** (1.0 / alpha)
     matrix = np.empty((x.size, x.size))
     for i in range(half + 1):

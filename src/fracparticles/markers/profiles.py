@@ -25,12 +25,13 @@ import numpy as np
 from scipy.special import erf, erfc, erfcinv, erfcx, erfinv
 
 from fracparticles import arguments as check
+from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = ["Gaussian", "Profile", "Ramp", "Square", "inside"]
 
 _WIDE = 20.0  # s, against the square's half-width of 1
 # Exact for exp((x - y)^2 / s^2) with y / s below 1/20.
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+_NODES, _WEIGHTS = gauss_legendre(12)
 _FAR = 0.5  # beyond the square, in s: f is a difference of erfc there, which are small themselves
 _ERFINV = 1e-4  # of the total: erfinv keeps twelve digits of it
 

@@ -28,6 +28,7 @@ from numpy.polynomial import Polynomial
 from fracparticles.arguments import choice, finite_array, real_array, whole_number, within
 from fracparticles.errors import InvalidInput
 from fracparticles.moving.scattered import ScatteredKernel
+from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = ["SHAPES", "Shape", "shape_function"]
 
@@ -140,8 +141,7 @@ class Shape:
         if k.size * nodes > _MOST_TERMS:
             shown = f"{k.size} wavenumbers"
             raise InvalidInput("k", shown, "fewer of this size", "Do it in parts.")
-        x, w = np.polynomial.legendre.leggauss(nodes)
-        x, w = 0.5 * (1.0 + x), 0.5 * w
+        x, w = gauss_legendre(nodes, 0.0, 1.0)
         return np.asarray(2.0 * np.cos(k[..., None] * x) @ (w * self(x)))
 
     def _factor(self, derivative: int) -> Polynomial:

@@ -20,6 +20,7 @@ from numpy.polynomial import chebyshev
 
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import kernel
+from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = ["PlaneTail", "far_flux"]
 
@@ -134,12 +135,12 @@ def _polynomial(alpha: float, reach: float) -> np.ndarray:
 
 def _rays(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """cos and sin of angles towards the side x = 1 from (a, b), v = rho / s on (0, 1), and the weights of both."""
-    nodes, weights = np.polynomial.legendre.leggauss(_ANGLES)
+    nodes, weights = gauss_legendre(_ANGLES)
     low, high = np.arctan2(-1.0 - b, 1.0 - a), np.arctan2(1.0 - b, 1.0 - a)
     angle = 0.5 * (high + low) + 0.5 * (high - low) * nodes[None, :, None]
-    radii, parts = np.polynomial.legendre.leggauss(_RADII)
-    weight = 0.5 * (high - low) * weights[None, :, None] * 0.5 * parts
-    return np.cos(angle), np.sin(angle), 0.5 * (1.0 + radii), weight
+    v, parts = gauss_legendre(_RADII, 0.0, 1.0)
+    weight = 0.5 * (high - low) * weights[None, :, None] * parts
+    return np.cos(angle), np.sin(angle), v, weight
 
 
 def _extended(v: np.ndarray, more: int) -> np.ndarray:

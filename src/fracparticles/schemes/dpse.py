@@ -22,6 +22,7 @@ from fracparticles.lattice.sums import SUMMATIONS, sums_of_weights
 from fracparticles.schemes.base import LatticeScheme
 from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.transform import lattice_transform
+from fracparticles.special.quadrature import gauss_legendre
 
 _NEARLY_CONSTANT = 0.005  # beta, below which the constant 1 / beta would cost more than two digits
 _NODES = 24  # of a panel of 1 / s <= 4 smoothing lengths: exact to round-off for the kernel, a Gaussian at its worst
@@ -39,11 +40,11 @@ def potential_differences(m: np.ndarray, setting: Setting) -> np.ndarray:
     kappa' = F = -r K, so that b_m - b_(m-1) = -s^(-beta) int r K(r) dr from (m - 1) / s to m / s: all of one sign.
     """
     s = setting.overlap
-    nodes, gauss = np.polynomial.legendre.leggauss(_NODES)
+    nodes, gauss = gauss_legendre(_NODES, 0.0, 1.0)
     steps = np.zeros(m.size)
     for node, weight in zip(nodes, gauss, strict=True):
-        r = (m[1:] - 0.5 * (1.0 - node)) / s
-        steps[1:] -= 0.5 * weight / s * r * setting.kernel("K", r)
+        r = (m[1:] - 1.0 + node) / s
+        steps[1:] -= weight / s * r * setting.kernel("K", r)
     return s ** (1.0 - setting.alpha) * np.cumsum(steps)
 
 

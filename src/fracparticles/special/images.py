@@ -21,6 +21,8 @@ from itertools import product
 import numpy as np
 from scipy.special import gamma, gammainc, gammaincc, zeta
 
+from fracparticles.special.quadrature import gauss_legendre
+
 __all__ = [
     "image_series",
     "image_sum",
@@ -64,18 +66,13 @@ def outside_integrals(
     if dim == 1:  # the faces are points
         ends = functions(np.array([[-0.5, 0.5]]))
         return -0.5 * (ends[..., 0] + ends[..., 1]) / (1.0 + degrees)
-    nodes, weights = _gauss_legendre()
+    nodes, weights = gauss_legendre(_NODES)
     face = 0.5 * np.array(list(product(nodes, repeat=dim - 1))).T
     weight = 0.5**dim * np.prod(list(product(weights, repeat=dim - 1)), axis=1)
     total: np.ndarray | float = 0.0
     for axis, side in product(range(dim), (-0.5, 0.5)):
         total = total + functions(np.insert(face, axis, side, axis=0)) @ weight
     return np.asarray(-total / (dim + degrees))
-
-
-@lru_cache(maxsize=1)
-def _gauss_legendre() -> tuple[np.ndarray, np.ndarray]:
-    return np.polynomial.legendre.leggauss(_NODES)
 
 
 def image_sum(x: np.ndarray, exponent: float) -> np.ndarray:

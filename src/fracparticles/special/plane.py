@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.special import gammaln, j0, roots_legendre, xlogy
 
 from fracparticles.arguments import FloatArray
+from fracparticles.special.quadrature import gauss_legendre
 from fracparticles.special.stable import tail_mass
 
 __all__ = [
@@ -32,7 +33,7 @@ def planar_integral(r: ArrayLike, alpha: float, power: float = 0.0) -> FloatArra
 
     Gauss-Legendre in s, omega = s^2, which makes the integrand smooth at 0; exact to round-off for r <= 100.
     """
-    x, weight = roots_legendre(_NODES)
+    x, weight = roots_legendre(_NODES)  # of so many nodes it is quicker than a matrix and its eigenvalues
     last = _LAST_EXPONENT ** (0.5 / alpha)
     s, weight = 0.5 * last * (1.0 + x), 0.5 * last * weight
     omega = s * s
@@ -65,7 +66,7 @@ def square_tail_mass(half_width: float, t: float, alpha: float) -> float:
 
     (4 / pi) int_0^(pi/4) T(D / cos phi) dphi, T(r) the mass outside the disk of radius r.
     """
-    phi, weight = _first_octant()
+    phi, weight = gauss_legendre(_OCTANT_NODES, 0.0, 0.25 * pi)
     return float(4.0 / pi * weight @ tail_mass(half_width / np.cos(phi), t, alpha, 2))
 
 
@@ -77,11 +78,5 @@ def square_exchange_error(half_width: float, alpha: float, time: float) -> float
     origin keeps instead of giving it to places without particles. For n = 1 see `tails.exchange_truncation_error`.
     """
     c = alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + 0.5 * alpha) / (pi * gamma(1.0 - 0.5 * alpha))
-    phi, weight = _first_octant()
+    phi, weight = gauss_legendre(_OCTANT_NODES, 0.0, 0.25 * pi)
     return float(time * 8.0 * c / alpha * (weight @ np.cos(phi) ** alpha) * half_width**-alpha)
-
-
-def _first_octant() -> tuple[FloatArray, FloatArray]:
-    """Gauss-Legendre nodes and weights on (0, pi/4)."""
-    x, weight = np.polynomial.legendre.leggauss(_OCTANT_NODES)
-    return pi / 8.0 * (1.0 + x), pi / 8.0 * weight

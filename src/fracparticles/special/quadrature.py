@@ -1,12 +1,27 @@
-"""Gauss-Jacobi quadrature on (0, 1), by the eigenvalues of the Jacobi matrix (Golub & Welsch 1969)."""
+"""Gauss quadrature: Legendre's rule, and Jacobi's on (0, 1)."""
 
 from __future__ import annotations
+
+from functools import lru_cache
 
 import numpy as np
 
 from fracparticles.arguments import FloatArray
 
-__all__ = ["gauss_jacobi"]
+__all__ = ["gauss_jacobi", "gauss_legendre"]
+
+
+def gauss_legendre(
+    count: int, low: float = -1.0, high: float = 1.0
+) -> tuple[FloatArray, FloatArray]:
+    """Return nodes and weights on (low, high), exact for polynomials of degree 2 count - 1."""
+    x, w = _legendre(count)
+    return 0.5 * (low + high) + 0.5 * (high - low) * x, 0.5 * (high - low) * w
+
+
+@lru_cache(maxsize=64)
+def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
+    return np.polynomial.legendre.leggauss(count)
 
 
 def gauss_jacobi(count: int, power: float) -> tuple[FloatArray, FloatArray]:
@@ -17,7 +32,8 @@ def gauss_jacobi(count: int, power: float) -> tuple[FloatArray, FloatArray]:
         p_{k+1} = (v - a_k) p_k - b_k p_{k-1},   a_k = (1 + q^2 / ((2k+q) (2k+q+2))) / 2,
         b_k = (k (k+q) / (2k+q))^2 / ((2k+q)^2 - 1),   q = power.
 
-    The eigenvalues are numpy's: scipy's rule imports scipy's linear algebra, which takes longer than a whole run.
+    The nodes are eigenvalues of the Jacobi matrix (Golub & Welsch 1969). These are numpy's: scipy's rule imports
+    scipy's linear algebra, which takes longer than a whole run.
 
     Parameters
     ----------

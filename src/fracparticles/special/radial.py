@@ -29,6 +29,7 @@ from fracparticles._compiled import njit
 from fracparticles.arguments import FloatArray, elementwise
 from fracparticles.special import chebyshev
 from fracparticles.special.contour import density_and_tail
+from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = ["RadialTable", "density", "mass", "radial_table", "tail_sine"]
 
@@ -41,7 +42,7 @@ _STEP = 0.125  # of the trapezoidal rule in `_project`
 _BLOCK = 16  # of its nodes at a time
 # Surface S_n of the unit sphere in n dimensions.
 _SURFACE = (math.nan, 2.0, 2.0 * math.pi, 4.0 * math.pi, 2.0 * math.pi**2, 8.0 / 3.0 * math.pi**2)
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+_NODES, _WEIGHTS = gauss_legendre(24)
 
 
 class RadialTable(NamedTuple):
