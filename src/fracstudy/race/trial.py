@@ -26,6 +26,7 @@ _NOT_YET = Timing(())
 # A trial is timed again if no other one of its contender is so much faster and as good.
 _SLACK = 1.5
 _FAR = 4.0  # nor if one of anybody is so much faster and as good: noise cannot put it ahead
+_FOLLOWED = 3.0  # who follows a contender tries more of its trials: their first times decide, and may be slow ones
 # What leads, or may be said to be so much slower than what does, is timed at more moments: a machine has slow ones.
 _LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 20
 _SPENT = 0.05  # seconds on it, after which there are no more
@@ -143,7 +144,7 @@ def _judged(records: Iterable[_Record]) -> list[_Record]:
 
 def _again(records: Iterable[_Record]) -> Trials:
     """Yield what was near the front of one contender."""
-    for record in _near_own(records, _SLACK):
+    for record in _near_own(records, _FOLLOWED):
         yield record.given
 
 
