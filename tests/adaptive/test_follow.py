@@ -68,7 +68,7 @@ def test_particles_go_as_far_as_a_share_of_1e_7():
 def test_a_placement_keeps_mass_and_first_moment(alpha):
     before = followed(alpha, (0.05,), step=0.3, again=False)[0]
     place = Place(Physics(alpha, 6, 1.0), (-20.0, 80.0), np.zeros(0), 0.3)
-    after = _placed_again(before, tuple(before.particles.x[[0, -1]]), place)
+    after = _placed_again(before, place)
     assert after.u.size < before.u.size
     assert 0.0 < after.corrected < 1e-5
     assert after.mass == pytest.approx(before.mass, rel=1e-13)

@@ -14,8 +14,8 @@ particles reach so far that a share of 1e-7 is beyond; nothing leaves there.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -32,9 +32,12 @@ from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolutio
 
 __all__ = ["Followed", "follow"]
 
-_EXCHANGE = 0.05  # what an exchange errs by, over h^order
-_BENT, _NOTHING = 0.1, 1e-7
-_UNRESOLVED = 1e-3  # of int |u|: what the particles may miss between them, or a placement be off
+_EXCHANGE = 0.05  # the error of an exchange over h^order
+_BENT = 0.1  # of initial data beyond the window: what the particles may miss there
+_NOTHING = 1e-7  # of int |u|: what lies beyond a place and counts as zero
+_UNRESOLVED = (
+    1e-3  # of int |u|: what the particles may miss between them, or a placement may change
+)
 _MOST_PLACEMENTS = 5000
 _MOST_TIMES = 1000
 
@@ -110,39 +113,39 @@ def follow(
     window : (float, float)
         Where `initial` is sampled for its bends; beyond, it should fall off without any.
     where : array_like, optional
-        Places that are sampled in any case: of what is narrower than some hundredth of the window.
+        Places that are sampled in any case. Name those of parts narrower than about a hundredth of the window.
     diffusivity : float or callable
         D, or D(x), which is not negative.
     velocity : callable, optional
         a(x, t), with which the particles move.
     source : callable, optional
-        f(x, t, u). What is short in time, of a and f, is seen from the times near it: let one of `times` be there.
+        f(x, t, u). A pulse of a or f that is short in time is noticed only near its time: let one of `times` be there.
     step : float
         h, the distance of neighbours as a part of the length in which u changes. The error is like
         h^(2 near + 2 - alpha).
     near : int
         q, how many neighbours on either side have a weight, 1 to 6.
     reach : float, optional
-        How far the particles go beyond the window; by itself to where a share of 1e-7 is beyond, at first or at the
-        last time, at most (1e7)^(1/alpha) times the width of the window.
+        How far the particles go beyond the window. Left out: so far that at the first and at the last time a share of
+        1e-7 lies beyond them, but at most (1e7)^(1/alpha) times the width of the window.
     again : bool
         Whether particles are placed again.
     tolerance : float
-        Of the splitting from one placement to the next, a share of sum V |u|; with neither velocity nor source there is
-        none.
+        Of the splitting from one placement to the next, a share of sum V |u|. Without velocity and source nothing is
+        split, and it has no effect.
 
     Raises
     ------
     InvalidInput
-        If an argument is outside its range, or more particles would be needed than a matrix is for.
+        If an argument is outside its range, or more particles would be needed than a matrix can hold.
     NonFiniteSolution
         If u becomes infinite, or particles meet.
 
     Warns
     -----
     AccuracyWarning
-        If the particles do not resolve `initial`, u or a coefficient, the step is too long for the exchange, placements
-        changed u, or u reaches the last of them.
+        If the particles do not resolve `initial`, u or a coefficient; if the step is too long for the exchange; if
+        placements changed u; or if u reaches the outermost particles.
     """
     low, high = check.pair("window", window, rising=True)
     seen = check.finite_array("where", where).ravel() if np.size(where) else np.zeros(0)
@@ -155,10 +158,7 @@ def follow(
     )
     tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
     again = check.flag("again", again)
-    outputs = check.vector("times", np.atleast_1d(times))
-    if outputs.size > _MOST_TIMES or outputs[0] < 0.0 or (np.diff(outputs) <= 0.0).any():
-        allowed = f"up to {_MOST_TIMES} ascending times from 0 on"
-        raise InvalidInput("times", times, allowed, "Sort them, without doubles.")
+    outputs = _output_times(times)
     samples = adapted_samples(check.function("initial", initial), low, high, seen)
     if reach is None:
         most = float(physics.diffusivity_at(samples[0]).max())
@@ -171,20 +171,54 @@ def follow(
     _warn(_missed(initial, particles, u), "between the particles is")
     _warn_of_bends(_beyond(initial, particles, u, (low, high)))
     _warn(_EXCHANGE * step ** order_of(physics.alpha, physics.near), "the exchange is off by some")
-    state = Followed(0.0, particles, u, 1, 0.0)
+    start, unheld = Followed(0.0, particles, u, 1, 0.0), _Unheld()
     advance = Splitting(physics, tolerance)
-    results: list[Followed] = []
-    coarse = 0.0
+    results = list(_onward(start, outputs.tolist(), place, advance, again, unheld))
+    for name, share in unheld.of_coefficients.items():
+        _warn(share, f"of the {name} the particles miss", what="it")
+    _warn(unheld.of_u, "later, between the particles is")
+    _warn(results[-1].corrected, "the placements were off by")
+    _warn(_at_the_ends(results[-1], physics.alpha), "beyond the particles is", "Go farther out.")
+    return results
+
+
+def _output_times(times: Sequence[float] | float) -> FloatArray:
+    outputs = check.vector("times", np.atleast_1d(times))
+    if outputs.size > _MOST_TIMES or outputs[0] < 0.0 or (np.diff(outputs) <= 0.0).any():
+        allowed = f"up to {_MOST_TIMES} ascending times from 0 on"
+        raise InvalidInput("times", times, allowed, "Sort them, without doubles.")
+    return outputs
+
+
+@dataclass
+class _Unheld:
+    """The largest shares of u and of the coefficients that particles have not held between them, over a run."""
+
+    of_u: float = 0.0
+    of_coefficients: dict[str, float] = field(default_factory=dict)
+
+    def note_coefficients(self, found: dict[str, float]) -> None:
+        for name, share in found.items():
+            self.of_coefficients[name] = max(self.of_coefficients.get(name, 0.0), share)
+
+
+def _onward(
+    state: Followed,
+    outputs: list[float],
+    place: Place,
+    advance: Splitting,
+    again: bool,
+    unheld: _Unheld,
+) -> Iterator[Followed]:
+    """The particles at each output time: advanced as long as their places are valid, then placed again."""
     until = place.valid_until(state.particles, state.u, state.time) if again else np.inf
-    missed = place.missed(state.particles, state.u, state.time)
-    for output in outputs.tolist():
+    unheld.note_coefficients(place.missed(state.particles, state.u, state.time))
+    for output in outputs:
         while state.time < output:
             if until <= state.time:
-                ends = float(state.particles.x[0]), float(state.particles.x[-1])
-                state = _placed_again(state, ends, place)
+                state = _placed_again(state, place)
                 until = place.valid_until(state.particles, state.u, state.time)
-                for name, share in place.missed(state.particles, state.u, state.time).items():
-                    missed[name] = max(missed[name], share)
+                unheld.note_coefficients(place.missed(state.particles, state.u, state.time))
                 if not until > state.time or state.placements > _MOST_PLACEMENTS:
                     raise NonFiniteSolution(
                         f"u, its source or the velocity change so fast at t = {state.time:.6g} that particles would be "
@@ -193,20 +227,14 @@ def follow(
             time = min(until, output)
             moved, u = advance(state.particles, state.u, state.time, time)
             state = replace(state, time=time, particles=moved, u=u)
-            coarse = max(coarse, uncertain(moved.x, u))
-        results.append(state)
-    for name, share in missed.items():
-        _warn(share, f"of the {name} the particles miss", what="it")
-    _warn(coarse, "later, between the particles is")
-    _warn(state.corrected, "the placements were off by")
-    _warn(_at_the_ends(state, physics.alpha), "beyond the particles is", "Go farther out.")
-    return results
+            unheld.of_u = max(unheld.of_u, uncertain(moved.x, u))
+        yield state
 
 
-def _placed_again(state: Followed, ends: tuple[float, float], place: Place) -> Followed:
-    """The same u on particles that are placed by it."""
+def _placed_again(state: Followed, place: Place) -> Followed:
+    """The same u on particles that are placed by it, between the same ends."""
     old = state.particles
-    new = place((old.x, state.u), ends, state.time)
+    new = place((old.x, state.u), (float(old.x[0]), float(old.x[-1])), state.time)
     u = between(old.x, state.u, new.x)
     u, share = conserving(new, u, state.mass, float(old.volumes * old.x @ state.u))
     return Followed(state.time, new, u, state.placements + 1, state.corrected + share)

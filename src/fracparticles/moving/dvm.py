@@ -5,8 +5,8 @@ r"""Diffusion velocity method (DVM), Eqs. (42)-(45):
     Q(x) = -(D / eps^beta) sum_j U_j F_eps(x - x_j),                                    (19), F of (20), (21)
 
 the diffusion written as an advection by the flux per unit of the field. The particles carry their strengths along,
-so that the total is constant; the particles spread, and are redistributed onto the lattice when they are too far
-apart (`moving.remeshing`). For the fundamental solution the velocity is exactly x / (alpha t).
+so the total is constant. They spread, and are redistributed onto the lattice when they are too far apart
+(`moving.remeshing`). For the fundamental solution the velocity is exactly x / (alpha t).
 
 Stability: in a uniform field a displacement wave xi exp(i k x) of the particles changes at the rate
 -D |k|^alpha eta^(k eps) xi, aliases neglected, which is DD's symbol. So the midpoint rule is stable for
@@ -116,9 +116,12 @@ def run(
     steps: int,
     **parameters: Any,
 ) -> ParticleRun:
-    """Advance the field u by `steps` midpoint steps: `run_to_outputs` with a single leg.
+    """Advance the field u by `steps` midpoint steps: `run_to_outputs` with a single leg, and its errors and warnings.
 
-    Warns with `AccuracyWarning`, too, if the kernels smooth the data.
+    Warns
+    -----
+    AccuracyWarning
+        Also if the kernels smooth the data.
     """
     (end,) = run_to_outputs(x, u, spacing=spacing, alpha=alpha, legs=[(dt, steps)], **parameters)
     x, u = real_array("x", x), finite_array("u", u)
@@ -160,11 +163,11 @@ def run_to_outputs(
     overlap : float
         epsilon / h.
     remeshing : {"M4'", "Lambda3", "Lambda6,4", "none"}
-        With M4', the paper's, and Lambda3 an error of some 1e-3 stays, however close the particles; with Lambda6,4 that
-        of the kernels.
+        The paper's M4', and Lambda3, leave an error of some 1e-3 however small h is. Lambda6,4 leaves that of the
+        kernels.
     lattice : {"initial", "extended"}
-        Whether remeshing is confined to the initial lattice, as in the paper, and what has left it is lost; or
-        extends as far as the particles need, which conserves the total. Not for an open exterior, which has no end.
+        The paper's "initial" confines remeshing to the initial lattice: what has left it is lost. "extended" goes as
+        far as the particles need, which conserves the total. An open exterior has no end and takes "initial" only.
     exterior : {"truncated", "open"}
         Nothing beyond the end particles, or their far field, see `moving.tail`.
     remesh_above : float, optional
@@ -184,8 +187,8 @@ def run_to_outputs(
     StabilityWarning
         If the step is larger than `DiffusionVelocity.largest_stable_step`.
     AccuracyWarning
-        If the particles are not `spacing` apart, or too far for the smoothing length; if much of the strength has been
-        left out, or the far field of an open exterior is not what lies beyond.
+        If the particles are not `spacing` apart, or too far apart for the smoothing length; if much of the strength has
+        been left out; or if the far field of an open exterior does not fit the field inside.
     """
     spacing, overlap = scale("spacing", spacing), positive_real("overlap", overlap)
     x = real_array("x", x)

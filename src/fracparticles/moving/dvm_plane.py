@@ -3,11 +3,11 @@ r"""The diffusion velocity method in the plane, Eqs. (42)-(45) with two componen
     dx_i/dt = v_i = Q(x_i) / u(x_i),     U_i constant,
     u(x) = sum_j U_j eta_eps(x - x_j),     Q(x) = -(D / eps^beta) sum_j U_j F_eps(x - x_j).
 
-For the fundamental solution the velocity is exactly x / (alpha t). All is as on the line (`dvm`): the midpoint rule,
-the limit of its step, the sums by non-uniform transforms (`plane_sums`). The particles are a rectangle of the lattice
-x = p h, y = q h. When two that were neighbours there are farther apart than `remesh_above` h, all are redistributed, by
-the interpolation function of the line in each coordinate. That keeps the total; what it puts beyond the ends of the
-lattice is left out and counted.
+For the fundamental solution the velocity is exactly x / (alpha t). The midpoint rule, the limit of its step and the
+sums by non-uniform transforms (`plane_sums`) are those of the line (`dvm`). The particles start on a rectangle of the
+lattice x = p h, y = q h. When two neighbours of this lattice are farther apart than `remesh_above` h, all particles are
+redistributed, by the interpolation function of the line in each coordinate. Remeshing keeps the total strength. What
+it puts beyond the ends of the lattice is left out and counted.
 
 Beyond the particles is nothing, as in the paper, or the far field (`plane_tail`).
 """
@@ -29,8 +29,8 @@ from fracparticles.moving.diffusion_velocity import EXTERIORS, DiffusionVelocity
 from fracparticles.moving.dvm import largest_gap
 from fracparticles.moving.lagrangian import (
     REMESHING,
-    FieldNotPositive,
     quotient_velocity,
+    stopped,
     strengths_of,
 )
 from fracparticles.moving.plane_remeshing import Particles, on_square, remesh_plane
@@ -85,7 +85,10 @@ class PlaneVelocity:
         return self._line.largest_stable_step
 
     def ripple(self, x: np.ndarray, strength: np.ndarray) -> float:
-        """Return that of particles at x, shape (N,), along either axis, by the strengths of all, shape (N, N)."""
+        """Return the ripple of the field, see `reliability`, of particles at x, shape (N,), along either axis.
+
+        The strengths of all particles have the shape (N, N).
+        """
         share = np.abs(strength).sum(axis=1)
         return 2.0 * ripple(x, share, self._epsilon, self._line.transform) if share.any() else 0.0
 
@@ -195,8 +198,8 @@ def run_in_plane(
     overlap : float
         epsilon / h.
     remeshing : {"M4'", "Lambda3", "Lambda6,4", "none"}
-        With M4', the paper's, and Lambda3 an error of some 1e-3 stays, however close the particles; with Lambda6,4 that
-        of the kernels.
+        The paper's M4', and Lambda3, leave an error of some 1e-3 however small h is. Lambda6,4 leaves that of the
+        kernels.
     remesh_above : float, optional
         Distance of neighbours above which to remesh, in h; 1.5 if left out, 1.05 for an open exterior.
     exterior : {"truncated", "open"}
@@ -207,7 +210,7 @@ def run_in_plane(
     InvalidInput
         If the arguments cannot be worked with.
     NonFiniteSolution
-        If the run cannot go on, `FieldNotPositive` if that is for the field; both with the step and the time.
+        If the run cannot go on; as `FieldNotPositive` where the field is the cause. The message has step and time.
 
     Warns
     -----
@@ -247,9 +250,7 @@ def run_in_plane(
                 lost += before - float(strength.sum())
                 times.append(time)
         except FracparticlesError as error:
-            kind = FieldNotPositive if isinstance(error, FieldNotPositive) else NonFiniteSolution
-            when = f"step {step} of {steps}, from t = {time - dt:.6g} to {time:.6g}"
-            raise kind(f"{when}: {error}") from error
+            raise stopped(error, step, steps, time, dt) from error
     coarse = max(coarse, velocity.ripple(x[:, n], strength))
     warn_of_ripple(coarse, overlap * h, "Take a larger overlap, or remesh sooner.", stacklevel=2)
     _warn(velocity, x, y, strength, lost / total)

@@ -6,15 +6,15 @@ in steps of the midpoint rule. It serves every conservation law u_t + (v u)_x = 
 by the field, v = Q / u, both of them sums over the particles (`moving.scattered`).
 
 Rules
-- Order does not matter. Particles that coincide are two strengths at one position: they stay together, since the
-  velocity has one value there. Particles overtake one another because dt is too large for the velocity gradient; the
-  sums and remeshing still work, and the history counts the steps that changed the order.
-- Particles whose strength is at most `threshold` of the largest are left out at the start and after every
-  remeshing, at threshold 0 those of no strength (or one that underflowed); the history keeps the total left out.
-- A remeshing may be given ends: what it puts beyond them is left out too, and the history keeps that total apart.
+- The particles may be in any order. Particles that coincide are two strengths at one position: they stay together,
+  since the velocity has one value there. If dt is too large for the velocity gradient, particles overtake one another.
+  The sums and remeshing still work, and the history counts the steps that changed the order.
+- Particles whose strength is at most `threshold` of the largest are left out at the start and after every remeshing.
+  At threshold 0 these are the particles of strength zero. The history keeps the total that was left out.
+- A remeshing may be given ends. What it puts beyond them is left out too, and the history keeps that total apart.
 - The field must have one sign at all particles, above the accuracy of the sums; else `FieldNotPositive`.
 - A velocity or a position that is not finite, or a particle so far out that the sums cannot hold it, is an error
-  too. All name the time.
+  too. Every error names the time.
 """
 
 from __future__ import annotations
@@ -42,16 +42,16 @@ __all__ = [
     "quotient_velocity",
 ]
 
-# What holds if nothing is said: the remeshing kernel, the spacing above which it is used, in h, and the share of the
-# greatest strength up to which particles are left out.
+# The defaults: the remeshing kernel, the spacing in h above which it is used, and the share of the greatest strength
+# up to which particles are left out.
 REMESHING, REMESH_ABOVE, THRESHOLD = "M4'", 1.5, 0.0
 
 Velocity = Callable[[np.ndarray, np.ndarray], np.ndarray]
 Continued = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 Observer = Callable[[float, np.ndarray, np.ndarray], None]
 
-
-_SMALLEST = 1e-290  # of the strengths, the greatest: those down to 1e-16 of it are numbers with all their digits
+# The greatest strength must be this large, so that strengths of 1e-16 of it still have all their digits.
+_SMALLEST = 1e-290
 
 
 class FieldNotPositive(NonFiniteSolution):
@@ -73,7 +73,7 @@ class Remeshing:
     ends : tuple of two floats or None
         The first and last lattice point kept; None: the lattice goes on as far as the particles need.
     continued : callable or None
-        continued(x, strength) returns these particles and more, of what lies beyond them: all are redistributed.
+        continued(x, strength) returns these particles and those of the far field beyond them. All are redistributed.
     """
 
     name: str
@@ -226,15 +226,22 @@ def advance(
         except FracparticlesError as error:
             if isinstance(error, InvalidInput) and error.field == "velocity":
                 raise  # it is not made for particles
-            kind = FieldNotPositive if isinstance(error, FieldNotPositive) else NonFiniteSolution
-            when = f"step {n} of {steps}, from t = {time - dt:.6g} to {time:.6g}"
-            raise kind(f"{when}: {error}") from error
+            raise stopped(error, n, steps, time, dt) from error
         x = moved
         if observe is not None:
             observe(time, x, strength)
     history.velocity_evaluations = 2 * steps
     history.total_final = total_of(strength)
     return x, strength, history
+
+
+def stopped(
+    error: FracparticlesError, n: int, steps: int, time: float, dt: float
+) -> NonFiniteSolution:
+    """Return the error of a run that cannot go on after step n, which would have ended at `time`."""
+    kind = FieldNotPositive if isinstance(error, FieldNotPositive) else NonFiniteSolution
+    when = f"step {n} of {steps}, from t = {time - dt:.6g} to {time:.6g}"
+    return kind(f"{when}: {error}")
 
 
 def _keep(

@@ -1,19 +1,20 @@
 r"""What the particles of a run reveal about its accuracy. No estimate uses the exact solution.
 
 ripple
-    Particles a distance d apart make of a uniform field one that ripples by 2 K^(2 pi eps / d) of itself, K^ the
-    Fourier transform of the kernel (Poisson's formula). The mean over the particles, weighted by their strengths, of
-    the greatest value that a gap of this size or a smaller one can give.
+    Particles a distance d apart turn a uniform field into one that ripples by 2 K^(2 pi eps / d) of itself, where K^ is
+    the Fourier transform of the kernel (Poisson's formula). The estimate is a mean over the particles, weighted by
+    their strengths, of the greatest ripple that a gap of their size or a smaller one can give.
 
 round-off
     Every step rounds a place x by half an ulp of it, or does not move it at all if it would move by less.
 
 volumes
-    The strengths say that each particle stands for a length h; the places say for which, `cells`. Both make an integral
-    of |u|, and a run goes wrong by as much as they differ.
+    The strengths assume that each particle stands for a length h. The places give the length for which it does stand,
+    `cells`. Both give an integral of |u|, and the error of a run is their difference.
 
 smoothing
-    The field of the particles at the start is the data smoothed by the kernel: it differs from them, over their peak.
+    The field of the particles at the start is the data smoothed by the kernel. The estimate is its largest difference
+    from the data, over their peak.
 """
 
 from __future__ import annotations

@@ -5,13 +5,13 @@ nine digits once
 
     D t (pi / 2 h)^alpha >= E,   exp(-E) the part that is let go.
 
-Then every second point is left out, and as many points as before reach twice as far. What lies between the old ends and
-the new ones is what the powers that continue the solution make of it in the same step (`time.whole_space`). In units of
-the spacing all steps between two such doublings are one step, whose transforms are made ready once; the time grows by
-the factor 2^alpha with each, so that a run of a million units of time takes some twenty of them.
+Then every second point is left out, and as many points as before reach twice as far. Between the old ends and the new
+ones the same step computes the solution from the powers that continue it (`time.whole_space`). In units of the spacing
+the steps from one doubling to the next are all the same step, whose transforms are made ready once. With each doubling
+the time grows by the factor 2^alpha, so that a run of a million units of time takes some twenty of them.
 
-The tail is made to meet the data once, about their centre; then it is carried from step to step, as it follows from the
-moments: one that meets the solution anew after each doubling grows with them, near alpha = 1 beyond all bounds.
+The tail is fitted to the data once, about their centre. After that it is carried from step to step, as it follows from
+the moments. A tail fitted anew after each doubling would grow with the doublings, near alpha = 1 beyond all bounds.
 """
 
 from __future__ import annotations
@@ -36,14 +36,15 @@ from fracparticles.time.whole_space import FEWEST
 
 __all__ = ["evolve_long"]
 
-_LET_GO = 20.0  # E: 2e-9
-_STRETCH = 2.1  # the circle of the transforms over the lattice; twice the lattice is wanted of it
-_TERMS = {1: 5, 2: 4, 3: 2}
-_SHORT_WAVES = 1e-5  # of the integral; measured, the estimate is two to a hundred times too large
-# Of the greatest value, before the first doubling; measured, two to fifty times too large.
-_OF_A_PEAK = 5e-5
-_DOUBTFUL = 2e-6  # likewise; measured, at least the error
-_GREATEST = 5.0  # of the gamma, once the tail is known
+_LET_GO = 20.0  # E: exp(-E) is 2e-9
+_STRETCH = 2.1  # length of the circle of the transforms over that of the lattice; the widened lattice takes 2 of it
+_TERMS = {1: 5, 2: 4, 3: 2}  # powers that continue the data, by dimension
+# Estimates above these are warned of. Measured against exact solutions, the first is two to a hundred times the error,
+# the second two to fifty times, and the third is at least the error.
+_SHORT_WAVES = 1e-5  # of the integral: what the lattice does not resolve
+_OF_A_PEAK = 5e-5  # of the greatest value, before the first doubling: likewise
+_DOUBTFUL = 2e-6  # of the integral, or of the greatest value: what the powers leave open
+_GREATEST = 5.0  # the largest gamma of a tail |x|^(-n-gamma) that is carried on
 _SHORTEST = 1e-12  # scaled time of a step that only moves the solution
 _TINY = float(np.finfo(float).tiny)
 _ROUND_OFF = float(np.finfo(float).eps)
@@ -161,7 +162,7 @@ def evolve_long(
 
 def _step(points: int, *given: Any, every: int = 1, **more: Any) -> Continued:
     """Return a run on a circle some twice as long as the lattice; see `Continued`."""
-    half = 2 * every  # of the points that are left every second one is one of them
+    half = 2 * every  # the circle keeps every `every`-th point, an even number of them
     length = half * next_fast_len(-(-int(_STRETCH * points) // half), real=True)
     return Continued(points, length, *given, every=every, **more)
 
