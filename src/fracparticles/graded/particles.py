@@ -40,8 +40,8 @@ FORMS = ("exchange", "quadrature")
 MOST = 10001  # particles: the matrix then takes 800 MB
 _LARGEST = 1e150  # of the positions and volumes that `green_step` takes
 _DENSE = 64  # particles up to which all eigenvalues are computed
-_GROWS = 1e-6  # what a factor must exceed 1 by
-_TOO_MUCH = 1.25  # of a constant of 1, what the quadrature may make
+_GROWS = 1e-6  # an amplification that exceeds 1 by more is warned of
+_TOO_MUCH = 1.25  # the most that the quadrature may make of a constant 1
 
 
 def graded_particles(count: int, reach: float, scale: float) -> tuple[np.ndarray, np.ndarray]:

@@ -9,9 +9,10 @@ from fracparticles.kernels.families import family_of
 
 __all__ = ["BandedConvolution"]
 
-# exp(-r^2) falls below the round-off of a unit sum, 1e-18, at r = 6.44; the printed kernels of order IV may hold
-# exp(-r^2 / 2), which does so at r = 9.1. In the gamma family it has a polynomial for a factor:
-# the ends are those measured of eta1, where it falls below _NEGLIGIBLE of its greatest value.
+# By kernel family and order, the distance in epsilon beyond which a Gaussian kernel counts as zero. exp(-r^2) falls
+# below the round-off of a unit sum, 1e-18, at r = 6.44. Printed kernels of order IV may hold exp(-r^2 / 2), which does
+# so at r = 9.1. In the gamma family exp(-r^2) is multiplied by a polynomial: the distances are those, measured, at
+# which eta1 falls below _NEGLIGIBLE of its greatest value.
 _REACH = {
     "printed": {2: 6.5, 4: 9.2},
     "gamma": {2: 6.5, 4: 6.7, 6: 6.9, 8: 7.1, 10: 7.3, 12: 7.4},

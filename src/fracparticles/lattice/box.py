@@ -147,8 +147,8 @@ def _plans(block: np.ndarray, first: int, count: int, direction: str) -> list[py
 def _symbol(weights: np.ndarray, odd: int | None, length: int) -> np.ndarray:
     """Return the transform of w over L^n for wave numbers 0 .. L/2, by cosine and sine transforms.
 
-    Real for an even w; for an odd one i times it is the transform. Offsets that occur in the transform but not in the
-    sums have weight zero.
+    For an even w the transform is real and returned itself; for an odd w it is i times what is returned. Offsets that
+    occur in the transform but not in the sums have weight zero.
     """
     half = length // 2 + 1
     w = np.zeros((half,) * weights.ndim)

@@ -51,7 +51,7 @@ def spectrum(a: np.ndarray) -> Spectrum:
 def norms_of_powers(a: np.ndarray, squarings: int, every: int) -> list[float]:
     """Return |A^n|, the Euclidean norm, for n = 2^k with k = 0, `every`, 2 `every`, .. up to `squarings`.
 
-    By repeated squaring: n roundings of 1e-16 add up in A^n.
+    By repeated squaring, in which round-off grows to about n times 1e-16 of A^n.
     """
     norms = []
     for k in range(squarings + 1):

@@ -59,7 +59,7 @@ class LatticeOperator(ABC):
     size: int
     dim: int = 1
     symmetric: bool = False  # the matrix of A
-    # What the bounded lattice adds to the diagonal of the infinite one: the least and the greatest, with zero.
+    # The least and the greatest of zero and of what the bounded lattice adds to the diagonal of the infinite one.
     diagonal_shift: tuple[float, float] = (0.0, 0.0)
     watch: Callable[[], None] | None = None  # called after each application
 
@@ -79,7 +79,7 @@ class LatticeOperator(ABC):
     def _combine(
         self, u: np.ndarray, out: np.ndarray, scale: float, shift: float, keep: float
     ) -> None:
-        """Do so with the work arrays to itself."""
+        """Do what `combine` does; the lock on the work arrays is held."""
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """Return A u as a new array."""

@@ -1,21 +1,22 @@
-r"""What F is off by where the set of markers ends and the field jumps, as that of the square profile does.
+r"""The error of F where the set of markers ends and the field jumps, as that of the square profile does.
 
-There F is as wide as epsilon from the start, and the field as wide as the equation makes it by then. In the frame of
-the edge a step of the height J is a sum of waves: F differs from it at the distance y by
+There F is smoothed over epsilon from the start, while the field is only as wide as the equation has made it. In the
+frame of the edge a step of the height J is a sum of waves: at the distance y, F differs from the field by
 
     J / pi int_0^inf d(q) sin(q y) / q dq,     d = S^(eps q) g(q) - exp(c_1 q^2 t),
 
-g what the steps multiply a wave of the markers by, -c_1 the diffusivity (`reliability`). That is linear; the method is
-not. V = -F_x / F at the edge of F drives the markers apart by what F lacks of the field there, and they stay apart. How
-far is measured: a half line of markers is run, and compared with erfc. The larger of both is
-0.26 J after t = 0.01 eps^2, 0.07 J after 0.1 eps^2, and 0.03 J after eps^2; what is displaced then falls like 1 / t.
+where g is the factor by which the steps multiply a wave of the markers, and -c_1 the diffusivity (`reliability`). This
+estimate is linear, and the method is not. At the edge V = -F_x / F is wrong because F is not the field. It drives the
+markers apart, and they stay apart. How far is measured: a half line of markers is run and compared with erfc. The
+larger of the two errors is 0.26 J after t = 0.01 eps^2, 0.07 J after 0.1 eps^2, and 0.03 J after eps^2; after that the
+second falls like 1 / t.
 
-A field that falls to nothing within epsilon of the last marker is a step there, too: by the square of its slope over
-that of a step, as what epsilon changes of a smooth field is.
+A field that falls to zero within epsilon of the last marker counts as a step, too. Its height is multiplied by the
+square of its slope over that of a step, because epsilon changes a smooth field in proportion to this square.
 
-Where the field runs against its edge, a = c_0 - V > 0 on the right, the edge is a shock: that of Burgers' equation,
-J / (1 + exp(a y / mu)), has the slope of a step after t = 4 mu / (pi a^2), and none of it is taken away later. Of a
-step that the equation makes waves of, as KdV does, nothing is said.
+Where the field runs against its edge, a = c_0 - V > 0 on the right, the edge is a shock. That of Burgers' equation,
+J / (1 + exp(a y / mu)), has the slope of a step after t = 4 mu / (pi a^2), and its error does not decrease later. There
+is no estimate for an equation that turns a step into waves, as KdV does.
 """
 
 from __future__ import annotations
@@ -41,15 +42,15 @@ from fracparticles.moving.scattered import NeighbourSum
 
 __all__ = ["edge_error", "warn_of_edges"]
 
-_MOST = 0.03  # of the peak of F
-_LINE, _EACH = 8, 20  # epsilon of a half line, and markers in each
-_LONG, _FEWEST = 1.0, 8  # epsilon^2, steps
-_ACROSS = np.linspace(-3.0, 3.0, 121)  # epsilon
-_NEAR = np.linspace(0.0, 3.0, 31)  # eps: where the error of a step is looked for
+_MOST = 0.03  # of the peak of F: a larger error is warned of
+_LINE, _EACH = 8, 20  # length of the measured half line in epsilon, and markers in each epsilon
+_LONG, _FEWEST = 1.0, 8  # the longest run of it, in epsilon^2, and its fewest steps
+_ACROSS = np.linspace(-3.0, 3.0, 121)  # epsilon: where its error is looked for
+_NEAR = np.linspace(0.0, 3.0, 31)  # epsilon: where the error of a step is looked for
 
 
 def edge_error(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps: Steps) -> float:
-    """Return by how much of the peak F is off after these steps near the ends of the markers; 0 if there are none."""
+    """Return the error of F near the ends of the markers after these steps, over its peak; 0 without an estimate."""
     c = all_coefficients(velocity, x, weights)
     if velocity.period is not None or c.shape[1] != 2:
         return 0.0
@@ -57,7 +58,7 @@ def edge_error(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps: St
     field, found, peak = fields[0], 0.0, fields[0].max()
     steepest = velocity.shape(np.zeros(1))[0] / velocity.epsilon  # slope of a step of height 1
     for end, side in ((np.argmin(x), -1.0), (np.argmax(x), 1.0)):
-        # At the edge F is a half of the field; what the field does is seen a little inside.
+        # At the edge F is half of the field, so the field and its slope are taken a little inside.
         near = np.abs(x - x[end]) < CORE * velocity.epsilon
         inside = np.argmax(np.where(near, field, -1.0))
         slope = min(fields[1, near].max() / (steepest * field[inside]), 1.0)
@@ -76,7 +77,7 @@ def _step_error(velocity: Velocity, c: np.ndarray, side: float, steps: Steps) ->
     transform = velocity.shape.transform(WAVENUMBERS)
     exact = steps.dt * c[1] * (WAVENUMBERS / velocity.epsilon) ** 2
     with np.errstate(all="ignore"):
-        # Of waves that grow `warn_of_waves` speaks.
+        # Waves that grow are left to `warn_of_waves`.
         made = np.minimum(steps.factor(exact * transform) ** count, 1.0)
         d = transform * made - np.exp(count * exact)
         waves = np.sin(np.outer(_NEAR, WAVENUMBERS)) / WAVENUMBERS
@@ -97,7 +98,7 @@ def _displaced(shape: Shape, time: float) -> float:
 
     try:
         x, weights, _ = advance(x, weights, velocity, dt=until / count, steps=count)
-    except FracparticlesError:  # of shapes whose markers gather: that is said by others
+    except FracparticlesError:  # shapes whose markers gather: `warn_of_waves` says so
         return 0.0
     field = fields(x, weights, _ACROSS)[0]
     off = np.abs(field - 0.5 * erfc(_ACROSS / (2.0 * math.sqrt(until)))).max()

@@ -20,9 +20,11 @@ from fracparticles.moving.lagrangian import advance
 
 __all__ = ["largest_step", "measured_rate"]
 
-_LEAST = 1e-12
-_HALVINGS = 12
-_STEPS = 24
+_LEAST = (
+    1e-12  # of the mean square of a wave, and of an amplitude over the period: less is round-off
+)
+_HALVINGS = 12  # of the interval in which the largest step lies
+_STEPS = 24  # over which growth is judged there
 
 
 def measured_rate(
@@ -37,6 +39,19 @@ def measured_rate(
     epsilon: float = 1.0,
 ) -> tuple[float, float]:
     """Return k = eps q and eps^2 times the rate of a wave of `mode` wavelengths in a period.
+
+    Parameters
+    ----------
+    shape : Shape
+        S, with a first derivative.
+    mode : int
+        Wavelengths in the period.
+    spacing, period, amplitude : float
+        h, the length of the line and a, in units of epsilon.
+    dt, steps : float, int
+        The midpoint steps of the measurement; dt is in units of epsilon^2.
+    epsilon : float
+        Scales all lengths.
 
     Raises `InvalidInput` if a number is not positive, the mode or the steps are not whole numbers, the shape function
     has no first derivative, or there is nothing to measure: the amplitude is lost in round-off, or the wave is zero

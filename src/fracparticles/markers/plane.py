@@ -118,7 +118,17 @@ class TwoBlobs:
 def decoupled(
     quantile: Callable[[np.ndarray], np.ndarray], total: float, counts: tuple[int, int]
 ) -> Loading:
-    """Return the paper's loading x, y, W, each of shape (n_x n_y,), for equal marginals."""
+    """Return the paper's loading x, y, W, each of shape (n_x n_y,), for a density whose two marginals are equal.
+
+    Parameters
+    ----------
+    quantile : callable
+        The inverse of the distribution of a marginal, at fractions between 0 and 1.
+    total : float
+        sigma.
+    counts : (int, int)
+        n_x, n_y.
+    """
     total = check.scale("total", total)
     x, y = (check.sampled("quantile", quantile, part) for part in _midpoints(counts))
     x, y = (part.ravel() for part in np.meshgrid(x, y, indexing="ij"))
@@ -126,14 +136,14 @@ def decoupled(
 
 
 def weighted(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
-    """Return the same places with the weights that make the density f."""
+    """Return the places of `decoupled` with the weights that make the density f; x, y, W of shape (n_x n_y,)."""
     density = check.instance("density", density, TwoBlobs)
     x, y, w = decoupled(density.quantile, density.total, counts)
     return x, y, w * density.value(x, y) / density.product(x, y)
 
 
 def sequential(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
-    """Return markers of equal weight with x by its marginal, and y given x."""
+    """Return markers of equal weight with x by its marginal, and y given x; x, y, W of shape (n_x n_y,)."""
     along_x, along_y = _midpoints(counts)
     x = check.instance("density", density, TwoBlobs).quantile(along_x)[:, None]
     y = density.quantile(along_y, density.right(x))
@@ -142,7 +152,10 @@ def sequential(density: TwoBlobs, counts: tuple[int, int]) -> Loading:
 
 
 def reconstruct(shape: Shape, epsilon: float, markers: Loading, x: Any, y: Any) -> np.ndarray:
-    """Return F = sum_j W_j S_eps(x - x_j) S_eps(y - y_j) on the grid, shape (x, y)."""
+    """Return F = sum_j W_j S_eps(x - x_j) S_eps(y - y_j) on the grid of x, shape (M,), and y, shape (K,): shape (M, K).
+
+    `markers` are the arrays x_j, y_j and W_j, each of shape (N,).
+    """
     check.instance("shape", shape, Shape)
     if not isinstance(markers, tuple | list) or len(markers) != 3:
         raise InvalidInput("markers", markers, "x, y and W of the markers", "Give three arrays.")

@@ -155,7 +155,19 @@ def run(
     start: float = 0.0,
     observe: Observer | None = None,
 ) -> MarkerRun:
-    """Advance the markers by `steps` midpoint steps.
+    """Advance the markers by `steps` midpoint steps: x* = x + dt/2 V(x), x <- x + dt V(x*).
+
+    Parameters
+    ----------
+    x, weights : array_like, shape (N,)
+        Positions x_j and weights W_j at the start.
+    velocity : MarkerVelocity
+        V, with its shape function and epsilon.
+    dt, steps : float, int
+    start : float
+        The time at the start, for the history, the observer and messages.
+    observe : callable, optional
+        observe(t, x, weights), called at the start and after every step.
 
     Raises
     ------
@@ -173,9 +185,9 @@ def run(
         takes most of the markers farther from all others than the shape function reaches. F at such a marker is its
         own only.
     AccuracyWarning
-        If the markers are too far apart for epsilon or for the derivatives of the flux, lie too irregularly, or epsilon
-        or dt is too large for the field, or epsilon for a jump at their ends; or the markers are so far from zero that
-        their places are rounded by much.
+        If the markers are too far apart for epsilon or for the derivatives of the flux, or lie too irregularly; if
+        epsilon or dt is too large for the field, or epsilon for a jump at their ends; or if the markers are so far from
+        zero that their places lose digits.
     """
     check.instance("velocity", velocity, MarkerVelocity)
     x = check.positions("x", x)

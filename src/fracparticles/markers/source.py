@@ -38,10 +38,12 @@ from fracparticles.time.rkc import ChebyshevStep
 
 __all__ = ["GaussianSource", "advance_weights", "source_flux"]
 
-_AROUND = 1  # how far the source is looked for beyond the markers, in spans of theirs
-_BETWEEN = 4  # points from a marker to the next, and as many more where they are dense
-_MISSED = 0.1  # of int |Q|
-_FAR = 10.0  # |x|: beyond, what cancels in the solution is taken out by hand
+_AROUND = 1  # the source is looked for so far beyond the markers, in units of their span
+_BETWEEN = 4  # half the points of that search from a marker to the next, on the mean
+_MISSED = 0.1  # of int |Q|: what the markers may miss
+_FAR = (
+    10.0  # |x| beyond which the term that both brackets of the solution share is left out of them
+)
 
 Function = Callable[[np.ndarray], np.ndarray]
 
@@ -69,7 +71,19 @@ def advance_weights(
     steps: int,
     stages: int = 2,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions and weights after `steps` steps of RKC2, with weights that the source changes.
+    """Return positions and weights after `steps` steps of RKC2, with weights that the source changes; shape (N,) each.
+
+    Parameters
+    ----------
+    x, weights : array_like, shape (N,)
+        Positions x_j and weights W_j at the start.
+    velocity : MarkerVelocity
+        That of (3), without the source.
+    source : callable
+        Q(x).
+    dt, steps : float, int
+    stages : int
+        Of a step of RKC2: more allow a larger dt.
 
     Raises
     ------

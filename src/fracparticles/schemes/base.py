@@ -22,25 +22,26 @@ __all__ = ["Exchange", "LatticeScheme", "OnePass", "Scheme", "Sum", "one_pass_op
 
 Function = Callable[[np.ndarray], np.ndarray]
 
-_OWN = ("values", "transform", "weights", "scaled_transform")  # what a scheme may bring of its own
+# A scheme that overrides one of these may contradict itself: its weights and its transform are compared.
+_OWN = ("values", "transform", "weights", "scaled_transform")
 
 
 class Scheme:
     """What every scheme provides. A scheme is a class with a `name`, in a module of this folder."""
 
-    name: str  # in tables the abbreviation,
-    title: str  # the words,
-    equation: str  # the equation of the paper,
-    kernel: str = "-"  # and that of the kernel
-    place: int = 100  # in lists; those without one come last
+    name: str  # the abbreviation, as in tables
+    title: str  # the name in words
+    equation: str  # the equation of the paper
+    kernel: str = "-"  # the equation of the kernel
+    place: int = 100  # in lists; schemes that set none come last
     rejected: bool = False  # the paper only mentions it
-    orders: tuple[int, ...] = (2,)  # of the kernels in one dimension,
-    box_orders: tuple[int, ...] = ()  # and in two and three
+    orders: tuple[int, ...] = (2,)  # of the kernels in one dimension
+    box_orders: tuple[int, ...] = ()  # of the kernels in two and three dimensions
     families: tuple[str, ...] = ()  # of kernels, where there is a choice
     exteriors: tuple[str, ...] = ("truncated",)
-    conservative: bool  # total strength invariant (18)
+    conservative: bool  # the total strength is invariant (18)
     moving: bool = False  # the particles move: there is no operator on the lattice
-    symbol_of: str = ""  # the scheme by whose symbol its waves decay, if that is not its own
+    symbol_of: str = ""  # the scheme whose symbol gives the decay of its waves, if not its own
     has_kernel: bool = True  # there is a smoothing length epsilon
     tabulated: bool = False  # the kernels may be interpolated in a table
     self_timed: bool = False  # a step of Euler's, to which epsilon = (D dt)^(1/alpha) is tied

@@ -17,14 +17,14 @@ __all__ = ["grows", "range_in", "stability_limit", "symbol_range", "worst_wave"]
 
 Symbol = Callable[[np.ndarray], np.ndarray]  # of points, the last axis their coordinates
 
-# By dimension: samples in each coordinate, then closer and closer looks at the neighbourhood of an extreme, with so
-# many samples from neighbour to neighbour. In one dimension each is 16 times as close: 256 times as exact.
+# By dimension: samples in each coordinate, then samples between the neighbours of an extreme, and how often these are
+# refined. In one dimension each refinement is 16 times as close, and 256 times as exact.
 _SAMPLES = {1: 513, 2: 65, 3: 21}
 _LOOK = {1: 33, 2: 9, 3: 5}
 _REFINEMENTS = {1: 4, 2: 8, 3: 16}
-_SAMPLES_OF_A_LINE = 129  # of those in a box
-# Between two samples the symbol may rise above the greatest of them: where the two factors of FPSE change sign close
-# to one another. So on a line the neighbourhoods of other extremes are looked at, too, if they are nearly as great.
+_SAMPLES_OF_A_LINE = 129  # along a line of symmetry in a box
+# Between two samples the symbol may rise above the greatest of them, where the two factors of FPSE change sign close to
+# one another. So on a line up to six extremes are refined: those within 2 % of the range from the greatest sample.
 _NEARLY, _MOST_PEAKS = 0.02, 6
 _ROUND_OFF = 1e-13  # of a symbol, against its range
 _SLACK = 1e-9  # of a bound of the overlap, which may be a quotient
@@ -43,7 +43,7 @@ def stability_limit(
 
     Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a (Eq. 56). It is 0 where the symbol is
     positive somewhere, because the overlap is too small for the order of the kernels: then no step is stable. For
-    GPSE it limits repeated steps; a single step over the whole run cannot grow.
+    GPSE it limits repeated steps; a single step over the whole run cannot blow up.
 
     Parameters
     ----------
@@ -82,7 +82,10 @@ def symbol_range(
     dim: int = 1,
     family: str | None = None,
 ) -> tuple[float, float]:
-    """Return the least and the largest value of A(theta) h^alpha / D."""
+    """Return the least and the largest value of A(theta) h^alpha / D over all waves.
+
+    Parameters and errors as for `stability_limit`.
+    """
     one = scheme(name)
     allowed, remedy = "a number between 0 and 1 (exclusive)", "Give such a value."
     beta = real_between("beta", beta, 0.0, 1.0, inside=True, allowed=allowed, remedy=remedy)
@@ -98,12 +101,15 @@ def symbol_range(
 
 
 def worst_wave(name: str, setting: Setting) -> float:
-    """Return k h of the wave on the line that a scheme damps the most, of 4001 evenly spaced."""
+    """Return theta = k h of the wave on the line that a scheme damps the most, out of 4001 evenly spaced ones."""
     return float(_WAVES[np.argmin(scheme(name).symbol(_WAVES, setting))])
 
 
 def range_in(name: str, setting: Setting) -> tuple[float, float]:
-    """Return the `symbol_range` of a scheme in a setting, whose lattice does not matter; on the line for its table."""
+    """Return the `symbol_range` of a scheme in a setting, on the line with the kernel table of the setting.
+
+    The lattice of the setting does not matter.
+    """
     table = setting.kernel_table if setting.dim == 1 else None
     kernels = Setting(
         alpha=setting.alpha, overlap=setting.overlap, kernel_table=table, **setting.kernels
@@ -130,10 +136,10 @@ def _symbol_range(name: str, setting: Setting) -> tuple[float, float]:
 
 
 def _searches(symbol: Symbol, dim: int) -> Iterator[tuple[Symbol, int]]:
-    """Yield functions of points, and of how many coordinates, whose extremes are looked for.
+    """Yield the functions whose extremes are looked for, and the number of coordinates of each.
 
-    In a box the symbol is nearly radial, and where it is least on a sphere, little less than elsewhere, is found on the
-    lines that its symmetries leave alone: each coordinate is 0, pi, or one t for all. Anything else is on the grid.
+    In a box the symbol is nearly radial: its least value on a sphere is little below the others. It lies on a line of
+    symmetry, on which each coordinate is 0, pi, or the same t. The grid finds all other extremes.
     """
     if dim == 1:
         yield symbol, 1

@@ -30,10 +30,10 @@ from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["WholeSpace", "evolve", "tail_exponents"]
 
-# Of the maximum: a tail that misses the solution by more, or waves that the lattice lacks.
+# Of the maximum: warned of are a tail that misses the solution by more, and more waves that the lattice lacks.
 _NOTICED = 1e-3
 FEWEST = 8  # points an axis: the tail meets the data at six depths
-_OUTGROWN = 0.9
+_OUTGROWN = 0.9  # the least half-width of the lattice, over (D t)^(1/alpha)
 _TINY = float(np.finfo(float).tiny)
 _TIMES = 1e-300, 1e300  # scaled: beyond, all stays as it is, or has outgrown the lattice
 _STRETCH = {1: 3.0, 2: 2.0, 3: 1.5}  # the longer lattice over the given one
@@ -148,8 +148,8 @@ class WholeSpace:
     Raises
     ------
     InvalidInput
-        If one is outside its range, there are fewer than 8 points, or the solution outgrows the lattice: its half-width
-        must be 0.9 tau^(1/alpha) at least, in spacings; of a point mass half would then lie beyond.
+        If one is outside its range, there are fewer than 8 points, or the solution outgrows the lattice. The half-width
+        of the lattice must be at least 0.9 tau^(1/alpha) spacings; at less, half of a point mass would lie beyond it.
     """
 
     def __init__(
@@ -185,7 +185,9 @@ class WholeSpace:
         middles = [
             middle * (sum(steps) - step) + at * step for at in (0, points - 1) for step in steps
         ]
-        self._ends = np.array(middles)  # of the faces, of N^n points in a row
+        self._ends = np.array(
+            middles
+        )  # the middles of the faces, as places among N^n points in a row
         self._alpha, self._tau = alpha, scaled_time
         self._changed = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
         self._circle: Circle | Continued
@@ -215,11 +217,19 @@ class WholeSpace:
         return self._run(u)[0]
 
     def solve_and_judge(self, u: np.ndarray) -> tuple[np.ndarray, float, float]:
-        """Return the solution, and two doubts.
+        """Return the solution, and two doubts about it.
 
-        How far its tail is from it at the faces of the lattice, over its maximum, less where the time is too short for
-        that to count; and what waves that the lattice does not hold may be of that, see `short_waves`. Of several data,
-        the worst. A doubt below a thousandth may be an upper bound.
+        Returns
+        -------
+        u : array, shape (..., N, .., N)
+        miss : float
+            How far the tail is from u at the faces of the lattice, over the maximum of u. It counts less if the time is
+            short.
+        lacking : float
+            How much waves that the lattice does not hold may be of the maximum of u, see `short_waves`. A value below a
+            thousandth may be an upper bound.
+
+        Of several data, both are those of the worst.
 
         Raises
         ------
@@ -255,7 +265,7 @@ class WholeSpace:
         return self._circle(longer, look)[self._inside], None
 
     def _lacking(self, waves: ShortWaves, peaks: list[float]) -> float:
-        """Return what the waves that the lattice does not hold may be of the greatest value."""
+        """Return how much the waves that the lattice does not hold may be of the greatest value."""
         worst = _worst(waves.at_most(self._alpha, self._tau), peaks)
         if worst >= _NOTICED:
             worst = _worst(waves.of_a_peak(self._alpha, self._tau), peaks)
@@ -271,7 +281,7 @@ class WholeSpace:
 
 
 def _worst(wrong: list[float], peaks: list[float]) -> float:
-    """Return the greatest part that is wrong of the peak of one of the data."""
+    """Return the error over the peak, for the data of which it is greatest."""
     return max((w / (peak + _TINY) for w, peak in zip(wrong, peaks, strict=True)), default=0.0)
 
 

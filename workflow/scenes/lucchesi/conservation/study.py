@@ -38,7 +38,8 @@ def study(inputs: Inputs, *, shown_beta: float) -> Result:
     it carries a round-off of about eps log2(L) S |u|, which adds up over the time T: 4 eps log2(L) S T is taken as its
     bound. What leaves [-D, D] in the exact solution is m(D, t_0) - m(D, t_f), in closed form.
 
-    The strengths of DVM are constant, their sum is one of N terms; every remeshing sums anew what it splits.
+    The strengths of DVM are constant. The round-off of their total is that of one sum of N terms, and of one more for
+    every remeshing.
 
     The table has the final time that most of the runs have; the figure, the runs of `shown_beta`.
     """
