@@ -39,19 +39,19 @@ _WAYS: tuple[dict[str, Any], ...] = (
     {"scheme": _EXCHANGE, "order": _ORDER, "integrator": "exponential", **_OPEN},
 )
 _FINER, _WIDER = 0.7, 1.4
-_FAR = 10.0  # from the error that is asked for: two steps at once
-_BACK = 1.2  # by which spacing and half-width are taken back at a time
-_SAFE = 0.7  # of the error that is asked for
+_FAR = 10.0  # an error so many times that asked for: two steps at once
+_BACK = 1.2  # the factor by which spacing and half-width are taken back at a time
+_SAFE = 0.7  # of the error that is asked for: a case must meet this
 _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
-_LOWER, _MOST_IN_VAIN = 0.9, 5  # trials one after the other that do not lower the error
-_HELD = 0.97  # of the mass of a point, where no radius is given
-_WIDE = 100.0  # radii of interest over (D T)^(1/alpha): beyond, the kernel of GPSE asks for more particles than data
+_LOWER, _MOST_IN_VAIN = 0.9, 5  # a trial in vain leaves more than this of the lowest error; so many in a row end the search
+_HELD = 0.97  # of the mass of a point: what the lattice must hold where no radius is given
+_WIDE = 100.0  # radii of interest over (D T)^(1/alpha): beyond, the kernel of GPSE needs more particles than the data
 _MOST_SPREAD = 1e4  # (D T)^(1/alpha) over the radius, to the power of the dimension: some 2e6 particles, two minutes
-_POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate: many are made
-_TERMS = {1: 3, 2: 3, 3: 2}
-_SMALLEST = 1e-11
-_START = 6.0  # intervals within the radius of interest,
-_FEWEST = 8.0  # and on either side of the lattice
+_POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate, at most: many estimates are made
+_TERMS = {1: 3, 2: 3, 3: 2}  # that continue the solution beyond the lattice, by dimension
+_SMALLEST = 1e-11  # error that may be asked for
+_START = 6.0  # spacings within the radius of interest, at first
+_FEWEST = 8.0  # spacings on either side of the lattice, at first
 
 
 def suggest(
@@ -87,8 +87,8 @@ def suggest(
     Raises
     ------
     InvalidInput
-        If the problem is not one, or the error cannot be reached on this machine; if the data are ten thousand times
-        narrower than they spread, which asks for other particles than those of a lattice.
+        If the problem is not valid, or the error cannot be reached on this machine; if the data are ten thousand times
+        narrower than they spread, so that they need other particles than those of a lattice.
 
     Warns
     -----
@@ -165,10 +165,12 @@ def _search(
     error: float,
     reached: list[float],
 ) -> Case | None:
-    """Refine and widen until the error is met, and take back what is not needed; None where it cannot be met."""
+    """Refine and widen until the error is met, and take back what is not needed; None where it cannot be met.
+
+    The errors of all trials are added to `reached`.
+    """
     half = max(1.2 * within, 1.5 * spread, least)
     h = min(within / _START, half / _FEWEST)
-    best: Case | None = None
     lowest, in_vain = np.inf, 0
     for _ in range(_MOST_TRIALS):
         trial = _trial(fields, h, half, spread)
@@ -189,16 +191,27 @@ def _search(
         if in_vain > _MOST_IN_VAIN:
             return None
         if total <= _SAFE * error:
-            best = trial
-            break
+            return _taken_back(trial, fields, initial, within, least, spread, error)
         far = total > _FAR * error
         if domain > spacing:
             half *= _WIDER**2 if far else _WIDER
         else:
             h *= _FINER**2 if far else _FINER
-    if best is None:
-        return None
+    return None
+
+
+def _taken_back(
+    best: Case,
+    fields: dict[str, Any],
+    initial: Initial,
+    within: float,
+    least: float,
+    spread: float,
+    error: float,
+) -> Case:
+    """Return the case on a lattice as narrow, then as coarse, as the error allows."""
     for narrower in (True, False):
+        h, half = best.spacing, best.reach
         while True:
             h, half = (h, half / _BACK) if narrower else (h * _BACK, half)
             trial = _trial(fields, h, half, spread)
@@ -207,7 +220,6 @@ def _search(
             if _errors(trial, initial, within)[0] > _SAFE * error:
                 break
             best = trial
-        h, half = best.spacing, best.reach
     return best
 
 
