@@ -35,9 +35,7 @@ __all__ = ["Followed", "follow"]
 _EXCHANGE = 0.05  # the error of an exchange over h^order
 _BENT = 0.1  # of initial data beyond the window: what the particles may miss there
 _NOTHING = 1e-7  # of int |u|: what lies beyond a place and counts as zero
-_UNRESOLVED = (
-    1e-3  # of int |u|: what the particles may miss between them, or a placement may change
-)
+_UNRESOLVED = 1e-3  # of int |u|: what particles may miss, or a placement may change
 _MOST_PLACEMENTS = 5000
 _MOST_TIMES = 1000
 

@@ -28,8 +28,8 @@ from fracparticles.errors import InvalidInput
 
 __all__ = ["InverseExchange"]
 
-_BLOCK = 32
-_TOLD_APART = 1e-8  # of the largest eigenvalue
+_BLOCK = 32  # rows eliminated together
+_TOLD_APART = 1e-8  # of the largest eigenvalue: smaller ones have few digits
 
 
 @dataclass(frozen=True)

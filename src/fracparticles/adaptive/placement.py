@@ -48,7 +48,7 @@ __all__ = [
 MOST = 3000  # particles: all eigenvalues of a matrix of that size are wanted
 _CURVATURE = 0.2  # c: of a stable density, whose |u''| M^-1 w^3 in the middle is 0.2 to 0.3
 _PANEL, _NODES = 0.5, 12  # of l; an error of 8^-12, 8 = 4 + 17^(1/2)
-_NEWTON = 6
+_NEWTON = 6  # steps to the place of a particle within its panel
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ from fracparticles.special import tail_constant
 
 __all__ = ["Place", "reach_of"]
 
-_BEYOND = 1e-7
+_BEYOND = 1e-7  # the share of the mass that may be beyond the particles
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,12 @@ from fracparticles.arguments import FloatArray
 
 __all__ = ["among", "between", "conserving", "slopes", "uncertain"]
 
-_DEGREE = 7
-_NEWTON = 8
-_PARTS = (np.arange(1, 9) * 0.6180339887498949) % 1.0
-_MOST_CHANGE = 0.5
+_DEGREE = 7  # of the splines
+_NEWTON = 8  # steps to the s of a place
+_PARTS = (np.arange(1, 9) * 0.6180339887498949) % 1.0  # of a gap: eight places that no lattice has
+_MOST_CHANGE = (
+    0.5  # of u at an end, by the first moment; where it takes more, the mass alone is kept
+)
 
 
 def between(x: FloatArray, u: FloatArray, at: FloatArray) -> FloatArray:

@@ -17,11 +17,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from fracparticles.arguments import choice
+from fracparticles.arguments import FloatArray, choice
 from fracparticles.errors import InvalidInput, one_of
 from fracparticles.kernels.high_order import GAMMA, ORDERS
 from fracparticles.kernels.printed import PRINTED
-from fracparticles.kernels.rules import FloatArray, KernelFamily, is_order
+from fracparticles.kernels.rules import KernelFamily, is_order
 
 __all__ = [
     "FAMILIES",

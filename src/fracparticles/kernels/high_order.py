@@ -37,8 +37,8 @@ import numpy as np
 from scipy.special import binom, gamma, gammaincc, gammainccinv, poch, rgamma
 
 from fracparticles._compiled import njit
-from fracparticles.arguments import elementwise
-from fracparticles.kernels.rules import FloatArray, KernelFamily
+from fracparticles.arguments import FloatArray, elementwise
+from fracparticles.kernels.rules import KernelFamily
 from fracparticles.special import chebyshev
 from fracparticles.special.hypergeometric import WIDTH, poisson_weights
 

@@ -16,7 +16,8 @@ import math
 import numpy as np
 from scipy.special import gamma, gammaincc
 
-from fracparticles.kernels.rules import FloatArray, KernelFamily
+from fracparticles.arguments import FloatArray
+from fracparticles.kernels.rules import KernelFamily
 from fracparticles.special.hypergeometric import kummer_order_four, kummer_transformed
 from fracparticles.special.stable import reduced_green
 

@@ -20,15 +20,20 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gamma
 
-from fracparticles.arguments import choice, dimension, fractional_order, like, real_array
+from fracparticles.arguments import (
+    FloatArray,
+    choice,
+    dimension,
+    fractional_order,
+    like,
+    real_array,
+)
 from fracparticles.errors import InvalidInput, one_of
 
 __all__ = ["KernelFamily", "distances", "gamma_nb", "is_order"]
 
-FloatArray = NDArray[np.float64]
 
 _LARGEST = 1e150  # the square must not overflow
 

@@ -20,9 +20,8 @@ from fracparticles.moving.lagrangian import advance
 
 __all__ = ["largest_step", "measured_rate"]
 
-_LEAST = (
-    1e-12  # of the mean square of a wave, and of an amplitude over the period: less is round-off
-)
+# Of the mean square of a wave, and of an amplitude over the period: less is round-off.
+_LEAST = 1e-12
 _HALVINGS = 12  # of the interval in which the largest step lies
 _STEPS = 24  # over which growth is judged there
 

@@ -41,9 +41,7 @@ __all__ = ["GaussianSource", "advance_weights", "source_flux"]
 _AROUND = 1  # the source is looked for so far beyond the markers, in units of their span
 _BETWEEN = 4  # half the points of that search from a marker to the next, on the mean
 _MISSED = 0.1  # of int |Q|: what the markers may miss
-_FAR = (
-    10.0  # |x| beyond which the term that both brackets of the solution share is left out of them
-)
+_FAR = 10.0  # |x| beyond which both brackets of the solution go without the term that they share
 
 Function = Callable[[np.ndarray], np.ndarray]
 

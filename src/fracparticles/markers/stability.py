@@ -23,12 +23,12 @@ import numpy as np
 from fracparticles.arguments import finite_array, instance, real_between
 from fracparticles.errors import InvalidInput
 from fracparticles.markers.shapes import Shape
+from fracparticles.moving.lagrangian import MIDPOINT_LIMIT
 
 __all__ = ["Extremes", "extremes", "lattice_rate", "rate"]
 
 _LARGEST = 1e100
 _MOST_TERMS = 2**26
-_MIDPOINT_LIMIT = 2.0  # |1 + z + z^2/2| <= 1 for real z in [-2, 0]
 
 
 def rate(shape: Shape, k: Any) -> np.ndarray:
@@ -83,7 +83,7 @@ class Extremes:
     @property
     def eta(self) -> float:
         """The constant of dt < eta eps^2: 2 / decay."""
-        return _MIDPOINT_LIMIT / self.decay
+        return MIDPOINT_LIMIT / self.decay
 
     @property
     def wavelength(self) -> float:

@@ -7,14 +7,13 @@ import numpy as np
 from fracparticles.arguments import choice, fractional_order, scale
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import kernel_transform
-from fracparticles.moving.lagrangian import quotient_velocity
+from fracparticles.moving.lagrangian import MIDPOINT_LIMIT, quotient_velocity
 from fracparticles.moving.scattered import scattered_sum, smooth_kernel
 from fracparticles.moving.tail import REACH, TailModel
 
 __all__ = ["EXTERIORS", "DiffusionVelocity"]
 
 EXTERIORS = ("truncated", "open")
-_MIDPOINT_LIMIT = 2.0  # |1 + z + z^2/2| <= 1 for real z in [-2, 0]
 _WAVENUMBERS = np.linspace(0.0, 12.0, 2401)
 
 
@@ -94,7 +93,7 @@ class DiffusionVelocity:
     def largest_stable_step(self) -> float:
         """2 epsilon^alpha / (D max k^alpha eta^(k)): no displacement wave grows, aliases neglected."""
         decay = (_WAVENUMBERS**self.alpha * self.transform(_WAVENUMBERS)).max()
-        return float(_MIDPOINT_LIMIT * self.epsilon**self.alpha / (self.diffusivity * decay))
+        return float(MIDPOINT_LIMIT * self.epsilon**self.alpha / (self.diffusivity * decay))
 
     def _flux(self, f: np.ndarray) -> np.ndarray:
         return -(self.diffusivity / self.epsilon ** (self.alpha - 1.0)) * f

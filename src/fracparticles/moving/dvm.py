@@ -75,7 +75,7 @@ LATTICES = ("initial", "extended")
 # ripple of wavelength h / (1 - 1 / rho) on the field, until diffusion takes it away: with M4' at order II it is fifteen
 # times the error of the run for rho = 1.2, five times for 1.1, and less than the error for 1.05.
 REMESH_ABOVE_OPEN = 1.05
-_GONE = 0.05  # of the total strength: what a threshold, or the ends of a truncated lattice, may leave out
+GONE = 0.05  # of the total strength: what a threshold, or the ends of a truncated lattice, may leave out
 _MISFIT = 0.125  # of the total strength: what the tails of an open exterior may hold wrongly; runs err by a third of it
 
 
@@ -240,13 +240,13 @@ def _warn_of_loss(history: History, exterior: str) -> None:
         abs(part / history.total_initial)
         for part in (history.eliminated_strength, history.lost_strength)
     )
-    if weak > _GONE:
+    if weak > GONE:
         warnings.warn(
             f"the particles left out for their small strengths held {weak:.2g} of the total. Take a smaller threshold.",
             AccuracyWarning,
             stacklevel=4,
         )
-    if lost > _GONE and exterior == "truncated":
+    if lost > GONE and exterior == "truncated":
         warnings.warn(
             f"remeshing onto the initial lattice has left out {lost:.2g} of the total strength, which now lies beyond "
             "its ends. Take a wider lattice, exterior='open' or lattice='extended'.",

@@ -26,7 +26,7 @@ from fracparticles.errors import (
     NonFiniteSolution,
 )
 from fracparticles.moving.diffusion_velocity import EXTERIORS, DiffusionVelocity
-from fracparticles.moving.dvm import largest_gap
+from fracparticles.moving.dvm import GONE, largest_gap
 from fracparticles.moving.lagrangian import (
     REMESHING,
     quotient_velocity,
@@ -47,7 +47,6 @@ from fracparticles.moving.remeshing import REMESHINGS
 
 __all__ = ["PlaneRun", "PlaneVelocity", "run_in_plane"]
 
-_GONE = 0.05  # of the total strength: what the ends of a truncated lattice may leave out
 _MISFIT = 0.05  # of the total strength: what the far field may hold wrongly
 
 
@@ -262,7 +261,7 @@ def _warn(
 ) -> None:
     """What a run can know of itself, as on the line."""
     found = velocity.misfit(x, y, strength)
-    if found is None and abs(lost) > _GONE:
+    if found is None and abs(lost) > GONE:
         warnings.warn(
             f"remeshing has left out {lost:.2g} of the total strength, which now lies beyond the ends of the lattice. "
             "Take a wider one, or exterior='open'.",

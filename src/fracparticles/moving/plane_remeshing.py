@@ -10,13 +10,12 @@ from __future__ import annotations
 import numpy as np
 
 from fracparticles.errors import InvalidInput
-from fracparticles.moving.remeshing import REACH, interpolation_function
+from fracparticles.moving.remeshing import REACH, ULPS, interpolation_function
 
 __all__ = ["Particles", "on_square", "remesh_plane"]
 
 Particles = tuple[np.ndarray, np.ndarray, np.ndarray]  # x, y and strengths
 
-_ULPS = 2.0 * float(np.finfo(float).eps)
 _MOST = 2**13  # lattice points along an axis: a particle that needs more has run away
 
 
@@ -71,7 +70,7 @@ def _split(cell: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
     """The first of the lattice points of each particle, and the weights of all."""
     nearest = np.rint(cell)
     # p h / h may miss p by an ulp, which would leak a little to the neighbours of p each time.
-    cell = np.where(np.abs(cell - nearest) <= _ULPS * np.abs(cell), nearest, cell)
+    cell = np.where(np.abs(cell - nearest) <= ULPS * np.abs(cell), nearest, cell)
     left, reach = np.floor(cell), REACH[name]
     distance = (cell - left)[:, None] - np.arange(1.0 - reach, reach + 1.0)
     return left.astype(np.int64) + 1 - reach, interpolation_function(name, distance)

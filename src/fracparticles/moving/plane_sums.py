@@ -21,12 +21,10 @@ from fracparticles._compiled import njit
 from fracparticles.errors import InvalidInput
 from fracparticles.kernels.families import kernel
 from fracparticles.moving.gridding import WIDTH, window_transform, window_weights
-from fracparticles.moving.scattered_base import GAUSSIAN_BAND, in_range
+from fracparticles.moving.scattered_base import EDGE, GAUSSIAN_BAND, MARGIN, in_range
 
 __all__ = ["PlaneSums", "naive_sums"]
 
-_EDGE = 5.5  # erfc(5.5) / 2 < 1e-14
-_MARGIN = 1.125  # how much wider than the set the box is made
 _MOST_MODES = 2**13  # along an axis: 0.5 GiB a field
 
 
@@ -75,7 +73,7 @@ class PlaneSums:
         high = np.array([max(x.max(), zx.max()), max(y.max(), zy.max())])
         width = float((high - low).max())
         if not width <= self._width:
-            self._make_box(_MARGIN * width if self._width else width)
+            self._make_box(MARGIN * width if self._width else width)
         # The set in the middle of half the period.
         origin = 0.5 * (low + high) - 0.5 * self._width - WIDTH * self._step
         size = self._coefficients.shape[1]
@@ -96,7 +94,7 @@ class PlaneSums:
         """Fourier coefficients of the kernels for a set of this width."""
         scale = self._epsilon  # of the cut-off: its band is that of the Gaussian
         self._width = width + scale
-        period = 2.0 * (self._width + 2.0 * _EDGE * scale)
+        period = 2.0 * (self._width + 2.0 * EDGE * scale)
         needed = GAUSSIAN_BAND / self._epsilon * period / math.pi + 4 * WIDTH
         if not needed <= _MOST_MODES:
             shown, most = (
@@ -108,7 +106,7 @@ class PlaneSums:
         size = 2 * next_fast_len(math.ceil(0.5 * needed), real=True)
         self._step = period / size
         r = np.fft.fftfreq(size, 1.0 / size) * self._step
-        cut = 0.5 * erfc((np.abs(r) - (0.5 * period - _EDGE * scale)) / scale)
+        cut = 0.5 * erfc((np.abs(r) - (0.5 * period - EDGE * scale)) / scale)
         kernels = _kernels(r[:, None], r, self._alpha, self._order, self._epsilon)
         window = window_transform(2.0 * math.pi / size * np.arange(size // 2 + 1))
         both = np.concatenate([window, window[1 : (size + 1) // 2][::-1]])

@@ -60,7 +60,7 @@ _NINTH = np.array([_SIX_FOUR, _BACKWARDS], dtype=float)
 # Lattice points from the origin: beyond, places are rounded by more than 1e-7 of a spacing.
 _FARTHEST = 2**31
 _MOST_POINTS = 2**26  # between the particles: one farther out has run away
-_ULPS = 2.0 * float(np.finfo(float).eps)
+ULPS = 2.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -200,7 +200,7 @@ def _distribute(cell, strength, first, which, reach, total):
         left = np.floor(cell[j])
         fraction = cell[j] - left
         # p h / h may miss p by an ulp, which would leak a little to the neighbours of p each time.
-        slack = _ULPS * abs(cell[j])
+        slack = ULPS * abs(cell[j])
         if fraction <= slack:
             fraction = 0.0
         elif fraction >= 1.0 - slack:

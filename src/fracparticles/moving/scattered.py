@@ -45,7 +45,9 @@ from fracparticles.moving.gridding import (
 )
 from fracparticles.moving.pair_sums import NaiveScatteredSum, NeighbourSum
 from fracparticles.moving.scattered_base import (
+    EDGE,
     GAUSSIAN_BAND,
+    MARGIN,
     ScatteredKernel,
     ScatteredSum,
     checked_kernels,
@@ -62,9 +64,6 @@ __all__ = [
     "smooth_kernel",
 ]
 
-_EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: the cut-off is 1 on one side of this, 0 on the other
-# How much wider than a set that grew the box is made, so that it is not made anew at every step.
-_MARGIN = 1.125
 _MOST_MODES = 2**24  # about 1 GiB of buffers
 _ACCURACY = 1e-11
 _ULP = 2.0**-52
@@ -132,7 +131,7 @@ class NonuniformFourierSum(ScatteredSum):
         ends = [x.min(), x.max(), *(() if z is None else (z.min(), z.max()))]
         low, high = min(ends), max(ends)
         if not (self._low <= low and high <= self._high):
-            margin = 1.0 if self._low > self._high else _MARGIN
+            margin = 1.0 if self._low > self._high else MARGIN
             self._make_box(min(low, self._low), max(high, self._high), margin)
         at = self._places(x)
         spread(*at, q, self._particles)
@@ -151,10 +150,10 @@ class NonuniformFourierSum(ScatteredSum):
         scale = GAUSSIAN_BAND / self._band  # of the cut-off, which must not exceed the band either
         half = 0.5 * margin * (high - low) + scale
         centre = low + 0.5 * (high - low)
-        period = 2.0 * (2.0 * half + 2.0 * _EDGE * scale)
+        period = 2.0 * (2.0 * half + 2.0 * EDGE * scale)
         needed = self._band * period / math.pi
         if not needed <= _MOST_MODES:
-            widest = 0.25 * math.pi * _MOST_MODES / self._band / _MARGIN
+            widest = 0.25 * math.pi * _MOST_MODES / self._band / MARGIN
             shown = f"particles from {low:.6g} to {high:.6g}"
             allowed = f"a set no wider than {2.0 * widest:.4g}, for this smoothing length"
             remedy = "Look for a particle that ran away, or take summation='naive'."
@@ -164,7 +163,7 @@ class NonuniformFourierSum(ScatteredSum):
         self._step = period / size
         self.accuracy = max(_ACCURACY, size * _ULP)
         r = np.fft.fftfreq(size, 1.0 / size) * self._step
-        cut_off = 0.5 * erfc((np.abs(r) - (0.5 * period - _EDGE * scale)) / scale)
+        cut_off = 0.5 * erfc((np.abs(r) - (0.5 * period - EDGE * scale)) / scale)
         kernels = np.array([cut_off * k.profile(r / self._epsilon) for k in self._kernels])
         window = window_transform(2.0 * math.pi / size * np.arange(size // 2 + 1))
         self._coefficients = rfft(kernels) / (size * self._epsilon * window**2)

@@ -31,11 +31,11 @@ from fracparticles.special.tails import tail_constant
 
 __all__ = ["FITTED", "REACH", "Tail", "TailEnd", "TailModel"]
 
-FITTED = 8  # particles that say what c is, at most,
-_SHARE = 8  # and of all this fraction, but
-_FEWEST = 2
+FITTED = 8  # outermost particles to which c is fitted,
+_SHARE = 8  # or an eighth of all, if these are fewer,
+_FEWEST = 2  # and never fewer than this
 _CLOSEST = 1e-3  # smoothing lengths between two particles of the tail, for others that coincide
-_HALF_WAY = 0.05  # of the way to the end, either way: where the power is held against the field
+_HALF_WAY = 0.05  # of the way to the end, to either side of its middle: there the power is compared with the field
 REACH = 20.0  # smoothing lengths; there F misses its far field by alpha (alpha + 1) / (4 REACH^2), 0.4 % at most
 # Of log(1 - xi): how much more than asked for the table of g covers, so that it is not made anew at every step.
 _MARGIN = 0.5

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from fracparticles.arguments import SIZES
+from fracparticles.arguments import MOST_STEPS, SIZES
 from fracparticles.errors import InvalidInput, one_of, spelled
 from fracparticles.graded.particles import MOST
 from fracparticles.run.derived import Derived
@@ -22,13 +22,16 @@ __all__ = ["check"]
 _BYTES_PER_PARTICLE = {1: 200, 2: 220, 3: 260}
 _OPEN_BYTES = {1: 300, 2: 800, 3: 800}
 _BYTES_PER_PAIR = 60  # of graded particles, whose step is a matrix
-_FEWEST = 8  # intervals on either side
-_MOST_STEPS = 2**53  # more are not told apart in float64
-_FAR_OVERLAPS = 10  # half the lattice in smoothing lengths, at least, and
-_FAR_STIFFEST = 1e6  # T D / h^alpha, at most, for more than one term of the exterior
+_FEWEST = 8  # spacings on either side of the lattice
+_FAR_OVERLAPS = (
+    10  # for more than one term of the exterior: the least half-width, in smoothing lengths,
+)
+_FAR_STIFFEST = 1e6  # and the greatest T D / h^alpha
 _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
-_NAIVE_OVERLAP = 20.0
-_ROUNDED = 1e-9  # of an overlap that is a quotient
+_NAIVE_OVERLAP = (
+    20.0  # the greatest for naive sums with an open exterior: the work grows like its cube
+)
+_ROUNDED = 1e-9  # of an overlap, which may be a rounded quotient
 _OPEN = tuple(name for name, scheme in ALL_SCHEMES.items() if "open" in scheme.exteriors)
 _MOVING = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.moving)
 _ONE_SUM = tuple(name for name in _OPEN if name not in _MOVING)
@@ -261,13 +264,13 @@ def _check_spread(case: Derived) -> None:
 
 def _check_work(case: Derived) -> None:
     one_by_one = case.kind.moving and case.exterior == "open" and case.summation == "naive"
-    if one_by_one and case.resolved_overlap > _NAIVE_OVERLAP:  # a second a step, like its cube
+    if one_by_one and case.resolved_overlap > _NAIVE_OVERLAP:  # a step takes a second there
         most = f"at most {_NAIVE_OVERLAP:g} for naive sums with an open exterior"
         raise InvalidInput("overlap", case.overlap, most, "Leave summation out.")
     if not case.steps_taken and case.span * case.setting.rate > _STIFFEST:
         latest = case.t_initial + _STIFFEST / case.setting.rate
         most = f"at most {latest:.6g} with this spacing and diffusivity"
         raise InvalidInput("t_final", case.t_final, most, "Take a shorter run or a larger spacing.")
-    if case.resolved_integrator != "exponential" and case.span / case.resolved_dt > _MOST_STEPS:
-        least = f"at least {case.span / _MOST_STEPS:.3g}: 2^53 steps"
+    if case.resolved_integrator != "exponential" and case.span / case.resolved_dt > MOST_STEPS:
+        least = f"at least {case.span / MOST_STEPS:.3g}: 2^53 steps"
         raise InvalidInput("dt", case.dt, least, "Take a larger step.")

@@ -38,11 +38,11 @@ __all__ = ["ErrorEstimate", "estimate_error", "estimate_of", "estimates_of"]
 
 Data = Callable[..., np.ndarray]
 
-_CLEAR = 0.3  # of the total: the last change of the reference
-_MOST_POINTS = 5_000_000
-_UNSETTLED = 0.5  # of the total
+_CLEAR = 0.3  # of the total: the last change of the reference must be smaller
+_MOST_POINTS = 5_000_000  # of the reference
+_UNSETTLED = 0.5  # of the total: a larger last change is warned of
 _TERMS = {1: 4, 2: 4, 3: 2}  # that continue the reference
-# Of the narrow lattice: what its ends do to the spacing's error must not count.
+# The width of the narrow reference over that of the lattice: its ends must not count in the error of the spacing.
 _ROOM = {1: 4.0, 2: 2.0, 3: 1.0}
 _EIGHTHS = 8  # of the half-width, where tails meet the data: the same places at any spacing
 _FAR = 1e4  # in units of the lattice: where the power is read by which data fall

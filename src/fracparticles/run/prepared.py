@@ -37,8 +37,8 @@ from fracparticles.time.whole_space import WholeSpace
 __all__ = ["Prepared", "in_range", "matrix_of", "prepare", "scheme_amplification"]
 
 _LARGEST_MATRIX = 16384  # particles
-_NEAR_ONE = 16  # exponents of two
-_RATES = 1e-8, 1e8  # D / h^alpha
+_NEAR_ONE = 16  # binary digits: strengths whose greatest is nearer to one are not scaled
+_RATES = 1e-8, 1e8  # D / h^alpha: outside, A u may be no number though u is
 Advance = Callable[[np.ndarray], np.ndarray]
 
 

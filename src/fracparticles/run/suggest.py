@@ -43,11 +43,16 @@ _FAR = 10.0  # an error so many times that asked for: two steps at once
 _BACK = 1.2  # the factor by which spacing and half-width are taken back at a time
 _SAFE = 0.7  # of the error that is asked for: a case must meet this
 _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
-_LOWER, _MOST_IN_VAIN = 0.9, 5  # a trial in vain leaves more than this of the lowest error; so many in a row end the search
+# A trial that leaves more than this part of the lowest error is in vain; so many of them in a row end the search.
+_LOWER, _MOST_IN_VAIN = 0.9, 5
 _HELD = 0.97  # of the mass of a point: what the lattice must hold where no radius is given
 _WIDE = 100.0  # radii of interest over (D T)^(1/alpha): beyond, the kernel of GPSE needs more particles than the data
 _MOST_SPREAD = 1e4  # (D T)^(1/alpha) over the radius, to the power of the dimension: some 2e6 particles, two minutes
-_POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}  # of an estimate, at most: many estimates are made
+_POINTS = {
+    1: 1_000_000,
+    2: 5_000_000,
+    3: 5_000_000,
+}  # of an estimate, at most: many estimates are made
 _TERMS = {1: 3, 2: 3, 3: 2}  # that continue the solution beyond the lattice, by dimension
 _SMALLEST = 1e-11  # error that may be asked for
 _START = 6.0  # spacings within the radius of interest, at first

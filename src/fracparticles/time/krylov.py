@@ -22,13 +22,13 @@ from fracparticles.time.steps import Absolute, absolute, blown_up, norm
 
 __all__ = ["KrylovStep"]
 
-_MOST = 40  # vectors of a space, and fewer in the plane:
-_NUMBERS = 4_000_000  # that they hold
-_FEWEST = 12
-_SHORTER, _LONGER = 0.2, 4.0  # of one step to the next
-_SAFETY = 0.85
-_FADED = 1e-3  # what a step leaves of u at least: more would cost digits, and be judged by the size before
-_NOTHING = 1e-14  # a vector that is left of one of norm one
+_MOST = 40  # vectors of a space,
+_NUMBERS = 4_000_000  # but with so many numbers in all at most,
+_FEWEST = 12  # unless there are fewer vectors than this
+_SHORTER, _LONGER = 0.2, 4.0  # the least and the greatest ratio of a step to the one before
+_SAFETY = 0.85  # of the step that would just meet the tolerance
+_FADED = 1e-3  # a step leaves at least this of u: a longer one would cost digits, and be judged by the size before it
+_NOTHING = 1e-14  # of a vector of norm one: less is left of one that lies in the space
 
 
 class KrylovStep:

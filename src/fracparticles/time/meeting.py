@@ -11,8 +11,9 @@ from fracparticles.time.multipoles import HARMONICS, Terms, values_of
 
 __all__ = ["Meeting"]
 
-_DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)  # in half-widths, one for each of the gamma,
-_OUTER = np.linspace(1.0, 0.8, 8)  # or all of these
+# Where the tail meets the data, in half-widths: at one depth for each gamma, or in the mean at all of `_OUTER`.
+_DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)
+_OUTER = np.linspace(1.0, 0.8, 8)
 
 
 class Meeting:

@@ -24,11 +24,11 @@ __all__ = ["StabilisedStep", "spectral_radius"]
 State = tuple[np.ndarray, np.ndarray]
 """u and R(u)."""
 
-_MOST_STAGES = 200
+_MOST_STAGES = 200  # of a step
 _RENEW = 25  # steps after which rho is estimated again
-_SAFETY = 1.2  # of rho
-_ITERATIONS = 50
-_CONVERGED = 0.01
+_SAFETY = 1.2  # by which rho is taken too large
+_ITERATIONS = 50  # of the power iteration for rho, at most
+_CONVERGED = 0.01  # of rho: a smaller change ends the iteration
 _SHORTEST = 16.0 * 2.0**-52  # of a step, relative to t
 
 

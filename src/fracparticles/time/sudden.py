@@ -17,12 +17,12 @@ __all__ = ["LOOKS", "instant", "irregular_times", "sudden_times"]
 Look = Callable[[float], np.ndarray]
 
 LOOKS = 1024
-_GOLDEN = 0.6180339887498949
-_SUDDEN = 0.1  # of the range of a value
-_NOTICED = 1e-6  # of the greatest value, a range that counts
+_GOLDEN = 0.6180339887498949  # its multiples make times that are not equally spaced
+_SUDDEN = 0.1  # of the range of a value: a larger change between two looks is sudden
+_NOTICED = 1e-6  # of the greatest value: a smaller range does not count
 _FINEST = 2.0**-36  # of the run
 _MOST = 32  # cuts that are found exactly
-_MOST_CUTS = 256
+_MOST_CUTS = 256  # where there are more, at looks that are evenly chosen
 
 
 def sudden_times(

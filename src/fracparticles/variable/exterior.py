@@ -22,7 +22,7 @@ __all__ = ["PlaneGradientFarField", "line_far_field", "tails_of"]
 
 Tails = tuple[float, float]
 
-_WIDER = 4
+_WIDER = 4  # half-widths, as far as the modes of the far field are summed
 
 
 def tails_of(setting: Setting, tail: object, default: Tails) -> Tails:

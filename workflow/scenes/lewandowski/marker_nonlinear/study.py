@@ -76,12 +76,7 @@ def study(
         _porous(max(t_final, 10.0)),
     ]
     panels = _panels(setting, printed, stable)
-    for scan in scans:
-        far = setting.deviation(scan.end) / setting.peak
-        panels.add("step", "midpoint", scan.dt, far, stopped=bool(scan.stopped))
-    far = setting.deviation(stable.at(scan_until)) / setting.peak
-    panels.add("step", "RKC2", dt, far, stopped=False)
-    panels.add("step", "limit", setting.limit, 0.0)
+    _scan(panels, setting, scans, stable, scan_until)
     for t, f in zip(reference_times, reference.solve(start, reference_times), strict=True):
         panels.add("lost", "lines", reference.x, f, t=t)
         if min(abs(t - s) for s in stable.times) < 0.5 * dt:
@@ -102,6 +97,18 @@ def _panels(setting: Markers, printed: Evolution, stable: Evolution) -> Panels:
         panels.add("approach", "core", t, setting.deviation(x))
         panels.add("approach", "excess", t, setting.excess(x))
     return panels
+
+
+def _scan(
+    panels: Panels, setting: Markers, scans: list[Evolution], stable: Evolution, until: float
+) -> None:
+    """Panel "step": the deviation from the steady state at the time `until`, against the step."""
+    for scan in scans:
+        far = setting.deviation(scan.end) / setting.peak
+        panels.add("step", "midpoint", scan.dt, far, stopped=bool(scan.stopped))
+    far = setting.deviation(stable.at(until)) / setting.peak
+    panels.add("step", "RKC2", stable.dt, far, stopped=False)
+    panels.add("step", "limit", setting.limit, 0.0)
 
 
 def _set_up(setting: Markers, half_width: float, apart: float) -> Iterator[Finding]:
