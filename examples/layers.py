@@ -18,6 +18,7 @@ problem = fp.Problem(
 )
 run = fp.solve_problem(problem, lambda x: np.exp(-(x**2)))
 print(f"{int(run.evaluations)} evaluations of the operator")
+print(f"estimated error: {float(run.space_error.max()):.0e} of the greatest u")
 
 figure, axes = plt.subplots(figsize=(6, 3.2))
 for u in run.u:

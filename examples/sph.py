@@ -1,7 +1,7 @@
 """# A fractional derivative by smoothed particles
 
 The Caputo derivative of sin(x) of order 1/2 on [0, 10], from the values of the sine at particles, beside the closed
-form.
+form. With 26 particles a warning says how wrong the result is, and where.
 """
 
 import matplotlib.pyplot as plt

@@ -4,13 +4,13 @@ With S of d(V^(1/2) u)/dt = S V^(1/2) u, which is symmetric,
 
     S_ij = V_i^(1/2) K_ij V_j^(1/2),   S_ii = -sum_j K_ij V_j,   u(t) = V^(-1/2) exp(t S) V^(1/2) u(0),
 
-by a Chebyshev series (`time.chebyshev`) until all of them have been longer than eigenvectors take, then by those.
-With a diffusivity that varies K_ij is times (D_i + D_j) / 2, as in `variable.diffusivity`: another equation than that
-of the flux,
+The exponential is a Chebyshev series (`time.chebyshev`) at first. Once all series together have taken as long as the
+eigenvectors of S do, the eigenvectors are computed and take their place. With a diffusivity that varies, K_ij is
+multiplied by (D_i + D_j) / 2, as in `variable.diffusivity`. This is another equation than that of the flux,
 
     u_t = C int (D(x) + D(y)) / 2 (u(y) - u(x)) |x - y|^(-1-alpha) dy = (D L u + L(D u) - u L D) / 2,
 
-L = -(-Laplacian)^(alpha/2). sum V u is conserved by either.
+with L = -(-Laplacian)^(alpha/2). Both ways conserve sum V u.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from fracparticles.time.chebyshev import LostDigits, evaluate, exponential
 
 __all__ = ["ExchangeFlow"]
 
-_PRODUCTS = 0.5  # per particle, of the matrix with a vector: as long as the eigenvectors take
+_PRODUCTS = 0.5  # N of them, of the matrix with a vector, take as long as the eigenvectors
 
 
 class ExchangeFlow:
-    """u(0) to u(t).
+    """u after a time from u before, on one placement.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class ExchangeFlow:
         self._products += float(np.sqrt(25.0 * time * self._bound))
         y = None
         if self._products < _PRODUCTS * self.size:
-            with suppress(LostDigits):  # u is all short waves, of which little remains
+            with suppress(LostDigits):  # where u is all short waves, of which little remains
                 y = evaluate((exponential(time, -self._bound, 0.0),), self, start)[0]
         if y is None:
             if self._modes is None:

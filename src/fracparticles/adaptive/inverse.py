@@ -58,7 +58,18 @@ class InverseExchange:
         outside: FloatArray | None,
         order: np.ndarray,
     ) -> InverseExchange:
-        """Return the inverse for the symmetric K, V, kappa (None for nothing), and an order of elimination.
+        """Return the inverse of an exchange.
+
+        Parameters
+        ----------
+        exchange : array, shape (N, N)
+            K, symmetric.
+        volumes : array, shape (N,)
+            V.
+        outside : array, shape (N,), or None
+            kappa; None if nothing is exchanged with the outside.
+        order : array of int, shape (N,)
+            The particles in the order of their elimination, the closest first.
 
         Raises
         ------

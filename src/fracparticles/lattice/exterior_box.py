@@ -43,8 +43,8 @@ __all__ = ["BoxFarField", "box_continuation", "box_far_field"]
 _SHARPNESS = 30.0  # the greatest c
 # What the aliases add falls fast in space: as a Fourier series of this period, in units of n, its images are small.
 _PERIOD = {2: 8.0, 3: 4.0}
-# Below this share of the integrand it is round-off. Not more, since psi_k is some thousand times larger in the
-# middle than at the faces, and the sums are the difference of what is large there.
+# Less than this share of the integrand is round-off. It must not be larger: psi_k is some thousand times larger in the
+# middle than at the faces, and the sums are differences of large values there.
 _ROUND_OFF = 1e-13
 
 Symbol = Callable[[np.ndarray], np.ndarray]

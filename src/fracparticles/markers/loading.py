@@ -27,7 +27,7 @@ Loading = tuple[np.ndarray, np.ndarray]
 def uniform(
     f: Callable[[np.ndarray], np.ndarray], ends: tuple[float, float], count: int
 ) -> Loading:
-    """Return `count` midpoints of equal cells between the ends, with W_j = f(x_j) h."""
+    """Return `count` midpoints of equal cells between the ends, with W_j = f(x_j) h; two arrays of shape (count,)."""
     low, high = check.pair("ends", ends, rising=True)
     h = (high - low) / check.positive_integer("count", count, most=check.MOST)
     x = low + h * (np.arange(count) + 0.5)
@@ -35,7 +35,7 @@ def uniform(
 
 
 def equal_weight(profile: Profile, count: int) -> Loading:
-    """Return markers that share the total equally (10)."""
+    """Return the places (10) of markers that share the total equally, and W_j; two arrays of shape (count,)."""
     count = check.positive_integer("count", count, most=check.MOST)
     part = _total(profile) / count
     x = check.sampled("profile", profile.quantile, part * (np.arange(count) + 0.5))
@@ -43,7 +43,7 @@ def equal_weight(profile: Profile, count: int) -> Loading:
 
 
 def random(profile: Profile, count: int, generator: np.random.Generator) -> Loading:
-    """Return markers of equal weight at random, distributed like f, in increasing order."""
+    """Return the places of markers at random, distributed like f and in increasing order, and their equal W_j."""
     count = check.positive_integer("count", count, most=check.MOST)
     total = _total(profile)
     xi = np.sort(check.generator("generator", generator).random(count))

@@ -7,22 +7,24 @@ resolution
     |delta u| / (2 |u|), delta the difference of neighbours, |.| the 2-norm. A kernel of order r damps a wave like
     (s theta / 2)^r. A peak in the middle between two particles, of which they see the tails |x|^-2, has theta = 0.92.
 between_particles
-    int |I - u| / int (|I| + |u|) of initial data that are a function u, by its values at two places between each two
-    particles (half-way, waves of period h may be zero, too), where I interpolates those at the particles: the larger.
-    What lies between them no other estimate can see.
+    int |I - u| / int (|I| + |u|) of initial data that are a function u, where I interpolates its values at the
+    particles. u and I are compared at two places between each two particles, since waves of period h may be zero at one
+    of them, too; the larger value counts. No other estimate can see what lies between the particles.
 wave_error
     sum |u^| |p(A dt)^n - exp(-T D |k|^alpha)| / sum |u^| exp(-T D |k|^alpha), with p from the symbol of A and the
-    transform u^ of the initial data: the error of a peak, where all waves are in phase, over the peak. It sees a
-    lattice too coarse, an overlap too small, a first order, a coarse time step. Of DVM it is what the field (7) lacks.
-    Of several output times it is the largest: waves that come out wrong at an early one have decayed at the last.
+    transform u^ of the initial data: the error of a peak, where all waves are in phase, over the peak. It is large if
+    the lattice or the time step is too coarse, the overlap too small, or the order low. For DVM it is what the field
+    (7) lacks. For several output times it is the largest: waves that are wrong at an early time have decayed at the
+    last.
 growth
     max |u(t_f)| / max |u(t_i)|, or int |u(t_f)| / int |u(t_i)| on the lattice less the share of u(t_i) that lies beyond
     it: both are at most 1 for the equation.
 table_error
     T |(A - A') u| / |u|, A' with interpolated kernels, A with exact ones, |.| the 1-norm.
 outside_share
-    The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles; on a
-    truncated lattice at least what of a point mass leaves it during the run: ends that absorb leave nothing there.
+    The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha), c from the outermost particles. On a
+    truncated lattice it is at least the share of a point mass that leaves it during the run: where the ends absorb,
+    the outermost particles hold too little to show it.
 kept
     (int_{|x| > L} of the fundamental solution for a step)^n times max |u(t_i)| / max |u|, of n exchanges by GPSE on a
     truncated lattice; of several output times the largest.
@@ -37,9 +39,10 @@ decay
 round_off
     64 T |lambda| 2^-52: an application of A is exact to some 2^-53 |lambda|, and the recurrence of a series adds to it.
 
-They cost a few passes over the strengths. Graded particles have the first, `growth` and `outside_share` alone: the
-wavenumber is that in the mapped variable, in which they are equally spaced. DVM, whose particles spread with the
-solution, has these of u(t_i), and `wave_error`; see also `moving.dvm`.
+The estimates cost a few passes over the strengths. Graded particles, whose operator has no symbol, have the first two,
+`growth`, `outside_share` and `kept`; their wavenumber is that in the mapped variable, in which they are equally spaced.
+DVM, whose particles spread with the solution, has the first two, `wave_error`, `growth`, and `outside_share` of u(t_i);
+see also `moving.dvm`.
 """
 
 from __future__ import annotations
@@ -80,8 +83,8 @@ LIMITS = {
     "round_off": 1e-6,
     "decay": 0.01,
 }
-_LEAST_SMOOTHING = 1.1  # 1 / 0.91
-ULPS = 64.0  # measured, of a Chebyshev series, with sums by transforms and with a matrix alike
+_LEAST_SMOOTHING = 1.1  # so that theta = 0.92, of a peak between two particles, is above the limit
+ULPS = 64.0  # in T |lambda| 2^-52: measured of a Chebyshev series, for sums by transforms and by a matrix alike
 _SURFACE = {1: 2.0, 2: 2.0 * np.pi, 3: 4.0 * np.pi}  # of the unit sphere
 
 

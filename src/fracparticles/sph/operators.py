@@ -88,7 +88,10 @@ def caputo_derivative(
 def singular_integral(
     line: ParticleLine, f: Any, order: Any, *, method: str = "standard"
 ) -> np.ndarray:
-    """The left-handed integral by the singular sum (23), (24), whose infinite term j = i is left out."""
+    """The left-handed integral by the singular sum (23), (24), whose infinite term j = i is left out.
+
+    Parameters, errors and warnings as in `rl_integral`.
+    """
     return _apply(
         _left_singular_integral, comparison.rl_integral, 1, line, f, order, "left", method
     )

@@ -150,7 +150,7 @@ def exponential_flow(
     high: float,
     largest_degree: int | None = None,
 ) -> Flow:
-    """Return exp(A time)."""
+    """Return the flow u -> exp(A time) u of an operator A whose spectrum lies in [low, high]."""
     unit = time / _UNITS  # exact
     return Flow(operator, lambda n: exponential(n * unit, low, high), _UNITS, largest_degree)
 
@@ -164,5 +164,5 @@ def power_flow(
     high: float,
     largest_degree: int | None = None,
 ) -> Flow:
-    """Return p(A dt)^steps."""
+    """Return the flow u -> p(A dt)^steps u of an operator A whose spectrum lies in [low, high]."""
     return Flow(operator, lambda n: power(polynomial, dt, n, low, high), steps, largest_degree)

@@ -1,12 +1,14 @@
 """What a lattice does not hold: waves shorter than two spacings, estimated from the spectrum of the data.
 
-u^ is known up to K = pi / h along each axis. Beyond, it is taken to fall on as it does from 0.4 K to 0.8 K,
+u^ is known up to K = pi / h along each axis. Beyond K it is assumed to fall at the rate at which it falls from 0.4 K
+to 0.8 K,
 
     |u^(K + k)| = a r^(5 k / 2 K),   r = a / b,   a, b the greatest |u^| from 0.8 K to K, and from 0.4 K to K / 2,
 
-which is so for an exponential; that of a Gaussian falls faster. It is the rate that counts, and not what is left at K
-of u^(0): of a spike on a wide hill the hill has all of that. The waves 2 K - k and 2 K + k look like the wave k. On the
-lattice the data are right at the start: what is wrong later is the difference of the amplitudes, f(k) - f(2 K - k).
+This holds for an exponential, and u^ of a Gaussian falls faster. The estimate uses the rate, and not the ratio of u^ at
+K to u^(0): of a spike on a wide hill, u^(0) is all of the hill. On the lattice the waves 2 K - k and 2 K + k look like
+the wave k. The data are right there at the start. What is wrong later is the difference of the factors by which the
+waves decay, f(k) - f(2 K - k).
 """
 
 from __future__ import annotations
@@ -19,8 +21,8 @@ import numpy as np
 
 __all__ = ["ShortWaves"]
 
-_NODES = 8  # from 0 to K
-_GONE = 8.0  # exp(-8)
+_NODES = 8  # of the integral over the waves from 0 to K
+_GONE = 8.0  # an exponent: exp(-8) of a wave counts as nothing
 _TINY = float(np.finfo(float).tiny)
 
 

@@ -132,7 +132,10 @@ def exponential_snapshots(
     high: float,
     largest_degree: int | None = None,
 ) -> Snapshots:
-    """Return exp(A t) for each t of `spans`, the times since the start, ascending."""
+    """Return exp(A t) for each t of `spans`, the times since the start, ascending.
+
+    The spectrum of A lies in [low, high].
+    """
     at = (0.0, *spans)
     return Snapshots(
         operator,
@@ -151,7 +154,10 @@ def power_snapshots(
     high: float,
     largest_degree: int | None = None,
 ) -> Snapshots:
-    """Return p(A dt_1)^{n_1} .. p(A dt_j)^{n_j} for each leg j."""
+    """Return p(A dt_1)^{n_1} .. p(A dt_j)^{n_j} for each leg j.
+
+    A leg is a time step dt_j and the number n_j of its steps. The spectrum of A lies in [low, high].
+    """
     return Snapshots(
         operator,
         len(legs),
