@@ -2,9 +2,10 @@
 
     python -m fracstudy.verify [--seed N] [--scenes N]
 
-The sample is drawn with a seed, at least one scene of each document. Run times are left out, since they differ, and
-scenes that read others. A file must agree byte for byte. Where another machine rounds otherwise a table may differ in
-its numbers, by 1e-6 of each or, for what is round-off itself, by 1e-9; its figure is then another drawing.
+The sample is drawn with a seed, at least one scene of each document. It leaves out scenes with run times, which differ
+from run to run, and scenes that read the tables of others. A file must agree byte for byte. If another machine rounds
+differently, the numbers of a table may differ: by 1e-6 of each, or by 1e-9 for what is round-off itself. The figure of
+such a table is then another drawing.
 """
 
 from __future__ import annotations

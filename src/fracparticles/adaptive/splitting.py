@@ -34,10 +34,8 @@ from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = ["Physics", "Splitting"]
 
-_MOST_STEPS = (
-    6  # of an interval, and so the rows of its extrapolation; if they do not do, it is halved,
-)
-_HALVINGS = 12  # again and again, so often at most
+_MOST_STEPS = 6  # of an interval, and so the rows of its extrapolation
+_HALVINGS = 12  # of an interval for which these steps are not enough
 _PARTS = 2  # of the classical Runge-Kutta scheme, in each half of the source
 _MOST_CALLS = 5000  # of the velocity, from one placement to the next
 _ALONG = 1e-9  # of the volumes: how closely the paths of particles are followed

@@ -22,9 +22,7 @@ __all__ = ["among", "between", "conserving", "slopes", "uncertain"]
 _DEGREE = 7  # of the splines
 _NEWTON = 8  # steps to the s of a place
 _PARTS = (np.arange(1, 9) * 0.6180339887498949) % 1.0  # of a gap: eight places that no lattice has
-_MOST_CHANGE = (
-    0.5  # of u at an end, by the first moment; where it takes more, the mass alone is kept
-)
+_MOST_CHANGE = 0.5  # of u at an end, to keep the first moment; beyond, only the mass is kept
 
 
 def between(x: FloatArray, u: FloatArray, at: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-r"""What the markers of a run reveal of waves: whether those of their places grow, and those of F come out wrong.
+r"""What the markers of a run reveal of waves: whether waves of their places grow, and whether waves of F are wrong.
 
 In a field that is uniform near a marker, displacements exp(i q x) change at the rate
 
@@ -6,11 +6,11 @@ In a field that is uniform near a marker, displacements exp(i q x) change at the
 
 F_m the m-th derivative of F and S^ the Fourier transform of the shape function: -q^2 S^ for `diffusion`, as in
 `stability`. A midpoint step multiplies them by 1 + z + z^2 / 2, z = dt sigma. The c_m are differences of the flux, at
-the markers where they are the largest and the smallest. As markers spread their waves become longer and leave the
+the markers where they are the largest and the smallest. As markers spread, their waves become longer and leave the
 range of growth: the result is an upper bound.
 
-Waves of the field change at the rate sigma, where the equation has S^ = 1. The error of their amplitude over the run is
-found for the wavenumber of F, max |F_x| / (max F - min F), and for twice and half of it.
+Waves of the field change at the rate sigma, too; in the equation S^ is replaced by 1. The error of their amplitude over
+the run is estimated for the wavenumber of F, max |F_x| / (max F - min F), and for twice and half of it.
 """
 
 from __future__ import annotations
@@ -41,13 +41,13 @@ __all__ = [
     "wave_error",
 ]
 
-_MOST_GROWTH = math.log(10.0)  # of a wave over a run, before there is a warning
-_WAVE_ERROR = 0.1
+_MOST_GROWTH = math.log(10.0)  # of a wave over a run, as an exponent: more is warned of
+_WAVE_ERROR = 0.1  # of a wave of F: more is warned of
 WAVENUMBERS = np.linspace(0.0, 30.0, 601)[1:]  # eps q
-_HARMONICS = np.array([2.0, 1.0, 0.5])
+_HARMONICS = np.array([2.0, 1.0, 0.5])  # of the wavenumber of F: where its error is looked for
 CORE = 2.0  # epsilon: S8 is negligible for an end that is farther away
 _DIFFERENCE = 1e-4  # of a derivative of F, relative to F / eps^m: a flux quadratic in it has exact differences
-_TOO_LARGE = 1.0 + 1e-9
+_TOO_LARGE = 1.0 + 1e-9  # of the stability interval: a step above this is warned of
 
 
 class Velocity(Protocol):

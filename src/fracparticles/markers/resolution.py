@@ -1,16 +1,17 @@
-r"""What the markers of a run reveal of their field: whether F is what the equation is about.
+r"""What the markers of a run reveal of the accuracy of F. All estimates use the run alone.
 
-All is estimated from the run alone.
 - The gaps between the markers leave a ripple on F (`moving.reliability`).
-- Gaps d at random leave a noise of the relative variance (var d / d^2) (d / eps) int S^2. Between neighbours d F / W
-  differs by (var d / (2 d^2))^(1/2). A run multiplies its wave q by g(q), that of `reliability`, and leaves
+- Gaps d at random leave a noise on F, of the relative variance (var d / d^2) (d / eps) int S^2. It is measured by
+  d F / W, which differs between neighbours by (var d / (2 d^2))^(1/2). A run multiplies the wave q of this noise by
+  g(q), see `reliability`, and leaves
 
-      variance at the end = variance at the start int |S^ g|^2 dq / int |S^|^2 dq:
+      variance at the end = variance at the start int |S^ g|^2 dq / int |S^|^2 dq.
 
-  of N markers at random of a field as wide as L after the time t >> eps^2, about L / (N (8 pi t)^(1/2)). F is off by
-  twice its square root at the worst of some twenty places.
-- F is smoother than the field: how much, is what a smaller epsilon changes, or a larger one (`smoothing`).
-- F at a marker without neighbours is its own, W S(0) / eps (`lone`); of a quiet start the last may be.
+  For N markers at random in a field of width L this is about L / (N (8 pi t)^(1/2)) after a time t >> eps^2. At the
+  worst of some twenty places F is off by twice the square root of the variance.
+- F is smoother than the field. How much is estimated by F with a smaller or a larger epsilon (`smoothing`).
+- At a marker without neighbours F is its own shape function, W S(0) / eps (`lone`). The outermost markers of a quiet
+  start may be such.
 Where the set of markers ends, F ends too, and says nothing about the field.
 """
 
@@ -27,22 +28,26 @@ from fracparticles.moving.reliability import RIPPLE, cells, ripple, warn_of_ripp
 
 __all__ = ["noise", "smoothing", "warn_of_resolution"]
 
-_SMOOTHED = 0.1  # of F, before there is a warning
-_NOISE = 0.15  # at the start: diffusion takes most of it away
-_BOTH = 0.2  # of the smoothing and of the noise at the end at its worst place: each by itself may be allowed
-_LONE = 0.03  # of the peak of F, as at an edge
-_APART, _NEIGHBOURS = 0.4, 17  # of epsilon; nearer ones leave little, and S8 reaches 6.5 epsilon
-_PARTS = (2.0, 0.5, 0.25, 0.125)  # of epsilon
-_SIGMAS = 3.0  # of noise, the greatest of some hundred markers
-_WORST = 2.0  # the same of some twenty places, as many as F has that do not know of each other
+# A warning is given above these.
+_SMOOTHED = 0.1  # of F: the smoothing
+_NOISE = 0.15  # of F: the noise at the start, of which diffusion takes most away
+_BOTH = (
+    0.2  # of F: the sum of the smoothing and of the noise at the end; each by itself may be allowed
+)
+_LONE = 0.03  # of the peak of F: the error at a marker without neighbours, as at an edge
+# A marker has no near neighbours if it is farther than this from them, in epsilon; S8 reaches 17 such distances.
+_APART, _NEIGHBOURS = 0.4, 17
+_PARTS = (2.0, 0.5, 0.25, 0.125)  # of epsilon, with which F is computed again
+_SIGMAS = 3.0  # standard deviations: the greatest noise at some hundred markers
+_WORST = 2.0  # standard deviations: the greatest noise at the some twenty places of F that are independent
 
 
 def smoothing(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
     """Return an estimate of max |F - f| / max |f| over the markers away from the ends, f the field that F smooths.
 
-    The greatest of what others say of it: F with twice of epsilon, whose error is larger by a factor that the order
-    tells; and in the place of f itself F with a half, a quarter and an eighth of epsilon, as far as the gaps between
-    the markers allow, and for the last two their noise.
+    It is the greatest of several estimates. F with twice epsilon has an error that is larger by a factor known from the
+    order of the shape function. F with a half, a quarter and an eighth of epsilon takes the place of f, as far as the
+    gaps between the markers allow, and for the last two their noise.
     """
     inside = inner(velocity, x)
     field, found = velocity.fields(x, weights)[0][inside], 0.0
@@ -63,9 +68,9 @@ def smoothing(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
 
 
 def lone(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
-    """Return by how much of the peak of F a marker is off that has its neighbours far away, on either side alike.
+    """Return the greatest error of F, over its peak, at a marker whose neighbours are far away.
 
-    The sum W / eps sum_j S(j d / eps) of equal ones, d apart, less W / d.
+    It is W / eps sum_j S(j d / eps) - W / d, as if the neighbours were equal markers, d apart on either side.
     """
     if x.size < 2:
         return 0.0

@@ -43,9 +43,7 @@ __all__ = [
     "quotient_velocity",
 ]
 
-MIDPOINT_LIMIT = (
-    2.0  # a midpoint step is stable for real z = lambda dt in [-2, 0], where |1 + z + z^2 / 2| <= 1
-)
+MIDPOINT_LIMIT = 2.0  # |1 + z + z^2 / 2| <= 1 for real z = lambda dt in [-2, 0]
 # The defaults: the remeshing kernel, the spacing in h above which it is used, and the share of the greatest strength
 # up to which particles are left out.
 REMESHING, REMESH_ABOVE, THRESHOLD = "M4'", 1.5, 0.0

@@ -30,7 +30,7 @@ _ANGLES, _RADII = 24, 24  # nodes of the integral for each side of the square
 _FAR = 1e6  # a distance at which F is its far field
 _MOST = (
     2**12
-)  # rows of particles around the rectangle: outermost rows that all but coincide would need any number
+)  # rows around the rectangle: outermost rows that all but coincide would need any number
 
 
 class PlaneTail:

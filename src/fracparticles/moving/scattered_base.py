@@ -29,9 +29,7 @@ __all__ = [
 GAUSSIAN_BAND = 12.0
 # exp(-r^2) is 4e-19 at r = 6.5; the order-IV kernels hold exp(-r^2/2), which is that at 9.2.
 _GAUSSIAN_REACH = {2: 6.5, 4: 9.2}
-EDGE = (
-    5.5  # erfc(5.5) / 2 < 1e-14: the cut-off of a kernel is 1 on one side of this, 0 on the other
-)
+EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: a cut-off is 1 on one side of this, 0 on the other
 MARGIN = 1.125  # the box of a set that grew is made so much wider than the set, so that not every step makes it anew
 # The largest strength: divided by an epsilon from 1e-100 to 1e100 and summed, they neither overflow nor lose digits.
 _ORDINARY = 1e-150, 1e150

@@ -23,14 +23,10 @@ _BYTES_PER_PARTICLE = {1: 200, 2: 220, 3: 260}
 _OPEN_BYTES = {1: 300, 2: 800, 3: 800}
 _BYTES_PER_PAIR = 60  # of graded particles, whose step is a matrix
 _FEWEST = 8  # spacings on either side of the lattice
-_FAR_OVERLAPS = (
-    10  # for more than one term of the exterior: the least half-width, in smoothing lengths,
-)
-_FAR_STIFFEST = 1e6  # and the greatest T D / h^alpha
+# For more than one term of the exterior: the least half-width, in smoothing lengths, and the greatest T D / h^alpha.
+_FAR_OVERLAPS, _FAR_STIFFEST = 10, 1e6
 _STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
-_NAIVE_OVERLAP = (
-    20.0  # the greatest for naive sums with an open exterior: the work grows like its cube
-)
+_NAIVE_OVERLAP = 20.0  # for naive sums with an open exterior: the work grows like its cube
 _ROUNDED = 1e-9  # of an overlap, which may be a rounded quotient
 _OPEN = tuple(name for name, scheme in ALL_SCHEMES.items() if "open" in scheme.exteriors)
 _MOVING = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.moving)

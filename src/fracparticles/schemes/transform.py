@@ -18,9 +18,8 @@ __all__ = ["lattice_transform"]
 # Width of the pieces in which the transform is tabulated. It is analytic but for k = 0, and the aliases of the
 # smallest overlap, 1/4, begin at k = pi / 4: seven half pieces from there.
 _WIDTH = 0.25
-_SMALLEST = (
-    1e-13  # the errors of an interpolated kernel are summed as far as they are larger than this,
-)
+# The errors of an interpolated kernel are summed as far as they are larger than this,
+_SMALLEST = 1e-13
 _MOST = 20_000  # but never more of them
 
 

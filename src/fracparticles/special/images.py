@@ -33,9 +33,7 @@ __all__ = [
 ]
 
 _DEGREES = {1: 9, 2: 6, 3: 5}  # in the squares, by dimension: the error falls by 14 each
-_SHELLS = (
-    2  # of images and of waves in Ewald's sums: what is left out, exp(-pi 2.5^2), is 3e-9 of them
-)
+_SHELLS = 2  # of images and of waves in Ewald's sums: exp(-pi 2.5^2) = 3e-9 is left out
 _NODES = 16  # of the integrals over a face, along each of its axes
 _TAYLOR = 24  # terms on the line: at |x| = 1/2 they fall by 4 each
 

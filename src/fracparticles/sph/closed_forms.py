@@ -40,8 +40,10 @@ __all__ = ["FUNCTIONS", "Cosine", "Exponential", "Function", "ShiftedPower", "Si
 
 Order = float | np.ndarray
 
-_HORNER = 4  # the largest n for which the terms of (A4), (A8) lose no more than two digits,
-_NEAR = 1e3, 1e-50, 1e50  # for x below so many |beta|, and |beta| between these
+# The terms of (A4), (A8) lose no more than two digits for n up to _HORNER, x below 1e3 |beta| and |beta| from 1e-50 to
+# 1e50.
+_HORNER = 4
+_NEAR = 1e3, 1e-50, 1e50
 
 
 class Function(ABC):

@@ -24,8 +24,8 @@ from fracparticles.sph.product_integration import fractional_integral
 
 __all__ = ["caputo_derivative", "rl_derivative", "rl_integral", "warn_of_difference"]
 
-_WRONG = 0.05  # of the largest value
-_STEP = 1e-4  # of the order
+_WRONG = 0.05  # of the largest value: a larger difference is warned of
+_STEP = 1e-4  # in alpha, for the derivative by the order
 _ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of a difference of values
 
 
@@ -55,7 +55,9 @@ def rl_derivative(line: ParticleLine, f: np.ndarray, alpha: np.ndarray) -> np.nd
 def warn_of_difference(
     line: ParticleLine, result: np.ndarray, other: np.ndarray, size: float, method: str
 ) -> None:
-    """Warn if the real part of a result is wrong by more than a part of its largest value; infinite ones apart.
+    """Warn if the real part of a result differs from another by more than 5 % of the largest value.
+
+    Infinite values are left out.
 
     `size` is what the operator makes of the greatest |f| on the whole line: two differences lose N^2 round-off of it.
     """

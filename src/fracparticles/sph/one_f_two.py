@@ -23,9 +23,9 @@ from fracparticles.arguments import together, within
 
 __all__ = ["one_f_two"]
 
-_NEAR = 4.0  # where the two meet: e^4 = 55 times the round-off is lost there
-_SERIES = 26  # 4^(2k) / (2k)! is below 1e-36 at k = 26
-_FRACTION = 60  # exp(-sqrt(8 * 60 * 4)) = 1e-19
+_NEAR = 4.0  # y up to which the series is used: it loses e^4 = 55 times the round-off there
+_SERIES = 26  # terms of the series: 4^(2k) / (2k)! is below 1e-36 at k = 26
+_FRACTION = 60  # terms of the fraction: exp(-sqrt(8 * 60 * 4)) = 1e-19
 
 
 def one_f_two(b: Any, y: Any) -> np.ndarray:

@@ -24,12 +24,12 @@ class Meeting:
     terms : list
         The H and the gamma of the tail.
     x, odd : arrays
-        The coordinate along the circle, and what stands for it where it is odd.
+        The coordinate along the circle, and what takes its place in functions that are odd in it.
     inside : tuple of slices
         The lattice in the circle.
     outer : bool
-        Whether the tail meets the data in the mean of the outer fifth of the lattice, all of it relative to the slowest
-        of the powers, and not at as many depths as there are gamma.
+        Whether the tail is fitted to the outer fifth of the lattice, with misfits relative to the slowest power.
+        Otherwise it is fitted at as many depths as there are gamma.
     """
 
     def __init__(
@@ -56,10 +56,11 @@ class Meeting:
         return np.asarray(u[(slice(None), *self._samples)] @ self._fit.T)
 
     def left_open(self, u: np.ndarray) -> tuple[float, float]:
-        """Return what the last gamma changes of int u and of int x u beyond the lattice: those left out may as much.
+        """Return what is not known of int u and of int x u beyond the lattice; the period is the unit of length.
 
-        The period is the unit of length. Without terms, where nothing is taken to lie beyond, what does if u goes on
-        like |x|^(-n-1) up to twice the distance.
+        It is what the term of the last gamma changes of them: the terms that are left out may change them as much.
+        Without terms nothing is taken to lie beyond. What is not known is then what lies there if u goes on like
+        |x|^(-n-1) up to twice the distance.
         """
         found, reach = u[tuple(self._samples)], 2.0 * self._nearest
         if not self._terms:
