@@ -136,14 +136,7 @@ def evolve_long(
         u = _begun(first(scaled, moved=None), u, lambda waves: waves.of_a_peak(alpha, scaled)[0])[0]
         return np.ldexp(u, exponent), h
     spread = left / h**alpha + (0.5 * points) ** alpha  # of what lies beyond the lattice
-    if 0.5 * points < _NARROW * doubling ** (1.0 / alpha):
-        least = int(np.ceil(2.0 * _NARROW * doubling ** (1.0 / alpha)))
-        warnings.warn(
-            f"a lattice of {points} points an axis loses digits as it widens: the powers that continue the solution "
-            f"meet it too near. Take {least}, with the same spacing.",
-            AccuracyWarning,
-            stacklevel=2,
-        )
+    _warn_of_few_points(points, 2.0 * _NARROW * doubling ** (1.0 / alpha))
     u, b, unknown = _begun(first(doubling, every=2), u)
     moved = -h * np.array(middle)  # back to the middle of the lattice that was given
     left, h = left - doubling * h**alpha, 2.0 * h
@@ -195,6 +188,17 @@ def _onward(step: Continued, u: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, 
     """Return the result and the amplitudes of its tail, from those of the data."""
     result, numbers = step(u[None], b)
     return result[0], step.amplitudes(numbers)
+
+
+def _warn_of_few_points(points: int, least: float) -> None:
+    """Warn if the solution at a doubling is too wide for the lattice."""
+    if points < least:
+        warnings.warn(
+            f"a lattice of {points} points an axis loses digits as it widens: the powers that continue the solution "
+            f"meet it too near. Take {int(np.ceil(least))}, with the same spacing.",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def _warn_of_short_waves(lacking: float, what: str, limit: float) -> None:
