@@ -34,7 +34,7 @@ __all__ = ["Followed", "follow"]
 
 _EXCHANGE = 0.05  # the error of an exchange over h^order
 _BENT = 0.1  # of initial data beyond the window: what the particles may miss there
-_NOTHING = 1e-7  # of int |u|: what lies beyond a place and counts as zero
+_NOTHING = 1e-7  # of int |u|: |u| times the distance from the window counts as zero below this
 _UNRESOLVED = 1e-3  # of int |u|: what particles may miss, or a placement may change
 _MOST_PLACEMENTS = 5000
 _MOST_TIMES = 1000

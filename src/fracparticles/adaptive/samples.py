@@ -17,7 +17,7 @@ from fracparticles.errors import InvalidInput
 __all__ = ["adapted_samples", "unseen_share", "varying_samples"]
 
 _FIRST = 129  # equally spaced samples, before any interval is halved
-_SHARE = 1e-4  # of int |u|, by which an interval is bent and is halved: samples are then a fifth of l apart
+_SHARE = 1e-4  # of int |u|: an interval bent by more is halved; samples are then a fifth of l apart
 _MOST = 20_000  # samples
 _LEVELS = 80  # of halving
 _CONSTANT = 1e-12  # of the values: round-off

@@ -31,9 +31,7 @@ __all__ = ["noise", "smoothing", "warn_of_resolution"]
 # A warning is given above these.
 _SMOOTHED = 0.1  # of F: the smoothing
 _NOISE = 0.15  # of F: the noise at the start, of which diffusion takes most away
-_BOTH = (
-    0.2  # of F: the sum of the smoothing and of the noise at the end; each by itself may be allowed
-)
+_BOTH = 0.2  # of F: the smoothing and the noise at the end together; each may be allowed
 _LONE = 0.03  # of the peak of F: the error at a marker without neighbours, as at an edge
 # A marker has no near neighbours if it is farther than this from them, in epsilon; S8 reaches 17 such distances.
 _APART, _NEIGHBOURS = 0.4, 17

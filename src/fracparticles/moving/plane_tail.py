@@ -28,9 +28,7 @@ REACH = 7.0  # smoothing lengths: exp(-49 / 2) of a kernel of order IV is 2e-11
 _DEGREE = 11  # of the polynomial, in x^2 and in y^2
 _ANGLES, _RADII = 24, 24  # nodes of the integral for each side of the square
 _FAR = 1e6  # a distance at which F is its far field
-_MOST = (
-    2**12
-)  # rows around the rectangle: outermost rows that all but coincide would need any number
+_MOST = 2**12  # rows around the rectangle: rows that all but coincide would need any number
 
 
 class PlaneTail:

@@ -185,9 +185,7 @@ class WholeSpace:
         middles = [
             middle * (sum(steps) - step) + at * step for at in (0, points - 1) for step in steps
         ]
-        self._ends = np.array(
-            middles
-        )  # the middles of the faces, as places among N^n points in a row
+        self._ends = np.array(middles)  # places of the middles of the faces, of N^n points in a row
         self._alpha, self._tau = alpha, scaled_time
         self._changed = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
         self._circle: Circle | Continued
