@@ -44,7 +44,8 @@ def bytes_kept(name: str, setting: Setting) -> float:
     length, half = _lengths(size)
     columns = -(-half // COLUMNS) * COLUMNS
     symbols = weights * half ** (dim - 1) * columns
-    spectra = 2 * weights * size ** (dim - 1) * columns  # the first takes the place of that of the strengths
+    # The first takes the place of that of the strengths.
+    spectra = 2 * weights * size ** (dim - 1) * columns
     blocks = 4 * length ** (dim - 1) * COLUMNS + ROWS * (length + 2 * half)
     # Of the exterior four sums, on the part of the lattice where no coordinate is negative.
     beyond = 4.0 / 2**dim if setting.is_open else 0.0

@@ -33,7 +33,8 @@ def planar_integral(r: ArrayLike, alpha: float, power: float = 0.0) -> FloatArra
 
     Gauss-Legendre in s, omega = s^2, which makes the integrand smooth at 0; exact to round-off for r <= 100.
     """
-    x, weight = roots_legendre(_NODES)  # of so many nodes it is quicker than a matrix and its eigenvalues
+    # Of so many nodes scipy's rule is quicker than one by the eigenvalues of a matrix.
+    x, weight = roots_legendre(_NODES)
     last = _LAST_EXPONENT ** (0.5 / alpha)
     s, weight = 0.5 * last * (1.0 + x), 0.5 * last * weight
     omega = s * s
