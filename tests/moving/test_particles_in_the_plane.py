@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -85,6 +86,25 @@ def test_sums_at_other_points(scattered):
     sums = PlaneSums(ALPHA, 2, 0.4)
     some = x[:7] + 0.0, y[:7] + 0.0
     assert sums(x, y, q, some) == pytest.approx(sums(x, y, q)[:, :7], abs=1e-10)
+
+
+def test_threads_may_share_the_sums(scattered):
+    """Sets of other widths make it another box, each call with its own."""
+    x, y, q = scattered
+    sums, widths = PlaneSums(ALPHA, 2, 0.4), [0.2, 0.5, 1.0, 2.0, 3.0, 1.5] * 2
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(lambda s: sums(s * x, s * y, q), widths))
+    for s, found in zip(widths, together, strict=True):
+        naive = naive_sums(s * x, s * y, q, ALPHA, 2, 0.4)
+        assert np.abs(found - naive).max() < 1e-10 * np.abs(naive).max()
+
+
+def test_sums_refuse_arrays_that_do_not_fit_together(scattered):
+    x, y, q = scattered
+    sums = PlaneSums(ALPHA, 2, 0.4)
+    for given in ((x[1:], y, q), (x, y, q[1:]), (x, y, q, (x[:3], y[:4]))):
+        with pytest.raises(InvalidInput, match="arrays of one shape"):
+            sums(*given)
 
 
 # --- remeshing ------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import irfft2, next_fast_len, rfft2
@@ -26,6 +27,17 @@ from fracparticles.moving.scattered_base import EDGE, GAUSSIAN_BAND, MARGIN, in_
 __all__ = ["PlaneSums", "naive_sums"]
 
 _MOST_MODES = 2**13  # along an axis: 0.5 GiB a field
+
+
+class _Box(NamedTuple):
+    """A lattice for sets up to a width: its step, and the Fourier coefficients of the kernels, shape (3, ..).
+
+    It is made as a whole and never changed, so that threads may share the sums.
+    """
+
+    width: float
+    step: float
+    coefficients: np.ndarray
 
 
 class PlaneSums:
@@ -49,7 +61,7 @@ class PlaneSums:
 
     def __init__(self, alpha: float, order: int, epsilon: float) -> None:
         self._alpha, self._order, self._epsilon = alpha, order, check.scale("epsilon", epsilon)
-        self._width = 0.0
+        self._box = _Box(0.0, 0.0, np.empty((3, 0, 0)))
 
     def __call__(
         self,
@@ -60,41 +72,47 @@ class PlaneSums:
     ) -> np.ndarray:
         """Return u, f_x and f_y at the points `at`, or at the particles themselves, shape (3, M).
 
-        Raises `InvalidInput` if the set is too wide.
+        Raises `InvalidInput` if the arrays do not fit together or the set is too wide.
 
         Parameters
         ----------
         x, y, q : array, shape (N,)
         at : tuple of two arrays, shape (M,)
         """
-        q, exponent = in_range(q)
         zx, zy = (x, y) if at is None else at
+        if not (x.shape == y.shape == q.shape and zx.shape == zy.shape):
+            shown = ", ".join(str(one.shape) for one in (x, y, q, zx, zy))
+            raise InvalidInput(
+                "x, y, q", shown, "arrays of one shape", "Give one of each a particle."
+            )
+        q, exponent = in_range(q)
         low = np.array([min(x.min(), zx.min()), min(y.min(), zy.min())])
         high = np.array([max(x.max(), zx.max()), max(y.max(), zy.max())])
         width = float((high - low).max())
-        if not width <= self._width:
-            self._make_box(MARGIN * width if self._width else width)
+        box = self._box
+        if not width <= box.width:
+            box = self._box = self._made_box(MARGIN * width if box.width else width)
         # The set in the middle of half the period.
-        origin = 0.5 * (low + high) - 0.5 * self._width - WIDTH * self._step
-        size = self._coefficients.shape[1]
+        origin = 0.5 * (low + high) - 0.5 * box.width - WIDTH * box.step
+        size = box.coefficients.shape[1]
         lattice = np.zeros((size, size))
-        places = [window_weights((v - o) / self._step) for v, o in zip((x, y), origin, strict=True)]
+        places = [window_weights((v - o) / box.step) for v, o in zip((x, y), origin, strict=True)]
         _spread(*places[0], *places[1], q, lattice)
         modes = rfft2(lattice)
-        fields = irfft2(self._coefficients * modes, s=(size, size), axes=(1, 2), overwrite_x=True)
+        fields = irfft2(box.coefficients * modes, s=(size, size), axes=(1, 2), overwrite_x=True)
         if at is not None:
             places = [
-                window_weights((v - o) / self._step) for v, o in zip((zx, zy), origin, strict=True)
+                window_weights((v - o) / box.step) for v, o in zip((zx, zy), origin, strict=True)
             ]
         out = np.empty((3, zx.size))
         _interpolate(*places[0], *places[1], fields, out)
         return np.asarray(np.ldexp(out, exponent))
 
-    def _make_box(self, width: float) -> None:
-        """Fourier coefficients of the kernels for a set of this width."""
+    def _made_box(self, width: float) -> _Box:
+        """Return that of sets up to this width, and a little more."""
         scale = self._epsilon  # of the cut-off: its band is that of the Gaussian
-        self._width = width + scale
-        period = 2.0 * (self._width + 2.0 * EDGE * scale)
+        width = width + scale
+        period = 2.0 * (width + 2.0 * EDGE * scale)
         needed = GAUSSIAN_BAND / self._epsilon * period / math.pi + 4 * WIDTH
         if not needed <= _MOST_MODES:
             shown, most = (
@@ -104,14 +122,14 @@ class PlaneSums:
             allowed = f"a set no wider than {most * self._epsilon:.4g}, for this smoothing length"
             raise InvalidInput("x", shown, allowed, "Look for a particle that ran away.")
         size = 2 * next_fast_len(math.ceil(0.5 * needed), real=True)
-        self._step = period / size
-        r = np.fft.fftfreq(size, 1.0 / size) * self._step
+        step = period / size
+        r = np.fft.fftfreq(size, 1.0 / size) * step
         cut = 0.5 * erfc((np.abs(r) - (0.5 * period - EDGE * scale)) / scale)
         kernels = _kernels(r[:, None], r, self._alpha, self._order, self._epsilon)
         window = window_transform(2.0 * math.pi / size * np.arange(size // 2 + 1))
         both = np.concatenate([window, window[1 : (size + 1) // 2][::-1]])
         transforms = rfft2(kernels * (cut[:, None] * cut))
-        self._coefficients = transforms / np.square(both[:, None] * window)
+        return _Box(width, step, transforms / np.square(both[:, None] * window))
 
 
 def naive_sums(
