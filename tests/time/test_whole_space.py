@@ -446,3 +446,14 @@ def test_an_amplification_is_a_number_for_each_wave(wrong, terms):
 
 def test_a_run_made_ready_says_what_it_was_made_with():
     assert repr(WholeSpace(400, 2, 1.5, 3.0)) == "WholeSpace(400, 2, 1.5, 3)"
+
+
+@pytest.mark.parametrize("terms", [0, 2])
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.int8, ">f8", np.longdouble])
+def test_a_run_made_ready_has_all_digits_of_data_of_any_type(kind, terms):
+    u = np.zeros(64)
+    u[24:40] = np.arange(16.0)  # a number of each type
+    run = WholeSpace(64, 1, 1.5, 2.0, terms=terms)
+    result = run.solve(u.astype(kind))
+    assert result.dtype == np.float64
+    assert (result == run.solve(u)).all()
