@@ -38,6 +38,17 @@ def test_krylov_steps_keep_their_tolerance(a, tolerance):
     assert steps.largest == pytest.approx(np.abs(np.linalg.eigvals(a)).max(), rel=0.05)
 
 
+@pytest.mark.parametrize("unit", [2.0**30, 2.0**60, 2.0**400, 2.0**-60])
+def test_krylov_steps_know_no_unit(unit):
+    """A v is R(v) less R(0), in which a source of large numbers leaves no digits of a v that is one."""
+    tolerance = 1e-8
+    steps = KrylovStep(lambda u: LAPLACIAN @ u + unit * B, N, tolerance, 0.0, 1.7)
+    exact = affine_solution(LAPLACIAN, 1.7)
+    assert np.linalg.norm(
+        steps.advance(unit * U0, 1.7) / unit - exact
+    ) <= tolerance * np.linalg.norm(exact)
+
+
 def test_krylov_steps_end_where_the_space_does():
     steps = KrylovStep(lambda u: -2.0 * u, N, 1e-10, 0.0, 3.0)
     np.testing.assert_allclose(steps.advance(U0, 3.0), U0 * np.exp(-6.0), rtol=4e-13)  # e^6 ulps

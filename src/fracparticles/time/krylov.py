@@ -9,6 +9,9 @@ In the space of r, A r, .. A^(m-1) r, with the orthonormal basis V_m and the Hes
 Saad, SIAM J. Numer. Anal. 29 (1992) 209, Theorem 5.1. Both come from one exponential of H_m with two rows more. The
 space does not depend on tau: a step that is too long is taken shorter, without another application of A. The sums are
 those of einsum, in one order whatever the number of threads, which those of BLAS are not.
+
+A v is (R(s v) - b) / s, in which a large b would cancel all digits of A v for s = 1. They are kept for s = T |b|, T the
+time of the run: the round-off of b is then an ulp of 1 / T in A, and A counts only if it is of the size of 1 / T.
 """
 
 from __future__ import annotations
@@ -68,6 +71,7 @@ class KrylovStep:
         self.accepted = self.rejected = 0
         self.largest = 0.0
         self._origin: np.ndarray | None = None  # R(0) = b
+        self._size = 1.0  # s
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u after the time `span`, shape (N,).
@@ -86,6 +90,7 @@ class KrylovStep:
     def _advanced(self, u: np.ndarray, span: float, start: float) -> np.ndarray:
         if self._origin is None:
             self._origin = self._rate(np.zeros_like(u))
+            self._size = max(1.0, _power_of_two(self._run * norm(self._origin)))
         left, tau = span, span
         while left > 0.0:
             r = self._rate(u)
@@ -127,7 +132,7 @@ class KrylovStep:
         h = np.zeros((self._most + 1, self._most))
         basis[0] = first
         for j in range(self._most):
-            w = self._rate(basis[j]) - self._origin
+            w = (self._rate(self._size * basis[j]) - self._origin) / self._size
             for _ in range(2):  # the second time for what the first leaves by round-off
                 along = np.einsum("ij,j->i", basis[: j + 1], w)
                 w -= np.einsum("i,ij->j", along, basis[: j + 1])
@@ -144,6 +149,11 @@ class KrylovStep:
         if np.isfinite(h).all():
             self.largest = max(self.largest, float(np.abs(np.linalg.eigvals(h[:m, :m])).max()))
         return basis[:m], h[: m + 1, :m]
+
+
+def _power_of_two(size: float) -> float:
+    """Return the one at or below the size: the digits of a product with it are those of the other factor."""
+    return float(np.ldexp(0.5, np.frexp(size)[1]))
 
 
 def _phi(h: np.ndarray, m: int, tau: float) -> tuple[np.ndarray, float]:
