@@ -66,6 +66,17 @@ def test_a_source_that_starts_from_nothing_has_no_unit(size):
     assert_allclose(small / size, one, rtol=1e-12, atol=1e-12 * one.max())
 
 
+@pytest.mark.parametrize(("integrator", "size"), [("dop853", 1e-300), ("rkc2", 1e-20)])
+def test_a_source_begins_from_next_to_nothing_as_from_nothing(integrator, size):
+    fields = {"source": "exp(-x**2) - u**2", "integrator": integrator}
+    none, next_to_none = (
+        solved(lambda x: 0.0 * x, **fields),
+        solved(lambda x: size * bell(x), **fields),
+    )
+    # The steps differ: each run may be off by its tolerance.
+    assert np.abs(next_to_none - none).max() < 2.0 * TOLERANCE * none.max()
+
+
 @pytest.mark.parametrize(("integrator", "width"), covering(["dop853", "rkc2"], [0.1, 0.01, 0.001]))
 def test_a_pulse_is_not_stepped_over(integrator, width):
     fields = {"source": f"where((t > 0.5) & (t < 0.5 + {width}), 1/{width}, 0.0)*exp(-x**2)"}

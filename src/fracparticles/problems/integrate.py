@@ -145,11 +145,12 @@ def size_of_start(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> flo
 
 
 def size_to_come(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
-    """Return a size that is nothing beside what a source that depends on time makes of nothing.
+    """Return a size that is nothing beside what a source makes of nothing.
 
-    A solution that has faded below it is not followed to its own digits: a source that begins then could not be.
+    A solution below it, at the start or faded since, is not followed to its own digits: what the source begins then
+    could not be.
     """
-    if problem.reaction is None or "t" not in problem.reaction.depends_on:
+    if problem.reaction is None:
         return 0.0
     size = _FAINT * _made(problem, rates, np.zeros_like(u0))
     return size if size < np.inf else 0.0
