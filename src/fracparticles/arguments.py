@@ -249,6 +249,11 @@ def scale(field: str, value: Any) -> float:
     return real_between(field, value, *SIZES, allowed=_SIZED, remedy="Change the value or units.")
 
 
+def time_to_go(time: Any) -> float:
+    """Return zero, or a time from 1e-100 to 1e100, as a float."""
+    return real_between("time", time, *SIZES, allowed=f"zero, or {_SIZED}") if _real(time) else 0.0
+
+
 def place(field: str, value: Any) -> float:
     """Return a point, none beyond 1e100, as a float."""
     return real_between(field, value, -SIZES[1], SIZES[1])

@@ -457,3 +457,19 @@ def test_a_run_made_ready_has_all_digits_of_data_of_any_type(kind, terms):
     result = run.solve(u.astype(kind))
     assert result.dtype == np.float64
     assert (result == run.solve(u)).all()
+
+
+def test_after_no_time_the_solution_is_the_data():
+    u = np.cos(
+        np.arange(64.0)
+    )  # which no tail continues and no lattice of tails resolves: nothing is asked of them
+    for time in (0, 0.0, np.float64(0.0)):
+        still = evolve(u, 0.1, 1.5, time)
+        long, spacing = fp.evolve_long(u, 0.1, 1.5, time)
+        assert (still == u).all()
+        assert (long == u).all()
+        assert spacing == 0.1
+        assert not np.shares_memory(still, u)
+        assert not np.shares_memory(long, u)
+    with pytest.raises(InvalidInput, match="alpha"):
+        evolve(u, 0.1, 2.5, 0.0)

@@ -63,7 +63,7 @@ def evolve(
     alpha : float
         Fractional order, 1 < alpha < 2.
     time : float
-        The time to go, in units of length^alpha / D.
+        The time to go, in units of length^alpha / D; after none the solution is the data.
     dim : {1, 2, 3}, optional
         How many of the axes are space; all of them if left out.
     diffusivity : float
@@ -101,13 +101,15 @@ def evolve(
     given, u = u, check.finite_array("u", u)
     dim = _dimension_of(u) if dim is None else check.dimension(dim)
     alpha, h = check.fractional_order(alpha), check.scale("spacing", spacing)
-    span = check.scale("time", time) * check.scale("diffusivity", diffusivity)
+    span = check.time_to_go(time) * check.scale("diffusivity", diffusivity)
     check_labels(given, dim, h)
     points = u.shape[-1] if u.ndim else 0
     if u.shape[-dim:] != (points,) * dim:
         _refuse_shape(u.shape, f"as many points along each of its last {dim} axes, those of space")
     scaled_time = min(max(span * h**-alpha, _TIMES[0]), _TIMES[1])
     run = WholeSpace(points, dim, alpha, scaled_time, terms=terms, tail=tail, stretch=stretch)
+    if not span:
+        return u.copy()
     result, miss, lacking = run.solve_and_judge(u)
     if miss > _NOTICED:
         warnings.warn(

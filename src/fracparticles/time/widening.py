@@ -82,7 +82,7 @@ def evolve_long(
     alpha : float
         Fractional order, 1 < alpha < 2.
     time : float
-        The time to go, however long.
+        The time to go, however long; after none the solution is the data.
     diffusivity : float
         D.
     tail : sequence of float, optional
@@ -114,19 +114,21 @@ def evolve_long(
     """
     given, u = u, check.finite_array("u", u)
     alpha, h = check.fractional_order(alpha), check.scale("spacing", spacing)
-    left = check.scale("time", time) * check.scale("diffusivity", diffusivity)  # D t
+    left = check.time_to_go(time) * check.scale("diffusivity", diffusivity)  # D t
     if u.ndim not in (1, 2, 3) or len(set(u.shape)) != 1:
         raise InvalidInput(
             "u", u.shape, "as many points along each of one to three axes", "Pad it."
         )
     points, dim = check.whole_number("points", u.shape[0], FEWEST), u.ndim
     check_labels(given, dim, h)
+    before = tail_exponents(alpha, _TERMS[dim]) if tail is None else powers(tail, dim)
+    if not left:
+        return u.copy(), h
     exponent = int(np.frexp(np.abs(u).max(initial=0.0))[1])
     # Of order one: sums of the greatest numbers would overflow.
     u = np.asarray(np.ldexp(u, -exponent))
     doubling = _LET_GO * (2.0 / np.pi) ** alpha  # D t / h^alpha at which the spacing doubles
     middle = _middle(u)
-    before = tail_exponents(alpha, _TERMS[dim]) if tail is None else powers(tail, dim)
     after = later_exponents(before, alpha, max([_GREATEST, *before]))
     first = partial(
         _step, points, dim, alpha, before=before, after=after, middle=middle, outer=True
