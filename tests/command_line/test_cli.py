@@ -413,6 +413,30 @@ def test_compare_names_the_coefficients_and_the_data(cli):
     assert "initial_data" in names
 
 
+def test_compare_on_domains(cli):
+    """Graded particles of an interval, and rings, which have no lattice."""
+    given = {"alpha": 1.5, "exterior": "absorbing", "t_final": 0.1}
+
+    def hat(*place):
+        return np.maximum(1.0 - sum(x**2 for x in place), 0.0)
+
+    for name, more in {
+        "one": {"half_width": 1.0},
+        "late": {"half_width": 1.0, "times": [0.05, 0.1]},
+        "disc": {"half_width": 1.0, "domain": "disc"},
+        "wide": {"half_width": 2.0, "domain": "disc"},
+    }.items():
+        fp.write(fp.solve_problem(fp.Problem(**given, **more), hat, estimate=False), f"{name}.nc")
+
+    def last(one, other):
+        return cli("compare", f"{one}.nc", f"{other}.nc")[1].splitlines()[-1]
+
+    assert last("one", "one") == "u: at 200 shared values of 200 and 200 no difference"
+    assert "at 200 shared values of 200 and 400" in last("one", "late")
+    assert last("disc", "disc").endswith("no difference")
+    assert last("disc", "wide") == "u: not on the same rings"
+
+
 def test_compare_takes_times_to_round_off(cli):
     for name, time in (("one", 0.3), ("other", 0.1 + 0.2)):
         cli("solve", *SERIES, "--t-initial", 0.1, "--t-final", repr(time), "-o", f"{name}.nc")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fracparticles.errors import spelled
-from fracparticles.run.checked import stored_fields
+from fracparticles.run.agreement import stored_in
 from fracparticles.run.dataset import read_run
 
 if TYPE_CHECKING:
@@ -70,10 +70,14 @@ def distance(first: xr.Dataset, second: xr.Dataset) -> str:
     for name, one, other in zip(_UNITS, _units(first), _units(second), strict=True):
         if one != other and _NO_UNIT not in (one, other):
             return f"u: not in the same units, {_UNITS[name]} is in {one} and in {other}"
-    tolerance = _SAME_PLACE * float(first.particle_spacing)
     v = v.reindex(t=u.t, method="nearest", tolerance=_SAME_PLACE * float(np.abs(u.t).max()))
-    for axis in u.dims[1:]:
-        v = v.reindex({axis: u[axis]}, method="nearest", tolerance=tolerance)
+    if "ring" in u.dims:  # they are counted, and have no places of their own
+        if u.shape[1:] != v.shape[1:] or first.half_width != second.half_width:
+            return "u: not on the same rings"
+    else:
+        for axis in u.dims[1:]:
+            near = _SAME_PLACE * float(np.diff(u[axis]).min())
+            v = v.reindex({axis: u[axis]}, method="nearest", tolerance=near)
     shared = np.isfinite(v.values)
     if not shared.any():
         return "u: the runs share no time and place"
@@ -99,7 +103,7 @@ def _with_times(run: xr.Dataset) -> xr.DataArray:
 def _told(run: xr.Dataset) -> dict[str, Any]:
     """The scalars of a run, what its case or problem says beside them, its initial data and its units."""
     told = _scalars(run)
-    stored = stored_fields(run.attrs.get("case", run.attrs.get("problem"))) or {}
+    stored = stored_in(run) or {}
     told |= {
         name: value for name, value in stored.items() if name not in (*run.variables, *_NOT_TOLD)
     }
