@@ -505,6 +505,14 @@ def test_a_text_file_and_a_directory(tmp_path):
             fp.read_run(path)
 
 
+@pytest.mark.parametrize("changes", [{"order": 2}, {"scheme": "DPSE"}, {"spacing": 0.123}])
+def test_a_file_whose_scalars_are_not_those_of_its_case(tmp_path, changes):
+    path, run = tmp_path / "run.nc", fp.solve(case())
+    fp.write(run.assign_coords(changes), path)
+    with pytest.raises(InvalidInput, match=f"its {next(iter(changes))} is .*Mend the one"):
+        fp.read_run(path)
+
+
 def test_a_file_of_something_else(tmp_path):
     path = tmp_path / "other.nc"
     xr.Dataset({"a": ("t", [1.0, 2.0])}).to_netcdf(path)

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.run.agreement import refuse_contradiction
 from fracparticles.run.case import Case
 from fracparticles.run.initial import initial_strengths
 
@@ -385,6 +386,29 @@ def test_the_case_stored_with_a_file_says_what_it_is_when_the_coordinates_do_not
     refused(case(beta=0.25, t_initial=1.0), bare, "beta = 0.25")
     bare.attrs["case"] = "{"  # not ours
     u0_of(case(beta=0.25, t_initial=1.0), bare)
+
+
+@pytest.mark.parametrize(("name", "value"), [("beta", 0.3), ("t_final", 2.0), ("diffusivity", 4.0)])
+def test_a_run_that_contradicts_its_case_is_refused(tmp_path, name, value):
+    """Whichever of the two the new case has: one of them is wrong."""
+    first = fp.solve(case(t_final=1.0))
+    other = first.assign_coords({name: value})
+    for data in (other, stored(tmp_path, other)):
+        said = {name: value} if name != "t_final" else {}
+        at = value if name == "t_final" else 1.0
+        for changes in ({"t_initial": 1.0}, {"t_initial": at, "t_final": 3.0, **said}):
+            refused(case(**changes), data, f"its {name} is {value}", "drop the attribute 'case'")
+    single = first.assign_coords(
+        {name: first[name].astype(np.float32)}
+    )  # the same but for its digits
+    refuse_contradiction("initial", single, "single")
+    without = other.drop_attrs()
+    at_its_time = (
+        {"t_initial": value, "t_final": 3.0}
+        if name == "t_final"
+        else {name: value, "t_initial": 1.0}
+    )
+    assert np.array_equal(u0_of(case(**at_its_time), without), first.u.values)
 
 
 def test_a_file_of_another_program_is_what_it_says(tmp_path):

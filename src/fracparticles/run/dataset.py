@@ -18,8 +18,8 @@ from fracparticles.data.tables import not_a_table
 from fracparticles.errors import InvalidInput, reason_of
 from fracparticles.files import load_netcdf, replacing, seal, uninterrupted
 from fracparticles.graded.field import INTERPOLATED
+from fracparticles.run.agreement import refuse_contradiction, stored_in
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.run.checked import stored_fields
 from fracparticles.run.complaints import label_of
 from fracparticles.run.initial import case_of_run
 from fracparticles.run.solution import Solution, relative_l1_error
@@ -267,15 +267,16 @@ def read_run(path: str | Path) -> xr.Dataset:
     Raises
     ------
     InvalidInput
-        If the file is missing, not NetCDF, damaged, or not a run of this package.
+        If the file is missing, not NetCDF, damaged, or not a run of this package; if its scalars are not those of its
+        case.
     """
     if not isinstance(path, str | os.PathLike):
         raise InvalidInput("file", path, "the path of a file", "Give such a path.")
     dataset = load_netcdf(Path(os.fsdecode(path)))
-    parameters = dataset.attrs.get("case", dataset.attrs.get("problem"))
-    if stored_fields(parameters) is None or "mass_final" not in dataset:
+    if stored_in(dataset) is None or "mass_final" not in dataset:
         remedy = "Make one with `fracparticles solve`."
         raise InvalidInput("file", str(path), "a run written by fracparticles", remedy)
+    refuse_contradiction("file", dataset, str(path))
     return dataset
 
 

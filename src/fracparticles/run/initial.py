@@ -24,8 +24,8 @@ from fracparticles.data.measured import MEASURED, measured
 from fracparticles.data.tables import is_table
 from fracparticles.errors import AccuracyWarning, InvalidInput, spelled
 from fracparticles.files import load_netcdf
+from fracparticles.run.agreement import refuse_contradiction, stored_in
 from fracparticles.run.case import FUNDAMENTAL, Case
-from fracparticles.run.checked import stored_fields
 from fracparticles.special.stable import green
 
 if TYPE_CHECKING:
@@ -219,6 +219,7 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
     if data is None:
         return np.array(bare_strengths(given, case.shape)), False
     name = what.removeprefix("file ") if what.startswith("file ") else type(given).__name__
+    refuse_contradiction("initial", data, name)
     data = _at_its_time(data, case.t_initial, name)
     told = _told(data)
     _check_equation(case, told, name)
@@ -307,7 +308,7 @@ def _check_equation(case: Case, told: dict[str, float], name: str) -> None:
 
 def _told(data: xr.Dataset) -> dict[str, float]:
     """What the data say of themselves by scalar variables, or else by the case that they were stored with."""
-    stored = stored_fields(data.attrs.get("case")) or {}
+    stored = stored_in(data) or {}
     told = {name: stored.get(name) for name in _SAYS}
     for name in _SAYS:
         if name in data.variables and data.variables[name].size == 1:
