@@ -77,6 +77,18 @@ def test_a_source_begins_from_next_to_nothing_as_from_nothing(integrator, size):
     assert np.abs(next_to_none - none).max() < 2.0 * TOLERANCE * none.max()
 
 
+def test_a_source_may_be_infinite_where_u_is_nothing():
+    """What it makes of nothing is asked for: that is no size, and no warning of numpy. Mirrored, u is that of -u."""
+    fields = {**ON_A_DOMAIN, "exterior": "reflecting", "t_final": 0.1, "source": "-0.1/u"}
+    up, down = (
+        solve_problem(
+            Problem(**fields, particles=64), lambda x, s=s: s / (1.0 + x * x), estimate=False
+        )
+        for s in (1, -1)
+    )
+    assert_allclose(down.u, -up.u, rtol=1e-12)
+
+
 @pytest.mark.parametrize(("integrator", "width"), covering(["dop853", "rkc2"], [0.1, 0.01, 0.001]))
 def test_a_pulse_is_not_stepped_over(integrator, width):
     fields = {"source": f"where((t > 0.5) & (t < 0.5 + {width}), 1/{width}, 0.0)*exp(-x**2)"}

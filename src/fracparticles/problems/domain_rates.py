@@ -150,9 +150,8 @@ class DomainRates:
         with np.errstate(all="ignore"):
             nothing = f(t, 0.0 * u)
             c, half = ((nothing - f(t, part * u)) / (part * u) for part in (1.0, -0.5))
-        where = u != 0.0
-        greatest = float(c.flat[np.abs(u).argmax()])
-        off = np.abs(np.stack([c, half])[:, where] - greatest).max(initial=0.0)
+            greatest = float(c.flat[np.abs(u).argmax()])
+            off = np.abs(np.stack([c, half])[:, u != 0.0] - greatest).max(initial=0.0)
         return max(0.0, greatest) if off <= _UNIFORM * abs(greatest) else 0.0
 
     @property
