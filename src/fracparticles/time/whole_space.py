@@ -250,9 +250,8 @@ class WholeSpace:
         """Return the solution, and the numbers of its tail if it has one; show u^ of the data to `look`."""
         points, dim = self._points, self._dim
         shape = (points,) * dim
-        if (
-            type(u) is not np.ndarray or u.dtype != np.float64
-        ):  # a transform has the digits of its data
+        # A transform has the digits of its data.
+        if type(u) is not np.ndarray or u.dtype != np.float64:
             u = check.finite_array("u", u)
         if u.ndim < dim or u.shape[u.ndim - dim :] != shape:
             allowed = f"the shape {shape}, after what counts the data"
