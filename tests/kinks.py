@@ -28,14 +28,27 @@ def bell_waves(k):
     return np.sqrt(np.pi) * np.exp(-0.25 * k * k)
 
 
+_LENGTH, _FINER = 200.0, 32  # of the circle, and its cells in a spacing
+_K = 2.0 * np.pi * np.fft.rfftfreq(round(_LENGTH * _FINER / H), H / _FINER)
+
+
 def solution(transform, x, t, alpha):
     """Return int u^(k) cos(k x) e^(-t k^alpha) dk / pi on a circle so long that its other turns are not felt."""
-    length, finer = 200.0, 32
-    k = 2.0 * np.pi * np.fft.rfftfreq(round(length * finer / H), H / finer)
-    waves = transform(k) * np.exp(-t * k**alpha)
-    u = np.fft.fftshift(np.fft.irfft(waves)) * finer / H
-    at = (np.arange(u.size) - u.size // 2) * H / finer
-    return np.interp(x, at, u)
+    return _at(
+        x, np.fft.fftshift(np.fft.irfft(transform(_K) * np.exp(-t * _K**alpha))) * _FINER / H
+    )
+
+
+def solution_of(f, x, t, alpha):
+    """The same of data of which no transform is known, by their means over the cells of that circle."""
+    cell = H / _FINER
+    places = (np.arange(round(_LENGTH / cell)) - round(_LENGTH / cell) // 2) * cell
+    means = np.mean([f(places + part * cell) for part in (np.arange(16) + 0.5) / 16 - 0.5], axis=0)
+    return _at(x, np.fft.irfft(np.fft.rfft(means) * np.exp(-t * _K**alpha)))
+
+
+def _at(x, u):
+    return np.interp(x, (np.arange(u.size) - u.size // 2) * H / _FINER, u)
 
 
 def solved(initial, **fields):

@@ -103,8 +103,8 @@ def test_a_kink_in_an_interval(alpha, velocity, kind, width, at):
     exact = solution(lambda k: width * transform(width * k), moved, t, alpha)
     inside = np.abs(run.x.values) < 0.5
     off = np.abs(run.u.values - exact)[inside].max() / float(run.u.max())
-    # Splines between the particles of half of them miss the kink, too.
-    assert off / 1.5 < float(run.space_error) < 4.0 * off
+    # Splines between the particles of half of them miss the kink, too; of what a velocity does nothing is known.
+    assert off / 1.5 < float(run.space_error) < 5.0 * off
     assert warned or off < SAID
 
 
