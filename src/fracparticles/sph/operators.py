@@ -115,7 +115,7 @@ def _apply(
     f, alpha = f[::turn], alpha[::turn]
     result = left(line, f, alpha, method)[::turn]
     with np.errstate(all="ignore"):  # of values near the greatest number the differences overflow
-        compared = other(line, f, alpha)[::turn]
+        compared = comparison.among_more(other, line, f, alpha)[::turn]
         size = float((np.abs(f).max() * (line.b - line.a) ** (sign * alpha)).max())
         comparison.warn_of_difference(line, result, compared, size, method)
     return result
