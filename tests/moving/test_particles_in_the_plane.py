@@ -326,6 +326,27 @@ def test_data_that_the_particles_do_not_hold_are_said(spacing, overlap, order, w
     assert all(words in str(one.message) for one in caught)
 
 
+@pytest.mark.parametrize(("remeshing", "overlap"), [("Lambda3", 1.0), ("Lambda6,4", 2.0)])
+def test_remeshings_that_change_the_field_are_said(remeshing, overlap, recwarn):
+    """A kernel as narrow as the spacing sees the kinks of Lambda3: the peak rose in silence."""
+    x, y = lattice(0.3, 5.4)
+    run = run_in_plane(
+        exact(x, y), spacing=0.3, alpha=ALPHA, dt=0.1, steps=12, order=4, overlap=overlap, start=1.0,
+        remeshing=remeshing, exterior="open",
+    )  # fmt: skip
+    peak = float(exact(np.zeros(1), np.zeros(1), 2.2)[0])
+    off = abs(float(run.field(np.zeros(1), np.zeros(1))[0]) - peak) / peak
+    said = [str(one.message) for one in recwarn if "remeshings have changed" in str(one.message)]
+    if overlap == 2.0:
+        assert off < 0.01
+        assert not recwarn.list
+        return
+    assert off > 0.05
+    # What changes the peak early has spread by the end, and what is measured stands for as many again: twice or half.
+    (text,) = said
+    assert off / 2.0 < float(text.split("by ")[1].split(" of")[0]) < 2.0 * off
+
+
 def test_a_field_is_not_asked_for_where_the_sums_do_not_hold_it():
     x, y = lattice(0.5, 4.0)
     run = run_in_plane(exact(x, y), spacing=0.5, alpha=ALPHA, dt=0.1, steps=1, exterior="open")

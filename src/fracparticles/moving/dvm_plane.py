@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
+from math import ceil
 
 import numpy as np
 
@@ -39,6 +40,7 @@ from fracparticles.moving.plane_tail import REACH, PlaneTail
 from fracparticles.moving.reliability import (
     ripple,
     warn_of_misfit,
+    warn_of_remeshing,
     warn_of_ripple,
     warn_of_smoothing,
     warn_of_step,
@@ -47,6 +49,8 @@ from fracparticles.moving.remeshing import REMESHINGS
 
 __all__ = ["PlaneRun", "PlaneVelocity", "run_in_plane"]
 
+# Smoothing lengths from the ends of the lattice, within which what is left out changes the field.
+_END = 3.0
 _MISFIT = 0.05  # of the total strength: what the far field may hold wrongly
 
 
@@ -216,8 +220,8 @@ def run_in_plane(
     StabilityWarning
         If the step is larger than `PlaneVelocity.largest_stable_step`.
     AccuracyWarning
-        If the particles do not hold the data or are too far apart, much of the strength has been left out, or the far
-        field of an open exterior is not what lies beyond.
+        If the particles do not hold the data or are too far apart, the remeshings change the field, much of the
+        strength has been left out, or the far field of an open exterior is not what lies beyond.
     """
     h, overlap = check.scale("spacing", spacing), check.positive_real("overlap", overlap)
     alpha, diffusivity = check.fractional_order(alpha), check.scale("diffusivity", diffusivity)
@@ -237,23 +241,49 @@ def run_in_plane(
     warn_of_smoothing(velocity.field(x, y, strength, (x.ravel(), y.ravel())), u.ravel())
     coarse = velocity.ripple(lattice, strength)
     total, lost, times = float(strength.sum()), 0.0, []
+    inner = slice(margin := min(ceil(_END * overlap), n // 2), 2 * n + 1 - margin)
+    at = x[inner, inner].ravel(), y[inner, inner].ravel()
+    changes = _Changes(velocity, at)
     for step in range(1, steps + 1):
         time = start + step * dt
         try:
             x, y = _stepped(x, y, strength, velocity, dt)
             if remeshing != "none" and _largest_gap(x, y) > above * h:
-                before = float(strength.sum())
-                wide = velocity.continued(x, y, strength)
+                before = x, y, strength
+                wide = velocity.continued(*before)
                 strength = on_square(*remesh_plane(*wide, h, remeshing), h, n)
                 x, y = np.meshgrid(lattice, lattice, indexing="ij")
-                lost += before - float(strength.sum())
+                lost += float(before[2].sum()) - float(strength.sum())
+                changes.add(before, (x, y, strength))
                 times.append(time)
         except FracparticlesError as error:
             raise stopped(error, step, steps, time, dt) from error
     coarse = max(coarse, velocity.ripple(x[:, n], strength))
     warn_of_ripple(coarse, overlap * h, "Take a larger overlap, or remesh sooner.", stacklevel=2)
+    warn_of_remeshing(changes.largest, stacklevel=2)
     _warn(velocity, x, y, strength, lost / total)
     return PlaneRun(x, y, strength, velocity, total, lost, times)
+
+
+class _Changes:
+    """What the remeshings change of the field, over its peak, at places of the lattice: see `reliability`."""
+
+    def __init__(self, velocity: PlaneVelocity, at: tuple[np.ndarray, np.ndarray]) -> None:
+        self._velocity, self._at, self._count = velocity, at, 0
+        self._sum = self._last = np.zeros(at[0].size)
+
+    def add(self, before: Particles, after: Particles) -> None:
+        """Add those of a remeshing: measured if its number is a power of two, else those of the last that was."""
+        self._count += 1
+        if self._count & (self._count - 1) == 0:
+            held, found = (self._velocity.field(*one, self._at) for one in (before, after))
+            self._last = (found - held) / np.abs(held).max()
+        self._sum = self._sum + self._last
+
+    @property
+    def largest(self) -> float:
+        """That of the place where they are largest."""
+        return float(np.abs(self._sum).max())
 
 
 def _warn(

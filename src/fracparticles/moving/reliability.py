@@ -15,6 +15,10 @@ volumes
 smoothing
     The field of the particles at the start is the data smoothed by the kernel. The estimate is its largest difference
     from the data, over their peak.
+
+remeshing
+    The estimate is the sum of what the remeshings of a run change of the field at the places of the lattice, over its
+    peak. The first, second, fourth and so on is measured, and stands for those up to the next of these.
 """
 
 from __future__ import annotations
@@ -31,6 +35,7 @@ __all__ = [
     "cells",
     "ripple",
     "warn_of_misfit",
+    "warn_of_remeshing",
     "warn_of_ripple",
     "warn_of_round_off",
     "warn_of_smoothing",
@@ -41,6 +46,9 @@ __all__ = [
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
 _OTHER = 0.05  # of the integral of |u|: the error of a run is this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
+_REMESHED = (
+    0.07  # above, a warning is given: the error of a run is about two thirds of this, of its peak
+)
 _ROUNDED = 0.02  # epsilon: of the places, by all steps together
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 
@@ -153,6 +161,22 @@ def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
             "it, or the particles are not a spacing apart. Take a smaller spacing, an overlap of 2, or order 4.",
             AccuracyWarning,
             stacklevel=3,
+        )
+
+
+def warn_of_remeshing(changed: float, stacklevel: int) -> None:
+    """Warn if the remeshings of a run have changed the field by more than this part of its peak.
+
+    Warns
+    -----
+    AccuracyWarning
+    """
+    if changed > _REMESHED:
+        warnings.warn(
+            f"the remeshings have changed the field by {changed:.2g} of its peak. Take remeshing='Lambda6,4', a larger "
+            "overlap, or a smaller spacing.",
+            AccuracyWarning,
+            stacklevel=stacklevel + 1,
         )
 
 
