@@ -27,7 +27,7 @@ from scipy.special import eval_jacobi, gammaln, roots_jacobi
 __all__ = ["Jacobi", "Zernike", "circle"]
 
 _LENGTH, _POINTS = 400.0, 2**13
-_TOLERANCE = 1e-6  # a hundredth of what the time of a run may leave
+_TOLERANCE = 1e-8
 _APART = 1e-5  # of the places of a difference
 
 
