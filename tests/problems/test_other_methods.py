@@ -92,6 +92,7 @@ def test_the_interval(alpha, rate):
 
     initial = partial(bell, width=0.4, at=0.2)
     fields = {"alpha": alpha, "half_width": 1.0, "exterior": "absorbing", "t_final": 0.2}
+    fields["particles"] = 48
     with warnings.catch_warnings():
         warnings.simplefilter("error", AccuracyWarning)
         run = solve_problem(Problem(**fields, diffusivity=d, velocity=a, source=f), initial)
