@@ -7,6 +7,7 @@ import os
 import sys
 from pathlib import Path
 
+_SAID = ".said"
 _CONTEXT = multiprocessing.get_context("forkserver")
 _CONTEXT.set_forkserver_preload(
     ["matplotlib.pyplot", "numba", "pydantic", "scipy.stats", "snakemake.cli", "xarray"]
@@ -15,15 +16,21 @@ _CONTEXT.set_forkserver_preload(
 
 def call(folder: Path, *arguments: str) -> tuple[bool, str]:
     """Return whether a call in this folder succeeds, and what it says; the packages are those of the folder."""
-    said = folder / ".said"
-    process = _CONTEXT.Process(target=_main, args=(folder, ["-j2", *arguments], said), daemon=True)
-    process.start()
+    process = started(folder, *arguments)
     process.join(600)
-    return process.exitcode == 0, said.read_text()
+    return process.exitcode == 0, (folder / _SAID).read_text()
 
 
-def _main(folder: Path, arguments: list[str], said: Path) -> None:
-    with open(said, "w") as file:
+def started(folder: Path, *arguments: str) -> multiprocessing.Process:
+    """Return the process of a call, the first of a process group of its own."""
+    process = _CONTEXT.Process(target=_main, args=(folder, ["-j2", *arguments]), daemon=True)
+    process.start()
+    return process
+
+
+def _main(folder: Path, arguments: list[str]) -> None:
+    os.setsid()
+    with open(folder / _SAID, "w") as file:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
     os.chdir(folder)

@@ -21,6 +21,7 @@ import numpy as np
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
+from scipy.linalg import expm
 from scipy.special import eval_jacobi, gammaln, roots_jacobi
 
 __all__ = ["Jacobi", "Zernike", "circle"]
@@ -70,9 +71,12 @@ class _Galerkin:
         raise NotImplementedError
 
     def coefficients(self, initial: Any, time: float, f: Any) -> np.ndarray:
-        """Return c at a time."""
+        """Return c at a time; without f, K must be the same at all times."""
         basis, tested = self.edge * self.polynomials, self.polynomials * self.weights
         inverse = np.linalg.inv(tested @ basis.T)
+        c0 = inverse @ (tested @ initial(*self.at))
+        if f is None:
+            return expm(time * inverse @ self.matrix(0.0)) @ c0
 
         def rate(t: float, c: np.ndarray) -> np.ndarray:
             return inverse @ (self.matrix(t) @ c + tested @ f(*self.at, t, c @ basis))
@@ -82,7 +86,6 @@ class _Galerkin:
             slope = (f(*self.at, t, u + _APART) - f(*self.at, t, u - _APART)) / (2.0 * _APART)
             return inverse @ (self.matrix(t) + (tested * slope) @ basis.T)
 
-        c0 = inverse @ (tested @ initial(*self.at))
         atol = _TOLERANCE * np.abs(c0).max()
         run = solve_ivp(rate, (0, time), c0, "Radau", jac=derivative, rtol=_TOLERANCE, atol=atol)
         return run.y[:, -1]
@@ -175,9 +178,9 @@ class Zernike(_Galerkin):
         return self._radial(r) * np.cos(self.turn * angle - self.shift)
 
     def _radial(self, r: np.ndarray) -> np.ndarray:
-        return (
-            self.size * r**self.turn * eval_jacobi(self.n, self.half, self.turn, 2.0 * r * r - 1.0)
-        )
+        r, ring = np.unique(r, return_inverse=True)
+        powers = eval_jacobi(self.n, self.half, self.turn, 2.0 * r * r - 1.0)
+        return self.size * (r**self.turn * powers)[:, ring]
 
     def _carried(self, a: Any, rings: int, angles: int) -> np.ndarray:
         r, angle, weights = self._places(2.0 * self.half - 1.0, rings, angles)
@@ -185,7 +188,8 @@ class Zernike(_Galerkin):
         a_x, a_y = a(r * np.cos(angle), r * np.sin(angle))
         outwards = a_x * np.cos(angle) + a_y * np.sin(angle)
         around = a_y * np.cos(angle) - a_x * np.sin(angle)
-        below = eval_jacobi(np.maximum(n - 1, 0), self.half + 1.0, turn + 1.0, z)
+        z, ring = np.unique(z, return_inverse=True)
+        below = eval_jacobi(np.maximum(n - 1, 0), self.half + 1.0, turn + 1.0, z)[:, ring]
         rise = 2.0 * r * (n > 0) * (n + self.half + turn + 1.0) * below * r**turn * self.size
         rise = (rise + turn / r * self._radial(r)) * np.cos(turn * angle - self.shift)
         sideways = -turn / r * self._radial(r) * np.sin(turn * angle - self.shift)

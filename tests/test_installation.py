@@ -168,11 +168,11 @@ def test_an_edit_of_what_a_function_calls_is_noticed(tmp_path):
     )
     path = os.pathsep.join([str(PACKAGE.parent), str(tmp_path)])
     printed = []
-    for factor in ("2.0", "30.0"):
+    for factor, calls in (("2.0", 2), ("30.0", 1)):
         (tmp_path / "inner.py").write_text(CALLED.format(factor=factor))
-        for _ in range(2):
+        for _ in range(calls):
             printed.append(run(tmp_path, program, PYTHONPATH=path).stdout.strip())
-    assert printed == ["2.0 0", "2.0 1", "30.0 0", "30.0 1"]
+    assert printed == ["2.0 0", "2.0 1", "30.0 0"]
 
 
 # --- a damaged cache ------------------------------------------------------------------------------

@@ -216,7 +216,7 @@ def test_units_do_not_matter(unit):
             lambda x: blobs(x / length, 0.0, alpha), 0.3 * time, alpha=alpha, window=(-20.0 * length, 80.0 * length),
             velocity=lambda x, t: length / time * np.sin(0.1 * x / length) * np.cos(t / time),
             diffusivity=lambda x: 1.0 + 0.5 * np.tanh(x / length),
-            source=lambda x, t, u: (0.2 - u) * u / time,
+            source=lambda x, t, u: (0.2 - u) * u / time, step=0.3,
         )[0]  # fmt: skip
 
     one, other = run(1.0, 1.0), run(unit, power)

@@ -17,7 +17,7 @@ from fracparticles.markers.resolution import lone
 from fracparticles.markers.stability import extremes
 from sweeps import covering, thorough
 
-SQUARE = uniform(Square().value, (-1.0, 1.0), 1000)
+SQUARE = uniform(Square().value, (-1.0, 1.0), 500)
 EPSILON = 0.3
 
 
@@ -69,7 +69,7 @@ def test_a_shock_of_the_width_of_epsilon_is_warned_of(markers):
     x = source.quantile((np.arange(markers) + 0.5) / markers, 0.5)
     velocity, z = MarkerVelocity(SHAPES["S8"], 0.05, burgers(0.01)), np.linspace(-1.0, 3.0, 2001)
     with pytest.warns(AccuracyWarning, match="the field jumps where the markers end"):
-        end = run(x, np.full(markers, 1.0 / markers), velocity, dt=1.25e-3, steps=400, start=0.5)
+        end = run(x, np.full(markers, 1.0 / markers), velocity, dt=5e-3, steps=100, start=0.5)
     exact = source.value(z, 1.0)
     assert np.abs(end.field(z) - exact).max() > 0.05 * exact.max()
 
@@ -133,7 +133,7 @@ def test_a_lone_marker_has_its_own_field():
 @pytest.mark.parametrize("seed", range(3 if thorough() else 1))
 def test_random_markers_of_a_square_are_warned_of(seed):
     for t, least in ((0.02, 0.15), (0.3, 0.03)):
-        error, told = field_error(random(Square(), 2000, np.random.default_rng(seed)), t, "S8")
+        error, told = field_error(random(Square(), 1000, np.random.default_rng(seed)), t, "S8")
         assert error > least
         assert told
 

@@ -9,19 +9,19 @@ from kinks import KINKS, SAID, H, bell, error, solution, solved
 from fracparticles.problems import Problem, frozen, solve_problem
 from fracparticles.problems.fewer_particles import among
 from fracparticles.problems.interpolants import interpolants
+from sweeps import covering
 
 TAUS = (0.03, 0.3, 3.0, 30.0)  # h^alpha
 PARTS = np.array([0.25, 0.5, 0.75])
+WIDTHS = {"tent": (0.5, 8), "cusp": (0.4, 2), "box": (1.43, 2)}  # and the order of the kernel
 
 
-@pytest.mark.parametrize("alpha", [1.1, 1.9])
 @pytest.mark.parametrize(
-    ("kind", "width", "order"), [("tent", 0.5, 8), ("cusp", 0.4, 2), ("box", 1.43, 2)]
+    ("alpha", "kind", "at"), covering([1.1, 1.9], WIDTHS, [0.0, 0.25, 0.5], together=2)
 )
-@pytest.mark.parametrize("at", [0.0, 0.25, 0.5])
-def test_a_kink_that_only_the_particles_say(alpha, kind, width, order, at):
+def test_a_kink_that_only_the_particles_say(alpha, kind, at):
     """A spline alone said a third of it, of a jump a seventh, in silence up to a tenth of u."""
-    given, transform = KINKS[kind]
+    (given, transform), (width, order) = KINKS[kind], WIDTHS[kind]
     times = tuple(tau * H**alpha for tau in TAUS)
     x = Problem(alpha=alpha, half_width=10.0, spacing=H, t_final=1.0).case.x
     run, warned = solved(given((x - at * H) / width), alpha=alpha, order=order, times=times)
@@ -34,8 +34,7 @@ def test_a_kink_that_only_the_particles_say(alpha, kind, width, order, at):
     assert warned or max(errors) < SAID
 
 
-@pytest.mark.parametrize("width", [0.25, 0.4, 0.8])
-@pytest.mark.parametrize("alpha", [1.1, 1.9])
+@pytest.mark.parametrize(("width", "alpha"), covering([0.25, 0.4, 0.8], [1.1, 1.9]))
 def test_smooth_data_are_their_spline(width, alpha):
     times = tuple(tau * H**alpha for tau in TAUS)
     given = Problem(alpha=alpha, half_width=10.0, spacing=H, t_final=1.0).case.x / width
@@ -46,8 +45,7 @@ def test_smooth_data_are_their_spline(width, alpha):
     )
 
 
-@pytest.mark.parametrize("alpha", [1.2, 1.8])
-@pytest.mark.parametrize("at", [0.0, 0.013, 0.025])
+@pytest.mark.parametrize(("alpha", "at"), covering([1.2, 1.8], [0.0, 0.013, 0.025]))
 def test_a_jump_in_an_interval(alpha, at):
     """The spline said a thirtieth of it, in silence up to 0.3 of u."""
     given, transform = KINKS["box"]

@@ -167,13 +167,13 @@ def bell(*points):
 @pytest.mark.parametrize("exterior", ["absorbing", "reflecting"])
 def test_a_plain_problem_is_what_the_domain_does(kind, exterior):
     problem = Problem(**{**KINDS[kind], "exterior": exterior}, diffusivity=0.7, rtol=1e-9)
-    run = solve_problem(problem, bell)
+    run = solved(problem, bell)
     exact = problem.bounded_domain.evolve(bell, 0.7)
     assert np.abs(run.u.values - exact).max() < 1e-8
     assert run.attrs["reproducible"] == "yes"
     again = Problem.from_json(run.attrs["problem"])
     assert again == problem
-    assert (solve_problem(again, bell).u == run.u).all()
+    assert (solved(again, bell).u == run.u).all()
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -264,9 +264,7 @@ def test_a_field_of_the_plane_that_is_carried_and_given_outside(kind):
 
     fields = {**KINDS[kind], "exterior": "given", "exterior_data": g, "t_final": 0.4}
     fields["particles"] = 48 if kind == "disc" else 16
-    run = solve_problem(
-        Problem(**fields, velocity=(1.0, 0.0), source=source), lambda x, y: g(x, y, 0.0)
-    )
+    run = solved(Problem(**fields, velocity=(1.0, 0.0), source=source), lambda x, y: g(x, y, 0.0))
     assert np.abs(run.u.values - g(*places(run), 0.4)).max() < 6e-4
     assert run.attrs["reproducible"].startswith("no")
 
@@ -285,7 +283,7 @@ def test_the_data_set_says_where_its_particles_are(kind, tmp_path):
 
 def test_a_source_that_is_faster_than_all_else_is_taken_implicitly():
     """u' = .. - 1e6 (u - cos t): u is cos t, but where it is zero outside within a layer of d ~ 1e-4."""
-    run = solve_problem(Problem(**LINE, source="-1e6*(u - cos(t))"), lambda x: 1.0 + 0.0 * x)
+    run = solved(Problem(**LINE, source="-1e6*(u - cos(t))"), lambda x: 1.0 + 0.0 * x)
     assert run.integrator == "radau"
     assert np.abs(run.u.values[np.abs(run.x) < 0.5] - np.cos(1.0)).max() < 1e-5
     with pytest.raises(InvalidInput, match=r"^source = .*on the disc"):
@@ -413,8 +411,12 @@ def test_a_line_with_ends_is_an_interval_and_a_disc_is_plane():
 def test_initial_data_that_do_not_fit_are_refused(initial):
     with pytest.raises(InvalidInput, match=r"^initial = "):
         solve_problem(Problem(**LINE), initial)
+
+
+def test_a_result_is_no_bare_array():
+    problem = Problem(**LINE, particles=20)
     with pytest.raises(InvalidInput, match=r"^initial = .*bare array"):
-        solve_problem(Problem(**LINE), solve_problem(Problem(**LINE), bell).u)
+        solve_problem(problem, solved(problem, bell).u)
 
 
 @pytest.mark.parametrize("place", ["(1 + 0.5*x)", ""])

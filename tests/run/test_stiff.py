@@ -51,7 +51,7 @@ def matrix_run(case: Case, u0: np.ndarray, time: float) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("order", "time"),
-    few([(2, 1e8), (2, 1e4), (2, 3e5), (2, 1e6), (4, 1e6), (12, 1e4), (12, 1e6)], 3),
+    few([(2, 1e7), (2, 1e4), (2, 3e5), (2, 1e8), (2, 1e6), (4, 1e6), (12, 1e4), (12, 1e6)], 3),
 )
 def test_a_conservative_scheme_ends_at_the_mean(order, time):
     case = stiff(scheme="KPSE", order=order, t_final=time)
@@ -116,12 +116,12 @@ def test_a_lattice_refined_far_below_the_data():
     """An open lattice of C = 2.7: the same solution at every spacing, and its mass."""
     runs = {
         h: compute(Case(scheme="KPSE", beta=0.9, half_width=4.0, spacing=h, integrator="exponential", exterior="open"))
-        for h in (1e-2, 2e-3, 5e-4)
+        for h in (1e-2, 2e-3, 1e-3)
     }  # fmt: skip
     middle = [run.u[run.u.size // 2] for run in runs.values()]
     # Second order in epsilon.
     assert abs(middle[2] - middle[1]) < abs(middle[1] - middle[0]) < 1e-4
-    finest = runs[5e-4]
+    finest = runs[1e-3]
     assert finest.u.sum() * finest.case.particle_spacing == pytest.approx(0.972, abs=1e-3)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -44,7 +46,7 @@ def test_met_where_the_data_are_rough(name, beta, error):
 @pytest.mark.parametrize(
     ("name", "error"),
     [
-        *covering(["other tail", "mixture", "fundamental"], [1e-3, 1e-6]),
+        *covering(["other tail", "mixture"], [1e-3, 1e-6]),
         *[("mixture", 1e-9)] * thorough(),
     ],
 )
@@ -60,12 +62,10 @@ def test_nine_digits_in_the_plane_take_no_wide_lattice():
     assert case.particles < 120**2
 
 
-@pytest.mark.parametrize("error", [1e-3, 1e-6])
-def test_at_most_three_times_the_particles_of_the_best_found_by_hand(error):
-    """Of GPSE in one step on a grid of spacings and half-widths; its time grows with the particles."""
-    problem = PROBLEMS["mixture"](0.5)
-    case, _ = asked_and_met(problem, error)
-    fewest = np.inf
+@cache
+def found_by_hand():
+    """Particles and error of GPSE in one step on a grid of spacings and half-widths."""
+    problem, found = PROBLEMS["mixture"](0.5), []
     for half_width in np.geomspace(5.0, 40.0, 10):
         for spacing in np.geomspace(0.2, 1.2, 12):
             if spacing <= half_width / 8.0 and half_width >= problem.error_radius:
@@ -73,8 +73,16 @@ def test_at_most_three_times_the_particles_of_the_best_found_by_hand(error):
                                   t_initial=0.0, t_final=1.0, exterior="open", far_terms=3,
                                   evaluation="auto")  # fmt: skip
                 u = compute(by_hand, lambda x: problem.initial((x,))).u
-                if problem.error((by_hand.x,), by_hand.volumes, u) <= error:
-                    fewest = min(fewest, by_hand.particles)
+                error = problem.error((by_hand.x,), by_hand.volumes, u)
+                found.append((by_hand.particles, error))
+    return found
+
+
+@pytest.mark.parametrize("error", [1e-3, 1e-6])
+def test_at_most_three_times_the_particles_of_the_best_found_by_hand(error):
+    """Its time grows with the particles."""
+    case, _ = asked_and_met(PROBLEMS["mixture"](0.5), error)
+    fewest = min(particles for particles, left in found_by_hand() if left <= error)
     assert case.particles <= 3.0 * fewest
 
 

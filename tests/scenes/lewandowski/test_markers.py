@@ -110,7 +110,7 @@ PARAMETERS = {
     },
     "marker_plane": {
         "a": [0.0, 1.0],
-        "per_axis": [16, 48],
+        "per_axis": [16, 36],
         "support": 0.45,
         "half_width": 6.0,
         "grid": 61,
