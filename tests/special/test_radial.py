@@ -32,7 +32,7 @@ EPSILON = np.finfo(float).eps
 SURFACE = {1: 2.0, 2: 2 * np.pi, 3: 4 * np.pi}
 
 # Both sides of 3/2, where the saddle point begins to count, and both ends of the open interval.
-ALPHAS = (1.001, 1.1, 1.5, 1.7, 1.95, 1.999, 2.0 - EPSILON)
+ALPHAS = (1.001, 1.1, 1.5, 1.5 + 1e-9, 1.7, 1.95, 1.999, 2.0 - EPSILON)
 NEAR = (0.0, 1e-8, 0.49, 0.5)
 MIDDLE = (1.4, 2.2, 3.99, 5.1, 7.1, 11.2, 14.7, 17.5)
 FAR = (25.0, 1e2, 1e4, 1e8, 1e50)
@@ -93,6 +93,14 @@ def test_agrees_with_mpmath(alpha, n):
         assert abs(density - value) <= TOLERANCE * value + np.finfo(float).tiny, point
         assert abs(outside - beyond) <= TOLERANCE * beyond, point
         assert abs(inside - (1 - beyond)) <= TOLERANCE * (1 - beyond), point
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("above", [EPSILON, 1e-12, 1e-6, 1e-3, 0.02])
+def test_a_table_next_to_three_halves_is_no_larger_than_another(n, above):
+    """There the wave of the saddle point decays ever more slowly, and is none of the density's."""
+    other = radial.radial_table(1.9, n).density.shape[0]
+    assert radial.radial_table(1.5 + above, n).density.shape[0] <= other
 
 
 @pytest.mark.parametrize(("alpha", "r"), [(1.0001, 1.0), (1.01, 1.1), (1.03, 0.9)])

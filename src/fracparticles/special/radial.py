@@ -103,13 +103,17 @@ def _far_terms(alpha: float, n: int) -> tuple[FloatArray, FloatArray]:
 def _pieces_before_far(alpha: float, n: int, first: float, bound: FloatArray) -> int:
     """Count the pieces up to the point where the tail's series is exact to 1e-17.
 
-    There its last term is below 1e-17 of its first, and so is what the series lacks at any number
-    of terms: the contribution of the saddle point k = i s of exp(i k r - k^alpha), for alpha near 2
-    the Gaussian exp(-r^2/4). In n dimensions it has the factor (s / (2 pi r))^((n-1)/2).
+    There its last term is below 1e-17 of its first, and so is one of two bounds of what the series
+    lacks: the contribution of the saddle point k = i s of exp(i k r - k^alpha), for alpha near 2
+    the Gaussian exp(-r^2/4), in n dimensions times (s / (2 pi r))^((n-1)/2); or the last term times
+    sin(pi / (2 alpha))^-(alpha m + n), the integral of |k^(alpha m) / m! exp(i k r)| along the ray on
+    which k^alpha is imaginary. The second is for alpha above 3/2 and next to it, where the saddle
+    comes to be of the size of a wave, and has no part in Phi_n.
     """
     pieces = 2
     power = alpha / (alpha - 1.0)
     turn = 0.5 * math.pi / (alpha - 1.0)
+    on_ray = math.sin(0.5 * math.pi / alpha) ** -(alpha * _FAR_TERMS + n)
     while True:
         r = pieces * _WIDTH
         last = bound[-1] * r ** (-alpha * (_FAR_TERMS - 1))
@@ -118,7 +122,8 @@ def _pieces_before_far(alpha: float, n: int, first: float, bound: FloatArray) ->
             ratio = (r / alpha) ** (power - 1.0) / (2.0 * math.pi * r)
             saddle = math.exp(-(alpha - 1.0) * (r / alpha) ** power * math.sin(turn))
             saddle *= ratio ** (0.5 * (n - 1))
-        if last < _NEGLIGIBLE and saddle < _NEGLIGIBLE * first * r ** (-alpha - n):
+        lacks = min(on_ray * last, saddle / (first * r ** (-alpha - n)))
+        if last < _NEGLIGIBLE and lacks < _NEGLIGIBLE:
             return pieces
         pieces += 1
 
