@@ -58,8 +58,8 @@ def exact(r: float, alpha: float, n: int) -> tuple[mp.mpf, mp.mpf]:
                 term = size * mp.sin(mp.pi * (2 - a) * m / 2)
                 density += term
                 tail += surface * term * r**n / (a * m)
-            # The Gaussian core is not in the series: leave room for it, whatever alpha is.
-            left_out = max(size, mp.exp(-r * r / 4) if alpha > 1.5 else 0)
+            # The integral of |k^(a m) / m! exp(i k r)| along the ray on which k^a is imaginary.
+            left_out = size * mp.sin(mp.pi / (2 * a)) ** -(a * m + n)
             if left_out < mp.mpf(10) ** -25 * density:
                 return density, tail
         assert alpha > 1.05 or r < 0.9, "neither converges here"
