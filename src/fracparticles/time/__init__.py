@@ -1,8 +1,9 @@
 """Time integration of du/dt = A u with a constant operator A.
 
 An explicit Runge-Kutta scheme multiplies the solution by its step polynomial p(A dt) (Eq. 52); n steps give
-p(A dt)^n u0. `stepping` does exactly that. `chebyshev` evaluates the same polynomial, or the exponential exp(A t), as
-one Chebyshev series on the interval that holds the spectrum of A; `pieces` uses several where one would lose digits.
+p(A dt)^n u0. `stepping` takes these steps one by one. `chebyshev` evaluates the same polynomial, or the exponential
+exp(A t), as one Chebyshev series on the interval that holds the spectrum of A. `pieces` uses several series where one
+would lose digits.
 `snapshots` does this for several output times at once.
 """
 

@@ -10,8 +10,9 @@ discrete solution as stepping gives, up to round-off; but p^n is so smooth on th
 coefficients fall below round-off after about sqrt(74 T |low| / 2) terms, whatever the number of steps.
 Tal-Ezer & Kosloff, J. Chem. Phys. 81 (1984) 3967, for the exponential.
 
-The terms may be far larger than their sum: where the operator is not normal or its eigenvalues are not real, so that
-T_k(B) u grows with k, or where the solution decays by many decades. The evaluation checks the size of its terms and
+The terms may be far larger than their sum. This happens where the operator is not normal or has eigenvalues that are
+not real, so that T_k(B) u grows with k, and where the solution decays by many decades. The evaluation checks the size
+of its terms and
 raises `LostDigits`; `pieces` then continues with shorter series.
 """
 
@@ -31,10 +32,10 @@ from fracparticles.time.stepping import all_finite
 
 __all__ = ["ChebyshevSeries", "LostDigits", "evaluate", "exponential", "power"]
 
-_ROUND_OFF = 2.0**-54
-_MET = 1e-6  # of the largest value: how close the series is to f at the ends
-_MOST_POINTS = 2**25
-LARGEST_EXPONENT = np.log(np.finfo(float).max)
+_ROUND_OFF = 2.0**-54  # of a value or coefficient, relative
+_MET = 1e-6  # share of the largest value of f: how close the series must be to f at the ends
+_MOST_POINTS = 2**25  # of an interpolation: a quarter of a gigabyte for each array
+LARGEST_EXPONENT = np.log(np.finfo(float).max)  # of exp in float64
 
 _LOOK_EVERY = 32  # terms between two looks at their size
 _DIGITS_KEPT = 1e-10  # the share of the sum that the round-off of its terms may reach
@@ -72,9 +73,9 @@ class ChebyshevSeries:
     ) -> ChebyshevSeries:
         """Interpolate f at Chebyshev points.
 
-        There are enough of them when the last third of the coefficients is below the round-off in the values of
-        f, which is `condition(z)` ulp of f(z), and the sum meets f at the two ends: a layer there that is thinner
-        than the points are apart would be missed.
+        The points are enough if two things hold. The last third of the coefficients is below the round-off in the
+        values of f, which is `condition(z)` ulp of f(z). And the sum meets f at the two ends, since a layer there that
+        is thinner than the distance of the points would be missed.
 
         Raises
         ------
@@ -212,7 +213,7 @@ def power(
 
     expected = min(steps * polynomial.stages, _expected_degree(steps * dt, low, high))
     series = ChebyshevSeries.of(amplification, low, high, condition, expected)
-    # A polynomial of degree `steps * stages`: what comes after is round-off.
+    # p^steps is a polynomial of degree `steps * stages`: later coefficients are round-off.
     return replace(series, coefficients=series.coefficients[: steps * polynomial.stages + 1])
 
 

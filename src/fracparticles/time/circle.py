@@ -1,7 +1,7 @@
-"""Periodic data by one pair of Fourier transforms: u^(k, t) = f(k) u^(k, 0), f = exp(-D t |k|^alpha) or another's.
+"""Periodic data by one pair of Fourier transforms: u^(k, t) = f(k) u^(k, 0), f = exp(-D t |k|^alpha) or a given one.
 
 In units of the spacing f is a function of theta = k h, -pi < theta <= pi, and of tau = D t / h^alpha. Where the result
-holds no waves shorter than 2 m spacings, every m-th point tells all of it, and the transform back is that of these.
+holds no waves shorter than 2 m spacings, every m-th point determines it, and only these points are transformed back.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ __all__ = ["Amplification", "Circle", "Look", "unseen"]
 
 Amplification = Callable[[np.ndarray], np.ndarray]
 Look = Callable[[np.ndarray], object]
-"""What is shown u^ of the data before the run."""
+"""It is called with u^ of the data before the run."""
 
 
 def unseen(spectrum: np.ndarray) -> None:
-    """Nobody looks."""
+    """Do nothing: u^ of the data is not looked at."""
 
 
 class Circle:
@@ -40,12 +40,12 @@ class Circle:
     scaled_time : float
         tau.
     amplification : callable, optional
-        f(theta) for theta in [0, pi], in more dimensions of an array whose last axis is the vector; left out,
-        exp(-tau |theta|^alpha).
+        f(theta) for theta in [0, pi]; in two and three dimensions the last axis of its argument holds the vector. Left
+        out, it is exp(-tau |theta|^alpha).
     every : int
-        m: the result is at every so many points, of which there are an even number.
+        m: the result is at every m-th point; L / m is even.
     moved : sequence of float, optional
-        The result is so many spacings on, along each axis.
+        The displacement of the points of the result, in spacings along each axis.
     """
 
     def __init__(
@@ -72,17 +72,18 @@ class Circle:
         look(spectrum)
         if self._every > 1:
             spectrum = self._long_waves(spectrum)
-        spectrum = spectrum * self._amplification  # that of the data may have been kept
+        # Not in place: `look` may have kept the spectrum of the data.
+        spectrum = spectrum * self._amplification
         if len(self._axes) == 1:
             return np.asarray(irfft(spectrum, self._shape[0]))
         return np.asarray(irfftn(spectrum, self._shape, axes=self._of(spectrum)))
 
     def waves(self, spectrum: np.ndarray) -> ShortWaves:
-        """Return what u^ says about waves that are not on the circle."""
+        """Return estimates, from u^, about waves too short for the circle."""
         return ShortWaves(spectrum, len(self._axes), self._points)
 
     def _of(self, u: np.ndarray) -> tuple[int, ...] | None:
-        """The axes of space, None if they are all: then they need not be looked for."""
+        """The axes of space; None if u has no others, since scipy then need not sort them out."""
         return None if u.ndim == len(self._axes) else self._axes
 
     def _long_waves(self, spectrum: np.ndarray) -> np.ndarray:

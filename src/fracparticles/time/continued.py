@@ -1,7 +1,7 @@
-"""Data on a part of a circle, continued by their tails: one pair of transforms, and the images taken off again.
+"""Data on a part of a circle, continued by their tails: one pair of transforms, and the images subtracted again.
 
-The lattice lies in a longer circle. There powers continue the data, and the images of the data are added; after the
-transforms those of the result are taken off, see `tails`. `whole_space` and `widening` are runs of this kind.
+The lattice lies in a longer circle. There powers continue the data, and the images of the data are added. After the
+transforms the images of the result are subtracted, see `tails`. `whole_space` and `widening` are runs of this kind.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Continued:
     before, after : arrays
         The gamma of the data and of the result, see `Tails`.
     middle : sequence of int, optional
-        Where the tails start, in points from the middle of the data; there, if left out.
+        The place from which the tails fall, in points from the middle of the data; left out, it is this middle.
     outer : bool
         See `Meeting`.
 
@@ -79,11 +79,12 @@ class Continued:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the result from data of shape (data, N, .., N), and the numbers on which its tail depends.
 
-        With the amplitudes b of the tail of the data nothing is fitted. `look` is shown u^ of the data on the circle.
+        If the amplitudes b of the tail of the data are given, nothing is fitted. `look` is called with u^ of the data
+        on the circle.
         """
         longer, images, numbers = self.tails.complete(u, b)
         return self._circle(longer, look)[self._shown] - images, numbers
 
     def amplitudes(self, numbers: np.ndarray) -> np.ndarray:
-        """Return those of the tail of the result, shape (data, terms), in units of its spacing."""
+        """Return the amplitudes b of the tail of the result, shape (data, terms), in units of its spacing."""
         return self.tails.result(numbers, self._every)

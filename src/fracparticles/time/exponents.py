@@ -12,18 +12,19 @@ from fracparticles.errors import InvalidInput
 __all__ = ["MOST_TERMS", "SAME", "later_exponents", "powers", "tail_exponents"]
 
 MOST_TERMS = 6
-SAME = 1e-9  # exponents nearer than this are one
-# Measured: six terms in space leave 1e-10 / distance of the maximum, and more near two, where all are nearly even and
-# nearly one. The amplitude of a term that is left out is proportional to the distance.
+SAME = 1e-9  # exponents nearer to each other than this count as one
+# The least distance of an exponent from an even number and from the next exponent. The amplitude of a term that is left
+# out is proportional to this distance. The error of six terms in space was measured as 1e-10 / distance of the maximum;
+# it is larger near alpha = 2, where all exponents are nearly even and nearly equal.
 _NEARLY = 1e-2
-_STEEPEST = 30.0  # power of a tail: of steeper ones nothing is left
+_STEEPEST = 30.0  # the largest power of a tail: nothing is left of steeper ones
 
 
 def tail_exponents(alpha: float, terms: int) -> np.ndarray:
-    """Return the first gamma_j of the tail |x|^(-n-gamma_j) of the fundamental solution and what is moved or widened.
+    """Return the first gamma_j of the tails |x|^(-n-gamma_j) of the fundamental solution, also displaced or widened.
 
-    They are j alpha + 2 m with j >= 1, ascending, but for those that are even, which belong to no tail, or within 0.01
-    of it; alpha itself may be as near as 1e-9. Of two that are nearly one there is the lower.
+    They are j alpha + 2 m with j >= 1, ascending. Those within 0.01 of an even number are left out, since even ones
+    belong to no tail; alpha itself may be as near as 1e-9. Of two that differ by less than 0.01 the lower is kept.
     """
     found: list[float] = []
     for e in sorted(j * alpha + 2.0 * m for j in range(1, 2 * terms + 2) for m in range(terms + 1)):
@@ -34,12 +35,12 @@ def tail_exponents(alpha: float, terms: int) -> np.ndarray:
 
 
 def powers(tail: Sequence[float], dim: int) -> np.ndarray:
-    """Return the gamma of the powers p = n + gamma by which somebody's data fall.
+    """Return the gamma of the powers p = n + gamma by which the user says that the data fall.
 
     Raises
     ------
     InvalidInput
-        If there are more than six, or one is not above n, is n plus an even integer, or above 30.
+        If there are more than six powers, or if one is not above n, is n plus an even integer, or is above 30.
     """
     exponents = check.vector("tail", tail, least=0) - dim
     good = (exponents > 0.0) & (exponents + dim <= _STEEPEST)
@@ -62,9 +63,10 @@ def _from_even(exponent: float) -> float:
 def later_exponents(
     before: Sequence[float] | np.ndarray, alpha: float, greatest: float
 ) -> np.ndarray:
-    """Return the gamma up to the greatest by which a solution falls whose data fell by those before, ascending.
+    """Return the gamma, ascending up to `greatest`, by which a solution falls whose data fell by the gamma `before`.
 
-    They are j alpha more than those, or than the 0, 2, 4 of the moments, but for even ones, which belong to no tail.
+    They are the gamma of the data, and the 0, 2, 4 of the moments, plus j alpha, without the even ones, which belong
+    to no tail.
     """
     starts, most = [0.0, 2.0, 4.0, *before], int(greatest / alpha) + 1
     found: list[float] = []

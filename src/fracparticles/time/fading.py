@@ -1,12 +1,13 @@
-r"""What the errors of early steps are worth where a solution fades.
+r"""The share of the errors of early steps in a solution that fades.
 
 A step at the time s is accurate to the tolerance times |u(s)|. Two solutions of u_t = A u + f(x, t, u) come closer at
-the rate r = lambda_1 - max df/du at least, lambda_1 >= 0 the slowest of -A. So at t the errors are, over |u(t)|,
+least at the rate r = lambda_1 - max df/du, where lambda_1 >= 0 is the least eigenvalue of -A. The errors at t over
+|u(t)| are therefore
 
     tolerance max_s |u(s)| e^(-r (t - s)) / |u(t)|.
 
-Where nothing is held outside and f(x, t, 0) = 0, u is itself the difference of two solutions. Then no error outlasts
-it, and the tolerance is all.
+Where the exterior values are zero and f(x, t, 0) = 0, zero is a solution and u the difference of two solutions. Then no
+error outlasts u, and the share is the tolerance.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ import numpy as np
 
 __all__ = ["FADED", "early_errors", "slope_of"]
 
-FADED = 0.01  # of u: a share that is said
-_SMALL = 1e-8  # a difference of u over u
+FADED = 0.01  # share of u: larger errors are warned of
+_SMALL = 1e-8  # relative change of u in the difference for df/du
 
 Source = Callable[[float, np.ndarray], np.ndarray]
 """f(t, u), between fields."""
@@ -38,18 +39,20 @@ def early_errors(
     slowest: Callable[[], float],
     held: Callable[[float], float] | None = None,
 ) -> list[float]:
-    """Return the share at each time but the first, by u at it and at those before.
+    """Return the share of the errors in u at each time but the first, from u at this time and at the times before.
 
     Parameters
     ----------
     tolerance : float
+        The relative error of a step.
     times, fields : sequences
+        The times, and u at each of them.
     f : callable or None
         The source.
     slowest : callable
-        lambda_1, asked for if u has faded.
+        It returns lambda_1, and is called only if u has faded.
     held : callable, optional
-        What is held outside, as a size by time: then the tolerance is not below its share.
+        The largest exterior value as a function of time; the errors are then at least the tolerance times it.
     """
     t, sizes = np.asarray(times), np.array([float(np.abs(u).max()) for u in fields])
     least = np.array([0.0 if held is None else held(time) for time in times])

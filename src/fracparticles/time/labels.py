@@ -1,4 +1,4 @@
-"""Data that say where they are: the coordinates of labelled arrays, which a lattice given by its spacing must share."""
+"""The coordinates of labelled arrays: they must agree with a lattice that is given by its spacing."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ from fracparticles.errors import InvalidInput
 
 __all__ = ["check_labels"]
 
-_OFF = 1e-6  # of the spacing, between neighbours; and what the type of the coordinates rounds
+_OFF = 1e-6  # share of the spacing by which two neighbours may be misplaced, besides the round-off of the coordinates
 
 
 def check_labels(u: Any, dim: int, spacing: float) -> None:
-    """Refuse labelled data whose last `dim` coordinates do not rise or fall by the spacing; whole numbers only count.
+    """Refuse labelled data whose last `dim` coordinates do not rise or fall by the spacing.
+
+    Coordinates that are whole numbers are taken as indices and not judged.
 
     Raises
     ------
     InvalidInput
-        With the first coordinate that does not.
+        Names the first coordinate that does not agree.
     """
     for name, x in _coordinates(u)[-dim:]:
         if x.dtype.kind != "f" or x.size < 2:
@@ -37,7 +39,7 @@ def check_labels(u: Any, dim: int, spacing: float) -> None:
 
 
 def _coordinates(u: Any) -> list[tuple[str, np.ndarray]]:
-    """The coordinates along each axis of an xarray.DataArray or a pandas.Series, as far as it has them."""
+    """The names and coordinates of the axes of an xarray.DataArray or a pandas.Series; empty for other data."""
     if hasattr(u, "coords") and hasattr(u, "dims"):
         along = [(str(dim), u.coords[dim].values if dim in u.coords else ()) for dim in u.dims]
     elif hasattr(u, "index") and hasattr(u, "to_numpy"):

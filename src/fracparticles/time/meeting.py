@@ -1,4 +1,4 @@
-"""Where the tail of a run on the whole space meets its data, and what it is there."""
+"""The fit of the tail of a run on the whole space to its data, at some points of the lattice."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fracparticles.time.multipoles import HARMONICS, Terms, values_of
 
 __all__ = ["Meeting"]
 
-# Where the tail meets the data, in half-widths: at one depth for each gamma, or in the mean at all of `_OUTER`.
+# Distances from the middle, in half-widths: one of `_DEPTHS` for each gamma, or all of `_OUTER` by least squares.
 _DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)
 _OUTER = np.linspace(1.0, 0.8, 8)
 
@@ -24,9 +24,9 @@ class Meeting:
     terms : list
         The H and the gamma of the tail.
     x, odd : arrays
-        The coordinate along the circle, and what takes its place in functions that are odd in it.
+        The coordinate along the circle, and the one that takes its place in functions that are odd in it.
     inside : tuple of slices
-        The lattice in the circle.
+        The lattice in the circle, one slice for each axis.
     outer : bool
         Whether the tail is fitted to the outer fifth of the lattice, with misfits relative to the slowest power.
         Otherwise it is fitted at as many depths as there are gamma.
@@ -56,11 +56,11 @@ class Meeting:
         return np.asarray(u[(slice(None), *self._samples)] @ self._fit.T)
 
     def left_open(self, u: np.ndarray) -> tuple[float, float]:
-        """Return what is not known of int u and of int x u beyond the lattice; the period is the unit of length.
+        """Return the uncertainty of int u and of int x u beyond the lattice; the period is the unit of length.
 
-        It is what the term of the last gamma changes of them: the terms that are left out may change them as much.
-        Without terms nothing is taken to lie beyond. What is not known is then what lies there if u goes on like
-        |x|^(-n-1) up to twice the distance.
+        It is the change of both integrals by the term of the last gamma: the terms that are left out may change them as
+        much. Without terms the run takes u to be zero beyond the lattice. The uncertainty is then the integral of a u
+        that goes on like |x|^(-n-1) up to twice the distance.
         """
         found, reach = u[tuple(self._samples)], 2.0 * self._nearest
         if not self._terms:
@@ -71,7 +71,7 @@ class Meeting:
         fewer = np.array([gamma < last for _, gamma in self._terms])
         change[fewer] -= _least_squares(self._columns[:, fewer], self._weight) @ found
         most = [0.0, 0.0]
-        # The moment of one has nothing of the others beyond a cube.
+        # Terms of another H are left out: beyond a cube their moments vanish, but for l = 3 and 4 in the plane.
         for harmonic in HARMONICS[self._dim]:
             own = [row for row, (other, _) in enumerate(self._terms) if other is harmonic]
             if harmonic.degree < len(most) and own:
@@ -92,8 +92,8 @@ class Meeting:
 
 
 def _least_squares(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Return the matrix from values to amplitudes of the columns, the misfits times a weight least."""
+    """Return the matrix from values to amplitudes of the columns, for the least sum of (weight x misfit)^2."""
     weighted = columns * weight
     scale = np.abs(weighted).max(axis=0, initial=0.0)
-    scale[scale == 0.0] = 1.0  # a term that vanishes at all of the points, and stays out
+    scale[scale == 0.0] = 1.0  # a term that vanishes at all of the points has amplitude zero
     return np.asarray(np.linalg.pinv(weighted / scale) / scale[:, None] * weight.T)

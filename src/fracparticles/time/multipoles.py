@@ -1,7 +1,7 @@
 """How a tail depends on the direction: derivatives of |x|^(-n-gamma) by harmonic polynomials.
 
-A field that is spread about the middle falls like sum_H b_H H(-grad) |x|^(-n-gamma), H homogeneous and harmonic, of
-degree l: the monopole, the dipole, and so on. With s = n + gamma
+A field that is spread about the middle falls like sum_H b_H H(-grad) |x|^(-n-gamma). Each H is a homogeneous harmonic
+polynomial of degree l: the monopole, the dipole, and so on. With s = n + gamma
 
     H(-grad) |x|^(-s) = s (s + 2) .. (s + 2 l - 2) H(x) |x|^(-s-2l),
 
@@ -9,7 +9,7 @@ and its transform is (-i)^l H(k) |k|^gamma / kappa. The moments int H(x) |x|^(2q
 
     exp(-i k.x) = sum_H (-i)^l H(k) H(x) / <H, H> sum_q (-1)^q |k|^(2q) |x|^(2q) / prod_{i=1}^q 2 i (n + 2 l + 2 i - 2),
 
-<H, H> = H(grad) H: (k.x)^l / l! is the kernel that reproduces polynomials in this product.
+<H, H> = H(grad) H. This holds because (k.x)^l / l! is the kernel that reproduces polynomials in this inner product.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from fracparticles.time.exponents import SAME
 __all__ = ["HARMONICS", "Harmonic", "Monomial", "Terms", "monomial", "terms_of", "values_of"]
 
 Monomial = tuple[int, ...]
+"""The exponent of each coordinate."""
 
 
 @dataclass(frozen=True)
@@ -41,17 +42,17 @@ class Harmonic:
 
     @cached_property
     def parity(self) -> Monomial:
-        """In which coordinates it is odd."""
+        """For each coordinate, 1 if H is odd in it and 0 if it is even."""
         return tuple(e % 2 for e in self.terms[0][0])
 
     def share(self, q: int) -> float:
-        """Return by what int H(x) |x|^(2q) u enters the transform of u, in units of (-i)^l H(k) |k|^(2q)."""
+        """Return the factor of int H(x) |x|^(2q) u in the transform of u, in units of (-i)^l H(k) |k|^(2q)."""
         own = sum(c * c * prod(map(factorial, powers)) for powers, c in self.terms)
         n = len(self.parity) + 2 * self.degree
         return 1.0 / (own * prod(-2.0 * i * (n + 2 * i - 2) for i in range(1, q + 1)))
 
     def moment(self, q: int) -> dict[Monomial, float]:
-        """Return H(x) |x|^(2q), the coefficients by the exponents."""
+        """Return H(x) |x|^(2q) as the coefficients of its monomials."""
         found = dict(self.terms)
         for _ in range(q):
             raised: dict[Monomial, float] = {}
@@ -69,7 +70,7 @@ class Harmonic:
     def tail(self, x: np.ndarray, odd: np.ndarray, gamma: float) -> np.ndarray:
         """Return H(-grad) |x|^(-n-gamma) at points x, shape (n, ..).
 
-        The odd powers of a coordinate are x^(2m) `odd`, which is x but for places where it is to vanish.
+        The odd powers of a coordinate are x^(2m) `odd`; `odd` is x, except for places where odd functions vanish.
         """
         s = len(x) + gamma
         found = np.square(x).sum(axis=0) ** (-0.5 * s - self.degree)
@@ -79,9 +80,9 @@ class Harmonic:
         return found
 
     def of_series(self, series: np.ndarray) -> np.ndarray:
-        """Return H(-grad) f for f = sum c_{ij..} T_i(8 x_1^2 - 1) T_j(8 x_2^2 - 1) .., f of shape (.., i, j, ..).
+        """Return H(-grad) f for f = sum c_{ij..} T_i(8 x_1^2 - 1) T_j(8 x_2^2 - 1) .., with c of shape (.., i, j, ..).
 
-        The result is in the same polynomials, times the coordinates in which H is odd.
+        The result holds coefficients of the same polynomials, times the coordinates in which H is odd.
         """
         dim, total = len(self.parity), np.zeros_like(series)
         for powers, c in self.terms:
@@ -94,7 +95,7 @@ class Harmonic:
 
 
 def monomial(x: np.ndarray, odd: np.ndarray, exponent: int) -> np.ndarray:
-    """Return x^e, the odd ones as `odd` times an even power."""
+    """Return x^e; an odd power is `odd` times an even power."""
     found = odd if exponent % 2 else np.ones_like(x)
     for _ in range(exponent // 2):
         found = found * x * x
@@ -102,14 +103,14 @@ def monomial(x: np.ndarray, odd: np.ndarray, exponent: int) -> np.ndarray:
 
 
 def _product(x: np.ndarray, odd: np.ndarray, exponents: Monomial) -> np.ndarray:
-    """The product of x_d^e over the coordinates, 1 without any."""
+    """The product of x_d^e over the coordinates; 1 if all exponents are zero."""
     parts = [monomial(x[d], odd[d], e) for d, e in enumerate(exponents) if e]
     return reduce(np.multiply, parts) if parts else np.ones(x.shape[1:])
 
 
 @lru_cache(maxsize=32)
 def _derivative(count: int, times: int) -> np.ndarray:
-    """The matrix of so many derivatives: from the even polynomials to these, or to x times these."""
+    """The matrix of `times` derivatives: from the even polynomials to even ones, or to x times even ones."""
     first, second = series_derivatives(count)
     found = np.eye(count)
     for k in range(times):
@@ -118,7 +119,7 @@ def _derivative(count: int, times: int) -> np.ndarray:
 
 
 def _harmonics(*polynomials: dict[str, float], axes: str) -> tuple[Harmonic, ...]:
-    """Each given as the coefficients of its monomials, "xxy" and the like."""
+    """Return polynomials from the coefficients of their monomials, which are written like "xxy"."""
     return tuple(
         Harmonic(tuple((tuple(map(word.count, axes)), c) for word, c in one.items()))
         for one in polynomials
@@ -137,15 +138,15 @@ HARMONICS: dict[int, tuple[Harmonic, ...]] = {
         {"xx": 1.0, "yy": -1.0}, {"zz": 2.0, "xx": -1.0, "yy": -1.0}, axes="xyz",
     ),
 }  # fmt: skip
-"""All of degree up to 1 on the line, where there are no others; 4 in the plane, 2 in space."""
+"""All H up to degree 4 in the plane and 2 in space, by dimension; on the line there are none above degree 1."""
 
 
 Terms = list[tuple[Harmonic, float]]
-"""The H and the gamma of a tail."""
+"""The H and the gamma of each term of a tail."""
 
 
 def terms_of(exponents: np.ndarray, dim: int) -> Terms:
-    """Which H goes with which gamma: up to the order of the last dipole."""
+    """Return the pairs of H and gamma that fall no faster than the dipole of the last gamma."""
     last = max(exponents, default=0.0) + 1.0
     return [(h, float(g)) for h in HARMONICS[dim] for g in exponents if g + h.degree <= last + SAME]
 

@@ -27,10 +27,10 @@ from fracparticles.time.stepping import all_finite
 __all__ = ["Flow", "exponential_flow", "power_flow"]
 
 _UNITS = 2**30  # of the exponential: a power of two, so that every piece has an exact length
-_MOST_APPLICATIONS = 3e7  # ten minutes for a hundred particles
-_GONE = -1100  # 2^-1100 is below every number, even times the 2^26 by which an operator that is not normal may amplify
-_OVERFLOW = 1024
-_NO_GROWTH = 1e-12  # of a piece: round-off
+_MOST_APPLICATIONS = 3e7  # of A in a run: ten minutes for a hundred particles
+_GONE = -1100  # binary exponent of zero: 2^-1100 underflows, even times 2^26, by which a non-normal A may amplify
+_OVERFLOW = 1024  # binary exponent of the first number above float64
+_NO_GROWTH = 1e-12  # |f| - 1 of a piece at the ends of the interval: less is round-off
 
 
 class Flow:
@@ -45,7 +45,7 @@ class Flow:
     units : int
         The span.
     largest_degree : int, optional
-        Of a piece, for an operator whose spectrum is not proved to lie where the series assumes it to lie.
+        The largest degree of a piece, for an operator whose spectrum is not proved to lie where the series assumes it.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Flow:
     Raises
     ------
     FracparticlesError
-        If it would take more than 3e7 applications.
+        If the run would take more than 3e7 applications.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class Flow:
         self._piece = units
         degree = self._series(self._piece).degree
         while largest_degree is not None and self._piece > 1 and degree > largest_degree:
-            # The degree grows like the root of the piece: so many halves are too much for certain.
+            # The degree grows like the root of the piece, so that so many halvings are needed for certain.
             for _ in range(max(1, int(2.0 * np.log2(degree / largest_degree)) - 1)):
                 self._piece = -(-self._piece // 2)
             degree = self._series(self._piece).degree
@@ -123,7 +123,7 @@ class Flow:
                     ) from None
             else:
                 left -= min(piece, left)
-        with np.errstate(over="ignore"):  # said below
+        with np.errstate(over="ignore"):  # an overflow raises below
             u = np.ldexp(u, exponent)
         if not all_finite(u):
             self._overflow(left)
@@ -138,7 +138,7 @@ class Flow:
 
 
 def _near_one(u: np.ndarray, exponent: int) -> tuple[np.ndarray, int]:
-    """Return u 2^exponent as another such product, the largest |u| near one: the same bits, but for underflow."""
+    """Return the product u 2^exponent with the largest |u| near one; only underflow changes any bits of u."""
     more = int(np.frexp(np.abs(u).max(initial=0.0))[1])
     return (np.ldexp(u, -more), exponent + more) if more else (u, exponent)
 

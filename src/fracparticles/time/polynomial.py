@@ -51,7 +51,7 @@ class StepPolynomial:
         return sign, steps * logarithm
 
     def sensitivity(self, z: np.ndarray, steps: int) -> np.ndarray:
-        """Return |steps z p'(z) / p(z)|: by how much p^steps magnifies a relative error of z; 0 where p is."""
+        """Return |steps z p'(z) / p(z)|, by which p^steps magnifies a relative error of z; 0 where p(z) = 0."""
         z = np.asarray(z, dtype=float)
         value = self(z)
         # p' is p without its last term.

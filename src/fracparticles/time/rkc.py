@@ -9,8 +9,8 @@ Sommeijer, Shampine & Verwer, J. Comput. Appl. Math. 88 (1998) 315. One step of 
     b_j = T_j''(w_0) / T_j'(w_0)^2 (b_0 = b_1 = b_2),   a_j = 1 - b_j T_j(w_0),   m~_1 = b_1 w_1,
     w_0 = 1 + (2/13) / s^2,   w_1 = T_s'(w_0) / T_s''(w_0).
 
-The scheme is explicit and of second order. It is stable for -(w_0 + 1) / w_1 <= z <= 0, about 0.65 s^2: with the same
-number of evaluations it goes 0.65 s times as far as the midpoint rule.
+The scheme is explicit and of second order. It is stable for -(w_0 + 1) / w_1 <= z <= 0, an interval of about 0.65 s^2.
+With the same number of evaluations it goes 0.65 s times as far as the midpoint rule.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = ["ChebyshevStep", "stages_for"]
 
-_DAMPING = 2.0 / 13.0
-_MOST_STAGES = 250  # beyond, the round-off of the stages, about s^2 ulp, becomes too large
+_DAMPING = 2.0 / 13.0  # (w_0 - 1) s^2, as in the paper
+_MOST_STAGES = 250  # of a step: the round-off of more, about s^2 ulp, is too large
 
 Rate = Callable[[np.ndarray], np.ndarray]
 
@@ -78,7 +78,7 @@ class ChebyshevStep:
         self._coefficients = np.column_stack([1.0 - m - n, m, n, rate, initial_rate])
 
     def __call__(self, f: Rate, y: np.ndarray, dt: float) -> np.ndarray:
-        """Return y after one step, a new array of any shape; what overflows is infinite or nan in it, without a word.
+        """Return y after one step, a new array of any shape; if it overflows it is infinite or nan, without a warning.
 
         Raises
         ------
@@ -113,8 +113,8 @@ class ChebyshevStep:
         ------
         InvalidInput
             If dt or steps is not positive, y or start is not finite, or f is not a function to rates of the shape of y.
-        NonFiniteSolution If y is no longer finite, or f raises it; then it is of the same kind, with the step and the
-        time.
+        NonFiniteSolution
+            If y is no longer finite, or if f raises it; the message names the step and the time.
         """
         dt, steps = positive_real("dt", dt), positive_integer("steps", steps, most=MOST_STEPS)
         f, start = function("f", f), finite_real("start", start)
@@ -141,7 +141,7 @@ def stages_for(z: float) -> int:
     Raises
     ------
     InvalidInput
-        If z is not positive, or it takes more than 250 stages.
+        If z is not positive, or if more than 250 stages would be needed.
     """
     z = positive_real("z", z)
     # The interval is a little less than 2/3 (s^2 - 1): start there.

@@ -1,6 +1,6 @@
 """Several output times of one run: one Chebyshev recurrence serves them all.
 
-f_j(A) u = sum_k c_jk T_k(B) u: the output times differ only in the coefficients, and the vectors T_k(B) u of the last
+f_j(A) u = sum_k c_jk T_k(B) u. The output times differ only in the coefficients, and the vectors T_k(B) u of the last
 and longest series serve all. For a run in steps the f_j are products of step polynomials, since the steps end at each
 output time: f_j = p(A dt_1)^{n_1} .. p(A dt_j)^{n_j}.
 
@@ -33,9 +33,9 @@ from fracparticles.time.stepping import step
 __all__ = ["Legs", "Snapshots", "exponential_snapshots", "march", "power_snapshots"]
 
 Legs = Sequence[tuple[float, int]]
-"""From one output time to the next: the step, and how many of them."""
+"""The time step and the number of steps from each output time to the next."""
 
-_SAME = 1e-12  # relative: steps that are equal but for round-off
+_SAME = 1e-12  # relative difference of two time steps: less is round-off
 
 
 class Snapshots:
@@ -48,9 +48,9 @@ class Snapshots:
     count : int
         m.
     series_of : callable
-        From i and j the series that leads from output i to output j; output 0 is the start.
+        From i and j to the series that leads from output i to output j; output 0 is the start.
     flow_of : callable
-        From j what leads from output j - 1 to output j.
+        From j to the flow that leads from output j - 1 to output j.
     largest_degree : int, optional
         See `pieces.Flow`.
 
@@ -132,10 +132,7 @@ def exponential_snapshots(
     high: float,
     largest_degree: int | None = None,
 ) -> Snapshots:
-    """Return exp(A t) for each t of `spans`, the times since the start, ascending.
-
-    The spectrum of A lies in [low, high].
-    """
+    """Return exp(A t) for each t of `spans`, the ascending times since the start; the spectrum is in [low, high]."""
     at = (0.0, *spans)
     return Snapshots(
         operator,
@@ -213,7 +210,7 @@ def _powers(polynomial: StepPolynomial, legs: Legs, low: float, high: float) -> 
 
 
 def _merged(legs: Legs) -> list[tuple[float, int]]:
-    """The legs, those of one step counted together."""
+    """The legs, with all steps of one length counted together."""
     merged: list[tuple[float, int]] = []
     for dt, steps in legs:
         same = [k for k, (other, _) in enumerate(merged) if abs(other - dt) <= _SAME * dt]

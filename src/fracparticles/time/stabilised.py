@@ -1,13 +1,14 @@
 """RKC2 with an error-controlled step, for u' = R(t, u), stiff and with a spectrum near the negative real axis.
 
-Sommeijer, Shampine & Verwer, J. Comput. Appl. Math. 88 (1998) 315, Section 3: the step of `time.rkc` with the estimate
+Sommeijer, Shampine & Verwer, J. Comput. Appl. Math. 88 (1998) 315, Section 3. The step of `time.rkc` has the error
+estimate
 
     Est = 0.8 (u_n - u_(n+1)) + 0.4 dt (R_n + R_(n+1)),
 
-and 1 + sqrt(1 + 1.54 dt rho) stages, rho the spectral radius of the Jacobian, from a power iteration with differences
-of R. Time is one more unknown, t' = 1, so that the stages know theirs. What a step may
-have is smaller than there by sqrt(rtol): its error is of third order in dt, that of the run of second, so that this is
-about rtol, whatever the number of steps.
+and 1 + sqrt(1 + 1.54 dt rho) stages. rho is the spectral radius of the Jacobian, from a power iteration with
+differences of R. Time is one more unknown, t' = 1, so that each stage knows its time. The error allowed in a step is
+sqrt(rtol) times that of the paper. The error of a step is of third order in dt, and that of the run of second order;
+with this factor the error of the run is about rtol, whatever the number of steps.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ State = tuple[np.ndarray, np.ndarray]
 
 _MOST_STAGES = 200  # of a step
 _RENEW = 25  # steps after which rho is estimated again
-_SAFETY = 1.2  # by which rho is taken too large
+_SAFETY = 1.2  # factor by which rho is taken too large
 _ITERATIONS = 50  # of the power iteration for rho, at most
-_CONVERGED = 0.01  # of rho: a smaller change ends the iteration
-_SHORTEST = 16.0 * 2.0**-52  # of a step, relative to t
+_CONVERGED = 0.01  # share of rho: a smaller change ends the iteration
+_SHORTEST = 16.0 * 2.0**-52  # the shortest step, relative to t
 
 
 class StabilisedStep:
@@ -55,7 +56,7 @@ class StabilisedStep:
         self.accepted = self.rejected = 0
         self.largest, self._rho = 0.0, 0.0
         self._dt: float | None = None
-        self._before: tuple[float, float] | None = None  # step and error of the last
+        self._before: tuple[float, float] | None = None  # length and error of the last step
         self._mode: np.ndarray | None = None
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
@@ -64,7 +65,7 @@ class StabilisedStep:
         Raises
         ------
         NonFiniteSolution
-            If it grows without bound: the step has shrunk to nothing; says when.
+            If u grows without bound, so that the step shrinks to nothing; the message says when.
         """
         t, end = start, start + span
         r = self._rate(t, u)
@@ -84,7 +85,7 @@ class StabilisedStep:
             if not error <= 1.0:
                 self.rejected += 1
                 dt *= max(0.1, 0.8 * error ** (-1.0 / 3.0)) if np.isfinite(error) else 0.1
-                if since:  # rho is that of another time
+                if since:  # rho was estimated at an earlier time
                     self._look(t, u, r)
                     since = 0
                 continue
@@ -104,7 +105,7 @@ class StabilisedStep:
         self._dt = self._before = None
 
     def _growth(self, dt: float, error: float) -> float:
-        """The next step over this one, of a controller that remembers one step."""
+        """The ratio of the next step to this one, by a controller that remembers one step."""
         factor = 0.8 * error ** (-1.0 / 3.0)
         if self._before is not None:
             last, was = self._before
@@ -123,7 +124,7 @@ class StabilisedStep:
         return float(np.sqrt(np.mean(np.square(what / scale)) / self._rtol))
 
     def _first(self, t: float, u: np.ndarray, r: np.ndarray, span: float) -> float:
-        """A first step whose error is about a tenth of what is allowed, by the change of R over a short one."""
+        """A first step whose error is about a tenth of the tolerance, from the change of R over a short step."""
         dt = min(span, 1.0 / self._rho if self._rho > 0.0 else span)
         with np.errstate(over="ignore", invalid="ignore"):
             change = dt * self._norm(self._rate(t + dt, u + dt * r) - r, t, u)
@@ -142,7 +143,8 @@ def spectral_radius(
 ) -> tuple[float, np.ndarray]:
     """Return an estimate of the largest |lambda| of dR/du at u, R(u) = r, and its eigenvector.
 
-    Power iteration with (R(u + v) - R(u)) / |v|, |v| small against u; from `mode`, or the fastest wave of the lattice.
+    This is a power iteration with (R(u + v) - R(u)) / |v|, |v| small against |u|. It starts from `mode`, or else from
+    the shortest wave of the lattice.
     """
     if mode is None:
         mode = np.where(np.arange(u.size) % 2, -1.0, 1.0) * (1.0 + 0.1 * np.cos(np.arange(u.size)))
@@ -168,7 +170,7 @@ def spectral_radius(
 def _one_step(
     rate: Rate, stages: int, t: float, u: np.ndarray, r: np.ndarray, dt: float
 ) -> np.ndarray:
-    """One step of RKC2 from u, where R is r, with the time as one more unknown."""
+    """One step of RKC2 from u, where R(t, u) = r, with the time as one more unknown."""
     start = np.append(u, t)
 
     def with_time(y: np.ndarray) -> np.ndarray:

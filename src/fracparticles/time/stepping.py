@@ -15,7 +15,7 @@ _CHECK_EVERY = 16  # steps between two looks at the solution
 
 
 def single_pass(operator: Operator, scale: float, shift: float, u: np.ndarray) -> np.ndarray:
-    """Return scale A u + shift u: u + dt A u is the one step of GPSE over the whole time.
+    """Return scale A u + shift u, shape (N,); u + dt A u is the one step of GPSE over the whole time.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What takes steps, and the ones of order 8 by Dormand & Prince, scipy's, for problems that are not stiff."""
+"""The interface of error-controlled steps, and scipy's steps of order 8 by Dormand & Prince, for problems not stiff."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class Steps(Protocol):
     accepted : int
         Steps taken.
     rejected : int or None
-        Steps thrown away; None if nobody counts them.
+        Steps thrown away; None if they are not counted.
     largest : float
-        The largest |lambda| that was seen; 0 if nobody looked.
+        The largest |lambda| that was estimated; 0 if none was.
     """
 
     accepted: int
@@ -39,7 +39,7 @@ class Steps(Protocol):
 
     @property
     def rejected(self) -> int | None:
-        """Of a class an attribute."""
+        """A property, so that the attribute of a class may be an int that is never None."""
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u, shape (N,), at the time `start + span`; raises `NonFiniteSolution` if it blows up."""
@@ -49,7 +49,15 @@ class Steps(Protocol):
 
 
 class EighthOrderStep:
-    """Steps of order 8 with an estimate of their error, in the root mean square of atol + rtol |u|."""
+    """Steps of order 8; the root mean square of their estimated error / (atol + rtol |u|) is at most 1.
+
+    Parameters
+    ----------
+    rate : callable
+        R(t, u).
+    rtol : float
+    atol : float, or function of t and u
+    """
 
     def __init__(self, rate: Rate, rtol: float, atol: Absolute) -> None:
         self._rate, self._rtol, self._atol = rate, rtol, atol
@@ -63,7 +71,7 @@ class EighthOrderStep:
         Raises
         ------
         NonFiniteSolution
-            If it grows without bound: the step has shrunk to nothing; says when.
+            If u grows without bound, so that the step shrinks to nothing; the message says when.
         """
         first = None if self._dt is None else min(self._dt, span)
         tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, start, u)}

@@ -1,9 +1,9 @@
-"""Where a function of time changes suddenly: there a run is cut, so that no step passes over what it does not see.
+"""Where a function of time changes suddenly: a run is cut there, so that no step passes over a change unseen.
 
-An error-controlled step looks at a few times, and what is on only between them does not exist for it. So the function
-is evaluated before the run, at 1025 times that are not equally spaced. Where one of its values changes between two of
-these by a tenth of its range, bisection finds the jump, or where it is steepest. What lasts less than a thousandth of
-the run is not found.
+An error-controlled step evaluates the function at a few times only, and does not see a pulse between them. The function
+is therefore evaluated before the run, at 1025 times that are not equally spaced. Where one of its values changes by a
+tenth of its range from one of these times to the next, bisection finds the jump, or the steepest place. A pulse shorter
+than a thousandth of the run may not be found.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ __all__ = ["LOOKS", "instant", "irregular_times", "sudden_times"]
 
 Look = Callable[[float], np.ndarray]
 
-LOOKS = 1024
-_GOLDEN = 0.6180339887498949  # its multiples make times that are not equally spaced
-_SUDDEN = 0.1  # of the range of a value: a larger change between two looks is sudden
-_NOTICED = 1e-6  # of the greatest value: a smaller range does not count
-_FINEST = 2.0**-36  # of the run
-_MOST = 32  # cuts that are found exactly
-_MOST_CUTS = 256  # where there are more, at looks that are evenly chosen
+LOOKS = 1024  # intervals between two looks at the function
+_GOLDEN = 0.6180339887498949  # golden ratio - 1: the fractions of its multiples spread the times irregularly
+_SUDDEN = 0.1  # share of the range of a value: a larger change between two looks is sudden
+_NOTICED = 1e-6  # share of the greatest value: a smaller range does not count
+_FINEST = 2.0**-36  # share of the run: how closely a sudden change is found
+_MOST = 32  # sudden changes that are found exactly
+_MOST_CUTS = 256  # cuts at evenly chosen looks, if there are more sudden changes
 
 
 def sudden_times(
@@ -40,10 +40,11 @@ def sudden_times(
     look : callable
         The values at one time, shape (P,).
     start, span : float
+        The first time and the duration.
     at_once : callable, optional
-        The values at times of shape (T, 1), shape (T, P).
+        The values, shape (T, P), at times of shape (T, 1); it replaces T calls of `look`.
     looks : int
-        How many intervals are looked at.
+        The number of intervals between two looks.
     """
     times = irregular_times(start, span, looks)
     values = np.array([look(t) for t in times]) if at_once is None else at_once(times[:, None])
@@ -54,7 +55,7 @@ def sudden_times(
     change = np.abs(np.diff(values[:, seen], axis=0)) / scale[seen]
     sudden = np.flatnonzero(change.max(axis=1) > _SUDDEN)
     found: set[float] = set()
-    if sudden.size > _MOST:  # it is quick everywhere
+    if sudden.size > _MOST:  # the function changes quickly everywhere
         found = set(times[sudden[:: -(-sudden.size // _MOST_CUTS)]].tolist())
         sudden = sudden[:0]
     width = instant(start, span)
@@ -65,19 +66,19 @@ def sudden_times(
 
 
 def instant(start: float, span: float) -> float:
-    """Return how closely a sudden change is found: no step need be taken in so short a time."""
+    """Return how closely a sudden change is found, as a time: no step need be so short."""
     return max(_FINEST * span, 64.0 * float(np.spacing(abs(start) + span)))
 
 
 def irregular_times(start: float, span: float, looks: int = LOOKS) -> np.ndarray:
-    """Return times that are not equally spaced, and with both ends, shape (looks + 1,)."""
+    """Return times that are not equally spaced, both ends among them, shape (looks + 1,)."""
     k = np.arange(1.0, looks)
     within = (k + 0.5 * (k * _GOLDEN % 1.0)) / looks
     return start + span * np.concatenate([[0.0], within, [1.0]])
 
 
 def _narrowed(look: Look, one: int, low: float, high: float, width: float) -> tuple[float, float]:
-    """Where between two times one of the values changes most, as closely as is asked for."""
+    """Return two times, at most `width` apart, between which one of the values changes most."""
     at_low, at_high = look(low)[one], look(high)[one]
     while high - low > width:
         middle = 0.5 * (low + high)

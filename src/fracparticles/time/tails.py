@@ -1,18 +1,20 @@
-"""The tails of a run on the whole space, see `whole_space`: by powers, before and after, and their images.
+"""The tails of a run on the whole space, see `whole_space`: as powers before and after the run, and their images.
 
-Beyond the lattice u falls like powers, each with its dependence on the direction, see `multipoles`,
+Beyond the lattice u falls like powers of |x|. Each depends on the direction in its own way, see `multipoles`:
 
     u ~ sum_j sum_H b_jH H(-grad) |x|^(-n-gamma_j),    gamma_j of alpha, 2 alpha, .., 2 + alpha, ..,
 
-which meet the data at some points near the ends. The tail of the result follows from the data: H(-grad) |x|^(-n-gamma)
-comes from (-i)^l H(k) |k|^gamma / kappa in u^, and near k = 0, with the finite parts m_Hq of the moments,
+The b_jH are fitted to the data at some points near the ends. The tail of the result follows from the data: the
+transform of H(-grad) |x|^(-n-gamma) is (-i)^l H(k) |k|^gamma / kappa, and near k = 0, with the finite parts m_Hq of the
+moments,
 
     u^(k, 0) = sum_H (-i)^l H(k) (sum_q m_Hq |k|^(2q) + sum_j b_jH |k|^gamma_j / kappa_j),
 
-which exp(-D t |k|^alpha) multiplies term by term.
+The run multiplies each term by exp(-D t |k|^alpha).
 
-1 / kappa has poles at the even gamma, where it magnifies the round-off of the b_j. Of the gamma_j that are nearly even
-only alpha itself is kept, where all are, as alpha nears 2: what is left out vanishes with the distance.
+1 / kappa has poles at the even gamma, and near them it magnifies the round-off of the b_j. Of the gamma_j that are
+nearly even only alpha itself is kept; as alpha nears 2, all of them are. The amplitude of a term that is left out is
+proportional to the distance of its gamma_j from the even number.
 """
 
 from __future__ import annotations
@@ -42,22 +44,22 @@ from fracparticles.time.multipoles import (
 
 __all__ = ["Tails"]
 
-_FOR_BLAS = 8192  # products of two numbers, below which it takes one thread
-_MOMENTS = {1: 5, 2: 4, 3: 2}  # the highest, by dimension
+_FOR_BLAS = 8192  # multiplications of a product of matrices: up to so many, BLAS uses one thread
+_MOMENTS = {1: 5, 2: 4, 3: 2}  # the degree of the highest moment, by dimension
 
 
 class Tails:
     """The tails of the data and of the result, and their images; the period is the unit of length.
 
-    The images are polynomials, whose coefficients are linear in a few numbers: the b of the data's own tail, and the
+    The images are polynomials. Their coefficients are linear in a few `numbers`: the b of the tail of the data, and the
     moments of the data, see `multipoles`.
 
     Parameters
     ----------
     inside : tuple of slices
-        The lattice in the circle, an axis each; the powers start at the middle of the circle.
+        The lattice in the circle, one slice for each axis; the powers start at the middle of the circle.
     shown : tuple of slices
-        The points of the circle at which the result is wanted, an axis each.
+        The points of the circle at which the result is wanted, one slice for each axis.
     length : int
         The points of the circle along each axis.
     alpha : float
@@ -67,7 +69,7 @@ class Tails:
     before, after : arrays
         The gamma of the data and of the result.
     moved : sequence of float, optional
-        The result is wanted so many spacings on, along each axis.
+        The displacement of the places where the result is wanted, in spacings along each axis.
     outer : bool
         See `Meeting`.
     """
@@ -87,7 +89,7 @@ class Tails:
         dim = len(inside)
         self._dim, self._length, self._inside = dim, length, inside
         self._x = (np.arange(length) - length // 2) * (1.0 / length)
-        # What is odd in a coordinate vanishes where the circle closes, half way between x = -1/2 and its image at 1/2.
+        # An odd function of a coordinate vanishes where the circle closes, at x = -1/2, which is also x = 1/2.
         self._odd = np.where(self._x == -0.5, 0.0, self._x)
         self._before, self._after = terms_of(before, dim), terms_of(after, dim)
         self.meeting = Meeting(self._before, self._x, self._odd, inside, outer)
@@ -120,9 +122,9 @@ class Tails:
         )
 
     def _quadrant(self) -> dict[Monomial, tuple[list[int], np.ndarray]]:
-        """Return each H(-grad) |x|^(-n-gamma) where no coordinate is negative, by the coordinates in which H is odd.
+        """Return the H(-grad) |x|^(-n-gamma) where no coordinate is negative, by the coordinates in which H is odd.
 
-        Each with the rows of the terms and an array of shape (terms, L // 2 + 1, ..). At the origin it is finite.
+        Each value holds the rows of the terms and an array of shape (terms, L // 2 + 1, ..), finite at the origin too.
         """
         half = np.abs(self._x[self._length // 2 :: -1]), np.abs(self._odd[self._length // 2 :: -1])
         x, odd = (np.array(np.meshgrid(*(one,) * self._dim, indexing="ij")) for one in half)
@@ -136,9 +138,9 @@ class Tails:
         }
 
     def _beyond_the_circle(self) -> np.ndarray:
-        """What the moments lack there of each term of the tail, shape (moments, terms)."""
+        """The part of each moment that each term of the tail has beyond the circle, shape (moments, terms)."""
         degrees = [
-            # What is odd vanishes, where its finite part may have no meaning.
+            # The integral of an odd function vanishes, also where its finite part has no meaning: any degree but -n.
             [m.degree + 2 * q - self._dim - g - h.degree if m.parity == h.parity else 0.0
              for h, g in self._before] for m, q in self._moments
         ]  # fmt: skip
@@ -150,7 +152,7 @@ class Tails:
         return outside_integrals(products, np.array(degrees), self._dim)
 
     def _flow(self, known: np.ndarray, alpha: float, time: float) -> np.ndarray:
-        """Return the matrix from the numbers to the b of the result: exp(-t |k|^alpha) times the expansion at k = 0."""
+        """Return the matrix from the numbers to the b of the result, from exp(-t |k|^alpha) times u^ near k = 0."""
         scaled = 1.0 / power_transform(np.array([g for _, g in self._before]), self._dim)
         found = np.zeros((len(self._after), known.shape[1]))
         for row, (harmonic, exponent) in enumerate(self._after):
@@ -165,7 +167,7 @@ class Tails:
         return found
 
     def _basis(self, where: slice, by: float) -> tuple[np.ndarray, np.ndarray]:
-        """The polynomials of the images along an axis, the even ones and x times these."""
+        """The polynomials of the images along an axis: the even ones, and x times the even ones."""
         even = square_basis(self._x[where] + by, self._dim)
         return even, (self._odd[where] + by) * even
 
@@ -181,10 +183,11 @@ class Tails:
     def complete(
         self, u: np.ndarray, tail: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the data, shape (data, N, .., N), continued on the circle, and their images added.
+        """Continue data of shape (data, N, .., N) on the circle.
 
-        Then the images of the result where it is shown, and the numbers that they depend on. With the `tail` of the
-        data, as `result` has it, nothing is fitted.
+        Return three arrays: the continued data with their images added, the images of the result where it is shown, and
+        the numbers on which both depend. If the b of the data are given as `tail`, in the units of `result` with
+        wider = 1, nothing is fitted.
         """
         scale = float(self._length) ** -self._falls(self._before)
         tail = self.meeting.fitted(u) if tail is None else tail * scale
@@ -195,7 +198,7 @@ class Tails:
         return whole, self._sum(numbers, self._series[1], self._shown), numbers
 
     def _continued(self, tail: np.ndarray) -> np.ndarray:
-        """Return the tail on the circle: from one quadrant, by what is even and what is odd in each coordinate."""
+        """Return the tail on the circle: one quadrant is computed, and the others follow from the parity of each H."""
         whole = np.empty((len(tail), *(self._length,) * self._dim))
         if not self._powers:
             whole[...] = 0.0
@@ -223,7 +226,7 @@ class Tails:
         return u.reshape(len(u), len(self._of_monomials)) @ self._of_monomials
 
     def result(self, numbers: np.ndarray, wider: int) -> np.ndarray:
-        """Return the b of the result, shape (data, terms), in units of so many spacings."""
+        """Return the b of the result, shape (data, terms), for lengths in units of `wider` spacings."""
         return numbers @ self._result.T * (self._length / wider) ** self._falls(self._after)
 
     def _falls(self, terms: Terms) -> np.ndarray:
@@ -257,13 +260,13 @@ class Tails:
 
 
 def _part(basis: tuple[np.ndarray, np.ndarray], where: slice) -> tuple[np.ndarray, np.ndarray]:
-    """The same polynomials at some of the points, in arrays of their own: sums over others are rounded otherwise."""
+    """The polynomials at some of the points, in contiguous arrays: sums over strided arrays are rounded differently."""
     even, odd = basis
     return np.ascontiguousarray(even[:, where]), np.ascontiguousarray(odd[:, where])
 
 
 def _power(start: float, exponent: float, alpha: float, time: float) -> float:
-    """What exp(-t |k|^alpha) |k|^start has of |k|^exponent."""
+    """The coefficient of |k|^exponent in the series of exp(-t |k|^alpha) |k|^start."""
     j = round((exponent - start) / alpha)
     if j < 0 or abs(start + j * alpha - exponent) >= SAME:
         return 0.0
@@ -271,9 +274,9 @@ def _power(start: float, exponent: float, alpha: float, time: float) -> float:
 
 
 def _along(series: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Sum over the first axis after the data, whose place on the lattice becomes the last.
+    """Sum over the first axis after the data; the places along the lattice become the last axis.
 
-    Only small sums are left to BLAS, which rounds otherwise for another number of threads.
+    Only small sums are left to BLAS: the rounding of large ones depends on the number of threads.
     """
     if series.ndim == 2 and series.size * basis.shape[1] <= _FOR_BLAS:
         return np.asarray(series @ basis)
