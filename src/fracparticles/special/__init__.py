@@ -1,4 +1,4 @@
-"""Special functions of the study: stable densities and confluent hypergeometric functions."""
+"""Special functions: stable densities and confluent hypergeometric functions."""
 
 from __future__ import annotations
 

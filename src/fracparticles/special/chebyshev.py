@@ -16,7 +16,7 @@ from fracparticles._compiled import njit
 
 __all__ = ["DEGREE", "fit", "horner", "sample_points"]
 
-DEGREE = 17
+DEGREE = 17  # of the polynomial on each piece: 8^-18 is below round-off
 
 _POINTS = chebyshev.chebpts1(DEGREE + 1)
 # Chebyshev coefficients from samples (discrete orthogonality at the points), then powers of t.
@@ -33,7 +33,7 @@ def sample_points(width: float, pieces: int) -> NDArray[np.float64]:
 
 
 def fit(samples: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the power coefficients, lowest first, from samples at `sample_points`."""
+    """Return the coefficients of the powers of t, lowest first, from samples at `sample_points`; both shaped alike."""
     return np.ascontiguousarray((samples @ _TO_CHEBYSHEV.T) @ _TO_POWERS.T)
 
 

@@ -2,11 +2,11 @@
 
     Phi_n(x) = (1/pi) (2 pi x^2)^(-(n-1)/2) Re int_Gamma p_n(-i k x) exp(i k x - k^alpha) dk,
 
-Gamma from 0 to infinity, p_1 = 1, p_3(z) = z, p_5(z) = z + z^2 (from Phi_(n+2) = -Phi_n'/(2 pi x)).
+with Gamma from 0 to infinity, p_1 = 1, p_3(z) = z, p_5(z) = z + z^2 (from Phi_(n+2) = -Phi_n'/(2 pi x)).
 
 On the real axis the integrand oscillates, and in the tail its parts cancel to all digits. Close to
-the path of steepest descent they do not. That path leaves 0 along the imaginary axis and turns
-towards the right at a saddle point; two straight pieces follow it closely enough:
+the path of steepest descent its parts do not cancel. This path leaves 0 along the imaginary axis and
+turns towards the right at a saddle point; two straight pieces follow it closely enough:
 
 1. k = i s, 0 < s < s0. There the real part of the integrand is
    exp(-s x - s^alpha cos(pi alpha/2)) sin(s^alpha sin(pi alpha/2)), positive up to a phase of pi:
@@ -18,8 +18,8 @@ towards the right at a saddle point; two straight pieces follow it closely enoug
 The corner s0 is the saddle point of the modulus on the imaginary axis,
 x = alpha s^(alpha-1) sin(pi (alpha-1)/2), unless the phase of piece 1 reaches 3/2 before. Nearly all parts of the sum
 on each piece are positive, so the result is accurate for every alpha in (1, 2), in the core, in the tail and in the
-sharp transition between them near alpha = 2: for n = 1 the sum of the moduli exceeds the result by at most 5 %. On
-piece 1, z = -i k x = s x is positive and so is p_n; on piece 2, p_5 makes parts cancel near x = 1/2 and alpha = 2, to
+sharp transition between them near alpha = 2. For n = 1 the sum of the moduli exceeds the result by at most 5 %. On
+piece 1, z = -i k x = s x is positive and so is p_n. On piece 2, p_5 makes parts cancel near x = 1/2 and alpha = 2, to
 1/20 of their size.
 
 The mass beyond x follows from the same nodes, as the integral of exp(i k y) over y > x is
@@ -45,13 +45,13 @@ from fracparticles.arguments import FloatArray
 
 __all__ = ["density_and_tail"]
 
-_PHASE = 1.5  # of piece 1 at its end, at most
-_LARGEST_TURN = 0.25 * math.pi  # phi alpha, at most
-_SMALLEST_FALL = 1e-8  # relative; far above rounding errors, met for alpha -> 2 only
+_PHASE = 1.5  # rad: the largest phase of piece 1 at its end
+_LARGEST_TURN = 0.25 * math.pi  # rad: the largest phi alpha
+_SMALLEST_FALL = 1e-8  # of `fall` over x: far above rounding errors, met for alpha -> 2 only
 
 
 def _finite_rule(step: float, reach: float) -> tuple[FloatArray, FloatArray]:
-    """Tanh-sinh rule on (0, 1)."""
+    """Nodes and weights of the tanh-sinh rule on (0, 1)."""
     y = np.arange(-reach, reach + 0.5 * step, step)
     node = 1.0 / (1.0 + np.exp(-math.pi * np.sinh(y)))
     other = 1.0 / (1.0 + np.exp(math.pi * np.sinh(y)))
@@ -59,7 +59,7 @@ def _finite_rule(step: float, reach: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _infinite_rule(step: float, lowest: float, highest: float) -> tuple[FloatArray, FloatArray]:
-    """Double exponential rule on (0, infinity) for integrands that decay like exp(-t)."""
+    """Nodes and weights of the double exponential rule on (0, infinity) for integrands that decay like exp(-t)."""
     y = np.arange(lowest, highest + 0.5 * step, step)
     node = np.exp(y - np.exp(-y))
     return node, step * (1.0 + np.exp(-y)) * node
@@ -88,7 +88,7 @@ def _contour(middle: FloatArray, alpha: float) -> tuple[NDArray[Any], ...]:
     slope = alpha * corner ** (alpha - 1.0)
     fall = slope * sine  # -Re of the derivative of the exponent at the corner
     turn = np.maximum(middle - slope * rise, 0.0)  # its imaginary part, 0 at the saddle point
-    # At the saddle rounding errors must not turn the path.
+    # At the saddle both parts are nearly zero: rounding errors must not turn the path.
     turn[fall < _SMALLEST_FALL * middle] = 0.0
     angle = np.minimum(np.arctan2(turn, fall), _LARGEST_TURN / alpha)
     direction = np.exp(1j * angle) / np.maximum(np.hypot(fall, turn), 1.0)

@@ -28,11 +28,11 @@ from fracparticles.special import chebyshev
 
 __all__ = ["WIDTH", "kummer", "kummer_order_four", "kummer_transformed", "poisson_weights"]
 
-_FAR = 64.0  # beyond, the asymptotic series falls to 1e-17 before it diverges, in at most 40 terms
-WIDTH = 2.0
+_FAR = 64.0  # z from which the asymptotic series falls to 1e-17 before it diverges, in at most 40 terms
+WIDTH = 2.0  # of a piece of the table, in z
 _PIECES = int(_FAR / WIDTH)
-_TERMS = 40
-_WEIGHTS = 260  # p_k(80) < 1e-50 beyond
+_TERMS = 40  # of the asymptotic series
+_WEIGHTS = 260  # terms k of the near series: p_k(80) < 1e-50 for greater k
 
 
 class _Table(NamedTuple):

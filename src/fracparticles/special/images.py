@@ -32,10 +32,14 @@ __all__ = [
     "square_basis",
 ]
 
-_DEGREES = {1: 9, 2: 6, 3: 5}  # in the squares, by dimension: the error falls by 14 each
+_DEGREES = {
+    1: 9,
+    2: 6,
+    3: 5,
+}  # of the polynomials in each square, by dimension: each degree divides the error by 14
 _SHELLS = 2  # of images and of waves in Ewald's sums: exp(-pi 2.5^2) = 3e-9 is left out
 _NODES = 16  # of the integrals over a face, along each of its axes
-_TAYLOR = 24  # terms on the line: at |x| = 1/2 they fall by 4 each
+_TAYLOR = 24  # terms of Taylor's series on the line: at |x| = 1/2 each divides the error by 4
 
 
 def power_transform(exponent: np.ndarray, dim: int) -> np.ndarray:
@@ -50,16 +54,16 @@ def power_transform(exponent: np.ndarray, dim: int) -> np.ndarray:
 def outside_integrals(
     functions: Callable[[np.ndarray], np.ndarray], degrees: np.ndarray, dim: int
 ) -> np.ndarray:
-    """Return the integrals of homogeneous functions outside the cube |x|_inf < 1/2, finite parts where they diverge.
+    """Return the integrals of homogeneous functions outside the cube |x|_inf < 1/2, or their finite parts.
 
-    By the divergence theorem -1 / (n + degree) times that of f x.n over the faces.
+    By the divergence theorem each is -1 / (n + degree) times the integral of f x.nu over the faces, nu their normal.
 
     Parameters
     ----------
     functions : callable
         From points, shape (n, points), to the values there, shape (.., points).
-    degrees : array
-        Those of the functions, of the shape (..), none of them -n.
+    degrees : array, shape (..)
+        The degrees of the functions, none of them -n.
     dim : int
         n.
     """
@@ -76,7 +80,7 @@ def outside_integrals(
 
 
 def image_sum(x: np.ndarray, exponent: float) -> np.ndarray:
-    """Return S at the points x, shape (..., n), |x|_inf <= 1/2; to round-off on the line, to 1e-8 beyond."""
+    """Return S at the points x, shape (..., n), |x|_inf <= 1/2; to round-off on the line, to 1e-8 for n = 2 and 3."""
     x = np.asarray(x, dtype=float)
     dim = x.shape[-1]
     if dim == 1:
@@ -116,14 +120,13 @@ def square_basis(x: np.ndarray, dim: int) -> np.ndarray:
 
 @lru_cache(maxsize=4)
 def series_derivatives(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the matrices of d/dx from sum c_j T_j(s), s = 8 x^2 - 1, to x times such a sum, and from that back.
+    """Return the matrices of d/dx from sum c_j T_j(s), s = 8 x^2 - 1, to x times such a sum, and from this to a sum.
 
     d/dx f(s) = x 16 f'(s), and d/dx x g(s) = g + 2 (s + 1) g'.
     """
     to, of = np.indices((count, count))
-    slope = np.where(
-        (of > to) & (of + to) % 2, 2.0 * of, 0.0
-    )  # T_j' = 2 j (T_{j-1} + T_{j-3} + ..)
+    # T_j' = 2 j (T_{j-1} + T_{j-3} + ..)
+    slope = np.where((of > to) & (of + to) % 2, 2.0 * of, 0.0)
     slope[0] *= 0.5
     times_s = 0.5 * (np.eye(count, k=1) + np.eye(count, k=-1))
     times_s[1:2, 0] = 1.0
@@ -141,7 +144,7 @@ def image_series(exponents: np.ndarray, dim: int) -> np.ndarray:
         return np.zeros((0, *(_DEGREES[dim] + 1,) * dim))
     if dim > 1:
         return np.array([_box_series(float(exponent), dim) for exponent in exponents])
-    # Taylor's series, 2 sum_i zeta(s + 2 i) (s)_{2 i} / (2 i)! x^(2 i), its powers as polynomials of Chebyshev.
+    # Taylor's series, 2 sum_i zeta(s + 2 i) (s)_{2 i} / (2 i)! x^(2 i), with its powers written in the T_j.
     s, even = 1.0 + np.asarray(exponents, dtype=float)[:, None], 2.0 * np.arange(_TAYLOR)
     ratios = (s + even - 1.0) * (s + even - 2.0) / np.maximum(even * (even - 1.0), 1.0)
     ratios[:, 0] = 2.0
@@ -169,9 +172,8 @@ def _box_series(exponent: float, dim: int) -> np.ndarray:
     count = _DEGREES[dim] + 1
     angle = (np.arange(count) + 0.5) * (np.pi / count)
     nodes = np.sqrt(0.125 * (np.cos(angle) + 1.0))
-    index = np.sort(
-        np.indices((count,) * dim).reshape(dim, -1), axis=0
-    )  # S is the same in any order of the axes
+    # S is the same in any order of the axes: it is summed once for each.
+    index = np.sort(np.indices((count,) * dim).reshape(dim, -1), axis=0)
     distinct, place = np.unique(index, axis=1, return_inverse=True)
     values = image_sum(nodes[distinct.T], exponent)[place].reshape((count,) * dim)
     for _ in range(dim):

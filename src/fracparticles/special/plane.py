@@ -1,6 +1,6 @@
 """The fundamental solution in the plane, Eq. (58), computed in three other ways, and the mass outside a square.
 
-`stable` evaluates it for every dimension; these functions are independent of that.
+`stable` evaluates the solution for every dimension. The first three functions here do not depend on it.
 """
 
 from __future__ import annotations
@@ -24,16 +24,17 @@ __all__ = [
 ]
 
 _NODES = 800  # of the quadrature: 4 for each period of J_0(r omega) at r = 100
-_LAST_EXPONENT = 45.0  # exp(-omega^alpha) is zero beyond
-_OCTANT_NODES = 32  # smooth integrands of the angle
+_LAST_EXPONENT = 45.0  # the largest omega^alpha: exp(-45) is 3e-20
+_OCTANT_NODES = 32  # of the integrals over the angle, whose integrands are smooth
 
 
 def planar_integral(r: ArrayLike, alpha: float, power: float = 0.0) -> FloatArray:
     """Return (1/2 pi) int_0^inf omega^(1 + power) exp(-omega^alpha) J_0(r omega) domega: (58) for power 0.
 
-    Gauss-Legendre in s, omega = s^2, which makes the integrand smooth at 0; exact to round-off for r <= 100.
+    The Gauss-Legendre rule in s, omega = s^2, since this makes the integrand smooth at 0; exact to round-off for
+    r <= 100. The result has the shape of r.
     """
-    # Of so many nodes scipy's rule is quicker than one by the eigenvalues of a matrix.
+    # For so many nodes scipy's rule is quicker than one from the eigenvalues of a matrix.
     x, weight = roots_legendre(_NODES)
     last = _LAST_EXPONENT ** (0.5 / alpha)
     s, weight = 0.5 * last * (1.0 + x), 0.5 * last * weight
@@ -65,7 +66,7 @@ def planar_asymptotic(r: ArrayLike, alpha: float, terms: int) -> FloatArray:
 def square_tail_mass(half_width: float, t: float, alpha: float) -> float:
     """Return the mass of G(., t) outside the square |x|, |y| <= D.
 
-    (4 / pi) int_0^(pi/4) T(D / cos phi) dphi, T(r) the mass outside the disk of radius r.
+    It is (4 / pi) int_0^(pi/4) T(D / cos phi) dphi, with T(r) the mass outside the disk of radius r.
     """
     phi, weight = gauss_legendre(_OCTANT_NODES, 0.0, 0.25 * pi)
     return float(4.0 / pi * weight @ tail_mass(half_width / np.cos(phi), t, alpha, 2))
@@ -74,9 +75,10 @@ def square_tail_mass(half_width: float, t: float, alpha: float) -> float:
 def square_exchange_error(half_width: float, alpha: float, time: float) -> float:
     """Return the relative error that truncation to |x|, |y| <= D causes in KPSE and GPSE.
 
-    time int c |y|^(-2-alpha) dy over the outside of the square, with c of (4) for n = 2,
-    c = alpha 2^(alpha-1) Gamma(1 + alpha/2) / (pi Gamma(1 - alpha/2)): the strength that each particle near the
+    It is time int c |y|^(-2-alpha) dy over the outside of the square, with c of (4) for n = 2,
+    c = alpha 2^(alpha-1) Gamma(1 + alpha/2) / (pi Gamma(1 - alpha/2)). This is the strength that each particle near the
     origin keeps instead of giving it to places without particles. For n = 1 see `tails.exchange_truncation_error`.
+    `time` is the time of the run times the diffusivity.
     """
     c = alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + 0.5 * alpha) / (pi * gamma(1.0 - 0.5 * alpha))
     phi, weight = gauss_legendre(_OCTANT_NODES, 0.0, 0.25 * pi)

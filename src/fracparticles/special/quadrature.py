@@ -14,7 +14,7 @@ __all__ = ["gauss_jacobi", "gauss_legendre"]
 def gauss_legendre(
     count: int, low: float = -1.0, high: float = 1.0
 ) -> tuple[FloatArray, FloatArray]:
-    """Return nodes and weights on (low, high), exact for polynomials of degree 2 count - 1."""
+    """Return nodes and weights on (low, high), shape (count,) each, exact for polynomials of degree 2 count - 1."""
     x, w = _legendre(count)
     return 0.5 * (low + high) + 0.5 * (high - low) * x, 0.5 * (high - low) * w
 
@@ -32,7 +32,7 @@ def gauss_jacobi(count: int, power: float) -> tuple[FloatArray, FloatArray]:
         p_{k+1} = (v - a_k) p_k - b_k p_{k-1},   a_k = (1 + q^2 / ((2k+q) (2k+q+2))) / 2,
         b_k = (k (k+q) / (2k+q))^2 / ((2k+q)^2 - 1),   q = power.
 
-    The nodes are eigenvalues of the Jacobi matrix (Golub & Welsch 1969). These are numpy's: scipy's rule imports
+    The nodes are eigenvalues of the Jacobi matrix (Golub & Welsch 1969). numpy computes them: scipy's rule imports
     scipy's linear algebra, which takes longer than a whole run.
 
     Parameters
@@ -46,5 +46,6 @@ def gauss_jacobi(count: int, power: float) -> tuple[FloatArray, FloatArray]:
     diagonal = 0.5 * (1.0 + power**2 / ((2.0 * k + power) * (2.0 * k + power + 2.0)))
     middle = 2.0 * k[1:] + power
     beside = k[1:] * (k[1:] + power) / middle / np.sqrt(middle**2 - 1.0)
-    nodes, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, -1))  # of the lower half
+    # eigh reads the lower half of the matrix only.
+    nodes, vectors = np.linalg.eigh(np.diag(diagonal) + np.diag(beside, -1))
     return nodes, vectors[0] ** 2 / (1.0 + power)

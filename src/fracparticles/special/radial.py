@@ -1,4 +1,4 @@
-"""The reduced Green function in n dimensions: tables made once for each alpha, fast to evaluate.
+"""The reduced Green function in n dimensions, from tables that are made once for each alpha.
 
     Phi_{n,alpha}(r) = (2 pi)^-n int exp(i k.x - |k|^alpha) dk,    r = |x|,    1 < alpha < 2;
 
@@ -33,23 +33,23 @@ from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = ["RadialTable", "density", "mass", "radial_table", "tail_sine"]
 
-_WIDTH = 0.5  # of a piece; the series serves the first one
-_SERIES_TERMS = 28  # and 2 n more: r^(2k) k^((n-1)/2) has fallen to 1e-18 at r = 1/2
-_FAR_TERMS = 30
-_NEGLIGIBLE = 1e-17
-_MOSTLY_OUTSIDE = 0.75  # share of the mass above which the mass inside is tabulated
-_STEP = 0.125  # of the trapezoidal rule in `_project`
-_BLOCK = 16  # of its nodes at a time
+_WIDTH = 0.5  # of a piece, in r; the series in r^2 serves the first piece
+_SERIES_TERMS = 28  # of it, and 2 n more: r^(2k) k^((n-1)/2) has fallen to 1e-18 at r = 1/2
+_FAR_TERMS = 30  # of the asymptotic series
+_NEGLIGIBLE = 1e-17  # share of a sum below which a term no longer counts
+_MOSTLY_OUTSIDE = 0.75  # share of the mass outside above which the mass inside is tabulated
+_STEP = 0.125  # of the trapezoidal rule in `_project`, in v
+_BLOCK = 16  # nodes of this rule that are added at a time
 # Surface S_n of the unit sphere in n dimensions.
 _SURFACE = (math.nan, 2.0, 2.0 * math.pi, 4.0 * math.pi, 2.0 * math.pi**2, 8.0 / 3.0 * math.pi**2)
-_NODES, _WEIGHTS = gauss_legendre(24)
+_NODES, _WEIGHTS = gauss_legendre(24)  # of the mass inside
 
 
 class RadialTable(NamedTuple):
     """Coefficients for one alpha and n.
 
-    `mass` is the mass inside the ball, divided by r^n, on the first `inside_pieces` pieces and the
-    mass outside it on the others.
+    `mass` holds the mass inside the ball, divided by r^n, on the first `inside_pieces` pieces. On the other pieces it
+    holds the mass outside the ball.
     """
 
     density: FloatArray
@@ -95,7 +95,7 @@ def _far_terms(alpha: float, n: int) -> tuple[FloatArray, FloatArray]:
     ratio = gamma(0.5 * (alpha * m + n)) / gamma(0.5 * (alpha * m + 1.0))
     growth = gamma(1.0 + alpha * m) / gamma(m + 1.0) * (ratio / math.pi ** (0.5 * (n - 1)))
     sine = tail_sine(alpha, m)
-    # Where the sine of one m happens to vanish, that says nothing of the terms that follow.
+    # The sine is bounded, not used: it may vanish for one m although the terms that follow do not.
     bound = growth * np.minimum(1.0, 0.5 * math.pi * (2.0 - alpha) * m) / (growth[0] * sine[0])
     return growth * sine / math.pi, bound
 
@@ -103,12 +103,12 @@ def _far_terms(alpha: float, n: int) -> tuple[FloatArray, FloatArray]:
 def _pieces_before_far(alpha: float, n: int, first: float, bound: FloatArray) -> int:
     """Count the pieces up to the point where the tail's series is exact to 1e-17.
 
-    There its last term is below 1e-17 of its first, and so is one of two bounds of what the series
-    lacks: the contribution of the saddle point k = i s of exp(i k r - k^alpha), for alpha near 2
-    the Gaussian exp(-r^2/4), in n dimensions times (s / (2 pi r))^((n-1)/2); or the last term times
-    sin(pi / (2 alpha))^-(alpha m + n), the integral of |k^(alpha m) / m! exp(i k r)| along the ray on
-    which k^alpha is imaginary. The second is for alpha above 3/2 and next to it, where the saddle
-    comes to be of the size of a wave, and has no part in Phi_n.
+    There its last term is below 1e-17 of its first. So is one of two bounds of the part that the series lacks. The one
+    bound is the contribution of the saddle point k = i s of exp(i k r - k^alpha), for alpha near 2 the Gaussian
+    exp(-r^2/4), in n dimensions times (s / (2 pi r))^((n-1)/2). The other is the last term times
+    sin(pi / (2 alpha))^-(alpha m + n), the integral of |k^(alpha m) / m! exp(i k r)| along the ray on which k^alpha is
+    imaginary. It serves alpha above 3/2 and next to it, where the saddle comes to be of the size of a wave, and has no
+    part in Phi_n.
     """
     pieces = 2
     power = alpha / (alpha - 1.0)

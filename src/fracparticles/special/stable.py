@@ -2,12 +2,12 @@
 
     G(x, t) = t^(-n/alpha) Phi_{n,alpha}(|x| t^(-1/alpha)),        1 < alpha < 2,
 
-(36) for n = 1, where Phi_1 = L_alpha^0 is the symmetric stable density of Appendix A of Lucchesi et
-al. (2020); (57), (58) for n = 2. `fracparticles.special.radial` evaluates Phi_n; here are the
+This is (36) for n = 1, where Phi_1 = L_alpha^0 is the symmetric stable density of Appendix A of Lucchesi et
+al. (2020), and (57), (58) for n = 2. `fracparticles.special.radial` evaluates Phi_n; here are the
 functions of x and t, and the partial sums (A.1), (A.2) that the paper's figures show.
 
-Where |x| t^(-1/alpha) > 1e20 the first term of (A.2) is all, G = c t |x|^(-n-alpha), and is evaluated as that: there
-Phi_n may vanish in float64 although G does not.
+Where |x| t^(-1/alpha) > 1e20 only the first term of (A.2) counts, G = c t |x|^(-n-alpha). It is evaluated directly,
+since Phi_n may vanish in float64 there although G does not.
 
 All functions except the masses take signed positions: G and its rate are even functions of x, its slope and its
 flux are odd. For n > 1, x is the radius, or a position on an axis.
@@ -44,7 +44,7 @@ __all__ = [
 ]
 
 
-_FAR = 1e20  # r; the second term of (A.2) is below 1e-20 of the first
+_FAR = 1e20  # r from which the second term of (A.2) is below 1e-20 of the first
 
 
 # --- partial sums of Appendix A -------------------------------------------------------------------
@@ -126,7 +126,7 @@ def _finite(t: float, value: FloatArray | float) -> FloatArray | float:
 
 
 def _scaled(x: Any, scale: float) -> FloatArray:
-    """Return x t^(-1/alpha); what overflows is in the far field, where the functions vanish."""
+    """Return x t^(-1/alpha); it may be infinite in the far field, where the functions vanish."""
     with np.errstate(over="ignore"):
         return check.real_array("x", x) * scale
 
@@ -139,14 +139,14 @@ def _product(x: FloatArray, value: FloatArray | float) -> FloatArray:
 def _or_tail(
     value: FloatArray | float, x: FloatArray, scale: float, alpha: float, factor: Any, n: int
 ) -> FloatArray | float:
-    """Return the value, where |x| scale is far factor |x|^(-n-alpha)."""
+    """Return the value, or factor |x|^(-n-alpha) where |x| scale is in the far field."""
     size = np.abs(x)
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         far = size * scale > _FAR
         if not far.any():
             return value
         tail, root = factor, size ** (-0.5 * alpha)
-        for one in (root, root, *n * [1.0 / size]):  # their product alone may not be a number
+        for one in (root, root, *n * [1.0 / size]):  # one by one: their product alone may underflow
             tail = tail * one
     return np.where(far, tail, value)
 
@@ -157,7 +157,7 @@ def _first_term(alpha: float, n: int) -> float:
 
 
 def _times_power(scale: float, n: int, value: FloatArray | float) -> FloatArray | float:
-    """Return scale^n value; scale^n alone may overflow. What overflows all the same is infinite."""
+    """Return scale^n value, although scale^n alone may overflow; infinite where the product overflows."""
     with np.errstate(over="ignore"):
         for _ in range(n):
             value = scale * np.asarray(value)
@@ -169,8 +169,8 @@ def reduced_green(x: Any, alpha: float, dim: int = 1) -> FloatArray | float:
 
     Phi_{n,alpha}(r) = (2 pi)^-n int exp(i k.x - |k|^alpha) dk
 
-    Parameters and errors as for `green`; infinities give 0. Relative accuracy better than 1e-13 for every x and alpha.
-    The first call for each alpha takes a few milliseconds longer.
+    Parameters and errors as for `green`; it is 0 at infinite x. Relative accuracy better than 1e-13 for every x and
+    alpha. The first call for each alpha takes a few milliseconds longer.
     """
     return _reduced(check.real_array("x", x), check.fractional_order(alpha), check.dimension(dim))
 
@@ -224,13 +224,13 @@ def green_slope(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | fl
 def green_flux(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | float:
     """Return the radial component of the fractional flux (2) of the fundamental solution.
 
-    Q = -grad^beta G = (r G / (alpha t)) e_r: by self-similarity this is the flux, regular at 0, of
-    which the divergence is -dG/dt. Parameters, errors and accuracy as for `green`; an odd function of x.
+    Q = -grad^beta G = (r G / (alpha t)) e_r: by self-similarity this is the flux that is regular at 0 and
+    has the divergence -dG/dt. Parameters, errors and accuracy as for `green`; an odd function of x.
     """
     value = green(x, t, alpha, dim)
     x = check.real_array("x", x)
     with np.errstate(over="ignore"):
-        # Of float32 they would have its digits.
+        # alpha and t as Python floats: a float32 would round the flux to its digits.
         flux = _product(x, value) / (float(alpha) * float(t))
     factor = np.sign(x) / float(alpha) * _first_term(alpha, dim)
     value = _or_tail(flux, x, _similarity(t, alpha), alpha, factor, dim - 1)
@@ -242,8 +242,8 @@ def green_rate(x: Any, t: float, alpha: float, dim: int = 1) -> FloatArray | flo
 
     Delta^alpha G = dG/dt = -(n G + r dG/dr) / (alpha t)
 
-    Parameters and errors as for `green`; relative accuracy better than 1e-12, next to its only zero relative to
-    n G / (alpha t).
+    Parameters and errors as for `green`; relative accuracy better than 1e-12. Next to the only zero of the rate, it is
+    relative to n G / (alpha t).
     """
     scale, n = _similarity(t, alpha), check.dimension(dim)
     x, r = check.real_array("x", x), _scaled(x, scale)

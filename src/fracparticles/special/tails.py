@@ -1,4 +1,4 @@
-"""The far field of the fractional Laplacian on the line: its constant, and what leaving it out costs."""
+"""The far field of the fractional Laplacian on the line: its constant, and the error of leaving it out."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) 
     """Return the relative error that the truncation at |x| = D causes in KPSE and GPSE, time (2 C / alpha) D^(-alpha).
 
     A truncated exchange, (34) or (41), leaves out the integral over |y| > D of C (u(y) - u(x)) |y - x|^(-1-alpha), C =
-    `tail_constant`. Of it the loss -u(x) 2 C D^(-alpha) / alpha matters near the origin: each particle keeps the
+    `tail_constant`. Near the origin this is mainly the loss -u(x) 2 C D^(-alpha) / alpha: each particle keeps the
     strength that it would have given to places beyond D. The next term is smaller by D^(-alpha).
 
     Parameters
@@ -42,7 +42,7 @@ def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) 
     Raises
     ------
     InvalidInput
-        If one of them is outside its range.
+        If an argument is outside its range.
     """
     half_width = check.within("half_width", half_width, *check.SIZES)
     return (
