@@ -10,15 +10,15 @@ from fracparticles.kernels.families import family_of
 __all__ = ["BandedConvolution"]
 
 # By kernel family and order, the distance in epsilon beyond which a Gaussian kernel counts as zero. exp(-r^2) falls
-# below the round-off of a unit sum, 1e-18, at r = 6.44. Printed kernels of order IV may hold exp(-r^2 / 2), which does
-# so at r = 9.1. In the gamma family exp(-r^2) is multiplied by a polynomial: the distances are those, measured, at
-# which eta1 falls below _NEGLIGIBLE of its greatest value.
+# below the round-off of a unit sum, 1e-18, at r = 6.44. Printed kernels of order IV may hold exp(-r^2 / 2), which falls
+# below it at r = 9.1. In the gamma family exp(-r^2) is multiplied by a polynomial: the distances were measured, where
+# eta1 falls below _NEGLIGIBLE of its greatest value.
 _REACH = {
     "printed": {2: 6.5, 4: 9.2},
     "gamma": {2: 6.5, 4: 6.7, 6: 6.9, 8: 7.1, 10: 7.3, 12: 7.4},
 }
-_NEGLIGIBLE = 2.0**-56  # of the largest weight: an eighth of a rounding error
-_BLOCK = 512  # rows at a time, so that the sums stay in the first-level cache
+_NEGLIGIBLE = 2.0**-56  # share of the largest weight: an eighth of a rounding error
+_BLOCK = 512  # rows that are summed at a time: the sums stay in the first-level cache
 
 
 class BandedConvolution:
@@ -35,7 +35,7 @@ class BandedConvolution:
     def __init__(self, weights: np.ndarray, parity: int) -> None:
         significant = np.flatnonzero(np.abs(weights) > _NEGLIGIBLE * np.abs(weights).max())
         half_band = int(significant[-1]) if significant.size else 0
-        # One zero weight more if M is odd: the sum takes two at a time.
+        # A zero weight is added if M is odd, since the sum takes two weights at a time.
         self._weights = np.zeros(half_band + half_band % 2 + 1)
         self._weights[: half_band + 1] = weights[: half_band + 1]
         self._parity = float(parity)
@@ -128,11 +128,11 @@ def _sum_block(v, weights, parity, start, window, out):
     rows, half = out.size, weights.size - 1
     first = start - half
     low, high = max(first, 0), min(start + rows + half, v.size)
-    # v around the block, zero where there is no v.
+    # The window is v around the block, and zero beyond the ends of v.
     window[: low - first] = 0.0
     window[low - first : high - first] = v[low:high]
     window[high - first :] = 0.0
-    # Slices and not offsets: their indices are known not to be negative, so that the loops vectorise.
+    # Slices, not offsets: the compiler knows that their indices are not negative, and vectorises the loops.
     middle = window[half : half + rows]
     for i in range(rows):
         out[i] = weights[0] * middle[i]

@@ -5,7 +5,7 @@ Sources and results lie on concentric cubes of S^n and T^n lattice points,
     y_i = sum_j w_{i-j} u_j.
 
 A weight is even in every coordinate, or odd in one of them and even in the others (a component of a vector
-kernel); it is given for offsets m >= 0, m = 0 .. (S + T)/2 - 1 in each coordinate.
+kernel). It is given for the offsets m = 0 .. (S + T)/2 - 1 in each coordinate.
 """
 
 from __future__ import annotations
@@ -21,17 +21,18 @@ from fracparticles.lattice.fourier import PLAN, line_plans, transform_length
 
 __all__ = ["COLUMNS", "ROWS", "BoxConvolution", "NaiveBoxConvolution"]
 
-# Lines that are transformed together: enough for whole cache lines to be copied, few enough to stay in the cache.
+# Lines that are transformed together, along the last axis and along the others: enough for whole cache lines to be
+# copied, few enough to stay in the cache.
 ROWS = 16
 COLUMNS = 8
-_SHORTEST = 4  # so that an odd weight has a sine transform, of the one point between 0 and L / 2
+_SHORTEST = 4  # length L: one point lies between 0 and L / 2, for sine transforms
 
 
 class BoxConvolution:
     """The sums of one or several weights over the same sources, O(N log N).
 
-    A circular convolution of length L >= S + T - 1 in each coordinate. The padding is never stored as a whole: the
-    last axis is transformed row by row, the other axes for a few wave numbers of the last at a time, and only the
+    It is a circular convolution of length L >= S + T - 1 in each coordinate. The padding is never stored as a whole:
+    the last axis is transformed row by row, and the other axes for a few wave numbers of the last at a time. Only the
     part that belongs to the cube is kept, so that the memory is about that of the sources.
 
     Parameters
@@ -135,7 +136,7 @@ class BoxConvolution:
 
 
 def _plans(block: np.ndarray, first: int, count: int, direction: str) -> list[pyfftw.FFTW]:
-    """Transforms of a block in place, axis by axis from the last: of lines that hold something only."""
+    """Transforms of a block in place, axis by axis from the last; only lines that hold sources are transformed."""
     options = {"direction": direction, "flags": PLAN}
     whole = pyfftw.FFTW(block, block, axes=(0,), **options)
     if block.ndim == 2:
@@ -147,7 +148,7 @@ def _plans(block: np.ndarray, first: int, count: int, direction: str) -> list[py
 def _symbol(weights: np.ndarray, odd: int | None, length: int) -> np.ndarray:
     """Return the transform of w over L^n for wave numbers 0 .. L/2, by cosine and sine transforms.
 
-    For an even w the transform is real and returned itself; for an odd w it is i times what is returned. Offsets that
+    For an even w the transform is real. For an odd w it is imaginary, and its imaginary part is returned. Offsets that
     occur in the transform but not in the sums have weight zero.
     """
     half = length // 2 + 1
@@ -174,7 +175,7 @@ def _as_planes(block: np.ndarray) -> np.ndarray:
 
 
 def _axis_of_three(odd: int | None, dim: int) -> int:
-    """The axis of `_as_planes` in which a weight is odd; -1 if in none."""
+    """The axis of `_as_planes` in which a weight is odd; -1 if there is none."""
     return -1 if odd is None else odd + 3 - dim
 
 
@@ -198,7 +199,7 @@ def _multiply(block, symbol, odd, out):
 
 
 class NaiveBoxConvolution:
-    """The sums of `BoxConvolution`, term by term, on all cores: its oracle. Same parameters."""
+    """The sums of `BoxConvolution`, term by term, on all cores; it is the oracle of that class. Same parameters."""
 
     def __init__(
         self,

@@ -17,9 +17,9 @@ class Spectrum(NamedTuple):
     particles : int
         The number N of its rows.
     lowest, highest : float
-        Least and largest real part of its eigenvalues.
+        Least and greatest real part of its eigenvalues.
     imaginary : float
-        Greatest imaginary part.
+        Greatest |imaginary part| of its eigenvalues.
     asymmetry : float
         |A - A^T| / |A|, Frobenius norms.
     departure : float
@@ -51,7 +51,7 @@ def spectrum(a: np.ndarray) -> Spectrum:
 def norms_of_powers(a: np.ndarray, squarings: int, every: int) -> list[float]:
     """Return |A^n|, the Euclidean norm, for n = 2^k with k = 0, `every`, 2 `every`, .. up to `squarings`.
 
-    By repeated squaring, in which round-off grows to about n times 1e-16 of A^n.
+    It is computed by repeated squaring, in which round-off grows to about n times 1e-16 of A^n.
     """
     norms = []
     for k in range(squarings + 1):

@@ -15,7 +15,7 @@ class MatrixConvolution:
 
     def __init__(self, weights: np.ndarray, size: int, parity: int = 1, pad: int = 0) -> None:
         self.size, self.pad = size, pad
-        # w from -(N - 1 + pad) to N - 1 + pad; row i of the matrix is a window of it, from w_i downwards.
+        # w_m for m from -(N - 1 + pad) to N - 1 + pad; row i of the matrix is a window of them, from w_i downwards.
         both = np.concatenate([parity * weights[:0:-1], weights])
         self._columns = np.ascontiguousarray(sliding_window_view(both, size)[:, ::-1].T)
         self._sums = np.empty(size + 2 * pad)
@@ -41,11 +41,11 @@ class NaiveConvolution:
         return self._out
 
 
-# Four columns at a time: for so few particles as fast as BLAS, which takes 40 ms to load. Compiled, since numpy's own
-# call would warn of overflows, which the solver reports itself.
+# Four columns at a time: for few particles this is as fast as BLAS, which takes 40 ms to load. It is compiled, since
+# numpy's own call would warn of overflows, which the solver reports itself.
 @njit()
 def matrix_product(columns, u, y):
-    """y = sum_j u_j columns_j, in one order."""
+    """y = sum_j u_j columns_j, always summed in the same order."""
     y[:] = 0.0
     fours = u.size - u.size % 4
     for j in range(0, fours, 4):

@@ -1,18 +1,18 @@
 """The far-field closure: the particles that a truncated lattice leaves out.
 
 Beyond the half-width D the solution falls like the fundamental solution, whose expansion (A.2) is in powers
-|x|^(-1-k alpha), k = 1, 2, ... Continue the lattice to infinity with the first terms of it,
+|x|^(-1-k alpha), k = 1, 2, ... Continue the lattice to infinity with the first terms of this expansion,
 
     u_j = sum_k a_k (n / |j|)^(1 + k alpha),   |j| > n,
 
-that meet the strengths at as many particles, n - p = n, 3 n / 4, n / 2 (and likewise on the left). A sum over
-particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p. With one term these are
+fitted to the strengths at as many particles, n - p = n, 3 n / 4, n / 2 (and likewise on the left). A sum over
+particles then gains the exterior sums u_{n-p} right_i^p + u_{-n+p} left_i^p. With one term they are
 
     right_i = sum_{j > n} (n / j)^(1+alpha) w_{i-j},   left_i = parity * right_{-i},
 
-a rank-two update of the operator, computed once; each further term makes it two larger. This is not in the papers,
-which truncate the lattice. A step of GPSE without the exterior lacks int_D E u dy ~ D^(-1-2 alpha). Each further term
-reduces the remaining error by another factor D^(-alpha).
+an update of the operator of rank two, computed once; each further term adds two to the rank. This is not in the
+papers, which truncate the lattice. A step of GPSE without the exterior lacks int_D E u dy ~ D^(-1-2 alpha). Each
+further term reduces the remaining error by another factor D^(-alpha).
 """
 
 from __future__ import annotations
@@ -29,13 +29,14 @@ from fracparticles.special.quadrature import gauss_jacobi
 
 __all__ = ["LineFarField", "continuation", "far_field"]
 
-# Lattice points beyond 4 n are summed by the Euler-Maclaurin formula: there j - i >= 3 n, so the summand
-# varies on the scale n and two terms leave a relative error of order n^-4.
+# Lattice points up to 4 n are summed one by one, the others by the Euler-Maclaurin formula. There j - i >= 3 n, so that
+# the summand varies on the scale n, and two terms leave a relative error of order n^-4.
 _NEAR = 4
-# Sums over j > 4 n are analytic in i / n in |i| <= 4 n and in n / j: these many nodes give round-off.
+# Nodes of the quadrature and of the interpolation: sums over j > 4 n are analytic in i / n for |i| <= 4 n and in n / j,
+# and so many nodes give round-off.
 _NODES = 24
-# Where the expansion meets the strengths: at n, 3 n / 4 and n / 2. Closer together, the fit would magnify round-off.
-# The last is where three terms are compared with a strength that they do not meet.
+# p / n at which the expansion is fitted to the strengths: at n, 3 n / 4 and n / 2. Closer together, the fit would
+# magnify round-off. At the last one three terms are compared with a strength to which they were not fitted.
 _DEPTHS = (0.0, 0.25, 0.5, 0.625)
 
 
@@ -46,9 +47,9 @@ class LineFarField:
     Attributes
     ----------
     depth : array of int, shape (terms,)
-        p: how far from the ends.
+        p, the distance of these particles from the ends, in spacings.
     right, left : array, shape (terms, points)
-        What each of these strengths adds to the sums.
+        The sums that a unit strength there adds.
     """
 
     depth: np.ndarray
@@ -84,9 +85,9 @@ def far_field(
     parity : {1, -1}
         Whether w is even or odd.
     pad : int
-        How many points beyond each end are wanted.
+        The number of points beyond each end at which sums are wanted.
     terms : {1, 2, 3}
-        Of the expansion that continues the solution.
+        The number of terms of the expansion that continues the solution.
 
     Raises
     ------
@@ -137,12 +138,12 @@ def _tails(
 def continuation(
     u: np.ndarray, n: int, alpha: float, terms: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the expansion of the exterior where it was not fitted to u: at the next depth inward, on either side.
+    """Return the expansion of the exterior where it was not fitted to u, shape (2 n + 1,): at the next depth inward.
 
     Returns
     -------
     places : array of int, shape (2,)
-        Indices into u.
+        Indices into u, right and left.
     values : array, shape (2,)
         The values of the expansion there.
     """
@@ -153,7 +154,7 @@ def continuation(
 
 
 def _expansion(n: int, alpha: float, terms: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the depths p, the powers 1 + k alpha, and in row k how much a_k takes of each strength that is met."""
+    """Return the depths p, the powers 1 + k alpha, and the matrix from the fitted strengths to the a_k."""
     powers = 1.0 + alpha * np.arange(1, terms + 1)
     depth = np.array([round(n * share) for share in _DEPTHS[:terms]])
     if n < 1 or np.unique(depth).size < terms:

@@ -1,22 +1,22 @@
 """The far-field closure of a square or cubic lattice, the analogue of `exterior` for dim = 2, 3.
 
-Far away the solution is that of a point mass: u ~ c r^(-dim-alpha) (1 + c' r^-alpha + ...), about a centre that need
-not be the origin. Continue the lattice -n .. n to infinity with
+Far away the solution is like that of a point mass, u ~ c r^(-dim-alpha) (1 + c' r^-alpha + ...), about a centre that
+need not be the origin. Continue the lattice -n .. n to infinity with
 
     u_j = a_1 phi_1(j) + ... + a_{dim+2} phi_{dim+2}(j),
     phi_1 = rho^(-dim-alpha), phi_2 = rho^(-dim-2 alpha), phi_{2+d} = rho^(-dim-alpha-2) j_d / n,   rho = |j| / n,
 
 where the a_k fit the outermost particles of the lattice in the least-squares sense. An operator A then gains
-sum_k a_k S_k(i), S_k = A (phi_k outside of the lattice): an update of rank dim + 2, computed once. Not in the paper,
-which truncates the lattice.
+sum_k a_k S_k(i), S_k = A (phi_k outside of the lattice): an update of rank dim + 2, computed once. This is not in the
+paper, which truncates the lattice.
 
 The outside is the whole space minus the inside. Let psi_k be phi_k, made smooth within the lattice as a mixture of
 Gaussians:
 
     rho^(-2p)  ->  1/Gamma(p) int_0^c t^(p-1) exp(-t rho^2) dt,
 
-the same to round-off for rho >= 1. On the infinite lattice A psi_k is an integral over the wave vectors, whose
-integrand is the transform of psi_k times the symbol of A; inside it is one application of A. So
+psi_k equals phi_k to round-off for rho >= 1. On the infinite lattice A psi_k is an integral over the wave vectors: the
+integrand is the transform of psi_k times the symbol of A. The part of the inside is one application of A. So
 
     S_k = A psi_k - A (psi_k on the lattice).
 
@@ -38,10 +38,11 @@ from fracparticles.lattice.smooth_modes import radial_integral, radial_parts, tr
 
 __all__ = ["BoxFarField", "box_continuation", "box_far_field"]
 
-# At the faces, rho = 1, the smooth mode differs from phi_k by exp(-c) c^(p-1) / Gamma(p): 1e-10.
-# On a lattice of few points c = pi n: the transform has then fallen as far at 2 pi, where the symbol is that of 0.
-_SHARPNESS = 30.0  # the greatest c
-# What the aliases add falls fast in space: as a Fourier series of this period, in units of n, its images are small.
+# The greatest c. At the faces, rho = 1, the smooth mode differs from phi_k by exp(-c) c^(p-1) / Gamma(p) = 1e-10. On a
+# lattice of few points c = pi n: the transform has then fallen as far at 2 pi, where the symbol repeats its value at 0.
+_SHARPNESS = 30.0
+# By dimension, the period of the Fourier series of the part of the aliases, in units of n. This part falls so fast in
+# space that its images are small.
 _PERIOD = {2: 8.0, 3: 4.0}
 # Less than this share of the integrand is round-off. It must not be larger: psi_k is some thousand times larger in the
 # middle than at the faces, and the sums are differences of large values there.
@@ -53,17 +54,17 @@ Sums = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class BoxFarField:
-    """What the exterior of a square or a cube adds to A u, sum_k a_k S_k with a = fit u_boundary.
+    """The sums that the exterior of a square or a cube adds to A u, sum_k a_k S_k with a = fit u_boundary.
 
-    S_1 and S_2 are even in every coordinate; S_{2+d} is odd in j_d, even in the others, and for all d the same function
-    of (j_d, the others in any order). So i >= 0 and d = 1 are enough.
+    S_1 and S_2 are even in every coordinate. S_{2+d} is odd in j_d and even in the others, and is the same function of
+    (j_d, the others in any order) for all d. So i >= 0 and d = 1 are enough.
 
     Attributes
     ----------
     boundary : array of int, shape (B,)
         The outermost particles.
     fit : array, shape (dim + 2, B)
-        From their strengths to the amplitudes a_k.
+        The matrix from their strengths to the amplitudes a_k.
     sums : array, shape (4, n + 1, 1 or n + 1, n + 1)
         S_1, S_2, S_3 and the sum that is odd in the last coordinate, for i >= 0 in each of them.
     """
@@ -84,7 +85,7 @@ def box_far_field(symbol: Symbol, inside: Sums, alpha: float, n: int, dim: int) 
     Parameters
     ----------
     symbol : callable
-        That of A, for wave vectors theta in -pi .. pi, shape (.., dim).
+        The symbol of A, for wave vectors theta in -pi .. pi, shape (.., dim).
     inside : callable
         A u for strengths on the lattice alone, shape (2 n + 1,) * dim; it may return a buffer.
     alpha : float
@@ -110,7 +111,7 @@ def box_far_field(symbol: Symbol, inside: Sums, alpha: float, n: int, dim: int) 
     psi_hat = transforms(k, alpha, dim, sharpness)
     values, number = radial_parts(along, psi_hat, dim, alpha, n)
     sums = np.empty((4, n + 1, n + 1 if dim == 3 else 1, n + 1))
-    # One application for two modes: of psi_1 the sums are even along the first axis, of psi_3 they are odd.
+    # One application serves two modes: the sums of psi_1 are even along the first axis, those of psi_3 odd.
     u = np.empty((2 * n + 1,) * dim)
     _psi(values[[3, 5]], number, _as_planes(u))
     _outside(values[[0, 2]], number, _as_planes(inside(u)), sums[0], sums[2])
@@ -126,14 +127,16 @@ def box_far_field(symbol: Symbol, inside: Sums, alpha: float, n: int, dim: int) 
 
 
 def box_continuation(u: np.ndarray, n: int, alpha: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the modes, as they fit the outermost particles of u, on the particles with max |j_d| = 3 n / 4.
+    """Return the continuation sum_k a_k phi_k, fitted to the outermost particles, at those with max |j_d| = 3 n / 4.
+
+    `u` holds the strengths, shape (2 n + 1,) * dim.
 
     Returns
     -------
     places : array of int, shape (P,)
         Flat indices into u.
     values : array, shape (P,)
-        The values of the modes there.
+        The values of the continuation there.
     """
     boundary, edge = _shell(n, u.ndim, n)
     modes = _modes(edge / n, alpha).T
@@ -143,7 +146,7 @@ def box_continuation(u: np.ndarray, n: int, alpha: float) -> tuple[np.ndarray, n
 
 
 def _modes(position: np.ndarray, alpha: float) -> np.ndarray:
-    """phi_1 .. phi_{dim+2} at the positions j / n, shape (dim, points)."""
+    """phi_1 .. phi_{dim+2}, shape (dim + 2, points), at positions j / n of shape (dim, points)."""
     dim = position.shape[0]
     square = np.square(position).sum(axis=0)
     first = square ** (-0.5 * (dim + alpha))
@@ -171,14 +174,14 @@ def _add_aliases(
     shell: tuple[float, float],
     sums: np.ndarray,
 ) -> None:
-    """Add what A psi_k, k = 1, 2, 3, has from the part of the symbol that is not radial: that of |k| in a shell.
+    """Add the part of A psi_k, k = 1, 2, 3, that comes from the part of the symbol that is not radial, |k| in a shell.
 
-    The symbol less that along an axis is of fourth order in k, so that its image of psi_k falls fast.
+    The symbol less the symbol along an axis is of fourth order in k, so that its image of psi_k falls fast.
     """
     dim = 2 if sums.shape[2] == 1 else 3
     step = 2.0 * np.pi / _PERIOD[dim]
     k = step * np.arange(int(shell[1] / step) + 1)
-    # Of the vectors that are alike but for the order of their components, one.
+    # One of all vectors that differ only in the order of their components.
     place = np.indices((k.size,) * dim).reshape(dim, -1)
     length = np.sqrt(np.square(k[place]).sum(axis=0))
     inner = (shell[0] <= length) & (length <= shell[1]) & (np.diff(place, axis=0) >= 0).all(axis=0)
@@ -205,7 +208,7 @@ def _as_planes(block: np.ndarray) -> np.ndarray:
 
 @njit()
 def _psi(values, number, u):
-    """u = psi, and with a second row of values j_1 / n times those more."""
+    """u = psi from the first row of values; plus j_1 / n times the second row, if there is one."""
     n, middle = u.shape[0] // 2, u.shape[1] // 2
     for i in range(u.shape[0]):
         x = (i - n) / n
@@ -220,7 +223,7 @@ def _psi(values, number, u):
 
 @njit()
 def _outside(values, number, y, even, odd):
-    """A psi less the inside's part y of it, for i >= 0: the part that is even along the first axis, and the odd one."""
+    """A psi less the part y of the inside, for i >= 0: the part that is even along the first axis, and the odd part."""
     n, middle = y.shape[0] // 2, y.shape[1] // 2
     for i in range(even.shape[0]):
         for j in range(even.shape[1]):

@@ -10,10 +10,10 @@ __all__ = ["smoothed_field"]
 
 
 def smoothed_field(u: np.ndarray, overlap: float) -> np.ndarray:
-    """Return u_epsilon of (7) on the lattice, the strengths smoothed with the Gaussian (8).
+    """Return u_epsilon of (7) on the lattice, the strengths smoothed with the Gaussian (8), in the shape of u.
 
-    sum_j V_j u_j eta_epsilon(x_i - x_j) with eta_m = (s sqrt(pi))^-1 exp(-m^2 / s^2) along each axis; the sum is over
-    the particles present.
+    It is sum_j V_j u_j eta_epsilon(x_i - x_j) over the particles present, with eta_m = (s sqrt(pi))^-1 exp(-m^2 / s^2)
+    along each axis.
 
     Parameters
     ----------

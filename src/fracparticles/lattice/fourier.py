@@ -22,24 +22,24 @@ __all__ = [
 # `reference_times` times both), but they are made in milliseconds instead of seconds, and they are the same every time,
 # so that the same case gives the same bytes.
 PLAN = ("FFTW_ESTIMATE",)
-_CLOSE = 1.03  # a power of two is taken up to this ratio
-_SHORT = 1000  # up to here the next length counts more than its factors
-_FACTOR = 128  # of every complex length
-# Complex numbers from which a transform in its own place is faster than one into another: two arrays leave the cache.
+_CLOSE = 1.03  # length over the least one: up to this ratio the next power of two is taken
+_SHORT = 1000  # least length up to which a short transform counts more than good factors
+_FACTOR = 128  # it divides every complex length
+# Complex numbers from which a transform in place is faster than one into another array: two arrays leave the cache.
 _IN_PLACE = 2**16
 
 
 class FourierConvolution:
     """y_i = sum_{j=0}^{N-1} w_{i-j} u_j for i = -pad .. N-1+pad, with w_{-m} = parity * w_m.
 
-    The sum is a circular convolution of length 2 M >= 2 N - 1 + 2 pad. Two real numbers in a row are taken for a
-    complex one, z_p = x_{2p} + i x_{2p+1}, since estimated plans of complex transforms of length M are better than
-    those of real ones of length 2 M: the pair takes two thirds of the time. An even w has a real spectrum S_k,
+    The sum is a circular convolution of length 2 M >= 2 N - 1 + 2 pad. Two real numbers in a row are read as a
+    complex one, z_p = x_{2p} + i x_{2p+1}. Estimated plans of complex transforms of length M are better than those of
+    real transforms of length 2 M: both ways take two thirds of the time. An even w has a real spectrum S_k,
     k = 0 .. M, and multiplies the spectrum Z of z as
 
         Z_k <- (a_k - b_k sin(pi k / M)) Z_k + i b_k cos(pi k / M) conj(Z_{M-k}),   a_k, b_k = (S_k +- S_{M-k}) / 2;
 
-    an odd w has an imaginary one, i S_k, and multiplies as i times this with a_k, b_k = (S_k -+ S_{M-k}) / 2.
+    an odd w has an imaginary spectrum i S_k, and multiplies as i times this with a_k, b_k = (S_k -+ S_{M-k}) / 2.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class FourierConvolution:
     parity : {1, -1}
         Whether w is even or odd.
     pad : int
-        How many lattice points beyond each end get a value too.
+        The number of lattice points beyond each end that get a value, too.
     """
 
     def __init__(self, weights: np.ndarray, size: int, parity: int = 1, pad: int = 0) -> None:
@@ -83,9 +83,9 @@ class FourierConvolution:
 
 
 def _factors(weights: np.ndarray, parity: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return, of the 2 M weights of a circle, a_k - b_k sin(pi k / M), k = 0 .. M, and b_k cos(pi k / M), to M / 2.
+    """Return a_k - b_k sin(pi k / M), k = 0 .. M, and b_k cos(pi k / M), k = 0 .. M / 2, of 2 M weights of a circle.
 
-    Step by step, so that no more than three arrays of M numbers are there beside the transform.
+    It goes step by step, so that no more than three arrays of M numbers exist beside the transform.
     """
     length = weights.size // 2
     transform = rfft(weights)
@@ -103,7 +103,10 @@ def _factors(weights: np.ndarray, parity: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def complex_plans(numbers: np.ndarray) -> tuple[np.ndarray, pyfftw.FFTW, pyfftw.FFTW]:
-    """Return the spectrum of complex numbers, which are the spectrum if there are many, and the ways there and back."""
+    """Return the array of the spectrum, and the plans of the transforms there and back.
+
+    For many numbers the array of the spectrum is that of the numbers themselves.
+    """
     spectrum = numbers if numbers.size >= _IN_PLACE else pyfftw.empty_aligned(numbers.size, complex)
     back = {"direction": "FFTW_BACKWARD", "flags": PLAN}
     return (
@@ -114,7 +117,7 @@ def complex_plans(numbers: np.ndarray) -> tuple[np.ndarray, pyfftw.FFTW, pyfftw.
 
 
 def line_plans(real: np.ndarray, spectrum: np.ndarray) -> tuple[pyfftw.FFTW, pyfftw.FFTW]:
-    """Return the transforms of the last axis of `real`, there and back; the way back spoils the spectrum."""
+    """Return the plans of the transforms of the last axis of `real`, there and back; the way back spoils `spectrum`."""
     back = {"direction": "FFTW_BACKWARD", "flags": (*PLAN, "FFTW_DESTROY_INPUT")}
     return pyfftw.FFTW(real, spectrum, flags=PLAN), pyfftw.FFTW(spectrum, real, **back)
 
@@ -122,9 +125,9 @@ def line_plans(real: np.ndarray, spectrum: np.ndarray) -> tuple[pyfftw.FFTW, pyf
 def transform_length(least: int) -> int:
     """Return an even length >= least whose only prime factors are 2, 3, 5 and 7 and whose transforms are fast.
 
-    The next power of two if it is close; else, of the lengths that the factors allow, a multiple of 50, except
-    for short sums. FFTW's estimated plans of such lengths take 10 to 30 % less time than those of their
-    neighbours. Even, because the real transforms of odd lengths take two to three times as long.
+    It is the next power of two if that is close. Otherwise it is a multiple of 50, except for short sums: FFTW's
+    estimated plans of such lengths take 10 to 30 % less time than those of their neighbours. It is even, because the
+    real transforms of odd lengths take two to three times as long.
     """
     power = max(2, 1 << (least - 1).bit_length())
     if power <= _CLOSE * least:
@@ -146,8 +149,8 @@ def _is_smooth(length: int) -> bool:
 def complex_length(least: int) -> int:
     """Return a length >= least whose complex transforms are fast.
 
-    The next power of two if it is close; else the next multiple of 128 whose only prime factors are 2, 3, 5 and 7.
-    FFTW's estimated plans of those take half to two thirds of the time that they take for most of their neighbours.
+    It is the next power of two if that is close, or else the next multiple of 128 whose only prime factors are 2, 3, 5
+    and 7. FFTW's estimated plans of these lengths take half to two thirds of the time of most of their neighbours.
     """
     power = max(_FACTOR, 1 << (least - 1).bit_length())
     if power <= _CLOSE * least:
@@ -161,8 +164,8 @@ def complex_length(least: int) -> int:
 def valid_convolution(u: np.ndarray, w: np.ndarray) -> np.ndarray:
     """Return sum_k u_k w_{i-k} along the last axis of u where every term exists, w.size - u.shape[-1] + 1 values.
 
-    For sums that are done once. A circular convolution no longer than w will do: it wraps around in the other
-    part only.
+    It is meant for sums that are computed once. A circular convolution as long as w is enough: it wraps around only in
+    the part that is not returned.
     """
     length = next_fast_len(w.size, real=True)
     return irfft(rfft(u, length) * rfft(w, length), length)[..., u.shape[-1] - 1 : w.size]

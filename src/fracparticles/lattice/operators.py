@@ -33,7 +33,7 @@ Convolution = Callable[[np.ndarray], np.ndarray]
 
 
 class Operator(Protocol):
-    """What an integrator needs."""
+    """The methods of an operator that an integrator needs."""
 
     size: int
 
@@ -59,7 +59,7 @@ class LatticeOperator(ABC):
     size: int
     dim: int = 1
     symmetric: bool = False  # the matrix of A
-    # The least and the greatest of zero and of what the bounded lattice adds to the diagonal of the infinite one.
+    # The least and the greatest number that the bounded lattice adds to the diagonal of the infinite one, or zero.
     diagonal_shift: tuple[float, float] = (0.0, 0.0)
     watch: Callable[[], None] | None = None  # called after each application
 
@@ -131,7 +131,7 @@ class ConvolutionOperator(LatticeOperator):
 
 
 class MatrixOperator(LatticeOperator):
-    """A dense matrix, shape (N, N). Its products always sum in the same order; those of BLAS do not on many threads."""
+    """A dense matrix, shape (N, N). Its products always sum in the same order; BLAS on many threads does not."""
 
     def __init__(self, matrix: np.ndarray) -> None:
         super().__init__()
@@ -155,7 +155,7 @@ class TwoPassOperator(LatticeOperator):
     stencil : BandedConvolution
         Second pass S.
     diagonal : array, shape (N,)
-        d_i; what the second pass adds of particle i's own value.
+        d_i, the factor of q_i in the second pass.
     far_field : FarField or None
         The contribution of the exterior to q.
     """

@@ -4,7 +4,7 @@ r"""The smooth modes psi_k of `exterior_box`: their transforms, and integrals of
 
     psi^(k) = pi^(dim/2) c^q E_{1+q}(k^2 / 4 c) / Gamma(dim/2 + q),     p = dim/2 + q,
 
-E_p the exponential integral. Of a radial symbol A, (2 pi)^-dim int A psi^ e^{ik.x} dk is a function of |x|^2.
+E_p the exponential integral. For a radial symbol A, (2 pi)^-dim int A psi^ e^{ik.x} dk is a function of |x|^2.
 """
 
 from __future__ import annotations
@@ -18,26 +18,27 @@ from fracparticles._compiled import njit
 
 __all__ = ["radial_integral", "radial_parts", "transforms"]
 
-# The transform falls like exp(-k^2 / 4 c): 1e-16 at this k, which is in units of 1 / n.
+# The greatest k of the radial integral, in units of 1 / n: there the transform, which falls like exp(-k^2 / 4 c), is
+# 1e-16.
 _HIGHEST = 66.0
 _WAVES = 160  # nodes of the radial integral
-_BLOCK = 128  # points at a time, so that their sums stay in the first-level cache
-_SMALL = 0.1  # p, below which the recurrence of E_p would lose digits
+_BLOCK = 128  # points that are summed at a time: their sums stay in the first-level cache
+_SMALL = 0.1  # p below which the recurrence of E_p would lose digits
 
 
 def radial_parts(
     symbol: np.ndarray, psi_hat: np.ndarray, dim: int, alpha: float, n: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return A psi_k, then psi_k, k = 1, 2, 3, at every |j|^2 there is, those of k = 3 without the factor j_1 / n.
+    """Return A psi_k and psi_k, k = 1, 2, 3, at every |j|^2 on the lattice; for k = 3 without the factor j_1 / n.
 
     (2 pi)^-dim int A psi^ e^{ik.x} dk is a Chebyshev series in |x|^2. psi_3 is -d psi_1 / dx_1 / (dim + alpha).
 
     Parameters
     ----------
     symbol : array, shape (_WAVES,)
-        That of A along an axis, at the nodes of the radial integral.
+        The symbol of A along an axis, at the nodes of the radial integral.
     psi_hat : array, shape (2, _WAVES)
-        Those of psi_1 and psi_2.
+        The transforms of psi_1 and psi_2 there.
     dim, alpha, n
         As for `exterior_box.box_far_field`.
 
@@ -63,17 +64,17 @@ def radial_parts(
 
 @cache
 def radial_integral(dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The nodes |k| of the integral over all k, their volumes, and for each the Chebyshev coefficients of its waves.
+    """The nodes |k| of the integral over all k, their volumes, and for each node two rows of Chebyshev coefficients.
 
-    Of e^{ik.x} averaged over the directions of k, and of minus its derivative along x_1 over x_1 k^2, as functions of
-    |x|^2 where |x_d| <= 1; both shape (_WAVES, terms).
+    The first is the mean of e^{ik.x} over the directions of k. The second is minus its derivative along x_1, over
+    x_1 k^2. Both are functions of |x|^2 for |x_d| <= 1, with coefficients of shape (_WAVES, terms).
     """
     # k = _HIGHEST s^4 and equal steps of s: powers k^alpha at the origin become smooth enough for equal weights.
     s = np.arange(1, _WAVES + 1) / _WAVES
     k = _HIGHEST * s**4
     surface = {2: 2.0 * np.pi, 3: 4.0 * np.pi}[dim]
     volume = surface * k ** (dim - 1) * (4.0 * k / s / _WAVES) / (2.0 * np.pi) ** dim
-    # The waves of half the diagonal, and some to spare.
+    # An even function of the phase k |x| <= _HIGHEST sqrt(dim) takes half as many terms; a few are added to spare.
     terms = 24 + int(0.5 * _HIGHEST * np.sqrt(dim))
     angle = (np.arange(terms) + 0.5) * (np.pi / terms)
     z = np.outer(k, np.sqrt(dim) * np.cos(0.5 * angle))
@@ -86,8 +87,8 @@ def radial_integral(dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
 def transforms(k: np.ndarray, alpha: float, dim: int, sharpness: float) -> np.ndarray:
     """The transforms of psi_1 and psi_2, shape (2, ..): pi^(dim/2) c^q E_{1+q}(k^2 / 4 c) / Gamma(dim/2 + q).
 
-    q = alpha / 2 and alpha. The exponential integral E_p is a gamma function for p < 1, and from there
-    p E_{p+1}(z) = e^-z - z E_p(z), where p is not so small that this cancels.
+    q = alpha / 2 and alpha. The exponential integral E_p is an incomplete gamma function for p < 1. Greater p follow
+    from p E_{p+1}(z) = e^-z - z E_p(z), unless p is so small that the two terms cancel.
     """
     z = k * k / (4.0 * sharpness)
     decay = np.exp(-z)
@@ -105,12 +106,12 @@ def transforms(k: np.ndarray, alpha: float, dim: int, sharpness: float) -> np.nd
 def _next_integral(p: float, z: np.ndarray) -> np.ndarray:
     """E_{1+p}(z), 0 < p < 0.1: by its series up to z = 1, from there by a continued fraction (DLMF 8.19.10, 17).
 
-    Gamma(-p) z^p and the first term of the series have the pole 1 / p each, which is taken off both.
+    Gamma(-p) z^p and the first term of the series each have the pole 1 / p, which is left out of both.
     """
     k = np.arange(1.0, 20.0)
     small = np.minimum(z, 1.0)
     terms = (-small[..., None]) ** k / (gamma(k + 1.0) * (k - p))
-    # Of Gamma(1 - p).
+    # The logarithm of Gamma(1 - p).
     log_gamma = np.euler_gamma * p + (zeta(k + 1.0) * p ** (k + 1.0) / (k + 1.0)).sum()
     near = -np.expm1(log_gamma + p * np.log(small)) / p - terms.sum(axis=-1)
     large, far = np.maximum(z, 1.0), np.zeros_like(z)

@@ -1,12 +1,12 @@
-"""How a sum over the particles is done.
+"""The sums over the particles, and the choice between the ways to compute them.
 
 On a lattice every sum of the papers is a discrete convolution,
 
     y_i = sum_j w_{i-j} u_j,
 
 and there are two ways to compute it. `fast_convolution`, O(N log N), is a `FourierConvolution`, or for few particles
-a `MatrixConvolution`. `NaiveConvolution`, O(N^2), is the papers' own double loop and the oracle of the first. On a
-square or cubic lattice these are `BoxConvolution` and `NaiveBoxConvolution`. `BandedConvolution` serves kernels that
+a `MatrixConvolution`. `NaiveConvolution`, O(N^2), is the papers' own double loop and the oracle of the fast one. On a
+square or cubic lattice the two are `BoxConvolution` and `NaiveBoxConvolution`. `BandedConvolution` serves kernels that
 decay like a Gaussian.
 """
 
@@ -22,8 +22,8 @@ from fracparticles.lattice.fourier import FourierConvolution
 
 __all__ = ["BOX_SUMMATIONS", "SUMMATIONS", "fast_convolution", "sums_of_weights"]
 
-# Up to about here a product with a matrix takes no longer than two transforms, and it is set up in some ten
-# microseconds, where their plans take a millisecond.
+# Particles up to which a product with a matrix takes no longer than two transforms. The matrix is set up in some ten
+# microseconds, the plans of the transforms in a millisecond.
 _FEW = 150
 
 _Convolution = FourierConvolution | MatrixConvolution | NaiveConvolution
@@ -48,9 +48,10 @@ BOX_SUMMATIONS: dict[str, type[BoxConvolution] | type[NaiveBoxConvolution]] = {
 
 
 def sums_of_weights(w: np.ndarray, parity: int, size: int) -> np.ndarray:
-    """Return sum_j w_{i-j} over the particles present, for each of the `size` particles.
+    """Return sum_j w_{i-j} over the particles present for each of the `size` particles, shape (size,).
 
-    By cumulative sums from the small far weights to the large near ones. Weights that are not given are zero.
+    The weights are added up from the small far ones to the large near ones, to lose no digits. Weights that are not
+    given are zero.
     """
     tail = np.zeros(size)
     tail[1 : w.size] = w[1:size]

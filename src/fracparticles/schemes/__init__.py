@@ -23,7 +23,7 @@ __all__ = [
 
 ALL_SCHEMES: dict[str, Scheme] = all_schemes()
 
-# Those with an operator on a lattice.
+# The schemes that have an operator on a lattice.
 SCHEMES: dict[str, LatticeScheme] = {
     name: one for name, one in ALL_SCHEMES.items() if isinstance(one, LatticeScheme)
 }

@@ -1,11 +1,11 @@
-r"""Whether the weights of a scheme are those of its transform. If not, its operator and its symbol are two schemes.
+r"""A check that the weights and the transform of a scheme agree. If not, its operator and its symbol are two schemes.
 
 On the infinite lattice
 
     A(theta) = a_0 + 2 sum_(m > 0) a_m cos(m theta).
 
-Beyond M the weights fall steadily, so that what a sum of M terms leaves out is at most 2 |a_M| / sin(theta / 2) (Abel).
-Kernels of the library have both from one formula; the scheme that brings its own is looked at once for each kernel.
+Beyond M the weights fall steadily, so that a sum of M terms leaves out at most 2 |a_M| / sin(theta / 2) (Abel). The
+kernels of the library have both from one formula. A scheme with its own kernel is checked once for each setting.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ __all__ = ["refuse_disagreement"]
 
 Function = Callable[[np.ndarray, Setting], np.ndarray]
 
-_WAVES = np.array([1.0, 2.0, 3.0])  # theta
+_WAVES = np.array([1.0, 2.0, 3.0])  # theta at which the two are compared
 _TERMS = 2**11  # M
-_WIDEST = 40.0  # overlap: of a wider kernel so many weights are not yet its tail
-_TOLERANCE = 1e-6  # of the sum of |a_m|
+_WIDEST = 40.0  # overlap up to which M lies in the tail of the kernel
+_TOLERANCE = 1e-6  # of the difference, as a share of the sum of |a_m|
 
 
 def refuse_disagreement(
     name: str, weights: Function, transform: Function, setting: Setting
 ) -> None:
-    """Refuse a scheme on the line whose weights have another transform, see the module.
+    """Refuse a scheme on the line whose weights do not have its transform, see the module.
 
     Raises
     ------
     InvalidInput
-        If so, or if the weights are no finite numbers.
+        If the two disagree, or if the weights are not finite numbers.
     """
     if setting.dim > 1 or setting.overlap > _WIDEST:
         return

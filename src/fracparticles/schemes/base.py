@@ -1,4 +1,4 @@
-"""What a scheme is, and the two kinds with a single sum, which give their weights and their transform only."""
+"""The classes of schemes; a `Sum` or an `Exchange` gives its weights and its transform only."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Scheme:
     symbol_of: str = ""  # the scheme whose symbol gives the decay of its waves, if not its own
     has_kernel: bool = True  # there is a smoothing length epsilon
     tabulated: bool = False  # the kernels may be interpolated in a table
-    self_timed: bool = False  # a step of Euler's, to which epsilon = (D dt)^(1/alpha) is tied
+    self_timed: bool = False  # epsilon = (D dt)^(1/alpha) is tied to the step, which is Euler's
     colour: str = "#000000"  # in figures
     marker: str = "."
 
@@ -72,7 +72,7 @@ class Scheme:
             family_of(order, family, field)
 
     def padding(self, order: int, overlap: float, dim: int, family: str | None) -> int:
-        """Return how many lattice points beyond each end an open exterior needs sums at."""
+        """Return the number of lattice points beyond each end at which an open exterior needs sums."""
         return 0
 
 
@@ -91,7 +91,7 @@ class LatticeScheme(Scheme, ABC):
 
         du_i/dt = (D / h^alpha) sum_j a_{i-j} u_j + boundary terms,
 
-    with weights a_m that depend on alpha, the order and the overlap s = epsilon / h alone.
+    with weights a_m that depend only on alpha, the order and the overlap s = epsilon / h.
     """
 
     # No eigenvalue of a bounded lattice lies above the range of the symbol.
@@ -221,7 +221,7 @@ def one_pass_operator(
     transform : callable, optional
         sum_m a_m e^{-i m.theta}, for an open exterior in two and three dimensions.
     exact_weights : callable, optional
-        Those that have this transform, since `weights` may come from a table; the exterior is made of them.
+        The weights that have this transform, since `weights` may come from a table. The exterior is made of them.
     """
     size, dim, rate = setting.size, setting.dim, setting.rate
     far: FarField | None = None
@@ -261,7 +261,7 @@ def one_pass_operator(
         )
     elif setting.kernel_table is None or transform is None:
         diagonal = np.full(particles, infinite)
-    else:  # the table within the lattice, exact weights beyond it: a constant stays one
+    else:  # the table within the lattice, exact weights beyond it; so a constant u stays constant
         diagonal = np.full(particles, -rate * transform(np.zeros((1, dim))).flat[0])
         if dim == 1:
             diagonal -= sums_of_weights(w - rate * exact_weights(m), parity=1, size=size)

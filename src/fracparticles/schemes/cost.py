@@ -1,4 +1,4 @@
-"""What a scheme costs in a box, n = 2 and 3, counted to leading order; sums by transforms, see `lattice.box`."""
+"""Operations and memory of a scheme in a box, n = 2 and 3, with sums by transforms, see `lattice.box`."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _VECTORS = 5  # strengths at t_initial and t_final, and three of the Chebyshev r
 def operations(name: str, setting: Setting) -> float:
     """Return the floating-point operations of one application on N^n particles, to leading order.
 
-    5/2 L log2 L for a real transform of length L >= 2 N - 1, twice that for a complex one, one forward and one
-    backward for each weight; only the lines that hold something are transformed: N^(n-1) along the last axis, half
-    as many wave numbers and a factor L / N more lines with each axis that follows. FPSE has n weights, and the sums
-    with the Gaussian kernel of its divergence, axis by axis, 3 M operations for a half band M.
+    A real transform of length L >= 2 N - 1 takes 5/2 L log2 L operations, and a complex one twice as many. There is one
+    forward transform, and one backward for each weight. Only lines that hold values are transformed: N^(n-1) along the
+    last axis, then half as many wave numbers and L / N times as many lines with each axis that follows. FPSE has n
+    weights. The sums of its divergence, axis by axis, take 3 M operations for a half band M.
     """
     dim, size, is_flux = setting.dim, setting.size, name == "FPSE"
     length, half = _lengths(size)
@@ -44,10 +44,10 @@ def bytes_kept(name: str, setting: Setting) -> float:
     length, half = _lengths(size)
     columns = -(-half // COLUMNS) * COLUMNS
     symbols = weights * half ** (dim - 1) * columns
-    # The first takes the place of that of the strengths.
+    # The spectrum of the first sum takes the place of that of the strengths.
     spectra = 2 * weights * size ** (dim - 1) * columns
     blocks = 4 * length ** (dim - 1) * COLUMNS + ROWS * (length + 2 * half)
-    # Of the exterior four sums, on the part of the lattice where no coordinate is negative.
+    # The exterior has four sums, on the part of the lattice where no coordinate is negative.
     beyond = 4.0 / 2**dim if setting.is_open else 0.0
     vectors = weights + _VECTORS + beyond  # the sums themselves
     diagonal = 0 if setting.is_open and is_flux else weights
@@ -56,6 +56,6 @@ def bytes_kept(name: str, setting: Setting) -> float:
 
 
 def _lengths(size: int) -> tuple[int, int]:
-    """The length of the transforms along an axis, and how many wave numbers are held."""
+    """The length of the transforms along an axis, and the number of wave numbers that are kept."""
     length = transform_length(2 * size - 1)
     return length, length // 2 + 1

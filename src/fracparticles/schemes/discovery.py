@@ -30,12 +30,12 @@ def all_schemes() -> dict[str, Scheme]:
 
 
 def scheme(name: str) -> LatticeScheme:
-    """Return the scheme of that name, which has an operator on a lattice.
+    """Return the scheme of this name, if it has an operator on a lattice.
 
     Raises
     ------
     InvalidInput
-        If there is none.
+        If there is no such scheme.
     """
     lattice = {key: one for key, one in all_schemes().items() if isinstance(one, LatticeScheme)}
     if isinstance(name, str) and name in lattice:

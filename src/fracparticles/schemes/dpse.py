@@ -4,7 +4,7 @@
     du_i/dt = (2 D / epsilon^2) sum_j V_j (v_j - v_i) Phi_epsilon(x_j - x_i).
 
 This is the classical exchange approximation of the Laplacian, applied to the Riesz potential of u. It is
-conservative. But the potential decays so slowly, like |x|^(-beta), that cutting it off at the ends spoils the
+conservative. The potential decays so slowly, like |x|^(-beta), that cutting it off at the ends spoils the
 solution there.
 
 For beta near zero kappa is nearly the constant 1 / beta, and the differences v_j - v_i would consist of its rounding
@@ -24,8 +24,10 @@ from fracparticles.schemes.setting import Setting
 from fracparticles.schemes.transform import lattice_transform
 from fracparticles.special.quadrature import gauss_legendre
 
-_NEARLY_CONSTANT = 0.005  # beta, below which the constant 1 / beta would cost more than two digits
-_NODES = 24  # of a panel of 1 / s <= 4 smoothing lengths: exact to round-off for the kernel, a Gaussian at its worst
+_NEARLY_CONSTANT = 0.005  # beta below which the constant 1 / beta would cost more than two digits
+# Nodes of the rule between two lattice points, at most 4 smoothing lengths apart: exact to round-off for the kernel,
+# whose fastest part is a Gaussian.
+_NODES = 24
 
 
 def potential_weights(m: np.ndarray, setting: Setting) -> np.ndarray:
@@ -37,7 +39,8 @@ def potential_weights(m: np.ndarray, setting: Setting) -> np.ndarray:
 def potential_differences(m: np.ndarray, setting: Setting) -> np.ndarray:
     """b_m - b_0 of `potential_weights` for m = 0, 1, 2, .., without the cancellation.
 
-    kappa' = F = -r K, so that b_m - b_(m-1) = -s^(-beta) int r K(r) dr from (m - 1) / s to m / s: all of one sign.
+    kappa' = F = -r K, so that b_m - b_(m-1) = -s^(-beta) int r K(r) dr from (m - 1) / s to m / s. These differences all
+    have one sign.
     """
     s = setting.overlap
     nodes, gauss = gauss_legendre(_NODES, 0.0, 1.0)
@@ -70,7 +73,7 @@ class DirectExchange(LatticeScheme):
         b = potential(np.arange(setting.size, dtype=float), setting)
         b -= b[setting.n]
         c = laplacian_weights(np.arange(_reach(setting) + 1, dtype=float), setting)
-        c[0] = 0.0  # it cancels from v_j - v_i, but for the roundings
+        c[0] = 0.0  # it has no effect on v_j - v_i but for rounding errors
         return TwoPassOperator(
             SUMMATIONS[setting.summation](setting.rate * b, setting.size),
             BandedConvolution(c, parity=1),

@@ -6,7 +6,7 @@ from fracparticles.schemes.base import Scheme
 
 
 class DiffusionVelocityMethod(Scheme):
-    """DVM. A displacement wave of its particles in a uniform field decays by DD's symbol."""
+    """DVM. A wave of displacements of its particles in a uniform field decays by the symbol of DD."""
 
     name, place = "DVM", 6
     title = "Diffusion velocity method"
@@ -16,4 +16,4 @@ class DiffusionVelocityMethod(Scheme):
     conservative = True
     moving = True
     symbol_of = "DD"
-    colour, marker = "#7F3C8D", "p"  # none of Okabe & Ito's, whose yellow is too pale for lines
+    colour, marker = "#7F3C8D", "p"  # not Okabe & Ito's last colour: yellow is too pale for lines

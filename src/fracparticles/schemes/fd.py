@@ -1,7 +1,7 @@
 """Finite differences (FD): a reconstruction of the paper's reference [41], not the authors' scheme.
 
-For the flux -(D/2) (D_left^beta u - D_right^beta u) / |cos(pi alpha / 2)|, first order in h, with homogeneous
-Dirichlet conditions. With omega(z) = z^(1-beta) / Gamma(2-beta) and delta_j = (u_j - u_{j-1}) / h,
+They approximate the flux -(D/2) (D_left^beta u - D_right^beta u) / |cos(pi alpha / 2)| to first order in h, with
+homogeneous Dirichlet conditions. With omega(z) = z^(1-beta) / Gamma(2-beta) and delta_j = (u_j - u_{j-1}) / h,
 
     L_i = sum_{j <= i} [omega(x_i - x_{j-1}) - omega(x_i - x_j)] delta_j,     R_i its mirror image,
     du_i/dt = D [(L_{i+1} - L_i) + (R_i - R_{i-1})] / (2 h |cos(pi alpha / 2)|).
@@ -20,9 +20,10 @@ from scipy.special import bernoulli, poch, zeta
 from fracparticles.schemes.base import Sum
 from fracparticles.schemes.setting import Setting
 
-_CLOSE = 0.005  # of beta or 1 - beta: closer, omega is nearly z or 1, and its differences are taken of the rest
-_ZETA_TERMS = 10  # and as many corrections: the next is below round-off
-_FAR = 200.0  # the next Taylor term, omega^(9), is below 1e-16 of the first there
+# beta or 1 - beta below which omega is nearly z or 1: its differences are then those of the rest.
+_CLOSE = 0.005
+_ZETA_TERMS = 10  # of the zeta function, and as many corrections: the next is below round-off
+_FAR = 200.0  # m from which the next Taylor term, omega^(9), is below 1e-16 of the first
 
 
 class FiniteDifferences(Sum):
@@ -78,8 +79,8 @@ def _cosine(alpha: float) -> float:
 def _one_sided(m: np.ndarray, alpha: float) -> np.ndarray:
     """The weight of u_{i-m} in h^beta (L_{i+1} - L_i), m >= -1: g_{m+1} - 2 g_m + g_{m-1}.
 
-    It is the third difference of omega, centred at c = m + 1/2; far away from its Taylor series
-    omega''' + omega^(5) / 8 + 13 omega^(7) / 1920, where the difference itself would cancel.
+    It is the third difference of omega, centred at c = m + 1/2. Far away this would cancel, and the Taylor series
+    omega''' + omega^(5) / 8 + 13 omega^(7) / 1920 takes its place.
     """
     near = _g(m + 1.0, alpha) - 2.0 * _g(m, alpha) + _g(m - 1.0, alpha)
     if min(alpha - 1.0, 2.0 - alpha) < _CLOSE:
@@ -101,7 +102,7 @@ def _g(m: np.ndarray, alpha: float) -> np.ndarray:
 
 
 def _third_difference(m: np.ndarray, alpha: float) -> np.ndarray:
-    """The same for m >= 1 and beta near zero or one: that of omega less z or 1, which have none."""
+    """The third difference for m >= 1 and beta near zero or one, from omega less z or 1, whose differences vanish."""
     m, beta = np.maximum(m, 1.0), alpha - 1.0
 
     def rest(z: np.ndarray) -> np.ndarray:
@@ -115,7 +116,7 @@ def _third_difference(m: np.ndarray, alpha: float) -> np.ndarray:
 
 
 def _aliases_near_the_pole(delta: float, t: np.ndarray) -> np.ndarray:
-    """i^-p zeta(p, t) + i^p zeta(p, 1 - t), p = 1 + delta: the poles 1 / delta of both are taken off, exactly."""
+    """i^-p zeta(p, t) + i^p zeta(p, 1 - t), p = 1 + delta, with the poles 1 / delta of both added exactly."""
     left, right = _zeta_less_pole(delta, t), _zeta_less_pole(delta, 1.0 - t)
     # i^-p = -sin(pi delta / 2) - i cos(pi delta / 2)
     sine, cosine = np.sin(0.5 * np.pi * delta), np.cos(0.5 * np.pi * delta)

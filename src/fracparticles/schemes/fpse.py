@@ -62,8 +62,8 @@ class FluxExchange(LatticeScheme):
     def operator(self, setting: Setting) -> LatticeOperator:
         """Return A of Eqs. (19), (25).
 
-        With the open exterior, the flux is also taken at the lattice points next to the ends, as far as the
-        divergence reaches; then the sum of eta1 over all neighbours vanishes and with it the term Q_i.
+        With the open exterior, the flux is also taken at the lattice points beyond the ends, as far as the divergence
+        reaches. The sum of eta1 over all neighbours then vanishes, and with it the term Q_i.
         """
         pad = 0
         if setting.is_open:
@@ -77,7 +77,7 @@ class FluxExchange(LatticeScheme):
 
         f and e are the sums over the aliases of F^ = i (k / |k|) |k|^beta eta^(k) and of eta1^.
         """
-        exact = replace(setting, kernel_table=None)  # as eta1 is
+        exact = replace(setting, kernel_table=None)  # eta1 is never interpolated
         product = lattice_transform("F", theta, setting) * lattice_transform("eta1", theta, exact)
         if setting.dim > 1:
             product = product.sum(axis=-1)
@@ -89,7 +89,7 @@ class FluxExchange(LatticeScheme):
         return BandedConvolution.reach(overlap, order, family if dim == 1 else None)
 
     def ends_amplify(self, setting: Setting) -> bool:
-        """Return whether the order is 6 or more."""
+        """Return whether the order is 6 or more, on the line."""
         return setting.dim == 1 and setting.order >= 6
 
     def closed_form_limit(self, beta: float, overlap: float) -> float:
@@ -112,7 +112,7 @@ def _line_operator(setting: Setting, pad: int) -> LatticeOperator:
     if setting.is_open:
         far = far_field(flux_from_outside, alpha, alpha, setting.n, -1, pad, setting.far_terms)
         if setting.summation == "fft":
-            # With all of the flux that the divergence reaches the two sums are one, with the weights c * b.
+            # Since the flux is known as far as the divergence reaches, the two sums are one with the weights c * b.
             both = divergence(np.concatenate([-b[:0:-1], b]), np.empty(2 * size - 1))
             convolve = SUMMATIONS["fft"](both[size - 1 :], size)
             ends = (
@@ -159,8 +159,9 @@ def _box_flux(setting: Setting, pad: int) -> Function:
 class _Divergence:
     """sum_j c_{i-j} . q_j with c_m = -s^(-n-1) eta1(m / s) as products of sums along the axes.
 
-    eta1 of order II is a product, x_d e^(-x_d^2) times e^(-x_e^2) in the other coordinates. That of order IV, with
-    n + 4 - 2 |r|^2 = (n + 4 - 2 x_d^2) - 2 sum_e x_e^2, is a sum of n products; it is the same in both families.
+    eta1 of order II is a product, x_d e^(-x_d^2) times e^(-x_e^2) in the other coordinates. eta1 of order IV has the
+    factor n + 4 - 2 |r|^2 = (n + 4 - 2 x_d^2) - 2 sum_e x_e^2, so that it is a sum of n products. It is the same in
+    both families.
     """
 
     def __init__(self, order: int, overlap: float, dim: int, size: int) -> None:
@@ -187,7 +188,7 @@ class _Divergence:
         return total
 
     def part(self, component: np.ndarray, axis: int) -> np.ndarray:
-        """Return sum_j of the component of c along `axis` times that of q, shape (N, .., N)."""
+        """Return the sum over j of the components of c and q along `axis`, multiplied; shape (N, .., N)."""
         size, others = self._size, [other for other in range(self._dim) if other != axis]
         p = self._odd.along(component, axis, size)
         if self._polynomial is None:
@@ -195,7 +196,7 @@ class _Divergence:
                 p = self._even.along(p, other, size)
             return p
         linear, square = self._polynomial
-        # p: with the factors so far, the product for x_d; q: the same, still without a factor x_e^2.
+        # p holds the sum of products with the factors so far; q holds the product that still lacks a factor x_e^2.
         q = linear.along(component, axis, size)
         for other in others:
             p = self._even.along(p, other, size)

@@ -27,6 +27,6 @@ class Scheme29(Exchange):
     colour, marker = "#999999", "X"
 
     def symbol(self, theta: np.ndarray, setting: Setting) -> np.ndarray:
-        """Return A(theta) h^alpha / D: that of DD minus its value at theta = 0."""
+        """Return A(theta) h^alpha / D: the symbol of DD minus its value at theta = 0."""
         at_zero = self.scaled_transform(np.zeros(1), setting)
         return self.scaled_transform(theta, setting) - at_zero

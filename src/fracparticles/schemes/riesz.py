@@ -5,7 +5,7 @@
 
 The potential's kernel c |r|^(-beta) is cut off at the length epsilon directly instead of being convolved with eta.
 The paper prints no formula; this is the classical algebraic regularisation. Its symbol differs from |k|^alpha
-by a term of relative size (epsilon k)^(2-alpha): it hardly converges for alpha near 2.
+by a term of relative size (epsilon k)^(2-alpha), so that it hardly converges for alpha near 2.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fracparticles.schemes.setting import Setting
 
 
 def potential_constant(alpha: float) -> float:
-    """c of kappa: |k|^(alpha-2) is the transform of c |r|^(1-alpha), n = 1."""
+    """c of kappa, with which |k|^(alpha-2) is the transform of c |r|^(1-alpha), n = 1."""
     beta = alpha - 1.0
     return gamma(beta / 2.0) / (2.0 ** (1.0 - beta) * sqrt(pi) * gamma((1.0 - beta) / 2.0))
 

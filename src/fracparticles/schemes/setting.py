@@ -37,7 +37,7 @@ class Setting:
 
     A Fourier symbol is that of the infinite lattice and depends only on the first five attributes.
 
-    Raises `InvalidInput` if a value is not allowed. Whether a scheme exists for it, `Scheme.check` says.
+    Raises `InvalidInput` if a value is not allowed. `Scheme.check` tells whether a scheme exists for the setting.
 
     Attributes
     ----------
@@ -62,9 +62,9 @@ class Setting:
     exterior : {"truncated", "open"}
         See `lattice.exterior`.
     far_terms : {1, 2, 3}
-        Terms that continue the solution in an open exterior, dim = 1.
+        Number of terms that continue the solution in an open exterior, for dim = 1.
     kernel_table : float, optional
-        Step of the table in which the kernels are interpolated; if left out, the kernels are exact.
+        Step, in units of epsilon, of the table in which the kernels are interpolated; left out, the kernels are exact.
     """
 
     alpha: float

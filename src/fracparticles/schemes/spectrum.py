@@ -22,17 +22,20 @@ __all__ = [
     "spectral_interval",
 ]
 
-# Below the symbol the function of time is bounded, and a little room costs nothing; above zero it would grow.
+# Margin of the interval, as a share of its length. Below the range of the symbol the function of time is bounded, and a
+# small margin costs nothing; above zero the function would grow.
 _ROOM = 1e-6
-_ROOM_OF_A_TABLE = 1e-2  # in a box: interpolated kernels have eigenvalues of their own
-# Of all n: a step at the limit amplifies what is below, so that a run does by two at most.
+_ROOM_OF_A_TABLE = 1e-2  # the same in a box with interpolated kernels, which change the eigenvalues
+# Largest margin below, as a share of |lambda_min| / n for n steps: steps at the stability limit amplify waves below the
+# range of the symbol, and with this margin a run amplifies them by two at most.
 _ROOM_OF_STEPS = 0.1
 # Where the eigenvalues are not proved to be real and in the interval, T_k of the operator may grow like exp(g k). The
 # coefficients of a series of degree K fall like exp(-74 (k / K)^2), so that its terms grow by exp((g K)^2 / 300) at
-# most. Measured (tests/run/test_stiff.py): on the line with exact kernels, unless the ends amplify, g < 0.001 and
-# K = 10000, else g < 0.1 and K = 400.
+# most. g was measured (tests/run/test_stiff.py): g < 0.001 on the line with exact kernels, unless the ends amplify, and
+# otherwise g < 0.1. This allows K = 10000 and K = 400.
 _LARGEST_DEGREE = {"line": 10_000, "other": 400}
-# Half the intervals of a small lattice: some reaches of the kernels, of which eigenvalues take milliseconds.
+# Half the intervals of a small lattice, per overlap and at most: it is some reaches of the kernels long, and its
+# eigenvalues take milliseconds.
 _FEW_OVERLAPS, _FEW = 24, 150
 
 
@@ -55,17 +58,17 @@ def eigenvalue_bounds(
     -----
     A truncated convolution (DD, FD) is a compression of the operator on the infinite lattice: its eigenvalues lie
     in the range of the symbol. A truncated exchange is the compression plus a diagonal, the weights that lead out
-    of the lattice: positive weights only raise the eigenvalues, to zero at most, and where weights change sign (KPSE
-    of order IV from beta = 0.85, of higher orders) the lowest falls by no more than the least element of that
+    of the lattice. Positive weights only raise the eigenvalues, to zero at most. Where weights change sign (KPSE
+    of order IV from beta = 0.85, and of higher orders), the lowest falls by no more than the least element of this
     diagonal (Weyl). DPSE is the product of a negative and a positive symmetric matrix, so that its eigenvalues are
-    real. The symbol is that of interpolated kernels, on the line.
+    real. On the line the symbol takes the interpolation of kernels into account.
 
-    The rest is found by computation, not proved (tests/schemes/test_spectrum.py): exchanges whose weights change sign
+    The rest was found by computation, not proved (tests/schemes/test_spectrum.py): exchanges whose weights change sign
     stay below zero, and the eigenvalues of DPSE, FPSE and of the open exterior lie in the range of the symbol and are
-    real on the line. `largest_degree` keeps the series short enough for the deviations that are known, and the
-    evaluation looks at the size of its terms. Where the ends amplify (FPSE from order 6 on) the largest eigenvalue, up
-    to 3e-4 of the range above zero, is that of a small lattice, on whose size it does not depend. Where there are
-    positive eigenvalues, for scheme (29) or an overlap too small for the order, the largest is computed.
+    real on the line. `largest_degree` keeps the series short enough for the known deviations, and the evaluation
+    checks the size of its terms. Where the ends amplify (FPSE from order 6 on), the largest eigenvalue lies up to 3e-4
+    of the range above zero. It does not depend on the size of the lattice, and is computed on a small one. Where there
+    are positive eigenvalues, for scheme (29) or an overlap too small for the order, the largest is computed.
     """
     low, high = range_in(name, setting)
     one, rate = scheme(name), setting.rate
@@ -85,8 +88,8 @@ def spectral_interval(
 ) -> tuple[float, float]:
     """Return an interval that holds the eigenvalues of A, as the Chebyshev series needs it.
 
-    It consists of their bounds, with a margin. For a dissipative scheme it ends exactly at zero: a series of exp(z t)
-    grows with any part above zero.
+    It consists of their bounds, with a margin. For a dissipative scheme it ends exactly at zero, since a series of
+    exp(z t) grows with any part above zero.
 
     Parameters
     ----------
@@ -104,7 +107,7 @@ def spectral_interval(
 
 
 def largest_degree(name: str, setting: Setting, operator: LatticeOperator) -> int | None:
-    """Return the largest degree of a Chebyshev series of A; None where its spectrum is proved to be in the interval."""
+    """Return the largest degree of a Chebyshev series of A; None if its spectrum is proved to lie in the interval."""
     exact = setting.kernel_table is None
     if operator.symmetric and exact:
         return None
@@ -117,8 +120,8 @@ def power_iteration(
 ) -> tuple[float, int]:
     """Return the eigenvalue of A of the largest modulus and the number of iterations (paper, Sec. 4.4).
 
-    v <- A v / |A v| with the Rayleigh quotient as the estimate, until it changes by less than `tolerance`,
-    relative, over ten iterations.
+    v <- A v / |A v| with the Rayleigh quotient as the estimate, until its relative change over ten iterations is less
+    than `tolerance`.
 
     Raises
     ------
@@ -146,13 +149,13 @@ def dense_matrix(operator: Operator) -> np.ndarray:
 
 
 def scheme_matrix(name: str, setting: Setting) -> np.ndarray:
-    """Return A of a scheme in a setting as such an array."""
+    """Return A of a scheme in a setting as an N x N array; for small N."""
     return dense_matrix(scheme(name).operator(setting))
 
 
 def _greatest_eigenvalue(operator: LatticeOperator, of_the_symbol: float) -> float:
-    """The largest real part, or an upper bound of it where the iteration does not converge."""
-    # 0.3 s, and hardly ever needed.
+    """The largest real part of the eigenvalues, or an upper bound of it where the iteration does not converge."""
+    # Imported here: this takes 0.3 s, and is hardly ever needed.
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
 
     matrix = LinearOperator((operator.size,) * 2, matvec=operator.apply, dtype=float)

@@ -23,12 +23,12 @@ _SAMPLES = {1: 513, 2: 65, 3: 21}
 _LOOK = {1: 33, 2: 9, 3: 5}
 _REFINEMENTS = {1: 4, 2: 8, 3: 16}
 _SAMPLES_OF_A_LINE = 129  # along a line of symmetry in a box
-# Between two samples the symbol may rise above the greatest of them, where the two factors of FPSE change sign close to
+# Between two samples the symbol may rise above the greatest sample, where the two factors of FPSE change sign close to
 # one another. So on a line up to six extremes are refined: those within 2 % of the range from the greatest sample.
 _NEARLY, _MOST_PEAKS = 0.02, 6
-_ROUND_OFF = 1e-13  # of a symbol, against its range
-_SLACK = 1e-9  # of a bound of the overlap, which may be a quotient
-_WAVES = np.linspace(0.0, np.pi, 4001)  # of which one is the worst
+_ROUND_OFF = 1e-13  # of a symbol, relative to its range
+_SLACK = 1e-9  # relative excess allowed of the overlap, which may be a quotient
+_WAVES = np.linspace(0.0, np.pi, 4001)  # theta among which `worst_wave` chooses
 
 
 def stability_limit(
@@ -41,9 +41,9 @@ def stability_limit(
 ) -> float:
     """Return a = 2 D / (|lambda_min| h^alpha), Eq. (55), on the infinite lattice.
 
-    Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a (Eq. 56). It is 0 where the symbol is
-    positive somewhere, because the overlap is too small for the order of the kernels: then no step is stable. For
-    GPSE it limits repeated steps; a single step over the whole run cannot blow up.
+    Explicit Euler and the midpoint rule are stable for D dt / h^alpha <= a (Eq. 56). If the overlap is too small for
+    the order of the kernels, the symbol is positive somewhere. Then no step is stable, and a is 0. For GPSE the limit
+    holds for repeated steps; a single step over the whole run cannot blow up.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def stability_limit(
 
 
 def grows(low: float, high: float) -> bool:
-    """Return whether a symbol of this range amplifies some wave: whether it is positive, beyond round-off."""
+    """Return whether a symbol with values from `low` to `high` amplifies some wave, because it is positive there."""
     return high > _ROUND_OFF * max(-low, high)
 
 
@@ -101,7 +101,7 @@ def symbol_range(
 
 
 def worst_wave(name: str, setting: Setting) -> float:
-    """Return theta = k h of the wave on the line that a scheme damps the most, out of 4001 evenly spaced ones."""
+    """Return theta = k h of the wave on the line that a scheme damps the most, among 4001 evenly spaced ones."""
     return float(_WAVES[np.argmin(scheme(name).symbol(_WAVES, setting))])
 
 
@@ -130,7 +130,7 @@ def _symbol_range(name: str, setting: Setting) -> tuple[float, float]:
         for extreme in _extremes(f, dim, setting)
     ]
     low, high = min(found), max(found)
-    # What an exchange subtracts from the transform, K^(0), may be much greater than the range that is left.
+    # An exchange subtracts K^(0) from the transform; this may be much greater than the range of the symbol.
     noise = _ROUND_OFF * setting.overlap**-setting.alpha
     return low, 0.0 if 0.0 < high <= noise else high
 
@@ -138,8 +138,8 @@ def _symbol_range(name: str, setting: Setting) -> tuple[float, float]:
 def _searches(symbol: Symbol, dim: int) -> Iterator[tuple[Symbol, int]]:
     """Yield the functions whose extremes are looked for, and the number of coordinates of each.
 
-    In a box the symbol is nearly radial: its least value on a sphere is little below the others. It lies on a line of
-    symmetry, on which each coordinate is 0, pi, or the same t. The grid finds all other extremes.
+    In a box the symbol is nearly radial, and its least value on a sphere is only a little below the others. This value
+    lies on a line of symmetry, on which each coordinate is 0, pi, or the same t. The grid finds all other extremes.
     """
     if dim == 1:
         yield symbol, 1
@@ -155,7 +155,7 @@ def _along(symbol: Symbol, line: tuple[float, ...], t: np.ndarray) -> np.ndarray
 
 
 def _extremes(f: Symbol, dim: int, setting: Setting) -> tuple[float, float]:
-    # They lie near theta ~ 2 / s: sample evenly in theta as well as in theta s.
+    # The extremes lie near theta ~ 2 / s: sample evenly in theta as well as in theta s.
     samples = _SAMPLES[dim] if dim == setting.dim else _SAMPLES_OF_A_LINE
     near = np.linspace(0.0, min(np.pi, 16.0 / setting.overlap), samples)
     axis = np.union1d(near, np.linspace(0.0, np.pi, samples))
@@ -164,7 +164,7 @@ def _extremes(f: Symbol, dim: int, setting: Setting) -> tuple[float, float]:
 
 
 def _on_a_grid(f: Symbol, axis: np.ndarray, dim: int) -> np.ndarray:
-    """Return f at all points with coordinates of `axis`; it does not depend on their order."""
+    """Return f at all points with coordinates from `axis`; f does not depend on the order of the coordinates."""
     shape = (axis.size,) * dim
     ordered = np.sort(np.indices(shape).reshape(dim, -1), axis=0)
     different, place = np.unique(np.ravel_multi_index(tuple(ordered), shape), return_inverse=True)
@@ -173,7 +173,7 @@ def _on_a_grid(f: Symbol, axis: np.ndarray, dim: int) -> np.ndarray:
 
 
 def _summit(f: Symbol, axis: np.ndarray, values: np.ndarray) -> float:
-    """Return the largest value of f, whose `values` at the points with coordinates of `axis` are given."""
+    """Return the largest value of f, from its `values` at all points with coordinates from `axis`."""
     dim = values.ndim
     best = -np.inf
     for place in _peaks(values):
@@ -191,7 +191,7 @@ def _summit(f: Symbol, axis: np.ndarray, values: np.ndarray) -> float:
 
 
 def _peaks(values: np.ndarray) -> Iterator[tuple[int, ...]]:
-    """Yield the places where values are greater than at their neighbours, if nearly the largest; that one first."""
+    """Yield the places of nearly the largest values that exceed their neighbours, the largest first."""
     peak = values >= values.max() - _NEARLY * np.ptp(values)
     for axis in range(values.ndim):
         rise = np.diff(values, axis=axis, prepend=-np.inf, append=-np.inf)

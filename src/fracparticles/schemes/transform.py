@@ -15,18 +15,17 @@ from fracparticles.special import chebyshev
 
 __all__ = ["lattice_transform"]
 
-# Width of the pieces in which the transform is tabulated. It is analytic but for k = 0, and the aliases of the
-# smallest overlap, 1/4, begin at k = pi / 4: seven half pieces from there.
+# Width, in k, of the pieces in which the transform is tabulated. The transform is analytic except at k = 0, and the
+# aliases of the smallest overlap, 1/4, begin at k = pi / 4, more than six half pieces away.
 _WIDTH = 0.25
-# The errors of an interpolated kernel are summed as far as they are larger than this,
-_SMALLEST = 1e-13
-_MOST = 20_000  # but never more of them
+_SMALLEST = 1e-13  # error of an interpolated kernel: smaller ones are left out of the sum
+_MOST = 20_000  # errors that are summed at most
 
 
 def lattice_transform(name: str, theta: np.ndarray, setting: Setting) -> np.ndarray:
     """Return sum_m K(m / s) e^{-i m.theta} / s^n = sum_l K^(s (theta + 2 pi l)), Poisson's summation formula.
 
-    For an odd kernel the imaginary part, sum_l (k_l / |k_l|) g(|k_l|): for dim = 1 with the sign of k_l, for
+    For an odd kernel it is the imaginary part, sum_l (k_l / |k_l|) g(|k_l|): for dim = 1 with the sign of k_l, for
     dim > 1 a vector along the last axis. The aliases l fall like a Gaussian, those of E like exp(-|k|^alpha);
     they are summed until they vanish. For dim = 1 a kernel from a table has its own transform: the interpolation
     error is added as a sum over m.
@@ -77,7 +76,7 @@ def _in_a_box(
 def _table(
     name: str, alpha: float, dim: int, order: int, family: str | None, reach: float
 ) -> np.ndarray:
-    """Return the transform in pieces, see `special.chebyshev`; the first ones, about k = 0, are not to be used."""
+    """Return the transform in pieces, see `special.chebyshev`; it is wrong on the first ones, about k = 0."""
     points = chebyshev.sample_points(_WIDTH, int(reach / _WIDTH) + 1)
     values = kernel_transform(name, points, alpha, dim=dim, order=order, family=family)
     return chebyshev.fit(np.asarray(values))
@@ -85,7 +84,7 @@ def _table(
 
 @njit()
 def _add_aliases(k, step, lasts, reach, table, even, total):
-    """Add the aliases but the first, k itself, for wave vectors of three components, shape (points, 3)."""
+    """Add all aliases but k itself, for wave vectors of three components, shape (points, 3)."""
     most = reach * reach
     for point in range(k.shape[0]):
         for a in range(-lasts[0], lasts[0] + 1):
@@ -109,7 +108,7 @@ def _add_aliases(k, step, lasts, reach, table, even, total):
 
 
 def _of_the_table(name: str, theta: np.ndarray, setting: Setting) -> np.ndarray:
-    """Return what interpolation in a table adds to the transform on the line: the sum over m of its errors."""
+    """Return the change of the transform on the line by interpolation in a table: the sum over m of its errors."""
     line = Setting(
         alpha=setting.alpha,
         overlap=setting.overlap,
