@@ -1,12 +1,12 @@
 r"""The gamma kernel family, of any even order 2m: its regularisation is an incomplete gamma function.
 
-The Gaussian (8) has the transform exp(-z), z = k^2 / 4. Times the first m terms of exp(z) it stays near 1:
+The Gaussian (8) has the transform exp(-z), z = k^2 / 4. Multiplied by the first m terms of exp(z) it stays near 1:
 
     eta^(k) = e^-z sum_{j<m} z^j / j! = Q(m, z) = 1 - z^m / m! + ...,
 
-so that every kernel built from it is of order 2m. m = 1 is the order II of the paper; its order IV (9) is of another
-kernel family, all but (24), which is the gradient of m = 2. Back in space z^j is a power of the Laplacian, and with
-M(a, b, x) = 1F1(a; b; -x)
+so that every kernel built from it is of order 2m. m = 1 is the order II of the paper. The order IV of the paper (9) is
+of another kernel family, except for (24), which is the gradient of m = 2. In space z^j is a power of the Laplacian, and
+with M(a, b, x) = 1F1(a; b; -x)
 
     eta = pi^(-n/2) e^-x L_{m-1}^(n/2)(x),                x = r^2,
     G   = -Gamma_{n,0}(alpha) W_m((n+alpha)/2, n/2, x),   W_m(a, b, x) = sum_{j<m} (a)_j / j! M(a + j, b, x),
@@ -16,15 +16,16 @@ and likewise kappa, F and K, see `kernels.rules`. W_m is evaluated as
     W_m(a, b, x) = sum_k p_k(x) q_k,   q_k = sum_{j<m} (a)_j / j! (b-a-j)_k / (b)_k,   p_k = e^-x x^k / k!  (near),
     W_m(a, b, x) ~ Gamma(b) / Gamma(b-a) x^-a [1 - (-1)^m sum_{l>=m} C(l-1, m-1) (a)_l (a-b+1)_l / (l! x^l)]  (far).
 
-Near: Kummer's transformation of each M; the weights p_k are those of a Poisson distribution, positive with sum 1, so
-the errors of W_m are rounding errors of q_k. Far: DLMF 13.7.2 for each M; its term l gets the factor sum_{j<m} (-1)^j
-C(l, j) = (-1)^(m-1) C(l-1, m-1), so that nothing cancels: l = 0, alone before l = m, is the exact r^(-n-alpha) of the
-fractional Laplacian, the same for every order.
+The near form is Kummer's transformation of each M. The weights p_k are those of a Poisson distribution, positive with
+sum 1, so that the errors of W_m are rounding errors of q_k. The far form is DLMF 13.7.2 for each M. Its term l gets the
+factor sum_{j<m} (-1)^j C(l, j) = (-1)^(m-1) C(l-1, m-1), so that nothing cancels. l = 0 is the only term before l = m,
+and is the exact r^(-n-alpha) of the fractional Laplacian, the same for every order.
 
-Measured against mpmath for all orders, dimensions and 1.001 <= alpha <= 1.9999: absolute error below 5e-15 of the
-largest |kernel| (half of it the table's fit); below 2e-13 of sum_j |(a)_j / j! M(a + j, b, x)| pointwise, so that
-digits are lost next to the zeros only; beyond r = 9, relative 6e-15. A higher order does not raise the floor: the
-terms of W_m are largest at r = 0, where all are positive. (The series in powers of x would lose e^(2x).)
+The errors were measured against mpmath for all orders, dimensions and 1.001 <= alpha <= 1.9999. The absolute error is
+below 5e-15 of the largest |kernel|, half of it from the fit of the table. Pointwise it is below 2e-13 of
+sum_j |(a)_j / j! M(a + j, b, x)|, so that digits are lost next to the zeros only. Beyond r = 9 the relative error is
+6e-15. A higher order does not raise these: the terms of W_m are largest at r = 0, where all are positive. (The series
+in powers of x would lose e^(2x).)
 """
 
 from __future__ import annotations
@@ -45,13 +46,13 @@ from fracparticles.special.hypergeometric import WIDTH, poisson_weights
 __all__ = ["GAMMA", "NAMES", "ORDERS", "kernel", "kernel_transform", "wavenumber_reach"]
 
 ORDERS = (2, 4, 6, 8, 10, 12)
-_ZERO = 750.0  # exp(-x) and any Laguerre polynomial times it is zero beyond
-_FAR = 80.0  # beyond, 48 terms of the asymptotic series leave 1e-19 at order 12
-_TERMS = 48
+_ZERO = 750.0  # x from which exp(-x) times any of the polynomials is zero
+_FAR = 80.0  # x from which 48 terms of the asymptotic series leave 1e-19 at order 12
+_TERMS = 48  # of the asymptotic series
 
 
 class _Table(NamedTuple):
-    """W_m(a, b, .) for one (a, b, m): near coefficients; far prefactor, power and series."""
+    """W_m(a, b, .) for one (a, b, m): the near coefficients, and the prefactor, the power and the series far away."""
 
     near: FloatArray
     prefactor: float
@@ -66,7 +67,7 @@ def _table(c: float, b: float, m: int) -> _Table:
     a = b - c
     weights = poisson_weights(int(_FAR / WIDTH))
     k, j = np.arange(weights.shape[0] - 1)[:, None], np.arange(m)
-    # (c-j)_k / (b)_k. k - j first: c itself, and c + 1, enter as exact factors.
+    # (c-j)_k / (b)_k. k - j is computed first, so that c and c + 1 are exact factors.
     ratios = np.vstack([np.ones(m), np.cumprod(((k - j) + c) / (b + k), axis=0)])
     q = ratios @ (poch(a, j) / gamma(j + 1.0))
     samples = (q @ weights).reshape(-1, chebyshev.DEGREE + 1)
@@ -74,7 +75,7 @@ def _table(c: float, b: float, m: int) -> _Table:
     far = poch(a, terms) * poch(1.0 - c, terms) / gamma(terms + 1.0) * binom(terms - 1, m - 1)
     return _Table(
         near=chebyshev.fit(samples),
-        # 1 / Gamma(c) by two steps of the recurrence, exact where c is close to 0 or -1.
+        # 1 / Gamma(c) by two steps of the recurrence, which keep all digits where c is close to 0 or -1.
         prefactor=float(gamma(b) * c * (c + 1.0) * rgamma(c + 2.0)),
         a=a,
         m=m,
@@ -165,7 +166,7 @@ kernel, kernel_transform = GAMMA.kernel, GAMMA.kernel_transform
 
 
 def wavenumber_reach(order: int, smallest: float = 1e-22) -> float:
-    """Return the wavenumber beyond which eta^ = Q(m, k^2/4) < smallest; all transforms are a power of k times that.
+    """Return the wavenumber beyond which eta^ = Q(m, k^2/4) < smallest; other transforms are a power of k times eta^.
 
     Raises `InvalidInput` if the order is not one of `ORDERS`.
     """

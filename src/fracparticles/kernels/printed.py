@@ -5,7 +5,7 @@ With M(a, b, z) = 1F1(a; b; -z), orders II and IV differ in one rule:
     order II:  M(a, b, r^2)
     order IV:  2 M(a, b, r^2) - 2^-a M(a, b, r^2 / 2)
 
-((B.18), which misprints the last argument; compare (12), (15), (21)). In Fourier space the rule is
+This is (B.18), which misprints the last argument; compare (12), (15), (21). In Fourier space the rule is
 2 f(k) - f(sqrt(2) k) for the two Gaussians of (8) and (9).
 """
 
@@ -56,7 +56,7 @@ class _Printed(KernelFamily):
         return -(n + 4.0 - 2.0 * r * r) * (r * _gaussian(r, n))
 
     def phi(self, r: FloatArray, alpha: float, n: int, order: int) -> FloatArray:
-        """2 pi^(-n/2) exp(-r^2)  (17); order IV: the same of (9)."""
+        """2 pi^(-n/2) exp(-r^2)  (17); in order IV -(1/r) d/dr of (9)."""
         narrow = _gaussian(r, n)
         return 2.0 * narrow if order == 2 else 4.0 * narrow - _wide_gaussian(r, n)
 

@@ -1,7 +1,7 @@
-"""What every kernel family shares: access by name, and kernels that follow from others by a rule.
+"""The interface of all kernel families: access by name, and kernels that follow from others by a rule.
 
-A kernel family is made by one regularisation eta of the delta function. With M(a, b, r^2) for the regularised
-1F1(a; b; -r^2) that belongs to eta, and Gamma_{n,b} of (B.14) of Lucchesi et al. (2020), which the numbers refer to,
+A kernel family is made by one regularisation eta of the delta function. Equation numbers are those of Lucchesi et al.
+(2020). With M(a, b, r^2) for the regularised 1F1(a; b; -r^2) that belongs to eta, and Gamma_{n,b} of (B.14),
 
     kappa = Gamma_{n,0}(beta-1) M((beta-1+n)/2, n/2, r^2)             k^(alpha-2) eta^(k)     (14), (15), (B.11)
     F     = -r K                                                      k^(alpha-1) eta^(k)     (20), (21), (B.12)
@@ -35,7 +35,7 @@ from fracparticles.errors import InvalidInput, one_of
 __all__ = ["KernelFamily", "distances", "gamma_nb", "is_order"]
 
 
-_LARGEST = 1e150  # the square must not overflow
+_LARGEST = 1e150  # distance and wavenumber: their squares must not overflow
 
 
 def gamma_nb(n: int, b: int, alpha: float) -> float:
@@ -45,9 +45,9 @@ def gamma_nb(n: int, b: int, alpha: float) -> float:
 
 
 def distances(r: Any, dim: int) -> FloatArray:
-    """Return the distances that a kernel takes, |r| <= 1e150, with a sign on the line alone, as an array.
+    """Return the distances r as an array; |r| <= 1e150, and only on the line may they have a sign.
 
-    Raises `InvalidInput` if they are not.
+    Raises `InvalidInput` for other values.
     """
     r = real_array("r", r)
     if (np.abs(r) > _LARGEST).any():
@@ -148,7 +148,7 @@ class KernelFamily(ABC):
     def kernel_transform(
         self, name: str, k: Any, alpha: float, dim: int = 1, order: int = 2
     ) -> FloatArray | float:
-        """Return its Fourier transform; parameters and errors as for `families.kernel_transform`."""
+        """Return the Fourier transform of the kernel `name`; as `families.kernel_transform`."""
         alpha = self._checked(name, alpha, dim, order)
         k = real_array("k", k)
         if not ((k >= 0.0) & (k <= _LARGEST)).all():

@@ -1,7 +1,7 @@
 """Smooth particles (9), the derivative as an integral operator (18), and its sum over particles (21).
 
-A kernel of twice the radius errs at least four times as much where it errs like eps^2, and more for a higher order. So
-a third of what it changes bounds what the smoothing does, and is warned of where it is large.
+A kernel of twice the radius errs at least four times as much if its error is like eps^2, and more for a higher order.
+So a third of the change of the result by twice the radius bounds the error of the smoothing. A large one is warned of.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["derivative", "lattice", "reconstruct", "regularised"]
 
-_MOST_PARTICLES = 2**26
-_FARTHEST = 2.0**31  # lattice points from the origin
+_MOST_PARTICLES = 2**26  # of a lattice: half a gigabyte
+_FARTHEST = 2.0**31  # distance of a lattice from the origin, in h
 _MOST_PAIRS = 2**25  # of points and particles
 _HIGHEST = 24  # order of a derivative
-_ROUND_OFF = 64.0 * float(np.finfo(float).eps)  # of the sum of the sizes of all terms
-_WRONG = 0.05  # of the largest value, by the smoothing
-_SEEN = 3.0  # radii: what lies farther counts little in any kernel
-_WHOLE = 0.75, 1.5  # of its moment, what twice the radius leaves where there are no gaps
+_ROUND_OFF = 64.0 * float(np.finfo(float).eps)  # share of the sum of the sizes of all terms
+_WRONG = 0.05  # share of the largest value: a larger error by the smoothing is warned of
+_SEEN = 3.0  # radii: particles farther away count little in any kernel
+_WHOLE = 0.75, 1.5  # ratio of the moments at twice the radius and at one, where there are no gaps
 
 
 class _Sums(NamedTuple):
-    """Of a sum over the particles at each point: itself, the moment that must be 1, and the sizes of its terms."""
+    """For each point, the sum over the particles, the moment that must be 1, and the sum of the sizes of the terms."""
 
     result: FloatArray
     moment: FloatArray
@@ -43,7 +43,7 @@ class _Sums(NamedTuple):
 def lattice(low: float, high: float, h: float) -> FloatArray:
     """Return the particles i h from the last below `low` to the first above `high`.
 
-    Raises `InvalidInput` if h is not positive, `high` is below `low`, or it takes too many particles.
+    Raises `InvalidInput` if h is not positive, `high` is below `low`, or too many particles would be needed.
     """
     h = check.scale("h", h)
     low = check.real_between("low", low, -_FARTHEST * h, _FARTHEST * h)
@@ -70,7 +70,7 @@ def reconstruct(
     Parameters
     ----------
     x : array_like, shape (M,)
-        Where.
+        The points at which the sum is wanted.
     particles, values : array_like, shape (N,)
         x_p and f(x_p), real or complex.
     volumes : array_like, shape (N,) or ()
@@ -109,13 +109,13 @@ def derivative(
     Errors as for `reconstruct`; also if the order is not a whole number from 1 to 24.
 
     Warns with `AccuracyWarning` if the particles near some of the points give far less or far more than one for the
-    moment that this needs, sum_p V_p (x_p - x)^beta eta_eps(x - x_p) / (beta! eps^beta), or if epsilon is too large for
-    the field; of that nothing is known for a stencil.
+    moment sum_p V_p (x_p - x)^beta eta_eps(x - x_p) / (beta! eps^beta), which must be one. Warns with it, too, if
+    epsilon is too large for the field; for a stencil this cannot be known.
 
     Parameters
     ----------
     x, at : array_like, shape (M,)
-        The points, and f there.
+        The points, and f at them.
     order : int
         beta, at most 24.
     particles, values, volumes, epsilon, kernel
@@ -146,11 +146,11 @@ def derivative(
 def regularised(
     f: Callable[[FloatArray], FloatArray], x: ArrayLike, epsilon: float, kernel: Kernel, order: int
 ) -> FloatArray:
-    """eps^-beta int [f(x - eps z) - f(x)] eta(z) dz, the integral (18); for beta = 0 the integral of (9).
+    """eps^-beta int [f(x - eps z) - f(x)] eta(z) dz, the integral (18), shape (M,); for beta = 0 the integral of (9).
 
     This is the sum without its quadrature error: its difference from the derivative is the regularisation error.
 
-    Shape (M,). Errors as for `derivative`; also if f does not take arrays, or is not finite.
+    Parameters and errors as for `derivative`, with f a function of x; also if f does not take arrays, or is not finite.
     """
     divisor = _power(epsilon, check.whole_number("order", order, most=_HIGHEST))
     x = check.positions("x", x, least=0)
@@ -164,7 +164,7 @@ def regularised(
 
 
 def _inside(x: FloatArray, particles: FloatArray, epsilon: float, kernel: Kernel) -> np.ndarray:
-    """Whether the particles go on beyond each point as far as a kernel of twice the radius sees."""
+    """Whether there are particles on both sides of each point as far as a kernel of twice the radius reaches."""
     seen = 2.0 * epsilon * min(kernel.reach, _SEEN)
     return (x - seen >= particles.min()) & (x + seen <= particles.max())
 
@@ -172,10 +172,10 @@ def _inside(x: FloatArray, particles: FloatArray, epsilon: float, kernel: Kernel
 def _warn_of_smoothing(
     found: _Sums, sums: Callable[[float], _Sums], inside: np.ndarray, epsilon: float
 ) -> None:
-    """Warn if twice the radius changes a result, over its moment, by more than three times what is allowed."""
+    """Warn if twice the radius changes a result, over its moment, by more than three times the error allowed."""
     try:
         wider = sums(2.0 * epsilon)
-    except InvalidInput:  # a stencil knows one radius, and the numbers end at 1e100
+    except InvalidInput:  # a stencil has one radius only, and lengths end at 1e100
         return
     ratio = wider.moment / found.moment
     whole = inside & (ratio > _WHOLE[0]) & (ratio < _WHOLE[1])

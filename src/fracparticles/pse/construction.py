@@ -2,8 +2,8 @@
 
     M_k = 0 for k in S = {1, ..., beta + r - 1} without beta,    M_beta = (-1)^beta beta!.
 
-With the symmetry (19) every other condition holds automatically. The rest are a linear system for the coefficients of
-a polynomial times a Gaussian, or for the values of a kernel at the points of a lattice.
+With the symmetry (19) every other condition holds automatically. The remaining conditions are a linear system for the
+coefficients of a polynomial times a Gaussian, or for the values of a kernel at the points of a lattice.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ __all__ = [
     "taylor_constant",
 ]
 
-_MOST = 24  # beta + r: the values of the kernel lose about a digit for every three
-# Below, a kernel is 1e7 times as large between the particles as at the next of them.
+_MOST = 24  # beta + r: for every three the values of the kernel lose about a digit
+# The least and the greatest overlap. Below the least a kernel is 1e7 times as large between the particles as at them.
 _OVERLAPS = (0.25, 1000.0)
-_WORST = 1e10  # condition number: beyond it the conditions are met to less than six digits
+_WORST = 1e10  # condition number up to which the conditions are met to six digits
 
 
 def required_moments(derivative: int, accuracy: int) -> dict[int, int]:
@@ -63,9 +63,9 @@ def construct(derivative: int, accuracy: int, overlap: float | None = None) -> G
     derivative, accuracy : int
         beta and r; an odd r gives r + 1 by symmetry.
     overlap : float, optional
-        Meet the conditions on the lattice with this eps / h, (28), instead of over the line: then the sum over
-        that lattice has no quadrature error in them, however few particles a kernel holds. From 0.25 to 1000.
-        The coefficients are exact without it.
+        eps / h of a lattice, from 0.25 to 1000. The conditions are then met on this lattice, (28), and not over the
+        line: the sum over the lattice has no quadrature error in them, however few particles a kernel holds. Without
+        it the coefficients are exact fractions.
     """
     conditions = required_moments(derivative, accuracy)
     parity = derivative % 2
@@ -97,7 +97,7 @@ def construct_laplacian(accuracy: int, dim: int) -> GaussianKernel:
 
     so that I_2 = 2 d and I_4 = ... = I_r = 0. For d = 1 it is `construct(2, r)`.
 
-    Errors as for `required_moments`; also unless d is 1, 2 or 3.
+    Errors as for `required_moments`; also if d is not 1, 2 or 3.
     """
     dim = dimension(dim)
     conditions = _of_parity(required_moments(2, accuracy), 0)
@@ -109,7 +109,7 @@ def construct_laplacian(accuracy: int, dim: int) -> GaussianKernel:
 def construct_stencil(derivative: int, accuracy: int) -> Stencil:
     """Return the narrowest kernel on the lattice with eps = h: the discrete conditions (28) for its values.
 
-    With (18) it is the centred finite difference of that accuracy; beta = 2, r = 2 gives (31).
+    With (18) it is the centred finite difference of accuracy r; beta = 2, r = 2 gives (31).
 
     Errors as for `required_moments`; also for beta = 0, where (9) at a particle is f itself.
     """
@@ -127,7 +127,7 @@ def construct_stencil(derivative: int, accuracy: int) -> Stencil:
 def taylor_constant(kernel: GaussianKernel, derivative: int, accuracy: int) -> Fraction | float:
     """Return the constant of the first error term of (17), C eps^r f^(beta+r): (-1)^k M_k / k!, k = beta + r.
 
-    For an even r, in one dimension. |C| is C_1 of Sec. 2.2, with the norm of f^(beta+r), not f^(r).
+    It holds for an even r, in one dimension. |C| is C_1 of Sec. 2.2, with the norm of f^(beta+r), not f^(r).
 
     Errors as for `required_moments`; also if r is odd, or the kernel is not one-dimensional.
     """
@@ -146,7 +146,7 @@ def solve_exactly(
 ) -> list[Fraction]:
     """Solve a square linear system by Gauss elimination in fractions.
 
-    Raises `InvalidInput` if it is not square, not of whole numbers and fractions, or singular.
+    Raises `InvalidInput` if the matrix is not square, not of whole numbers and fractions, or singular.
     """
     n = len(_listed("right", right))
     if len(_listed("matrix", matrix)) != n or any(len(_listed("matrix", r)) != n for r in matrix):
@@ -181,7 +181,7 @@ def _of_parity(conditions: dict[int, int], parity: int) -> dict[int, int]:
 
 
 def _lattice_moment_of_power(power: int, overlap: float) -> float:
-    """M^_0 of z^power exp(-z^2) / sqrt(pi), an even power."""
+    """M^_0 of z^power exp(-z^2) / sqrt(pi) for an even power."""
     monomial = GaussianKernel((0.0,) * (power // 2) + (1.0,))
     return float(lattice_moment(monomial, 0, overlap))
 

@@ -21,24 +21,24 @@ from fracparticles.pse.smoothing import warn_of_exchange
 __all__ = ["StrengthExchange", "cell_volumes"]
 
 _MOST_PAIRS = 2**25  # of neighbours, each twice in the matrix
-_VOLUMES = 1e-300, 1e300  # their products with a kernel keep all digits
+_VOLUMES = 1e-300, 1e300  # the least and the greatest: their products with a kernel keep all digits
 _DENSE = 64  # particles up to which all eigenvalues are computed
-_GROWS = 1e-5  # of the rate, what an eigenvalue must exceed zero by
+_GROWS = 1e-5  # share of the rate: an eigenvalue above it is warned of
 
 
 class StrengthExchange:
     """dQ_i/dt = (D / eps^2) sum_p [Q_p V_i - Q_i V_p] eta_eps(x_i - x_p)  (26), an `Operator` of `time`.
 
-    If eta is symmetric, i gains from p what p loses to i: then sum_i dQ_i/dt = 0 for any positions and volumes.
-    Q_i = c V_i is a steady state for any kernel; and if eta >= 0 is symmetric, sum_i Q_i^2 / V_i does not grow.
+    If eta is symmetric, p loses to i as much as i gains from p, so that sum_i dQ_i/dt = 0 for any positions and
+    volumes. Q_i = c V_i is a steady state for any kernel. If eta >= 0 is symmetric, sum_i Q_i^2 / V_i does not grow.
 
     Raises `InvalidInput` if a volume, the radius or the diffusivity is not positive and finite, a position is not
     finite, the kernel has another dimension, or the particles have more neighbours than memory holds.
 
-    Warns with `AccuracyWarning` if eta is not symmetric, or the particles near some of them give far less or far more
-    than one for its second moment, sum_p V_p |x_p - x_i|^2 eta_eps / (2 d eps^2): diffusion there is too slow or too
-    fast by this factor. Warns with `StabilityWarning` if eta is negative somewhere and makes A amplify, whatever the
-    step. `apply` warns with `AccuracyWarning`, the first time, if epsilon is too large for its strengths.
+    Warns with `AccuracyWarning` if eta is not symmetric. Warns with it, too, if the second moment of eta at some
+    particles, sum_p V_p |x_p - x_i|^2 eta_eps / (2 d eps^2), is far less or far more than one: diffusion there is too
+    slow or too fast by this factor. Warns with `StabilityWarning` if eta is negative somewhere and A amplifies,
+    whatever the step. `apply` warns with `AccuracyWarning`, the first time, if epsilon is too large for the strengths.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class StrengthExchange:
     epsilon : float
         Kernel radius, positive.
     kernel : Kernel
-        eta, of d dimensions; in one a function of the signed distance, in more of the distance.
+        eta, of d dimensions: a function of the signed distance in one dimension, of the distance in two and three.
     diffusivity : float
         D, positive.
 
@@ -93,7 +93,8 @@ class StrengthExchange:
         with np.errstate(over="ignore", invalid="ignore"):
             eta = diffusivity / epsilon ** (2 + dim) * kernel(z)
             gain = csr_array((v[i] * eta, (i, p)), shape=(self.size, self.size))
-            loss = np.bincount(i, v[p] * eta, self.size).astype(float)  # whole without neighbours
+            # Without neighbours bincount returns whole numbers.
+            loss = np.bincount(i, v[p] * eta, self.size).astype(float)
             self.matrix = (gain - diags_array(loss)).tocsr()
             self.rate = float(check.finite_result("volumes", abs(self.matrix).sum(axis=0).max()))
             unit = epsilon**2 / (2.0 * dim * diffusivity)
@@ -133,7 +134,7 @@ class StrengthExchange:
         out += scale * (self.matrix @ u)
 
     def _ask(self, u: FloatArray) -> None:
-        """Look at the first strengths alone: what comes of them is smoother."""
+        """Judge the first strengths only: later ones are smoother."""
         self._asked = True
         points, v, epsilon, kernel = self._of_kernel
         with np.errstate(all="ignore"):
@@ -148,9 +149,9 @@ def _warn_of_growth(matrix: csr_array, root: np.ndarray, rate: float) -> None:
     if n <= _DENSE:
         greatest = float(np.linalg.eigvalsh(symmetric.toarray()).max())
     else:
-        # With all eigenvalues positive, so that the tolerance is one of the rate.
+        # The shift makes all eigenvalues positive, so that the tolerance is relative to the rate.
         shifted = symmetric + rate * eye_array(n)
-        start = np.cos(2.4 * np.arange(n))  # anything that is not a constant, the same every time
+        start = np.cos(2.4 * np.arange(n))  # any vector that is not constant, the same every time
         try:
             greatest = float(eigsh(shifted, 1, which="LA", v0=start, tol=1e-6)[0][0]) - rate
         except ArpackNoConvergence as error:
@@ -165,11 +166,11 @@ def _warn_of_growth(matrix: csr_array, root: np.ndarray, rate: float) -> None:
 
 
 def cell_volumes(x: ArrayLike) -> FloatArray:
-    """V_j = x_(j+1/2) - x_(j-1/2) of sorted particles, the half points in the middle (below (10)).
+    """V_j = x_(j+1/2) - x_(j-1/2) of particles in rising order, shape (N,), the half points in the middle (below (10)).
 
     At the ends a cell extends as far outside as inside.
 
-    Raises `InvalidInput` if there are fewer than two particles, two in one place, or they are not in rising order.
+    Raises `InvalidInput` if there are fewer than two particles, if two are in one place, or if they are not in order.
     """
     x = check.positions("x", x, least=2, rising=True)
     middle = 0.5 * (x[1:] + x[:-1])

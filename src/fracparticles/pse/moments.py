@@ -16,13 +16,13 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.pse.shapes import Kernel, kernel_of
 
 __all__ = ["absolute_moment", "gaussian_moment", "lattice_moment", "moment", "nodes_and_weights"]
-_BEYOND = 4.0
-_HIGHEST = 60  # z^60 exp(-z^2) is below 1e-16 of its maximum beyond the reach and `_BEYOND`
-_SCANNED = 4096  # points between which a kernel changes its sign once at most
+_BEYOND = 4.0  # radii beyond the reach of a kernel, to which its moments are integrated
+_HIGHEST = 60  # order of a moment: z^60 exp(-z^2) is below 1e-16 of its maximum farther away
+_SCANNED = 4096  # points; from one to the next a kernel changes its sign at most once
 _MOST_POINTS = 2**26  # of lattices
-ENOUGH = 0.25  # of a moment
+ENOUGH = 0.25  # share of a moment: with less, or with more than its inverse, the result is wrong
 
-# On pieces of length 1, exact for the splines; for exp(-z^2) times a polynomial of degree 30 at round-off.
+# For pieces of length 1: exact for the splines, and to round-off for exp(-z^2) times a polynomial of degree 30.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
@@ -31,10 +31,10 @@ def nodes_and_weights(
 ) -> tuple[FloatArray, FloatArray]:
     """Return nodes and weights of a Gauss rule, piece by piece, on [-reach, reach] and a little more.
 
-    Beyond its reach a Gaussian is below round-off, but z^k times it is not. The integrand may have more `breaks` than
-    the kernel has.
+    Beyond its reach a Gaussian is below round-off, but z^k times it is not. `breaks` are places besides those of the
+    kernel where the integrand is not smooth.
 
-    Raises `InvalidInput` if it is not a kernel of one dimension.
+    Raises `InvalidInput` if the kernel is not one-dimensional.
     """
     kernel = kernel_of(1, kernel)
     inside = [-kernel.reach, *kernel.breaks, kernel.reach]
@@ -70,7 +70,7 @@ def absolute_moment(kernel: Kernel, k: int) -> float:
 
 
 def _sign_changes(kernel: Kernel) -> list[float]:
-    """Zero, where z changes its sign, and where eta does: |z^k eta| is smooth between them."""
+    """Zero and the places where eta changes its sign: |z^k eta| is smooth between them."""
     z = np.linspace(-kernel.reach, kernel.reach, _SCANNED)
     sign = np.sign(kernel(z))
     z, sign = z[sign != 0.0], sign[sign != 0.0]
@@ -88,7 +88,7 @@ def lattice_moment(
 ) -> FloatArray:
     """M^_k = (1/s) sum_i z_i^k eta(z_i), z_i = (i + offset) / s: the value of M_k that the particles of a lattice give.
 
-    Errors as for `moment`; also if an overlap is not positive, or holds too many particles.
+    Errors as for `moment`; also if an overlap is not positive, or is so large that a kernel holds too many particles.
 
     Parameters
     ----------
@@ -121,22 +121,23 @@ def lattice_moment(
 
 
 def warn_of_moment(found: FloatArray, places: str, stacklevel: int) -> None:
-    """Warn if particles give less than a quarter, or more than four times, of the moment that an operator needs.
+    """Warn if particles give less than a quarter of the moment that an operator needs, or more than four times as much.
 
-    At the end of a set of particles they give a half.
+    At the end of a row of particles they give a half.
 
     Parameters
     ----------
     found : array, shape (M,)
-        The moment at each place, over what it must be.
+        The moment at each place over its right value.
     places : str
-        What these are.
+        The name of these places in the message.
     stacklevel : int
-        That of the caller.
+        As of `warnings.warn`, for the caller.
 
     Warns
     -----
     AccuracyWarning
+        Says at how many places, and the least and the greatest moment.
     """
     off = (found < ENOUGH) | (found > 1.0 / ENOUGH)
     if off.any():

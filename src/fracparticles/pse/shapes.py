@@ -31,29 +31,29 @@ __all__ = [
     "kernel_of",
 ]
 
-_NOTHING = 1e3  # exp(-z^2) is 0 from 28 on; no power of z overflows up to here
-_WIDEST = 1e4  # reach of a kernel
+_NOTHING = 1e3  # the greatest z computed with: exp(-z^2) is 0 from 28 on, and no power overflows
+_WIDEST = 1e4  # the greatest reach of a kernel, in radii
 _POWERS = 12  # the degree up to which the truncated powers of a spline lose no digit
-_BLOCK = 2**12  # points of a spline at a time
+_BLOCK = 2**12  # points at which a spline is evaluated at a time
 
 
 class Kernel(Protocol):
-    """What the sums need to know of a kernel."""
+    """The methods of a kernel that the sums need."""
 
     @property
     def reach(self) -> float:
-        """Where eta is zero, or below round-off: |z| > reach."""
+        """The |z| beyond which eta is zero, or below round-off."""
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Where the pieces of eta meet, without the ends; empty if it is smooth."""
+        """The places where the pieces of eta meet, without the ends; empty if it is smooth."""
 
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
 
 
 def kernel_of(dim: int, kernel: Any) -> Kernel:
-    """Return a kernel of that many dimensions.
+    """Return the kernel if it has `dim` dimensions.
 
     Raises `InvalidInput` if it is not a kernel, or has another dimension.
     """
@@ -148,12 +148,12 @@ class Tent:
 
 @dataclass(frozen=True)
 class SplineKernel:
-    """eta = 24 / (q + 1) B_q, the centred B-spline of degree q with M_2 = 2: for f'', r = 2, by any particles.
+    """eta = 24 / (q + 1) B_q, the centred B-spline of degree q with M_2 = 2: for f'', r = 2, on any particles.
 
     B_q(z) = 1/q! sum_k (-1)^k binom(q+1, k) (z + (q+1)/2 - k)_+^q has unit mass, the second moment (q+1)/12 and
-    the transform (sin(k/2) / (k/2))^(q+1): the quadrature error is of the order m = q + 1.
+    the transform (sin(k/2) / (k/2))^(q+1). The quadrature error is therefore of the order m = q + 1.
 
-    The powers have both signs, and cancel for a large q. Then B_q is computed with positive terms only, for
+    The powers have both signs, and cancel for a large q. B_q is then computed with positive terms only, for
     u = z + (q+1)/2, by
 
         q B_q(u) = u B_(q-1)(u) + (q + 1 - u) B_(q-1)(u - 1)     (de Boor).
@@ -168,7 +168,7 @@ class SplineKernel:
 
     @property
     def reach(self) -> float:
-        """Half of the support."""
+        """Half the length of the support."""
         return 0.5 * (self.degree + 1)
 
     @property
@@ -179,7 +179,7 @@ class SplineKernel:
     def __call__(self, z: ArrayLike) -> FloatArray:
         """Return eta(z), in the shape of z."""
         q = self.degree
-        # From the nearer end: fewer terms, no cancellation in the tail.
+        # Measured from the nearer end: this takes fewer terms, and they do not cancel in the tail.
         left = self.reach - np.abs(check.real_array("z", z))
         if q > _POWERS:
             flat = left.ravel()
@@ -203,7 +203,7 @@ def _spline(degree: int, u: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Stencil:
-    """A kernel known at the points of the lattice only, eta(i), |i| <= n, for eps = h (Sec. 3.1).
+    """A kernel that has values only at the points of the lattice, eta(i), |i| <= n, for eps = h (Sec. 3.1).
 
     Raises `InvalidInput` if the number of values is even, or one is not finite.
 

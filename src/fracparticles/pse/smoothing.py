@@ -1,12 +1,13 @@
-"""Whether a kernel is too wide for the strengths that it exchanges.
+"""A warning if a kernel is too wide for the strengths that it exchanges.
 
-The exchange lets sum_i V_i f_i^2, f_i = Q_i / V_i, fall at the rate of 2 E,
+By the exchange sum_i V_i f_i^2, f_i = Q_i / V_i, falls at the rate 2 E,
 
     E = sum_i V_i e_i / m_i,   e_i = (D / (2 eps^2)) sum_p V_p eta_eps(x_i - x_p) (f_i - f_p)^2,
 
-which is int D |grad f|^2 but for the smoothing; m_i is the second moment that must be 1, which the ends and gaps of the
-particles leave out. A kernel of twice the radius errs at least four times as much, see `approximation`: so a third of
-what it changes of E bounds what the smoothing does. Irregular particles cost a rate dQ_i/dt more than they do E.
+which is int D |grad f|^2 but for the smoothing. m_i is the second moment that must be 1; it is smaller at the ends and
+gaps of the particles. A kernel of twice the radius errs at least four times as much, see `approximation`. So a third of
+the change of E by twice the radius bounds the error of E by the smoothing. E is judged and not the rates dQ_i/dt,
+since irregular particles spoil these more than E.
 """
 
 from __future__ import annotations
@@ -24,10 +25,10 @@ from fracparticles.pse.shapes import Kernel
 
 __all__ = ["warn_of_exchange"]
 
-WRONG = 0.05  # of E, by the smoothing
-_MOST = 1024  # particles, of the greatest part of E, that twice the radius is tried at
-_MOST_PAIRS = 2**25
-_ROUND_OFF = 1e-12  # of f, a difference
+WRONG = 0.05  # share of E: a larger error by the smoothing is warned of
+_MOST = 1024  # particles with the greatest parts of E, at which twice the radius is tried
+_MOST_PAIRS = 2**25  # of these particles and their neighbours
+_ROUND_OFF = 1e-12  # relative difference of f: less is round-off
 
 
 def warn_of_exchange(
@@ -39,9 +40,9 @@ def warn_of_exchange(
     matrix: csr_array,
     moments: FloatArray,
 ) -> None:
-    """Warn if twice the radius changes E by more than three times what is allowed.
+    """Warn if twice the radius changes E by more than three times the error allowed.
 
-    Of a stencil, which knows one radius, and of more than 2^25 pairs at twice the radius, nothing is known or said.
+    There is no warning for a stencil, which has one radius only, nor for more than 2^25 pairs at twice the radius.
 
     Parameters
     ----------
@@ -49,11 +50,12 @@ def warn_of_exchange(
     volumes, f : arrays, shape (N,)
         V_i, and Q_i / V_i, real or complex.
     epsilon, kernel, matrix, moments
-        Of the exchange: the radius, eta, A / D and m_i.
+        The radius, eta, A / D and m_i of the exchange.
 
     Warns
     -----
     AccuracyWarning
+        If the smoothing is likely to change E by more than 5 %.
     """
     a = matrix.tocoo()
     part = np.abs(f[a.row] - f[a.col]) ** 2 * a.data * volumes[a.col]
@@ -65,7 +67,7 @@ def warn_of_exchange(
     rows = np.argsort(-np.abs(energies))[:_MOST]
     try:
         wide, wide_moments = _of_rows(rows, points, volumes, f, 2.0 * epsilon, kernel)
-    except InvalidInput:  # a stencil knows one radius
+    except InvalidInput:  # a stencil, which has one radius only, or too many pairs
         return
     whole = (np.minimum(moments[rows], wide_moments) > ENOUGH) & (moments[rows] < 1.0 / ENOUGH)
     found = float((energies[rows] / moments[rows])[whole].sum())
