@@ -5,19 +5,20 @@ A function has its `value`, its `derivative`, and by order alpha
     `rl(x, alpha)`       RL D^alpha f, (A5)-(A8); alpha < 0 gives the integral I^-alpha f (last lines of the Appendix),
     `caputo(x, alpha)`   C D^alpha f,  (A1)-(A4).
 
-alpha is a number or an array like x: (A1)-(A4) and the integrals hold for a variable order of Type I, (A5)-(A8) with
-alpha > 0 do not. Three departures from the print:
+alpha is a number or an array like x. (A1)-(A4) and the integrals hold for a variable order of Type I; (A5)-(A8) with
+alpha > 0 do not. There are three departures from the print:
 
 * 2^(alpha-1) sqrt(pi) / [Gamma(1-alpha/2) Gamma(3/2-alpha/2)] of (A5) is written 1 / Gamma(2-alpha), that of (A6)
   1 / Gamma(1-alpha), by the duplication formula.
 * (A3), (A7) are written with 1F1, which stays real for beta < 0 where the print has (beta)^alpha.
 * The factor (beta+x)^n ((beta+x)/beta)^-n of (A8) is beta^n; as printed it is 0 times infinity at x = -beta.
 
-The terms of the polynomials in (A4), (A8) have both signs for beta < 0, and cancel for a large n. There
+The terms of the polynomials in (A4), (A8) have both signs for beta < 0, and cancel for a large n. A recurrence from the
+definition by parts takes their place,
 
-    I^mu f = K_n / Gamma(1+mu),     K_0 = x^mu,     K_n = (n (x+beta) K_(n-1) + mu x^mu beta^n) / (n + mu),
+    I^mu f = K_n / Gamma(1+mu),     K_0 = x^mu,     K_n = (n (x+beta) K_(n-1) + mu x^mu beta^n) / (n + mu).
 
-by parts from the definition, whose error stays within n ulp of I^mu |f|.
+Its error stays within n ulp of I^mu |f|.
 
 `mirrored(b)` gives f(b - x) as a sum of such functions, for the right-handed operators on [x, b].
 """
@@ -40,14 +41,14 @@ __all__ = ["FUNCTIONS", "Cosine", "Exponential", "Function", "ShiftedPower", "Si
 
 Order = float | np.ndarray
 
-# The terms of (A4), (A8) lose no more than two digits for n up to _HORNER, x below 1e3 |beta| and |beta| from 1e-50 to
-# 1e50.
+# The terms of (A4), (A8) lose no more than two digits for n up to _HORNER, for x / |beta| up to the first and |beta|
+# between the other two numbers of _NEAR.
 _HORNER = 4
 _NEAR = 1e3, 1e-50, 1e50
 
 
 class Function(ABC):
-    """A function with its closed forms; x is any array of numbers, for `caputo` and `rl` of zero or more.
+    """A function with its closed forms. x is an array of any shape, and x >= 0 for `caputo` and `rl`.
 
     Raises `InvalidInput` if x or alpha is outside its range, the shapes do not fit together, or the values overflow.
     """
@@ -107,7 +108,7 @@ class Sine(_Wave):
         return factor * one_f_two(2.0 - alpha, self.beta * x)
 
     def _rl(self, x: np.ndarray, alpha: Order) -> np.ndarray:
-        """(A5): the same as (A1), for sin 0 = 0."""
+        """(A5): the same as (A1), because sin 0 = 0."""
         return self._caputo(x, alpha)
 
     def mirrored(self, b: float) -> list[tuple[float, Function]]:
@@ -221,7 +222,7 @@ class ShiftedPower(Function):
         return bool(self.n <= _HORNER and near)
 
     def _integral(self, x: np.ndarray, mu: Order, n: int) -> np.ndarray:
-        """I^mu of (x + beta)^n by the recurrence for K_n, in units of the larger end's power."""
+        """I^mu of (x + beta)^n by the recurrence for K_n, in units of the larger of |x + beta|^n and |beta|^n."""
         y = x + self.beta
         unit = np.maximum(np.abs(y), abs(self.beta))
         y, beta, first = y / unit, self.beta / unit, x**mu

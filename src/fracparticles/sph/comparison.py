@@ -1,15 +1,15 @@
-r"""The same operators without kernels, and a warning of what lies between the two.
+r"""The fractional operators without kernels, and a warning if the SPH sums differ from them.
 
-By product integration, and with the central difference of fourth order for f':
+They are computed by product integration, with the central difference of fourth order for f':
 
     I^alpha f    = int_a^x (x-x')^(alpha-1) f(x') dx' / Gamma(alpha),
     C D^alpha f  = int_a^x (x-x')^(-alpha) f'(x') dx' / Gamma(1-alpha),
     RL D^alpha f = f(a) (x-a)^(-alpha) / Gamma(1-alpha) + C D^alpha f + alpha'(x) d/dalpha I^(1-alpha) f,
 
-the last term for a variable order alone. Where the particles resolve a field, these err far less than the sums over
-smooth particles, and the difference is the error of those. Where they do not, the two disagree. Of few particles the
-broken line is the worse of the two: there the field is its cubic spline, virtual particles included, on four times as
-many.
+with the last term only for a variable order. Where the particles resolve a field, these operators err far less than the
+sums over smooth particles, and the difference is the error of the sums. Where they do not, the two disagree. With few
+particles the broken line would be the worse of the two: the field is then its cubic spline, virtual particles included,
+on four times as many.
 """
 
 from __future__ import annotations
@@ -31,15 +31,18 @@ __all__ = ["among_more", "caputo_derivative", "rl_derivative", "rl_integral", "w
 
 Other = Callable[[ParticleLine, np.ndarray, np.ndarray], np.ndarray]
 
-_WRONG = 0.05  # of the largest value: a larger difference is warned of
+_WRONG = 0.05  # share of the largest value: a larger difference is warned of
 _STEP = 1e-4  # in alpha, for the derivative by the order
-# Of so few particles the broken line errs too much itself; it has four times as many.
+# Up to so many particles the broken line errs too much itself, and is taken on so many times as many.
 _FEW, _FINER = 32, 4
-_ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of a difference of values
+_ROUND_OFF = 16.0 * float(np.finfo(float).eps)  # of a difference of values, relative
 
 
 def rl_integral(line: ParticleLine, f: np.ndarray, alpha: np.ndarray) -> np.ndarray:
-    """I^alpha f on the real particles, shape (N,); the field and the order on all, as for the other operators."""
+    """I^alpha f on the real particles, shape (N,).
+
+    The field and the order are given on all particles, as for the other operators.
+    """
     return fractional_integral(f[line.inside], line.spacing, alpha[line.inside])
 
 
@@ -82,7 +85,8 @@ def warn_of_difference(
 
     Infinite values are left out.
 
-    `size` is what the operator makes of the greatest |f| on the whole line: two differences lose N^2 round-off of it.
+    `size` is the result of the operator for the greatest |f| on the whole line; two differences lose N^2 round-off of
+    it.
     """
     finite = np.isfinite(other) & np.isfinite(result)
     largest = float(np.abs(other[finite]).max(initial=0.0))

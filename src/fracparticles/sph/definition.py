@@ -14,17 +14,17 @@ from fracparticles.errors import AccuracyWarning
 
 __all__ = ["defining_integral"]
 
-_UNRESOLVED = 1e-3  # of the greatest integral
-# The nodes of lower ones are lost in round-off, and Gamma of higher ones overflows.
+_UNRESOLVED = 1e-3  # share of the greatest integral: a larger change with more nodes is warned of
+# The least and the greatest order: the nodes of lower ones are lost in round-off, and Gamma of higher ones overflows.
 _ORDERS = 1e-12, 150.0
 
 
 def defining_integral(
     f: Callable[[np.ndarray], np.ndarray], x: Any, alpha: Any, nodes: int = 40
 ) -> np.ndarray:
-    """I^alpha f (1), (7) by Gauss-Jacobi: x^alpha / Gamma(alpha) int_0^1 (1-t)^(alpha-1) f(x t) dt.
+    """I^alpha f (1), (7), shape (M,), by Gauss-Jacobi: x^alpha / Gamma(alpha) int_0^1 (1-t)^(alpha-1) f(x t) dt.
 
-    That is x^alpha / Gamma(1 + alpha) times the mean of f(x t) by the weights of the quadrature.
+    This is x^alpha / Gamma(1 + alpha) times the mean of f(x t) by the weights of the quadrature.
 
     Raises `InvalidInput` if a point is negative, an order outside its range, their shapes differ, f does not take
     arrays, or the integral overflows. Warns with `AccuracyWarning` if the nodes do not resolve f.
@@ -32,9 +32,9 @@ def defining_integral(
     Parameters
     ----------
     f : callable
-        Of an array of any shape; smooth on [0, x].
+        A function of an array of any shape, smooth on [0, x].
     x : array_like, shape (M,)
-        Points, zero or more.
+        Points x >= 0.
     alpha : array_like, shape (M,)
         The order at each, from 1e-12 to 150.
     nodes : int

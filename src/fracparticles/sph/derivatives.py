@@ -4,15 +4,15 @@ r"""SPH derivatives: sums over the particles within 2 h.
     grad^c_i W_ij   = grad_i W_ij / L_i,     L_i = -sum_j V_j grad_i W_ij (x_i - x_j),      (18), (19)
     <grad^2 f(x_i)> = -2 sum_j V_j (f(x_j) - f(x_i)) x_ij grad^c_i W_ij / (x_ij^2 + eta^2),      (37)
 
-V_j = m_j / rho_j. Equation (19) prints L_i^{-1} for what is L_i: the gradient of f(x) = x is then 1 and not L_i^2.
-Equation (37), Brookshaw's, has eta = 0.0001 (1/h)^2 in print, far larger than a distance and of another dimension;
-the paper's digits come with eta = 0.0001 h^2. That is no length either: it is small beside x_ij for h << 1e4 only.
-Of f = (x - x_i)^2 / 2, whose second derivative is 1, (37) leaves sum_j w_j x_ij^2 / (x_ij^2 + eta^2), w_j the terms
-of L_i over L_i: where that is not near 1, there is an `AccuracyWarning`, too.
+V_j = m_j / rho_j. Equation (19) prints L_i^{-1} where L_i is meant: with L_i the gradient of f(x) = x is 1 and not
+L_i^2. Equation (37), Brookshaw's, is printed with eta = 0.0001 (1/h)^2, which is far larger than a distance and of
+another dimension. The paper's digits come with eta = 0.0001 h^2. This is no length either: it is small beside x_ij for
+h << 1e4 only. For f = (x - x_i)^2 / 2, whose second derivative is 1, (37) gives sum_j w_j x_ij^2 / (x_ij^2 + eta^2),
+with w_j the terms of L_i over L_i. Where this is not near 1, there is an `AccuracyWarning`.
 
-A point within 2 h of the last particle lacks a part of its sums: see the virtual particles of `particles`. The value
-of L shows whether there are enough particles: it is 1 inside, and a half at the end of a line. Values below a quarter
-or above four raise an `AccuracyWarning`.
+A point within 2 h of the last particle lacks a part of its sums; the virtual particles of `particles` complete them.
+The value of L shows whether there are enough particles: it is 1 inside, and a half at the end of a line. Values below a
+quarter or above four raise an `AccuracyWarning`, too.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from fracparticles.sph.cubic_spline import SUPPORT, dw
 __all__ = ["BROOKSHAW_ETA", "correction", "gradient", "second_derivative"]
 
 BROOKSHAW_ETA = 1.0e-4  # eta / h^2
-_ENOUGH = 0.25  # of L
-_TAKEN = 0.02  # of a second derivative, by eta
+_ENOUGH = 0.25  # L: a smaller value, or one above its inverse, is warned of
+_TAKEN = 0.02  # share of a second derivative: if eta takes more, it is warned of
 
 
 def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
-    """L_i of (19) at the points z, shape (M,), from the particles x, shape (N,). One dimension: a number each.
+    """L_i of (19) at the points z, shape (M,), from the particles x, shape (N,): in one dimension it is a number.
 
     Errors as for `gradient`.
     """
@@ -44,17 +44,17 @@ def correction(z: Any, x: Any, volumes: Any, h: float) -> np.ndarray:
 
 
 def gradient(z: Any, x: Any, volumes: Any, f: Any, h: float, corrected: bool = True) -> np.ndarray:
-    """<grad f> (16) at the points z, with the kernel gradient of (18) or, uncorrected, that of (22).
+    """<grad f> (16) at the points z, with the kernel gradient of (18), or with that of (22) if uncorrected.
 
     The result has the shape (M,) and is complex if f is.
 
     Raises `InvalidInput` if the arrays do not fit together or are not finite, the particles are not in rising order,
-    a volume or h is not positive, or, corrected, no particle lies within 2 h of a point.
+    or a volume or h is not positive; if corrected, also if no particle lies within 2 h of a point.
 
     Parameters
     ----------
     z : array_like, shape (M,)
-        Where; may be empty.
+        The points at which the derivative is wanted; it may be empty.
     x, f : array_like, shape (N,)
         Positions in rising order and values of the particles; f real or complex.
     volumes : array_like, shape (N,) or ()
@@ -82,9 +82,9 @@ def second_derivative(
     eta: float | None = None,
     corrected: bool = True,
 ) -> np.ndarray:
-    """<grad^2 f> (37) at the points z, where f has the values f_z. Other parameters as in `gradient`.
+    """<grad^2 f> (37) at the points z, shape (M,), where f has the values f_z. Other parameters as in `gradient`.
 
-    `eta` is that of the formula, zero or more, by default 0.0001 h^2.
+    `eta` is the length of the formula, zero or more, by default 0.0001 h^2.
 
     Errors as for `gradient`. Warns with `AccuracyWarning`, too, if eta is not small beside the distances.
     """
@@ -134,7 +134,7 @@ def _divided(
 
 
 def _warn_of_eta(parabola: np.ndarray, factor: np.ndarray, eta: float) -> None:
-    """Warn if eta takes more than a part of a second derivative that is 1."""
+    """Warn if eta takes more than 2 % of a second derivative that is 1."""
     with np.errstate(divide="ignore", invalid="ignore"):
         left = np.where(factor > 0.0, parabola / factor, 1.0)
     least = float(left.min(initial=1.0))
@@ -154,7 +154,7 @@ def _correction_at(z: np.ndarray, x: np.ndarray, volumes: np.ndarray, h: float) 
 
 
 def _neighbours(z: np.ndarray, x: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-    """The first particle within 2 h of each point, and the first beyond."""
+    """The indices of the first particle within 2 h of each point, and of the first one beyond."""
     return np.searchsorted(x, z - SUPPORT * h), np.searchsorted(x, z + SUPPORT * h)
 
 
@@ -190,7 +190,7 @@ def _brookshaw(z, f_z, x, volumes, f, h, eta, first, end, out):
 
 @njit()
 def _parabola(z, x, volumes, h, eta, first, end, out):
-    """(37), uncorrected, of (x - z_i)^2 / 2."""
+    """(37), uncorrected, for (x - z_i)^2 / 2."""
     for i in range(z.size):
         total = 0.0
         for j in range(first[i], end[i]):

@@ -9,16 +9,16 @@ and, with the power of a fractional integral in the integrand,
     J^p f(z)        = sum_j V_j (z - x_j)^p f(x_j) W~(z - x_j).
 
 Particles up to 2 h beyond z contribute, because W~ is not yet 0 there. The power of a negative distance is complex,
-(-d)^p = d^p exp(i pi p). Its real part belongs to the smoothed integral, its imaginary part is an error of the same
+(-d)^p = d^p exp(i pi p). Its real part belongs to the smoothed integral. Its imaginary part is an error of the same
 size, which the paper's norms count.
 
-Three ways to place the volumes, `METHODS`: `standard` is (17) with the whole volume s of each particle, `halved`
-our repair of it, s/2 for the two particles at the ends, of whose volume only a half lies in the domain; `modified`
-is (20).
+There are three ways to place the volumes, `METHODS`. `standard` is (17) with the whole volume s of each particle.
+`halved` is our repair of it: the two particles at the ends have s/2, since only half of their volume lies in the
+domain. `modified` is (20).
 
-All three take the integrand to be zero beyond b. J^p f then has a kink at b. Its derivative, as in (35), is wrong
+All three take the integrand to be zero beyond b. J^p f then has a kink at b, and its derivative, as in (35), is wrong
 there by about (h/(b-a))^p, which hardly falls with h for a small p. A fourth way, `completed`, has s/2 at a and goes
-on beyond b, with f continued by the straight line through its last two values.
+on beyond b, where f is continued by the straight line through its last two values.
 """
 
 from __future__ import annotations
@@ -53,11 +53,11 @@ def power_integral(
     f : array_like, shape (N,)
         The integrand on the real particles, real or complex.
     z : array_like, shape (M,)
-        Where; for `completed` no farther beyond b than the virtual particles.
+        The points; for `completed` no farther beyond b than the virtual particles.
     power : array_like, shape (M,) or ()
-        p there. A particle at z itself is left out where p < 0: its term is infinite.
+        p at each point. A particle at z itself is left out where p < 0, since its term is infinite.
     method : {"standard", "halved", "modified", "completed"}
-        How the volumes are placed.
+        The way to place the volumes.
     """
     line = check.instance("line", line, ParticleLine)
     f = check.vector("f", f, line.count, complex_too=True)
@@ -66,8 +66,8 @@ def power_integral(
     if method == "modified":
         x, strengths = line.midpoints, line.spacing * 0.5 * (f[:-1] + f[1:])
     elif method == COMPLETED:
-        # Twice the margin: a virtual particle sees as far beyond itself as a real one. Positions are rounded like
-        # those of `line.x_all`, lest a particle lie a little before itself.
+        # Twice the margin, since the kernel reaches as far beyond a virtual particle as beyond a real one. Positions
+        # are rounded like those of `line.x_all`, or a particle might lie a little before itself.
         x = line.a + line.spacing * np.arange(line.count + 2 * line.margin)
         beyond = np.arange(1, 2 * line.margin + 1)
         strengths = line.spacing * np.append(f, f[-1] + (f[-1] - f[-2]) * beyond)

@@ -3,7 +3,7 @@
     L2  = sqrt(sum_i |f_i - <f>_i|^2) / sqrt(sum_i |f_i|^2),             (39)
     R^2 = 1 - sum_i |f_i - <f>_i|^2 / sum_i (f_i - f-bar)^2,             (40)
 
-f-bar being the mean of the analytical values. (40) is printed with plain squares; for complex deviations the paper's
+with f-bar the mean of the analytical values. (40) is printed with plain squares; for complex deviations the paper's
 digits come from absolute squares.
 """
 
@@ -22,15 +22,14 @@ __all__ = ["r2_score", "relative_l2"]
 def relative_l2(exact: Any, ours: Any) -> float:
     """(39), for two arrays of shape (N,), real or complex.
 
-    Raises `InvalidInput` if they are not finite or do not fit together, or the exact values have no size to compare
-    with.
+    Raises `InvalidInput` if they are not finite or do not fit together, or if the exact values are all zero.
     """
     exact, ours = _values(exact, ours)
     return float(np.linalg.norm(exact - ours) / np.linalg.norm(exact))
 
 
 def r2_score(exact: Any, ours: Any) -> float:
-    """(40), as `relative_l2`; the exact values must not be all the same."""
+    """(40), with the arguments and errors of `relative_l2`; the exact values must not all be equal."""
     exact, ours = _values(exact, ours)
     spread = np.sum((exact - exact.mean()) ** 2)
     if not spread > 0.0:
@@ -39,7 +38,7 @@ def r2_score(exact: Any, ours: Any) -> float:
 
 
 def _values(exact: Any, ours: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Both in units of a power of 2 about the largest exact value, so that their squares are numbers."""
+    """Both arrays in units of a power of 2 about the largest exact value, so that their squares do not overflow."""
     exact = vector("exact", exact)
     ours = vector("ours", ours, exact.size, complex_too=True)
     greatest = np.abs(exact).max()

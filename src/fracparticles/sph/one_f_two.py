@@ -4,8 +4,8 @@ It is the real part of 1F1(1; b; iy) = sum_k (iy)^k / (b)_k, and with a = b - 1
 
     1F1(1; 1+a; z) = Gamma(1+a) z^-a e^z - a e^z z^-a Gamma(a, z),      z = iy,
 
-an oscillation that stays and a transient that dies out. The Taylor series loses e^y of its digits: it is used for
-y <= 4 only. Beyond, Legendre's continued fraction
+an oscillation that stays and a transient that dies out. The Taylor series magnifies round-off by e^y, and is used for
+y <= 4 only. For greater y Legendre's continued fraction
 
     e^z z^-a Gamma(a, z) = 1/(z+1-a - 1(1-a)/(z+3-a - 2(2-a)/(z+5-a - ...)))
 
@@ -23,7 +23,7 @@ from fracparticles.arguments import together, within
 
 __all__ = ["one_f_two"]
 
-_NEAR = 4.0  # y up to which the series is used: it loses e^4 = 55 times the round-off there
+_NEAR = 4.0  # y up to which the series is used: there it magnifies round-off by e^4 = 55
 _SERIES = 26  # terms of the series: 4^(2k) / (2k)! is below 1e-36 at k = 26
 _FRACTION = 60  # terms of the fraction: exp(-sqrt(8 * 60 * 4)) = 1e-19
 

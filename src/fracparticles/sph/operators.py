@@ -7,16 +7,16 @@ Left-handed, by parts from Eqs. (1), (3), (5) and, with alpha = alpha(x) (Type I
                  = [f(a) (x-a)^-alpha + d/dx int_a^x f'(x') (x-x')^(1-alpha)/(1-alpha) dx'] / Gamma(1-alpha),  (35)
     C D^alpha f = [f'(a) (x-a)^(1-alpha) + int_a^x f''(x') (x-x')^(1-alpha) dx'] / Gamma(2 - alpha),           (36)
 
-(35) for a constant order, (34) for a variable one. Derivatives are those of `derivatives`, integrals those of
-`integrals`. A field is given on all particles: the virtual ones carry the values of f beyond the ends, and the outer
-derivative of (34), (35) takes the sum of the integral there as well, at each its own. (Eqs. (25) and (31) print the
-integral at x_i inside the sum, where it is the one at x_j.)
+(35) serves a constant order, and (34) a variable one. Derivatives are sums of `derivatives`, and integrals sums of
+`integrals`. A field is given on all particles: the virtual ones carry the values of f beyond the ends. The outer
+derivative of (34), (35) uses the integral at each virtual particle, too. (Eqs. (25) and (31) print the integral at x_i
+inside the sum, where the one at x_j is meant.)
 
 The right-handed operators (2), (4), (6) are the left-handed ones of the mirrored field: the sign (-1)^n of (4) and (6)
 is that of the mirrored derivative.
 
 The results are complex, see `integrals`; the value is the real part. At x = a the derivative of Riemann and Liouville
-is infinite unless f(a) = 0. Each result is compared with that of `comparison`.
+is infinite unless f(a) = 0. Each result is compared with the one of `comparison`.
 """
 
 from __future__ import annotations
@@ -55,14 +55,14 @@ def rl_integral(
     order : float or array_like of the same shape
         alpha, constant or on all particles (Type I), between 0 and 1.
     side : {"left", "right"}
-        From a, or up to b.
+        The integral from a, or up to b.
     method : {"standard", "halved", "modified", "completed"}
-        How the integral is replaced by a sum, see `integrals`.
+        The way to place the volumes of the sum, see `integrals`.
 
     Warns
     -----
     AccuracyWarning
-        If a value is wrong by more than 5 per cent of the largest, as far as the field shows it. So do the others.
+        If a value is wrong by more than 5 % of the largest, by comparison with `comparison`. The others warn, too.
     """
     return _apply(_left_integral, comparison.rl_integral, 1, line, f, order, side, method)
 
@@ -107,14 +107,14 @@ def _apply(
     side: str,
     method: str,
 ) -> np.ndarray:
-    """Apply an operator on this side, and compare it; it has the unit of a length to the power of sign * alpha."""
+    """Apply an operator on one side, and compare the result; its unit is that of f times length^(sign * alpha)."""
     line = check.instance("line", line, ParticleLine)
     f, alpha = line.field("f", f), _orders(line, order)
     check.choice("method", method, (*METHODS, COMPLETED))
     turn = 1 if check.choice("side", side, ("left", "right")) == "left" else -1
     f, alpha = f[::turn], alpha[::turn]
     result = left(line, f, alpha, method)[::turn]
-    with np.errstate(all="ignore"):  # of values near the greatest number the differences overflow
+    with np.errstate(all="ignore"):  # differences of values near the greatest number overflow
         compared = comparison.among_more(other, line, f, alpha)[::turn]
         size = float((np.abs(f).max() * (line.b - line.a) ** (sign * alpha)).max())
         comparison.warn_of_difference(line, result, compared, size, method)
@@ -169,10 +169,10 @@ def _left_caputo(line: ParticleLine, f: np.ndarray, alpha: np.ndarray, method: s
 
 
 def _slope(line: ParticleLine, f: np.ndarray) -> np.ndarray:
-    """(16), (18) on the real particles, from all."""
+    """(16), (18) on the real particles, from f on all particles."""
     return gradient(line.x, line.x_all, line.spacing, f, line.smoothing)
 
 
 def _curvature(line: ParticleLine, f: np.ndarray) -> np.ndarray:
-    """(37) on the real particles, from all."""
+    """(37) on the real particles, from f on all particles."""
     return second_derivative(line.x, f[line.inside], line.x_all, line.spacing, f, line.smoothing)

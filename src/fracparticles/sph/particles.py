@@ -15,8 +15,8 @@ from fracparticles.sph.cubic_spline import SUPPORT
 
 __all__ = ["ParticleLine"]
 
-_FINEST = 1e-8  # of the farthest position: the spacing is then the same everywhere to eight digits
-_LEAST, _WIDEST = float(np.nextafter(1.0 / SUPPORT, 1.0)), 1000.0  # h / s
+_FINEST = 1e-8  # spacing over the farthest position: the spacing is then equal to eight digits
+_LEAST, _WIDEST = float(np.nextafter(1.0 / SUPPORT, 1.0)), 1000.0  # bounds of h / s
 
 
 def _ratio(field: str, value: Any) -> float:
@@ -37,7 +37,7 @@ class ParticleLine:
     count : int
         N, at least 3.
     smoothing_ratio : float
-        h / s; the paper has 1.1. It must exceed 1/2, or a particle would have no neighbours; at most 1000.
+        h / s, above 1/2 and at most 1000; the paper has 1.1. With 1/2 a particle would have no neighbours.
     """
 
     a: float
@@ -50,7 +50,7 @@ class ParticleLine:
         check.fields(self, a=check.place, b=check.place, count=count, smoothing_ratio=_ratio)
         if not self.a < self.b:
             raise InvalidInput("b", self.b, "a finite number above a", "Give a < b.")
-        # Positions are rounded to the last digit of the farthest.
+        # The positions are rounded to the last digit of the farthest one.
         if not self.spacing >= max(_FINEST * max(abs(self.a), abs(self.b)), check.SIZES[0]):
             allowed = f"particles more than {_FINEST:g} of their distance from zero apart"
             raise InvalidInput("count", self.count, allowed, "Take fewer, or move the origin.")
@@ -72,7 +72,7 @@ class ParticleLine:
 
     @property
     def inside(self) -> slice:
-        """The real ones among `x_all`."""
+        """The real particles among `x_all`."""
         return slice(self.margin, self.margin + self.count)
 
     @cached_property

@@ -4,8 +4,8 @@ r"""Product integration: the fractional integral of the broken line through give
     w_{i,i} = 1,    w_{i,j} = (m+1)^(q+1) - 2 m^(q+1) + (m-1)^(q+1),  m = i - j,
     w_{i,0} = (i-1)^(q+1) - (i - q - 1) i^q;
 
-Diethelm, Ford, Freed, "Detailed error analysis for a fractional Adams method", Numer. Algorithms 36 (2004). The error
-is that of the broken line, O(s^2). Nothing is smoothed. I^0 g is g.
+Diethelm, Ford, Freed, "Detailed error analysis for a fractional Adams method", Numer. Algorithms 36 (2004). The only
+error is that of the broken line, O(s^2), since nothing is smoothed. I^0 g is g.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ __all__ = ["fractional_integral"]
 
 
 def fractional_integral(g: np.ndarray, spacing: float, order: np.ndarray) -> np.ndarray:
-    """I^q g at each particle, from the values g and with the orders q there, q > -1, all of shape (N,)."""
+    """I^q g at each particle, from the values g and the orders q > -1 there, all of shape (N,); `spacing` is s."""
     sums = np.empty(g.size)
     _weighted(np.ascontiguousarray(g), np.ascontiguousarray(order), sums)
     return np.asarray(spacing**order / gamma(order + 2.0) * sums)
