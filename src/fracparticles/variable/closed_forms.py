@@ -6,7 +6,7 @@
                                              1F1((n+sigma)/2; n/2; -|x|^2).
 
 The fractional gradient is the gradient of the field for sigma = beta - 1: grad^beta = grad (-Laplacian)^((beta-1)/2).
-On the line the first is Gamma(1 + sigma) (1 + x^2)^(-(1+sigma)/2) cos((1 + sigma) arctan x).
+On the line that of Cauchy is Gamma(1 + sigma) (1 + x^2)^(-(1+sigma)/2) cos((1 + sigma) arctan x).
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ from scipy.special import gamma, hyp1f1, hyp2f1
 __all__ = ["Cauchy", "Gaussian", "KnownField", "Packet", "exchange_limit"]
 
 Points = Sequence[np.ndarray]
+"""The coordinates of points, one array for each dimension."""
 
-_WIDTH = 12.0  # of the packet
+_WIDTH = 12.0  # of the packet, in units of x
 
 
 class KnownField(ABC):
-    """A radial field and its fractional derivatives, at points given as one array a dimension."""
+    """A field and its fractional derivatives."""
 
     @staticmethod
     @abstractmethod
@@ -52,7 +53,7 @@ class KnownField(ABC):
     def flux_divergence(
         cls, points: Points, alpha: float, d: np.ndarray, slopes: Sequence[np.ndarray]
     ) -> np.ndarray:
-        """Return div(D grad^beta u) = D div grad^beta u + grad D . grad^beta u, of a diffusivity and its gradient."""
+        """Return div(D grad^beta u) = D div grad^beta u + grad D . grad^beta u, from D (`d`) and grad D (`slopes`)."""
         total = d * cls.laplacian(points, alpha)
         for slope, component in zip(slopes, cls.gradient(points, alpha), strict=True):
             total = total + slope * component
@@ -112,7 +113,7 @@ class Gaussian(KnownField):
 class Packet(KnownField):
     """exp(-x^2 / 144) cos x on the line, nearly a single wave: even large errors show the order of the scheme.
 
-    It is the mean of cos(k x) with a Gaussian weight about k = 1; by Gauss-Hermite quadrature.
+    It is the mean of cos(k x) with a Gaussian weight about k = 1, computed by Gauss-Hermite quadrature.
     """
 
     @staticmethod
@@ -135,7 +136,7 @@ class Packet(KnownField):
 
 
 def _waves() -> list[tuple[float, float]]:
-    """The wave numbers of the packet and their weights; those below 0 weigh less than round-off, and are left out."""
+    """The wave numbers of the packet and their weights; k < 0 is left out, whose weights are below round-off."""
     node, weight = np.polynomial.hermite.hermgauss(100)
     k = 1.0 + 2.0 * node / _WIDTH
     return [
@@ -144,10 +145,10 @@ def _waves() -> list[tuple[float, float]]:
 
 
 def exchange_limit(x: np.ndarray, alpha: float, amplitude: float) -> np.ndarray:
-    """Return (D L u + L(D u) - u L D) / 2, L = -(-Laplacian)^(alpha/2), of u = 1 / (1 + x^2) and D = 1 + amplitude u.
+    """Return (D L u + L(D u) - u L D) / 2, L = -(-Laplacian)^(alpha/2), for u = 1 / (1 + x^2) and D = 1 + amplitude u.
 
     The transform of u^2 is (pi/2) (1 + |k|) exp(-|k|), so that L u^2 is half the sum of L u of the orders
-    alpha and alpha + 1. Of D L u - u L D there remains L u.
+    alpha and alpha + 1. D L u - u L D is L u, since the other terms cancel.
     """
     first = Cauchy.laplacian([x], alpha)
     square = 0.5 * (first + Cauchy.laplacian([x], alpha + 1.0))

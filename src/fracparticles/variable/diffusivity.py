@@ -44,7 +44,7 @@ from fracparticles.variable.sums import EvenSum
 
 __all__ = ["FORMS", "VariableDiffusivity"]
 
-FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}  # and the scheme that has the kernels
+FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}  # form: the scheme with its kernels
 
 
 class VariableDiffusivity:
@@ -57,12 +57,12 @@ class VariableDiffusivity:
     setting : Setting
         Its diffusivity must be 1, because D is given at the points.
     tail : float, optional
-        p of u ~ |x|^-p in an open exterior; n + alpha, that of the fundamental solution, if left out.
+        p of u ~ |x|^-p in an open exterior; left out, it is n + alpha, as for the fundamental solution.
 
     Attributes
     ----------
     points : tuple of array
-        Coordinates where D is needed, one array a dimension, that broadcast to `points_shape`.
+        Coordinates where D is needed, one array for each dimension; they broadcast to `points_shape`.
     points_shape : tuple of int
     conservative : bool
         Whether the total strength is invariant (truncated exterior).
@@ -70,7 +70,7 @@ class VariableDiffusivity:
     Raises
     ------
     InvalidInput
-        If there is no such form, or not with this setting.
+        If there is no such form, or if it does not exist with this setting.
 
     Warns
     -----
@@ -87,7 +87,7 @@ class VariableDiffusivity:
         self.conservative = form != "DD"
         self._pad, self._lock = 0, Lock()
         self._looked_at = np.zeros(0)  # the last D that was judged
-        # Until a warning says otherwise: one is enough.
+        # True until a warning was given: one is enough.
         self._settled, self._resolved = setting.is_open, True
         if form == "FPSE":
             self._pad = ExchangeDivergence.reach(setting) if setting.is_open else 0
@@ -121,7 +121,7 @@ class VariableDiffusivity:
             return rate(u, d)
 
     def spectral_radius(self, diffusivity: Any) -> float:
-        """Return an upper bound of |lambda|; for an open exterior that of the lattice without its continuation."""
+        """Return an upper bound of |lambda|; for an open exterior it is that of the lattice without continuation."""
         d = self._checked(diffusivity)
         if self.form == "FPSE":
             return float(d.max()) * self._gradient.norm * self._divergence.norm
@@ -146,7 +146,7 @@ class VariableDiffusivity:
         return d
 
     def _judge(self, d: np.ndarray) -> None:
-        """Warn of a D that varies near the ends, or between the particles; of one that changes in time each time."""
+        """Warn of a D that varies near the ends, or between the particles; a D that changes in time is judged again."""
         self._looked_at = d.copy()
         if self._settled:
             self._settled = not warn_unsettled("diffusivity", self._inner(d), self.setting.n)
@@ -169,7 +169,7 @@ class VariableDiffusivity:
         return total
 
     def _slopes(self, d: np.ndarray) -> list[np.ndarray]:
-        """D' at the particles, one array a dimension."""
+        """D' at the particles, one array for each dimension."""
         size, pad, slopes = self.setting.size, self._pad, []
         inner = slice(pad, pad + size)
         for axis in range(d.ndim):
@@ -199,9 +199,9 @@ def _scheme(name: str) -> OnePass:
 
 
 def _check(form: str, setting: Setting) -> None:
-    """Refuse what a form does not exist for."""
+    """Refuse a setting in which a form does not exist."""
     scheme = SCHEMES[FORMS[form]]
-    # In the plane the divergence takes the general sums here, and so every order.
+    # In the plane the divergence uses general sums here, and exists for every order.
     if form == "FPSE" and setting.dim == 2:
         scheme = SCHEMES["DD"]
     scheme.check(setting.dim, setting.order, setting.family)
@@ -226,7 +226,7 @@ def _central_difference(order: int) -> np.ndarray:
 
 
 def _beyond(exchange: EvenSum) -> np.ndarray:
-    """sum of the weights w_m of all m > i, i = 0 .. N - 1: of what lies beyond the left end from particle i."""
+    """The sum of w_m over all m > i, i = 0 .. N - 1: the weights of all places beyond the left end, for particle i."""
     w = exchange.weights
     if w.ndim > 1:
         return np.zeros(0)

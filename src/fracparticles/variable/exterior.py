@@ -1,9 +1,9 @@
 """The region beyond the lattice, where the tail of the solution need not be that of a constant operator.
 
 u_j = a_1 (n / |j|)^p + .. is continued as in `lattice.exterior` and `lattice.exterior_box`, with a separate exponent
-p at either end of the line: a solution of variable order falls like |x|^(-1-alpha) with the local alpha. For each of
-the modes that continue u, the flux in the plane gains the sum over a lattice four times as wide. The region beyond
-that is left out: its contribution is 4^(-2 p) of that of the modes, up to a constant.
+p at either end of the line: a solution of variable order falls like |x|^(-1-alpha) with the local alpha. In the plane,
+the flux gains for each mode of the continuation a sum over a lattice four times as wide. The region beyond it is left
+out: its contribution is 4^(-2 p) of that of the modes, up to a constant.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = ["PlaneGradientFarField", "line_far_field", "tails_of"]
 
 Tails = tuple[float, float]
 
-_WIDER = 4  # half-widths, as far as the modes of the far field are summed
+_WIDER = 4  # half-widths up to which the modes of the far field are summed
 
 
 def tails_of(setting: Setting, tail: object, default: Tails) -> Tails:
@@ -31,7 +31,8 @@ def tails_of(setting: Setting, tail: object, default: Tails) -> Tails:
     Raises
     ------
     InvalidInput
-        If one is not between n and n + 6, n the dimension, or the exterior is truncated, or they differ in the plane.
+        If an exponent is not between n and n + 6, n the dimension; if the exterior is truncated; or if the two differ
+        in the plane.
     """
     if tail is None:
         return default
@@ -63,16 +64,16 @@ def line_far_field(
 
 
 class PlaneGradientFarField:
-    """What the exterior of a square adds to a sum with an odd vector kernel, sum_k a_k S_k with a = fit u_boundary.
+    """The part of the exterior of a square in a sum with an odd vector kernel, sum_k a_k S_k with a = fit u_boundary.
 
     Parameters
     ----------
     weights : callable
         From a number of offsets 0 .. M - 1 to the weights of each component, a list of arrays of shape (M, M).
     setting : Setting
-        In the plane.
+        A setting in the plane.
     pad : int
-        How many points beyond the faces are wanted.
+        The number of points beyond the faces at which the sum is wanted.
     tail : float
         p of u ~ |x|^-p.
 

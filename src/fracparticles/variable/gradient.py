@@ -3,7 +3,7 @@
     (grad^beta u)_i = (1 / epsilon^beta) sum_j V_j u_j F_epsilon(x_i - x_j),
     (div q)_i = (1 / epsilon) sum_j V_j (q_j + q_i) . eta1_epsilon(x_i - x_j).
 
-Both with the kernels of FPSE: F^ = i (k / |k|) |k|^beta eta^(k), so that div grad^beta = -(-Laplacian)^(alpha/2).
+Both have the kernels of FPSE: F^ = i (k / |k|) |k|^beta eta^(k), so that div grad^beta = -(-Laplacian)^(alpha/2).
 """
 
 from __future__ import annotations
@@ -73,9 +73,9 @@ class FractionalGradient:
 
 
 class ExchangeDivergence:
-    """div q on the lattice, of q there and `pad` points beyond each end.
+    """div q on the lattice, from q on the lattice and `pad` points beyond each end.
 
-    With q as far as the kernel reaches the sum of eta1 over all neighbours vanishes, and with it the term q_i.
+    If q is known as far as the kernel reaches, the sum of eta1 over all neighbours vanishes, and with it the term q_i.
     """
 
     def __init__(self, setting: Setting, pad: int) -> None:
@@ -120,7 +120,7 @@ class ExchangeDivergence:
 
     @property
     def norm(self) -> float:
-        """An upper bound of the norm, max |eta1^| / epsilon and what the ends add."""
+        """An upper bound of the norm: max |eta1^| / epsilon plus the part of the ends."""
         ends = 0.0
         if self.diagonal is not None:
             ends = float(np.sqrt(sum(np.square(part) for part in self.diagonal)).max())
@@ -128,7 +128,7 @@ class ExchangeDivergence:
 
 
 def _largest(name: str, setting: Setting) -> float:
-    """The largest length of the transform of a vector kernel on the lattice, of samples, and one percent more."""
+    """The largest length of the transform of a vector kernel on the lattice, among samples, plus 1 %."""
     theta = np.linspace(0.0, np.pi, 257 if setting.dim == 1 else 33)
     exact = replace(setting, kernel_table=None)
     if setting.dim == 1:

@@ -2,10 +2,10 @@
 
     du_i/dt = (D / epsilon^alpha_i) sum_j V_j u_j G^(alpha_i)_epsilon(x_i - x_j).
 
-The rows are interpolated between K orders, Chebyshev points of the interval that holds all alpha_i, of radius R; each
-is a lattice sum, so that an application takes K of them. The symbol of a row, in units of D / h^alpha and without its
-aliases, is -|theta|^alpha eta^(s theta), theta = h k. Its K-th derivative in alpha gains the factor (ln |theta|)^K, and
-the interpolation differs from it by at most
+The rows are interpolated between K orders. These are the Chebyshev points of the interval of radius R that holds all
+alpha_i. Each order takes a lattice sum, so that an application takes K of them. The symbol of a row, in units of
+D / h^alpha and without its aliases, is -|theta|^alpha eta^(s theta), theta = h k. Its K-th derivative in alpha has the
+additional factor (ln |theta|)^K, and the interpolation differs from the symbol by at most
 
     2 (R/2)^K / K! max_(0 < t <= pi) t^alpha |ln t|^K,
 
@@ -38,15 +38,15 @@ from fracparticles.variable.sums import EvenSum
 
 __all__ = ["VariableOrder", "interpolation_bound", "nodes_needed"]
 
-_TOLERANCE = 1e-12  # of the largest symbol, pi^alpha at most
-_ROWS = 33  # samples of alpha
-# Of `resolution`: above, it is no single jump, which leaves two per cent at most.
+_TOLERANCE = 1e-12  # of the interpolated symbol, which is at most pi^alpha
+_ROWS = 33  # samples of alpha, for a bound of the eigenvalues
+# e of `resolution` above which alpha goes up and down. A single jump has less, and leaves an error of 2 % at most.
 _UP_AND_DOWN = 0.5
-_MOST = 40  # nodes; alpha from 1.01 to 1.99 takes fewer
+_MOST = 40  # nodes at most; alpha from 1.01 to 1.99 takes fewer
 
 
 def interpolation_bound(nodes: int, least: float, greatest: float) -> float:
-    """Return the bound of the module on the symbol of any row, alpha from `least` to `greatest`."""
+    """Return the bound of the module on the error of the symbol of any row, alpha from `least` to `greatest`."""
     radius = 0.5 * (greatest - least)
     if radius == 0.0:
         return 0.0
@@ -70,13 +70,13 @@ class VariableOrder:
     Parameters
     ----------
     setting : Setting
-        Of DD on the line or in the plane; its alpha is ignored.
+        A setting of DD on the line or in the plane; its alpha is ignored.
     alpha : array_like, shape `setting.shape`, or float
         The order at each particle, 1 < alpha < 2.
     tail : float or (float, float), optional
         p of u ~ |x|^-p in an open exterior, at the left and the right end; the module gives the default.
     tolerance : float
-        Of the interpolation, see the module.
+        Largest error of the interpolated symbol, see the module; from 1e-15 to 0.1.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ class VariableOrder:
         self._sums = [
             EvenSum(scheme, replace(setting, alpha=float(node)), tails) for node in self.nodes
         ]
-        # The sums hold h^-alpha of their node, the rows that of their own: the symbol alone is interpolated.
+        # Only the symbol is interpolated: `unit` replaces the h^-alpha of a node, in its sums, by that of the row.
         unit = setting.spacing ** (self.nodes[:, None] - alpha.reshape(-1))
         self._alpha, self._lock = alpha, Lock()
         self._shares = (_lagrange(self.nodes, alpha.reshape(-1)) * unit).reshape(-1, *setting.shape)
@@ -162,7 +162,7 @@ def _usual_tails(setting: Setting, alpha: np.ndarray) -> tuple[float, float]:
 
 
 def _check_ends(setting: Setting, alpha: np.ndarray, tail_given: bool) -> None:
-    """Refuse and warn of a tail that is not known; one that is given is."""
+    """Refuse a tail that is not known, and warn of one that is doubtful, unless it was given."""
     if tail_given:
         return
     if setting.far_terms > 1:

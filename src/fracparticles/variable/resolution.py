@@ -1,14 +1,14 @@
-r"""What a coefficient on the particles says of itself: is it constant near the ends, do the particles resolve it.
+r"""Warnings if a coefficient is not constant near the ends, or if the particles do not resolve it.
 
-A smooth coefficient is met at each particle by the cubic through those s and 3 s places away, s the overlap, the length
-that the kernels see, and s = 1, for waves of the lattice:
+The value of a smooth coefficient at a particle is nearly that of the cubic through the particles s and 3 s places away.
+s is the overlap, the width of the kernels, and s = 1, which shows waves of the lattice:
 
     e_i = |D_i - (9 (D_(i-s) + D_(i+s)) - D_(i-3s) - D_(i+3s)) / 16| / max_(|j-i| <= 3s) D_j.
 
-At e = 0.1 a step of D leaves an error of one to three per cent of the peak of u, and more at larger ones
-(tests/variable/test_resolved_coefficients.py). The exchange takes the mean of a pair and no slope: of steps, bumps and
-dips it erred by 1.2 per cent at most up to e = 0.4. A single jump has at most 1/2, waves may have more. Where D is
-below 1e-4 of its maximum nothing is asked of it.
+At e = 0.1 a step of D leaves an error of 1 to 3 % of the peak of u, and more at a larger e
+(tests/variable/test_resolved_coefficients.py). The exchange takes the mean of a pair and no slope: with steps, bumps
+and dips it erred by at most 1.2 % up to e = 0.4. A single jump has at most e = 1/2; waves may have more. Where D is
+below 1e-4 of its maximum, e is taken relative to 1e-4 of it.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from fracparticles.schemes.setting import Setting
 
 __all__ = ["UNRESOLVED", "UNRESOLVED_BY_PAIRS", "unresolved", "warn_unresolved", "warn_unsettled"]
 
-_OUTER = 0.75  # of the half-width: beyond, a coefficient should be nearly constant,
-_UNSETTLED = 0.1  # within this share of its greatest value
-UNRESOLVED, UNRESOLVED_BY_PAIRS = 0.1, 0.4  # of e; of the exchange
-_NEGLIGIBLE = 1e-4  # of the greatest D
+_OUTER = 0.75  # share of the half-width beyond which a coefficient should be nearly constant
+_UNSETTLED = 0.1  # share of its greatest value, by which it may vary there
+UNRESOLVED, UNRESOLVED_BY_PAIRS = 0.1, 0.4  # e above which is warned; the second for the exchange
+_NEGLIGIBLE = 1e-4  # share of the greatest D: e is not relative to less
 
 
 def unresolved(values: np.ndarray, overlap: float) -> float:
-    """Return the greatest e over the particles and the axes; 0 on a lattice of fewer than 6 s + 1 along each."""
+    """Return the greatest e over the particles and the axes; 0 along axes of fewer than 6 s + 1 particles."""
     lines = [np.moveaxis(values, axis, -1) for axis in range(values.ndim)]
     return max(_missed(d, s) for d in lines for s in {1, max(1, round(overlap))})
 
@@ -50,7 +50,7 @@ def _missed(d: np.ndarray, s: int) -> float:
 def warn_unresolved(
     field: str, values: np.ndarray, setting: Setting, most: float = UNRESOLVED
 ) -> bool:
-    """Warn of a coefficient that varies too fast for the particles, whose e is above `most`; say whether it did."""
+    """Warn of a coefficient whose e is above `most`: it varies too fast for the particles. Return whether it warned."""
     share = unresolved(values, setting.overlap)
     if share <= most:
         return False
@@ -66,7 +66,7 @@ def warn_unresolved(
 def warn_unsettled(field: str, values: np.ndarray, n: int) -> bool:
     """Warn of a coefficient on the lattice that still varies near the ends, where the tail takes it for constant.
 
-    Say whether it did.
+    Return whether it warned.
     """
     outer = round(_OUTER * n)
     middle = values.shape[0] // 2

@@ -1,8 +1,8 @@
-"""The sum of one even kernel, u with a tail of its own:
+"""The sum with one even kernel, for u with a tail of its own:
 
     y_i = sum_j w_{i-j} u_j,    w_m = (1 / h^alpha) c s^(-n-alpha) K(m / s).
 
-The kernel is that of a scheme with one pass: G of DD, Eq. (10), alpha K of KPSE, Eq. (34).
+c K is the kernel of a scheme with one pass: G of DD, Eq. (10), alpha K of KPSE, Eq. (34).
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ class EvenSum:
     Parameters
     ----------
     scheme : OnePass
-        Whose weights are taken.
+        The scheme that gives the weights.
     setting : Setting
     tails : (float, float)
-        Exponents of the tail of u at the left and the right end, equal in the plane.
+        p of u ~ |x|^-p at the left and the right end; both are equal in the plane.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class EvenSum:
     total : float
         The sum of w_m over the infinite lattice.
     far : LineFarField, BoxFarField or None
-        What the exterior adds.
+        The sum over the exterior; None if it is truncated.
     """
 
     def __init__(self, scheme: OnePass, setting: Setting, tails: Tails) -> None:
@@ -90,7 +90,7 @@ class EvenSum:
 
     @property
     def sides(self) -> np.ndarray:
-        """How often each weight stands in the sum over all offsets: twice for each coordinate that is not zero."""
+        """How often each weight occurs in the sum over all offsets: a factor 2 for each coordinate that is not zero."""
         size, dim = self.setting.size, self.setting.dim
         each = np.where(np.arange(size) == 0, 1.0, 2.0)
         return np.prod(np.meshgrid(*(each,) * dim, indexing="ij", sparse=False), axis=0)
