@@ -1,4 +1,4 @@
-"""Run DVM on arrays: its particles move, so that nothing can be prepared."""
+"""Run DVM on arrays. Its particles move, so that nothing can be prepared."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
     Parameters
     ----------
     case : Case
-        Of scheme "DVM".
+        A case of the scheme "DVM".
     u0 : array, shape `case.shape`
         Initial strengths.
     observe : callable, optional
@@ -32,7 +32,7 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
     Raises
     ------
     NonFiniteSolution
-        If the run blows up; `FieldNotPositive` if that is for the field.
+        If the run blows up; `FieldNotPositive` if the cause is a field that is not positive.
     """
     return advect_to_outputs(case, u0, observe)[-1]
 
@@ -40,7 +40,7 @@ def advect(case: Case, u0: np.ndarray, observe: Observer | None = None) -> Parti
 def advect_to_outputs(
     case: Case, u0: np.ndarray, observe: Observer | None = None
 ) -> list[ParticleRun]:
-    """Return what `advect` does for each output time."""
+    """Return the particles at each output time; parameters and errors as for `advect`."""
     try:
         return dvm.run_to_outputs(
             case.x,
@@ -62,5 +62,5 @@ def advect_to_outputs(
 
 
 def named(case: Case, error: NonFiniteSolution) -> NonFiniteSolution:
-    """Return the error with the scheme in front of what it says."""
+    """Return the error with the scheme in front of its message."""
     return type(error)(f"{case.scheme} (order {case.order}): {error}")

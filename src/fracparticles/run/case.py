@@ -1,4 +1,4 @@
-"""One run, validated: a `Case` holds every parameter and what follows from them."""
+"""One run, validated: a `Case` holds every parameter, and the quantities that follow from them."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ _LONGEST_NAME = 240  # bytes; file systems take 255, suffix included
 class Case(Derived):
     """One run of one scheme for u_t = -D (-Laplacian)^(alpha/2) u, alpha = 1 + beta, from particles on a lattice.
 
-    `spacing` and `dt` are what is asked for; the lattice ends at the half-width exactly and the last step at
-    `t_final` exactly, so that the realised `particle_spacing` and `time_step` may differ slightly.
+    `spacing` and `dt` are requests: the lattice ends at the half-width exactly and the last step at `t_final` exactly,
+    so that the realised `particle_spacing` and `time_step` may differ slightly.
 
-    The fields are the parameters, keyword only. NumPy scalars are taken for what they hold. `alpha` may be given
+    The fields are the parameters, keyword only. NumPy scalars are taken as Python numbers. `alpha` may be given
     instead of `beta`.
 
     Raises
     ------
     InvalidInput
-        With the field, the value, what is allowed and what to do.
+        Names the field, the value, what is allowed and what to do.
     """
 
     def __init__(self, **data: Any) -> None:  # alpha is no field, for those who check types
@@ -52,13 +52,13 @@ class Case(Derived):
     def _consistent(self) -> Case:
         check(self)
         if self.times is not None:
-            parts(self)  # each of them is checked
+            parts(self)  # making the parts checks each of them
         return self
 
     def refuse_point_mass(self) -> None:
         """Refuse to start from the fundamental solution at t = 0, where it is a point mass.
 
-        Not part of the validation: initial data of one's own may come with the call of `solve`.
+        This is not part of the validation, since other initial data may come with the call of `solve`.
 
         Raises
         ------
@@ -95,16 +95,16 @@ class Case(Derived):
         Raises
         ------
         InvalidInput
-            If the text is not such an object, or its case is not valid.
+            If the text is not a JSON object, or its case is not valid.
         """
         return cls(**cls._read(text))
 
     @property
     def path(self) -> str:
-        """A relative file name that shows every parameter: equal cases, equal paths, and only they.
+        """A relative file name that shows every parameter: two cases have the same path if and only if they are equal.
 
-        Numbers are as short as they can be; the name of a file is percent-encoded; a name too long for a file system
-        ends in a digest of the whole.
+        Numbers are as short as they can be. The name of a file of data is percent-encoded. A name too long for a file
+        system ends in a digest of the whole name.
         """
         width = _said("C", self.truncation) or _said("D", self.half_width)
         parts = [
@@ -137,7 +137,7 @@ class Case(Derived):
 
 
 def a_case(value: Any) -> Case:
-    """Return what is a case; raises `InvalidInput` for anything else."""
+    """Return the value if it is a case; raises `InvalidInput` otherwise."""
     remedy = "Make one: fp.Case(scheme='KPSE', ...). A fp.Problem is for fp.solve_problem."
     return instance("case", value, Case, "a fp.Case", remedy)
 
@@ -148,11 +148,11 @@ def _said(word: str, number: float | None, default: float | None = None) -> str:
 
 
 def _digits(number: float, digits: int = 6) -> str:
-    """The number in so many digits if these say it, or else in as many as do; 0 has no sign."""
+    """The number in so many digits if they are exact, or else in as many as needed; 0 has no sign."""
     short = f"{number + 0.0:.{digits}g}"
     return short if float(short) == number else repr(float(number))
 
 
 def _encoded(text: str) -> str:
-    """The text for a part of a file name: no two texts have the same."""
+    """The text encoded for a part of a file name; different texts have different codes."""
     return quote(text.encode("utf-8", "surrogatepass"), safe="").replace("_", "%5F")

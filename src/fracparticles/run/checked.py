@@ -1,4 +1,4 @@
-"""A model of pydantic that is refused in one line of ours: what a `Case` and a `Problem` have in common."""
+"""The base of `Case` and `Problem`: a model of pydantic that refuses wrong fields with one line of ours."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ __all__ = ["Checked", "stored_fields"]
 
 
 class Checked(BaseModel):
-    """Fields that are checked when it is made, keyword only, and do not change.
+    """A model whose fields are keyword only, are checked when it is made, and do not change.
 
     Raises
     ------
     InvalidInput
-        With the field, the value, what is allowed and what to do.
+        Names the field, the value, what is allowed and what to do.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
@@ -34,7 +34,7 @@ class Checked(BaseModel):
 
     @classmethod
     def _plain_values(cls, data: dict[str, Any]) -> dict[str, Any]:
-        """Return the fields with scalars of NumPy and xarray taken for what they hold; True is no number."""
+        """Return the fields with scalars of NumPy and xarray as Python numbers; True is not a number."""
         data = {name: plain(value) for name, value in data.items()}
         for name, field in cls.model_fields.items():
             truth = isinstance(data.get(name), bool)  # True == 1, which Literal takes
@@ -43,9 +43,9 @@ class Checked(BaseModel):
         return data
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return it with other values of some fields, checked as a new one; raises as that.
+        """Return a new model with other values of some fields, checked like any new one.
 
-        Pydantic's own copies what was cached, too: the old time step of another dt.
+        Pydantic's own method copies cached properties, too, such as the time step of the old dt.
         """
         return type(self)(**{**self.model_dump(exclude_unset=True), **(update or {})})
 
@@ -61,7 +61,7 @@ class Checked(BaseModel):
 
 
 def stored_fields(text: Any) -> dict[str, Any] | None:
-    """Return the fields of a JSON object, as a file holds them; None if it is no such text."""
+    """Return the fields of a JSON object, as a file holds them; None if the text is not one."""
     try:
         fields = json.loads(text)
     except (TypeError, ValueError, RecursionError):

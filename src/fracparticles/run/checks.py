@@ -1,4 +1,4 @@
-"""What a `Case` must fulfil beyond the range of each field: first which fields go together, then the numbers."""
+"""The checks of a `Case` beyond the range of each field: first which fields go together, then the numbers."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from fracparticles.special.stable import central_mass
 
 __all__ = ["check"]
 
-# Measured, by dimension: about 20 arrays of float64 at the peak. The open exterior of a square or a cube takes its
-# own for every point where the sums are wanted, which may be beyond the lattice.
+# Bytes per particle at the peak, measured, by dimension: about 20 arrays of float64. The open exterior of a square or a
+# cube takes more, for every point at which sums are wanted; some of these lie beyond the lattice.
 _BYTES_PER_PARTICLE = {1: 200, 2: 220, 3: 260}
 _OPEN_BYTES = {1: 300, 2: 800, 3: 800}
 _BYTES_PER_PAIR = 60  # of graded particles, whose step is a matrix
-_FEWEST = 8  # spacings on either side of the lattice
+_FEWEST = 8  # spacings from the middle of the lattice to its ends
 # For more than one term of the exterior: the least half-width, in smoothing lengths, and the greatest T D / h^alpha.
 _FAR_OVERLAPS, _FAR_STIFFEST = 10, 1e6
-_STIFFEST = 1e12  # T D / h^alpha; a Chebyshev series takes about the square root of 40 times this
+_STIFFEST = 1e12  # T D / h^alpha: a Chebyshev series takes the root of about 40 times as much
 _NAIVE_OVERLAP = 20.0  # for naive sums with an open exterior: the work grows like its cube
-_ROUNDED = 1e-9  # of an overlap, which may be a rounded quotient
+_ROUNDED = 1e-9  # relative excess allowed of an overlap, which may be a rounded quotient
 _OPEN = tuple(name for name, scheme in ALL_SCHEMES.items() if "open" in scheme.exteriors)
 _MOVING = tuple(name for name, scheme in ALL_SCHEMES.items() if scheme.moving)
 _ONE_SUM = tuple(name for name in _OPEN if name not in _MOVING)
@@ -40,7 +40,7 @@ def check(case: Derived) -> None:
     Raises
     ------
     InvalidInput
-        With the field, the value, what is allowed and what to do.
+        Names the field, the value, what is allowed and what to do.
     """
     _check_time(case)
     case.kind.check(case.dim, case.order, case.kernel_family, "kernel_family")
@@ -56,7 +56,7 @@ def check(case: Derived) -> None:
 
 
 class Rule(NamedTuple):
-    """What a field takes, None for nothing, in what sort of case, and what else to do."""
+    """The values that a field takes (None for nothing), the sort of case for which this holds, and the remedy."""
 
     field: str
     takes: tuple[object, ...]
@@ -65,7 +65,7 @@ class Rule(NamedTuple):
 
 
 def _rules(case: Derived) -> Iterator[Rule]:
-    """The rules that hold for this case, of fields that go together."""
+    """The rules about fields that go together which hold for this case."""
     scheme, kind, nothing = case.scheme, case.kind, (None,)
     closure = f"The far-field closure exists for {spelled(_OPEN, ' and ')}."
     yield Rule("exterior", kind.exteriors, scheme, closure)
@@ -116,7 +116,7 @@ def _graded_rules() -> Iterator[Rule]:
 
 
 def _convolution_rules(self_timed: bool) -> Iterator[Rule]:
-    """A run at once is one on the infinite lattice, with exact kernels; GPSE's steps are exponentials themselves."""
+    """A run by convolution is one on the infinite lattice, with exact kernels and exponential in time except GPSE."""
     whom = "evaluation='convolution'"
     yield Rule("scheme", _ONE_SUM, whom, "Take one of these.")
     if self_timed:
@@ -220,11 +220,11 @@ def _check_own_step(case: Derived) -> None:
 
 
 def _check_far_field(case: Derived) -> None:
-    """The lattice must end in the tail of the solution; more than one term, used again and again, ask for more.
+    """The lattice must end in the tail of the solution. More than one term in many applications asks for more.
 
-    Found by computation (tests/lattice/test_exterior.py): from n = 10 epsilon / h on, no eigenvalue leaves the range of
-    the symbol by more than 2e-6 of it, nor lies above zero by more than 4e-7, but nearer the ends the fit to strengths
-    at n / 2 makes modes that grow.
+    This was found by computation (tests/lattice/test_exterior.py). From n = 10 epsilon / h on, no eigenvalue leaves the
+    range of the symbol by more than 2e-6 of it, nor lies above zero by more than 4e-7. On narrower lattices the fit to
+    strengths at n / 2 makes modes that grow.
     """
     if case.exterior == "open":
         _check_spread(case)

@@ -1,4 +1,4 @@
-"""What a model of pydantic says of its fields: in a complaint of one line, as a label, in a table."""
+"""The fields of a model of pydantic in words: in a complaint of one line, as a label, in a table."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
     if isinstance(cause, InvalidInput):  # one of our own checks
         return cause
     value, fields = first["input"], model.model_fields
-    name = str(first["loc"][0] if first["loc"] else value)  # none for a name that is not UTF-8
+    # A name that is not UTF-8 has no place: there the value is the name.
+    name = str(first["loc"][0] if first["loc"] else value)
     if first["type"] in ("extra_forbidden", "string_unicode") and name not in fields:
         return one_of(name, value, fields, remedy=closest(name, fields) or "Leave it out.")
     if first["type"] == "missing":
@@ -46,13 +47,13 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
 
 
 def _remedy(field: FieldInfo) -> str:
-    """What a field itself says is to be done."""
+    """The remedy that is stored with the field, or an empty text."""
     extra = field.json_schema_extra
     return str(extra.get("remedy", "")) if isinstance(extra, dict) else ""
 
 
 def allowed(field: FieldInfo) -> str:
-    """Return in words what a field takes: its choices, a number and its bounds, or what its description says."""
+    """Return the allowed values of a field in words: its choices, the bounds of a number, or its description."""
     choices = choices_of(field.annotation)
     if choices:
         return f"one of {spelled(choices, ', ')}"
@@ -67,7 +68,8 @@ def allowed(field: FieldInfo) -> str:
         if hasattr(bound, name)
     }
     low, high = bounds.get("gt", bounds.get("ge")), bounds.get("lt", bounds.get("le"))
-    if low is None or high is None:  # a coefficient, of which a sentence says what it may be
+    if low is None or high is None:
+        # A coefficient: the second sentence of its description says what is allowed.
         _, *said = (field.description or "").split(". ")
         return said[0].rstrip(".")[:1].lower() + said[0].rstrip(".")[1:] if said else "a value"
     return f"a number between {low:g} and {high:g}{' (exclusive)' if 'lt' in bounds else ''}"
@@ -81,18 +83,18 @@ def choices_of(annotation: Any) -> tuple[Any, ...]:
 
 
 def takes_numbers(annotation: Any) -> bool:
-    """Say whether a field with this annotation takes numbers."""
+    """Return whether a field with this annotation takes numbers."""
     kinds = {annotation, *get_args(annotation), *map(type, choices_of(annotation))}
     return not kinds.isdisjoint((int, float))
 
 
 def takes_lists(annotation: Any) -> bool:
-    """Say whether a field with this annotation takes several numbers."""
+    """Return whether a field with this annotation takes several numbers."""
     return tuple in (get_origin(annotation), *map(get_origin, get_args(annotation)))
 
 
 def closest(value: object, choices: Iterable[object]) -> str | None:
-    """Return the question whether the choice nearest to `value` was meant."""
+    """Return the question whether the choice nearest to `value` was meant; None if none is near."""
     import difflib
 
     if not isinstance(value, str):
@@ -110,7 +112,7 @@ def label_of(field: FieldInfo) -> str:
 
 
 def field_table(model: type[BaseModel]) -> str:
-    """Return a table of the fields of a model in Markdown: what each means, its choices and its default."""
+    """Return a table of the fields of a model in Markdown: the meaning, the choices and the default of each."""
     lines = ["| field | meaning | default |", "|---|---|---|"]
     for name, field in model.model_fields.items():
         meaning = " ".join((field.description or "").split()).replace("|", r"\|")

@@ -1,4 +1,4 @@
-"""What follows from the parameters of a run: its particles, its steps, and the scheme on its lattice."""
+"""The quantities that follow from the parameters of a run: its particles, its steps, and the scheme on its lattice."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["Derived"]
 
 
 class Derived(Parameters):
-    """Parameters, and what follows from them. Not checked here against each other."""
+    """Parameters, and the quantities that follow from them. They are not checked here against each other."""
 
     @property
     def alpha(self) -> float:
@@ -49,7 +49,7 @@ class Derived(Parameters):
 
     @property
     def extent(self) -> float:
-        """What the spacing divides: the half-width D, or L arcsinh(D / L), the end of graded particles in L s."""
+        """The length that the spacing divides: the half-width D, or for graded particles the end L arcsinh(D / L)."""
         if self.graded_scale is None:
             return self.reach
         return float(self.graded_scale * np.arcsinh(self.reach / self.graded_scale))
@@ -71,7 +71,7 @@ class Derived(Parameters):
 
     @property
     def particle_spacing(self) -> float:
-        """The realised spacing h = D / n, of graded particles that in the middle."""
+        """The realised spacing h = D / n; for graded particles the spacing in the middle."""
         return self.extent / self.n
 
     @property
@@ -83,15 +83,15 @@ class Derived(Parameters):
 
     @property
     def volumes(self) -> np.ndarray | float:
-        """The particle volumes V_i: h^n for all on a lattice, of graded particles one for each."""
+        """The particle volumes V_i: on a lattice one number for all, h^dim, and for graded particles one for each."""
         if self.graded_scale is not None:
             return graded_particles(self.particles, self.reach, self.graded_scale)[1]
         return float(self.particle_spacing**self.dim)
 
     def integral(self, values: np.ndarray) -> float:
-        """Return sum_i V_i f_i from the values at the particles; numpy sums pairwise: to a few ulp."""
+        """Return sum_i V_i f_i from the values at the particles, to a few ulp, since numpy sums pairwise."""
         volumes = self.volumes
-        with np.errstate(over="ignore"):  # it is infinite then
+        with np.errstate(over="ignore"):  # an overflow gives infinity
             if isinstance(volumes, float):
                 return float(volumes * values.sum())
             return float((volumes * values).sum())
@@ -103,7 +103,7 @@ class Derived(Parameters):
 
     @property
     def radius(self) -> np.ndarray:
-        """The distances |x| of the particles from the origin, of that shape."""
+        """The distances |x| of the particles from the origin, shape `shape`."""
         if self.dim == 1:
             return np.abs(self.x)  # does not underflow
         return np.sqrt(sum(np.square(part) for part in self.positions))
@@ -112,8 +112,8 @@ class Derived(Parameters):
     def error_radius(self) -> float:
         """The errors are taken over |x| <= 5 R_alpha (47) for dim = 1, over |x| <= 5 (59) otherwise, or the lattice.
 
-        That is for the papers' D t_f = 1.5; for another it grows with the solution, like (D t_f)^(1/alpha), so that
-        the error does not depend on the units.
+        These radii hold for the papers' D t_f = 1.5. For another D t_f they grow with the solution, like
+        (D t_f)^(1/alpha), so that the error does not depend on the units.
         """
         half = 5.0 * mean_radius(self.alpha) if self.dim == 1 else 5.0
         spread = (self.diffusivity * self.t_final / 1.5) ** (1.0 / self.alpha)
@@ -121,12 +121,12 @@ class Derived(Parameters):
 
     @property
     def kind(self) -> Scheme:
-        """The scheme itself: what it is, and what it takes."""
+        """The scheme itself."""
         return ALL_SCHEMES[self.scheme]
 
     @property
     def resolved_integrator(self) -> str:
-        """The integrator, the default resolved."""
+        """The integrator, given or by default."""
         if self.integrator is not None:
             return self.integrator
         return "euler" if self.kind.self_timed else "rk2"
@@ -149,12 +149,12 @@ class Derived(Parameters):
 
     @property
     def legs(self) -> list[tuple[float, int]]:
-        """The step from each output time to the next, and how many of them."""
+        """The step from each output time to the next, and the number of these steps."""
         return legs(self)
 
     @property
     def resolved_dt(self) -> float:
-        """The step asked for: dt, or for GPSE the one of its overlap, Eq. (40), on graded particles all of the time."""
+        """The step asked for: dt, or for GPSE that of its overlap, Eq. (40); for graded particles the whole span."""
         if self.dt is not None:
             return self.dt
         if self.is_graded:
@@ -171,7 +171,7 @@ class Derived(Parameters):
 
     @property
     def redistribution(self) -> dict[str, Any]:
-        """What DVM does with particles that are too far apart or too weak, the defaults resolved."""
+        """The parameters by which DVM treats particles that are too far apart or too weak, given or by default."""
         return {
             "remeshing": self.remeshing or REMESHING,
             "remesh_above": self.remesh_above or largest_gap(self.exterior),
@@ -210,7 +210,7 @@ class Derived(Parameters):
 
     @property
     def _series_by_default(self) -> bool:
-        """Whether `evaluation` says "series" where it would be one anyway: but for a single Euler step."""
+        """Whether `evaluation` says "series" and changes nothing: all but single Euler steps are series by default."""
         return self.evaluation == "series" and not self.is_one_step
 
     @cached_property

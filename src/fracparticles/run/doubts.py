@@ -1,4 +1,4 @@
-"""Warnings where an estimate of `reliability` is not small, each with its numbers and with what would do."""
+"""Warnings if an estimate of `reliability` is not small, each with its numbers and a remedy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["warn_if_doubtful"]
 
 
 def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates) -> None:
-    """Warn where an estimate is not small, with the numbers and with what would do.
+    """Warn if an estimate is not small, with its numbers and a remedy.
 
     Warns
     -----
@@ -33,7 +33,7 @@ def warn_if_doubtful(case: Case, u0: np.ndarray, u: np.ndarray, found: Estimates
 def _complaints(
     case: Case, u0: np.ndarray, u: np.ndarray, value: dict[str, float]
 ) -> Iterator[str]:
-    """What to say of each estimate that is too large."""
+    """The messages for the estimates that are too large."""
     h = case.particle_spacing
     large = {name for name, limit in LIMITS.items() if value.get(name, 0.0) > limit}
     if not np.any(u0):

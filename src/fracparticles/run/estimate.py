@@ -1,17 +1,17 @@
-"""How accurate a run is when no exact solution is known.
+"""An estimate of the error of a run whose exact solution is not known.
 
-The equation has a solution that no scheme of particles is needed for: the exact symbol, by one pair of transforms on
-the whole space (`time.whole_space`). With its spacing halved and its lattice widened until both together change it
-by less than a third of what is to be estimated, it stands for the truth. From it to the run in steps, each with one
-assumption more:
+The equation can be solved without particles: by the exact symbol, with one pair of transforms on the whole space
+(`time.whole_space`). Its spacing is halved and its lattice widened until both together change this solution by less
+than a third of the error that is estimated. It is then the reference. Three steps lead from it to the run, each with
+one more assumption:
 
-    spacing   the scheme's symbol on the infinite lattice of the run for the exact one: spacing, order, overlap
-    domain    the scheme on its bounded lattice, with what it takes to be beyond: half-width and exterior
+    spacing   the symbol of the scheme on the infinite lattice instead of the exact one: spacing, order, overlap
+    domain    the scheme on its bounded lattice, with its assumption beyond: half-width and exterior
     time      the steps of the integrator instead of the exponential
 
-The parts are the distances of neighbours, the total that of the run from the truth, all of them relative and in the
-1-norm; parts of opposite sign may cancel, so that the total is at most their sum. `reference` is the last change of
-what stands for the truth, and `data` what measured data leave open between their points and beyond them.
+Each part is the distance of two neighbours, and the total is the distance of the run from the reference, all relative
+and in the 1-norm. Parts of opposite sign may cancel, so that the total is at most their sum. `reference` is the last
+change of the reference, and `data` the error that measured data leave open between their points and beyond them.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ __all__ = ["ErrorEstimate", "estimate_error", "estimate_of", "estimates_of"]
 
 Data = Callable[..., np.ndarray]
 
-_CLEAR = 0.3  # of the total: the last change of the reference must be smaller
+_CLEAR = 0.3  # share of the total: the last change of the reference must be smaller
 _MOST_POINTS = 5_000_000  # of the reference
-_UNSETTLED = 0.5  # of the total: a larger last change is warned of
-_TERMS = {1: 4, 2: 4, 3: 2}  # that continue the reference
+_UNSETTLED = 0.5  # share of the total: a larger last change is warned of
+_TERMS = {1: 4, 2: 4, 3: 2}  # of the tail that continues the reference, by dimension
 # The width of the narrow reference over that of the lattice: its ends must not count in the error of the spacing.
 _ROOM = {1: 4.0, 2: 2.0, 3: 1.0}
-_EIGHTHS = 8  # of the half-width, where tails meet the data: the same places at any spacing
-_FAR = 1e4  # in units of the lattice: where the power is read by which data fall
-_FALLEN = 1e-13  # of the greatest: data that have ended
-_ROUND_OFF = 1e-11
+_EIGHTHS = 8  # it divides the half-width: tails are then fitted at the same places at any spacing
+_FAR = 1e4  # distance, in half-widths, at which the power is found by which data fall
+_FALLEN = 1e-13  # share of the greatest value: data that are smaller far out have ended
+_ROUND_OFF = 1e-11  # a total below it is round-off
 _DEGREE = 7  # of the spline through bare arrays
 
 
@@ -60,11 +60,11 @@ class ErrorEstimate:
     total : float
         The estimate.
     spacing, domain, time : float
-        What the lattice's spacing, its ends, and the time steps leave; see the module.
+        The errors by the spacing of the lattice, its ends, and the time steps; see the module.
     data : float
-        What measured data leave open; it is part of the total.
+        The error that measured data leave open; it is part of the total.
     reference : float
-        By how much the estimate itself may be off.
+        The uncertainty of the estimate itself.
     within : float
         The error is taken over |x| <= within.
     """
@@ -85,7 +85,7 @@ class ErrorEstimate:
 
     @property
     def remedy(self) -> str:
-        """What would lower the largest part."""
+        """The change of the case or of the data that would lower the largest part."""
         return {
             "spacing": "a smaller spacing, or a higher order",
             "domain": "a wider lattice",
@@ -101,20 +101,20 @@ class ErrorEstimate:
 def estimate_error(
     case: Case, initial: Initial | None = None, *, within: float | None = None
 ) -> ErrorEstimate:
-    """Return an estimate of the relative error of a run at t_final; see the module for how it is made.
+    """Return an estimate of the relative error of a run at t_final, made as the module says.
 
-    It costs the run itself and some transforms. Of several output times the last counts; of another,
-    ``estimate_error(case.until(time), initial)``.
+    It costs the run itself and some transforms. For several output times the estimate is that of the last one; for
+    another time, call ``estimate_error(case.until(time), initial)``.
 
     Parameters
     ----------
     case : Case
     initial : as for `solve`
-        Functions and tables are asked for what lies between the particles and beyond the lattice. Bare arrays are
-        continued by a spline between and by |x|^(-n-alpha) beyond: then the estimate is that for such data.
+        Functions and tables are evaluated between the particles and beyond the lattice. Bare arrays are continued by a
+        spline between the particles and by |x|^(-n-alpha) beyond; the estimate then holds for such data.
     within : float, optional
-        Take the error over |x| <= within only. Left out: the whole lattice; for a run from the fundamental solution
-        and on graded particles the radius of Eqs. (47), (59).
+        The error is taken over |x| <= within. Left out, it is taken over the whole lattice, but for a run from the
+        fundamental solution and on graded particles within the radius of Eqs. (47), (59).
 
     Raises
     ------
@@ -128,7 +128,7 @@ def estimate_error(
 def estimate_of(
     solution: Solution, source: Initial, within: float | None = None, most: int = _MOST_POINTS
 ) -> ErrorEstimate:
-    """Return the estimate for a run that is done, from these initial data, by so many points at most."""
+    """Return the estimate for a run that is done, from these initial data; the reference has at most `most` points."""
     case, data = solution.case, _function(solution, source)
     if within is None:
         standard = case.is_graded or (isinstance(source, str) and source == FUNDAMENTAL)
@@ -194,10 +194,10 @@ class _Distance:
 
 
 class _Truth:
-    """The exact symbol on lattices that hold that of the case: finer ones and wider ones.
+    """The reference: the exact symbol on lattices that hold that of the case, finer ones and wider ones.
 
-    Spacing and width have errors of their own, so that no lattice need be both: with R(f, w) of the spacing h / f and
-    the half-width w h, what stands for the truth is R(1, w) + R(f, w0) - R(1, w0).
+    The errors by spacing and by width add up, so that no lattice need be both fine and wide. If R(f, w) is the solution
+    with the spacing h / f and the half-width w h, the reference is R(1, w) + R(f, w0) - R(1, w0).
     """
 
     def __init__(self, case: Case, data: Data, distance: _Distance, most: int) -> None:
@@ -213,20 +213,20 @@ class _Truth:
         self._reached = lru_cache(maxsize=4)(self._at_particles)
 
     def beside(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """Return the solution at the particles, and its last change, small beside its distance from u if it can be."""
+        """Return the reference at the particles, and its last change, if possible small beside its distance from u."""
         best = self._combined(self._fine, self._wide)
         changes: dict[str, float] = {}
         growing = {"width", "fineness"}
         while growing:
             clear = 0.5 * _CLEAR * min(1.0, self._distance(u, best))
-            # What has not been tried goes first, then what changed more.
+            # The one that was not tried goes first, then the one that changed more.
             name = max(growing, key=lambda name: (changes.get(name, np.inf), name))
             if changes.get(name, np.inf) <= clear:
                 break
             grown = self._scaled(name, 2.0)
             if self._points(*grown) > self._most:
                 growing.remove(name)
-                if name not in changes:  # then its last doubling says what there is to say, or more
+                if name not in changes:  # its last doubling changed as much, or more
                     changes[name] = self._distance(self._combined(*self._scaled(name, 0.5)), best)
                 continue
             better = self._combined(*grown)
@@ -235,7 +235,7 @@ class _Truth:
         return best, sum(changes.values())
 
     def of_the_scheme(self) -> np.ndarray:
-        """Return what the scheme makes of the data on its infinite lattice, exact in time."""
+        """Return the solution of the scheme on its infinite lattice, exact in time, at the particles."""
         case = self._case
         _, u = self._solution(1, self._wide, scheme_amplification(case, exact=True))
         along = slice(self._wide - case.n, self._wide + case.n + 1)
@@ -294,7 +294,7 @@ def _function(solution: Solution, source: Initial) -> Data:
         return _continued(solution)
 
     def given(*x: np.ndarray) -> np.ndarray:
-        """The values of the caller's function, asked for single numbers if it takes no others."""
+        """The values of the caller's function, which is called for single numbers if it takes no arrays."""
         shape = np.broadcast_shapes(*(one.shape for one in x))
         try:
             values = np.asarray(source(*x), dtype=float)
@@ -337,7 +337,7 @@ def _radius(x: tuple[np.ndarray, ...]) -> np.ndarray:
 
 
 def _tail(data: Data, case: Case) -> tuple[float, ...] | None:
-    """Return the powers by which the data fall, read far out; None for those of the fundamental solution."""
+    """Return the powers by which the data fall far out; None for those of the fundamental solution."""
     far = _FAR * case.reach * np.array([1.0, 2.0])
     others = [np.zeros(2)] * (case.dim - 1)
     with np.errstate(all="ignore"), warnings.catch_warnings():
@@ -345,7 +345,7 @@ def _tail(data: Data, case: Case) -> tuple[float, ...] | None:
         try:
             near, there = np.abs(data(far, *others)).ravel()[:2]
             peak = float(np.abs(data(*case.positions)).max())
-        except Exception:  # a function that is not made for such places
+        except Exception:  # a function that cannot be evaluated so far out
             return None
     if not np.isfinite([near, there]).all():
         return None

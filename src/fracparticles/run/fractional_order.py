@@ -16,7 +16,7 @@ ALPHA = "Order alpha = 1 + beta of the equation. Instead of beta; between 1 and 
 def with_beta(fields: dict[str, Any]) -> dict[str, Any]:
     """Return the fields of a case with beta = alpha - 1 for alpha.
 
-    The difference is that of the decimals: of alpha = 1.3 it is 0.3, so that both are the same case.
+    The difference is taken of the decimals: alpha = 1.3 gives beta = 0.3 exactly, so that both are the same case.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Initial strengths: the fundamental solution, an array with labels or without, a callable, or a NetCDF file.
 
-Data that say where they are, by coordinates x, y, z, are taken by these: sorted, transposed and cast where that is
-safe, and refused where the points are not those of the case. Data that say what they are, a run of this package, must
-be a solution of the same equation at `t_initial`.
+Data with coordinates x, y, z are placed by these. They are sorted, transposed and cast where that is safe, and refused
+if their points are not those of the case. Data that are a run of this package must be a solution of the same equation
+at `t_initial`.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ Initial: TypeAlias = "str | os.PathLike[str] | np.ndarray | xr.DataArray | xr.Da
 
 _FLOAT64 = np.dtype(float)
 _AXES = ("x", "y", "z")
-_GIVEN = "given, sha256 "  # of a stored case whose data came with the call
-# What a run says of itself -> the field of the case that must be the same.
+_GIVEN = "given, sha256 "  # begins `initial` of a stored case whose data came with the call
+# Variable or field of a stored run: the field of the case that must be the same.
 _SAYS = {
     "beta": "beta",
     "alpha": "alpha",
@@ -57,7 +57,7 @@ _SAYS = {
 
 
 def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.ndarray, str]:
-    """Return the initial strengths on `case.positions` and one line on where they come from.
+    """Return the initial strengths on `case.positions`, shape `case.shape`, and one line on where they come from.
 
     Parameters
     ----------
@@ -65,14 +65,14 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     initial : array, DataArray, Dataset, Series, callable or path, optional
         An array of shape `case.shape`; labelled data with u on the coordinates x (y, z) of the case, in any order; a
         function of `case.positions`, of arrays or of single numbers, a constant included; a NetCDF file with u on
-        these coordinates; `Measured` data, a table or "measured:PATH", which are interpolated. Without it, what
-        `case.initial` says.
+        these coordinates; `Measured` data, a table or "measured:PATH", which are interpolated. Left out, the data are
+        those that `case.initial` names.
 
     Raises
     ------
     InvalidInput
-        If the data do not fit the case: kind, shape, points, masked or non-finite values; if they are a run of another
-        equation or at another time; if the case was stored from other data.
+        If the data do not fit the case in kind, shape or points, or are masked or not finite; if they are a run of
+        another equation or at another time; if the case was stored from other data.
 
     Warns
     -----
@@ -123,21 +123,22 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
 
 
 def resolved(case: Case, initial: Initial | None = None) -> Initial:
-    """Return the initial data of a run: what comes with the call, or what the case says; a table as `Measured`."""
+    """Return the initial data of a run: those of the call, or else those that the case names; a table as `Measured`."""
     source = case.initial if initial is None else initial
     path = os.fspath(source) if isinstance(source, str | os.PathLike) else ""
     return measured(path) if path.startswith(MEASURED) or is_table(path) else source
 
 
 def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Return strengths of that shape as a float64 array; nothing is done to what is one.
+    """Return strengths of a shape as a float64 array; an array that is one already is returned itself.
 
     Raises
     ------
     InvalidInput
         If they are of another shape or kind, masked or labelled.
     """
-    if type(u0) is np.ndarray and u0.dtype is _FLOAT64 and u0.shape == shape:  # a tenth of the rest
+    # The usual case first: it takes a tenth of the time of the others.
+    if type(u0) is np.ndarray and u0.dtype is _FLOAT64 and u0.shape == shape:
         return u0
     if type(u0) is not np.ndarray and _labels(u0) is not None:
         bare = "a bare array, whose order is that of case.positions"
@@ -162,7 +163,7 @@ def refuse_non_finite(u0: np.ndarray, x: np.ndarray) -> None:
     Raises
     ------
     InvalidInput
-        With the first place.
+        Names the first place.
     """
     if np.isfinite(u0).all():
         return
@@ -172,21 +173,21 @@ def refuse_non_finite(u0: np.ndarray, x: np.ndarray) -> None:
 
 
 def case_of_run(case: Case, origin: str) -> Case:
-    """Return the case with an `initial` that says where its run came from, as `initial_strengths` put it.
+    """Return the case with an `initial` that says where its data came from; `origin` is that of `initial_strengths`.
 
-    Data that came with the call are named by their digest: without them, or with others, that case is refused.
+    Data that came with the call are named by their digest. Without them, or with others, the case is then refused.
     """
     if origin.startswith(FUNDAMENTAL):
         return case
     what, _, digest = origin.rpartition(", sha256 ")
     initial = what.removeprefix("file ") if what.startswith("file ") else _GIVEN + digest
     if initial == FUNDAMENTAL or (initial.startswith(_GIVEN) and what.startswith("file ")):
-        initial = os.path.join(".", initial)  # a file of that name
+        initial = os.path.join(".", initial)  # so that it is read as the name of a file
     return case if initial == case.initial else case.model_copy(update={"initial": initial})
 
 
 def _evaluated(function: Callable[..., Any], case: Case) -> Any:
-    """The values of the callable at the particles; one that takes single numbers only is asked for each."""
+    """The values of the callable at the particles; if it takes single numbers only, it is called for each."""
     positions = case.positions
     try:
         values = function(*positions)
@@ -206,7 +207,7 @@ def _evaluated(function: Callable[..., Any], case: Case) -> Any:
     if _labels(values) is not None:
         return values
     values = _real(values)
-    # A constant, or one along an axis, which `case.positions` leave to broadcasting.
+    # A constant, or one along an axis: functions of the sparse `case.positions` may return these.
     along = case.dim > 1 and values.ndim == case.dim
     if values.ndim == 0 or (along and set(values.shape) <= {1, case.shape[0]}):
         return np.broadcast_to(values, case.shape)
@@ -246,7 +247,7 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
 
 
 def _at_its_time(data: xr.Dataset, t: float, name: str) -> xr.Dataset:
-    """Of data with several output times those at time t."""
+    """The data at time t, if they hold several output times."""
     if "t" not in data.dims or "t" not in data.variables or data.sizes["t"] == 1:
         return data
     times = data["t"].values.tolist()
@@ -307,7 +308,7 @@ def _check_equation(case: Case, told: dict[str, float], name: str) -> None:
 
 
 def _told(data: xr.Dataset) -> dict[str, float]:
-    """What the data say of themselves by scalar variables, or else by the case that they were stored with."""
+    """The fields of `_SAYS` that the data hold as scalar variables, or else in the case stored with them."""
     stored = stored_in(data) or {}
     told = {name: stored.get(name) for name in _SAYS}
     for name in _SAYS:
@@ -323,7 +324,7 @@ def _told(data: xr.Dataset) -> dict[str, float]:
 
 
 def _labels(given: Any) -> xr.Dataset | None:
-    """The data as a data set if they have labels; none for bare data. Nothing is imported that the data are not of."""
+    """The data as a data set if they have labels; None for bare data. No package is imported that did not make them."""
     pandas = sys.modules.get("pandas")
     if pandas is not None and isinstance(given, pandas.DataFrame):
         series = "an array, or a Series of u with x as its index"
@@ -349,7 +350,7 @@ def _read(path: Path) -> xr.Dataset:
 
 
 def _real(values: Any) -> np.ndarray:
-    """The values as float64; those that are are not looked at, so that a later check says where one is not finite."""
+    """The values as float64. An array of float64 is not checked: a later check names the place that is not finite."""
     if type(values) is np.ndarray and values.dtype == np.float64:
         return values
     return real_array("initial", values)

@@ -18,7 +18,7 @@ def observed_order(h: ArrayLike, error: ArrayLike) -> np.ndarray:
     Parameters
     ----------
     h : array_like
-        Particle spacing, time step or whatever is refined, one for each of K levels.
+        Particle spacing, time step or another quantity that is refined, one for each of K levels.
     error : array_like
         The error of each level; any unit.
 

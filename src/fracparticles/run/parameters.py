@@ -1,4 +1,4 @@
-"""The parameters of a run, each with what it means; what follows from them is in `derived`."""
+"""The parameters of a run, each with its meaning. `derived` has the quantities that follow from them."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from fracparticles.schemes import ALL_SCHEMES, Scheme
 
 __all__ = ["FUNDAMENTAL", "OVERLAPS", "Parameters", "fastest_evaluation"]
 
-FUNDAMENTAL = "fundamental"
-OVERLAPS = 0.25, 1000.0
+FUNDAMENTAL = "fundamental"  # initial data: the fundamental solution
+OVERLAPS = 0.25, 1000.0  # the least and the greatest epsilon / h
 
 if TYPE_CHECKING:
     SchemeName = str
@@ -37,7 +37,7 @@ _ONE_SUM = _schemes(lambda scheme: "open" in scheme.exteriors and not scheme.mov
 
 
 def fastest_evaluation(fields: Mapping[str, Any]) -> str | None:
-    """Return what evaluation="auto" stands for: "convolution" where it is allowed, nothing elsewhere."""
+    """Return the meaning of evaluation="auto": "convolution" where it is allowed, and None elsewhere."""
     named = {name: value for name, value in fields.items() if isinstance(value, str)}
     scheme = ALL_SCHEMES.get(named.get("scheme", ""))
     allowed = (
@@ -53,7 +53,7 @@ def fastest_evaluation(fields: Mapping[str, Any]) -> str | None:
 
 
 class Parameters(Checked):
-    """What a `Case` holds; see there. Not checked here against each other.
+    """The fields of a `Case`; see there. They are not checked here against each other.
 
     The `description` of a field is written once. (pydantic would take docstrings, too, but reads the source for them in
     each process, 40 ms.) Its first sentence names the field: it is the label in a data set. All of it is the help of

@@ -36,9 +36,9 @@ from fracparticles.time.whole_space import WholeSpace
 
 __all__ = ["Prepared", "in_range", "matrix_of", "prepare", "scheme_amplification"]
 
-_LARGEST_MATRIX = 16384  # particles
+_LARGEST_MATRIX = 16384  # particles, rows of a matrix of 2 GiB
 _NEAR_ONE = 16  # binary digits: strengths whose greatest is nearer to one are not scaled
-_RATES = 1e-8, 1e8  # D / h^alpha: outside, A u may be no number though u is
+_RATES = 1e-8, 1e8  # D / h^alpha: outside of these A u may over- or underflow though u does not
 Advance = Callable[[np.ndarray], np.ndarray]
 
 
@@ -46,8 +46,8 @@ Advance = Callable[[np.ndarray], np.ndarray]
 class Prepared:
     """A case made ready: all that does not depend on the initial data.
 
-    For bare arrays, again and again: nothing is estimated on the way, as `solve` of the module does. `reliability`
-    takes the arrays, too. Threads may share it; they take turns at the operator.
+    It is meant for many bare arrays. Unlike `fp.solve` it makes no estimates; `reliability` makes them from the arrays.
+    Threads may share it; they take turns at the operator.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Prepared:
     operator : LatticeOperator or None
         A; on graded particles the matrix of the step; None for a run by one pair of transforms.
     operator_applications : int
-        How often a solve applies it, unless the data ask for more pieces (`integrators.pieces`).
+        How often a solve applies A, unless the data need more pieces, see `time.pieces`.
     advance : callable
         From the strengths at `t_initial`, shape (N^dim,), to those at `t_final`, or at each of the `times`.
     """
@@ -73,25 +73,25 @@ class Prepared:
     def solve(self, u0: np.ndarray) -> np.ndarray:
         """Return the strengths at `t_final` from those at `t_initial`, both of the shape of the lattice.
 
-        Of a case with `times` there is a first axis more, one entry for each of them.
+        For a case with `times` the result has one more axis, the first, with an entry for each time.
 
         Raises
         ------
         InvalidInput
-            If the strengths are not of that shape, not real, masked, or not finite.
+            If the strengths have another shape, or are not real, masked, or not finite.
         NonFiniteSolution
-            With the scheme, the step and the time.
+            If the solution blows up; names the scheme, the step and the time.
         """
         return self.run(u0)[0]
 
     def run(self, u0: np.ndarray) -> tuple[np.ndarray, int]:
-        """Return what `solve` does, and how often the operator was applied."""
+        """Return the strengths as `solve` does, and how often the operator was applied."""
         u0 = bare_strengths(u0, self.shape)
         return in_range(self._run, u0) if self._scales else self._run(u0)
 
     @cached_property
     def _scales(self) -> bool:
-        """Whether the units of time are so far from one that A u may be no number though u is."""
+        """Whether the rate is so far from one that A u may over- or underflow though u does not."""
         return not _RATES[0] < self.case.setting.rate < _RATES[1]
 
     def _run(self, u0: np.ndarray) -> tuple[np.ndarray, int]:
@@ -103,7 +103,8 @@ class Prepared:
             else:
                 u = self.advance(flat)
         except NonFiniteSolution as error:
-            refuse_non_finite(u0, self.case.x)  # looked at only when it may have been the data
+            # Judged only now: it takes time, and the data are rarely the cause.
+            refuse_non_finite(u0, self.case.x)
             raise named(self.case, error) from None
         shape = u0.shape if self.case.times is None else (len(self.case.times), *u0.shape)
         return u.reshape(shape), applications
@@ -111,8 +112,8 @@ class Prepared:
     def as_matrix(self) -> np.ndarray:
         """Return the whole run as one matrix, shape (N^dim, N^dim): u(t_final) = M u(t_initial).
 
-        For many initial data on few particles: up to some hundred a product with M is faster than any sum by FFT. It
-        takes N^dim solves.
+        It serves many initial data on few particles: up to some hundred of these a product with M is faster than sums
+        by FFT. It takes N^dim solves.
 
         Raises
         ------
@@ -128,9 +129,9 @@ class Prepared:
 def in_range(
     run: Callable[[np.ndarray], tuple[np.ndarray, int]], u0: np.ndarray
 ) -> tuple[np.ndarray, int]:
-    """Do a linear run on strengths near one, a power of two away from those given: the same bits, but no A u vanishes.
+    """Do a linear run on strengths near one, which are those given times a power of two, and scale the result back.
 
-    A u has the unit of u over that of time. Far from units near one it may be no number though u is.
+    A u has the unit of u over that of time, and may over- or underflow though u does not. Otherwise all bits are equal.
     """
     exponent = int(np.frexp(np.abs(u0).max())[1])
     if abs(exponent) <= _NEAR_ONE:
@@ -144,7 +145,7 @@ def in_range(
 
 
 def matrix_of(solve: Advance, shape: tuple[int, ...]) -> np.ndarray:
-    """Return a linear map of arrays of that shape as a matrix, column by column: what it makes of the unit vectors.
+    """Return a linear map of arrays of a shape as a matrix, whose columns are the images of the unit vectors.
 
     Raises
     ------
@@ -167,12 +168,12 @@ def prepare(case: Case, operator: LatticeOperator | None = None) -> Prepared:
     case : Case
         The run; not of DVM, whose particles move.
     operator : LatticeOperator, optional
-        The operator of the case, if it is there already.
+        The operator of the case, if it exists already.
 
     Raises
     ------
     InvalidInput
-        If the particles move, or the operator is of another lattice.
+        If the particles move, or the operator has another number of particles.
     NonFiniteSolution
         If the time steps would overflow.
     """
@@ -236,7 +237,7 @@ def _flow(
 
 
 def _all_outputs(case: Case, ready: list[Prepared]) -> Prepared:
-    """Return the run whose output times are those of several, from the same strengths."""
+    """Return the run with the output times of several runs from the same strengths."""
     applications = sum(one.operator_applications for one in ready)
     reached = [time for one in ready for time in one.case.times or (one.case.t_final,)]
     order = np.argsort(reached, kind="stable")
@@ -271,9 +272,9 @@ def _on_the_whole_space(case: Case) -> Advance:
 
 
 def scheme_amplification(case: Case, exact: bool = False) -> Callable[[np.ndarray], np.ndarray]:
-    """Return by what the run multiplies the waves of the infinite lattice, as a function of theta; see `WholeSpace`.
+    """Return the factor of the run for waves of the infinite lattice, as a function of theta; see `WholeSpace`.
 
-    With `exact` the integration in time is: exp(A t) for any integrator, but for GPSE, whose steps are its own.
+    With `exact` it is exp(A t) for any integrator, except for GPSE, whose steps are part of the scheme.
     """
     setting = case.setting
     scaled_time = case.span * setting.rate

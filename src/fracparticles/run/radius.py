@@ -1,7 +1,7 @@
-"""The radius that holds initial data which are a function: how wide a lattice must be at least.
+"""The radius that holds initial data which are a function: a lattice must be at least as wide.
 
-They are looked at along the axes, at 2402 places from 1e-12 to 1e12 of their unit of length, and then evenly, within a
-thousand of the radius that is found there.
+The function is evaluated along the axes, at 2402 places from 0 to 1e12 of its unit of length. It is then evaluated at
+equally spaced places within a thousand times the radius found.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from fracparticles.run.initial import Initial
 
 __all__ = ["radius_of"]
 
-_RAY = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 2401)])  # where data are looked at
-_NEAR, _LOOKS = 1000.0, 40_001  # and evenly, within so many of the radius that is found there
-_ASKED = 12  # places at which a function of arrays is compared with one of numbers
+_RAY = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 2401)])  # distances of the first places
+_NEAR, _LOOKS = 1000.0, 40_001  # the farthest equally spaced place in radii, and their number
+_ASKED = 12  # places at which the values for an array are compared with those for single numbers
 
 
 def radius_of(initial: Initial, problem: Case, dim: int) -> float:
-    """Return the radius that holds nine tenths of the data along the axes, of those within 1e12 of their unit.
+    """Return the radius that holds nine tenths of the data along the axes, as far as 1e12 of their unit.
 
-    A part narrower than a fiftieth of its distance is found if it is within a thousand radii of the rest, and wider
-    than a fortieth of that radius.
+    A part narrower than a fiftieth of its distance is found if it lies within a thousand radii of the rest and is wider
+    than a fortieth of the radius. Raises `InvalidInput` if the data are not finite, zero, or do not fall.
     """
     if isinstance(initial, str):
         return float((problem.diffusivity * problem.t_initial) ** (1.0 / problem.alpha))
@@ -39,7 +39,7 @@ def radius_of(initial: Initial, problem: Case, dim: int) -> float:
 
     def held(r: np.ndarray) -> float:
         rays = [axis * sign for axis in np.eye(dim) for sign in (1.0, -1.0)]
-        with np.errstate(all="ignore"):  # a function of the caller's may overflow so far out
+        with np.errstate(all="ignore"):  # the caller's function may overflow so far out
             sizes = sum(np.abs(function(*(r * part for part in ray))) for ray in rays)
             density = r ** (dim - 1) * sizes
             parts = 0.5 * (density[1:] + density[:-1]) * np.diff(r)
@@ -61,7 +61,7 @@ def radius_of(initial: Initial, problem: Case, dim: int) -> float:
 
 
 def _at_places(initial: Callable[..., Any], dim: int) -> Callable[..., np.ndarray]:
-    """Return the data as a function of arrays; asked one by one, if some places say that it is another of arrays."""
+    """Return the data as a function of arrays; it is called for single numbers if arrays give it other values."""
     one_by_one = np.vectorize(initial, otypes=[float])
     places = [_RAY[:: _RAY.size // _ASKED] * (1.0 - 0.25 * k) for k in range(dim)]
     with np.errstate(all="ignore"):

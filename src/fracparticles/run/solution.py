@@ -1,4 +1,4 @@
-"""What a run computes, and its error against the fundamental solution."""
+"""The result of a run, and its error against the fundamental solution."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["Solution", "relative_l1_deviation", "relative_l1_error"]
 
 @dataclass(frozen=True)
 class Solution:
-    """What a run computes.
+    """The result of a run.
 
     Attributes
     ----------
@@ -32,11 +32,11 @@ class Solution:
     initial : str
         Where the initial data came from.
     particles : ParticleRun, optional
-        For DVM, the particles themselves and what happened to them.
+        For DVM, the particles themselves and the history of their redistributions.
     estimates : dict
-        What the strengths say of the accuracy, see `reliability`.
+        The estimates of the accuracy from the strengths, see `reliability`.
     outputs : Outputs, optional
-        For a case with `times`, the strengths at each.
+        For a case with `times`, the strengths at each of them.
     """
 
     case: Case
@@ -72,7 +72,7 @@ def relative_l1_deviation(
 ) -> float:
     """Return the error against the fundamental solution G over |x| <= `within`, as in Eqs. (48), (59).
 
-    sum_i V_i |u_i - G(x_i, t)| / int |G(x, t)| dx, the integral in closed form.
+    It is sum_i V_i |u_i - G(x_i, t)| / int |G(x, t)| dx, with the integral in closed form.
 
     Parameters
     ----------
@@ -81,6 +81,7 @@ def relative_l1_deviation(
     volumes : float or array
         V_i, one for all or one for each.
     within : float
+        The radius.
     time, alpha, dim : float, float, int
         D t, 1 + beta and the space dimension.
     """

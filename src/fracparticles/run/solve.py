@@ -1,4 +1,4 @@
-"""Run a case to a data set: the one call that does all."""
+"""Run a case to a data set, in one call."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def solve(
     initial : array, labelled data, callable or path, optional
         Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
         function of `case.positions` (of x; of x and y; of x, y and z); a NetCDF file that holds u; a table or other
-        `measured` data. Without it the run starts from what `case.initial` says, by default the fundamental solution
-        at `case.t_initial`.
+        `measured` data. Left out, the run starts from the data that `case.initial` names, by default the fundamental
+        solution at `case.t_initial`.
     estimate : bool
         Estimate the error, too, as `estimate_error` does: `estimated_error` and its parts are variables of the result.
     units : Units, optional
-        Names of the units that the numbers are in, for the attributes of the result. Left out: what the data name.
+        Names of the units of the numbers, for the attributes of the result; left out, those that the data name.
     progress : callable, optional
-        Called again and again with the share of the run that is done, from 0 to 1.
+        Called repeatedly with the share of the run that is done, from 0 to 1.
 
     Returns
     -------
@@ -60,8 +60,8 @@ def solve(
     StabilityWarning
         If some wave grows.
     AccuracyWarning
-        If the strengths say that they may be far from the solution, see `reliability`; if the data are your own and
-        have no time, and t_initial was not given.
+        If an estimate from the strengths shows that they may be far from the solution, see `reliability`; if the data
+        are your own and have no time, and t_initial was not given.
     """
     source, estimate = resolved(a_case(case), initial), check.flag("estimate", estimate)
     units = units_of(source, units)

@@ -1,4 +1,4 @@
-"""Run a case on arrays: `compute` it from its data; see `prepared` for many of them, `advection` for DVM."""
+"""Run a case on arrays: `compute` runs it from its data; see `prepared` for many data, `advection` for DVM."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Progress = Callable[[float], None]
 def compute(
     case: Case, initial: Initial | None = None, progress: Progress | None = None
 ) -> Solution:
-    """Run a case and return its arrays: `solve` without the data set; raises and warns as that."""
+    """Run a case and return its arrays. This is `solve` without the data set, with the same errors and warnings."""
     a_case(case)
     if progress is not None:
         check.function("progress", progress)
@@ -67,11 +67,11 @@ def compute(
 
 
 def _by_time(case: Case, progress: Progress) -> Observer:
-    """What watches particles that move: the share of the time that they have come through."""
+    """Return an observer of moving particles, which reports the share of the time that has passed."""
     return lambda time, *_: progress((time - case.t_initial) / case.span)
 
 
 def _by_applications(expected: int, progress: Progress) -> Callable[[], None]:
-    """What watches an operator: the share of the applications that are expected."""
+    """Return a function to call after each application, which reports the share of those expected."""
     count = itertools.count(1)
     return lambda: progress(min(1.0, next(count) / expected))

@@ -1,4 +1,4 @@
-"""Whether waves grow in a run: from the symbol, the eigenvalues of the operator, and the steps."""
+"""A warning if waves grow in a run, from the symbol, the eigenvalues of the operator, and the steps."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ from fracparticles.time import STEP_POLYNOMIALS
 
 __all__ = ["warn_if_unstable"]
 
-_NO_GROWTH = 1e-3  # over the run, as an exponent
+_NO_GROWTH = 1e-3  # exponent of the growth over the run: more is warned of
 
 
 def warn_if_unstable(case: Case, operator: LatticeOperator) -> None:
     """Warn, with the numbers, if some wave grows: outside the stability interval, or where an eigenvalue is positive.
 
-    A single step of GPSE, the whole run, cannot grow; whoever takes it for its speed does not pay for its limit.
+    The single step of GPSE over the whole run cannot grow. It is taken for its speed, and no limit is computed.
 
     Warns
     -----
     StabilityWarning
+        Names the cause and the growth over the run, or the largest stable step.
     """
     if case.kind.self_timed and case.is_one_step:
         return
@@ -58,7 +59,7 @@ def warn_if_unstable(case: Case, operator: LatticeOperator) -> None:
 
 
 def _cause(case: Case, of_the_symbol: bool) -> str:
-    """What makes waves grow, if it is not the scheme alone."""
+    """The cause of the growth, if it is not the scheme alone."""
     if case.kernel_table is not None:
         return f"with kernel_table = {case.kernel_table:g}, "
     return "" if of_the_symbol else "at the ends of the lattice, "

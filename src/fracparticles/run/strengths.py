@@ -1,4 +1,4 @@
-"""The strengths of DVM's particles on the lattice, as Eqs. (48), (49) need them: on common points."""
+"""The strengths of DVM's particles on the lattice, since Eqs. (48), (49) need values on common points."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ __all__ = ["lattice_strengths"]
 
 
 def lattice_strengths(run: xr.Dataset, name: str | None = None) -> np.ndarray:
-    """Return U_p / h on the lattice x of a run, after one last remeshing of its particles.
+    """Return U_p / h on the lattice x of a run, shape (N,), after one last remeshing of its particles.
 
-    The other way to have values on common points is the field (7), which the run holds as u.
+    The field (7), which the run holds as u, is the other way to have values on common points.
 
     Parameters
     ----------
@@ -35,9 +35,8 @@ def lattice_strengths(run: xr.Dataset, name: str | None = None) -> np.ndarray:
     h, x = float(run["particle_spacing"]), run["x"].values
     wanted = str(run["remeshing"].values) if name is None else name
     particles = run["particle_position"].values, run["particle_strength"].values
-    if (
-        str(run["exterior"].values) == "open"
-    ):  # what lies beyond has its share of the outermost lattice points
+    if str(run["exterior"].values) == "open":
+        # Particles beyond the ends contribute to the outermost lattice points.
         beyond = TailModel(1.0 + float(run["beta"]), float(run["overlap"]) * h)
         particles = beyond.continued(*particles)
     z, strength = remesh(*particles, h, wanted)

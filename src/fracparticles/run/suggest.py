@@ -1,10 +1,11 @@
 """From a problem and an accuracy to a run: scheme, order, spacing, half-width, evaluation.
 
 The fastest of the schemes is GPSE in one step over the whole time, on an open lattice, by one pair of transforms
-(`results/tables/time_to_accuracy`). Where its kernel would be wider than a lattice can sum, a thousand spacings, or
-narrower than one on which data so wide need few particles, KPSE of order 12, exact in time, takes its place. The
-search starts on a coarse and narrow lattice. The estimate of the error says which of the two, spacing or half-width,
-leaves more, and that is mended until the error is what was asked for; then both are taken back as far as it allows.
+(`results/tables/time_to_accuracy`). KPSE of order 12, exact in time, takes its place if the kernel of GPSE would be
+wider than a lattice can sum, a thousand spacings, or so narrow that it needs more particles than the data. The search
+starts on a coarse and narrow lattice. The estimate of the error says which of the two, spacing or half-width, leaves
+the larger error, and this one is improved until the error is the one asked for. Then both are taken back as far as the
+error allows.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from fracparticles.special.stable import central_mass
 __all__ = ["suggest"]
 
 _SELF_TIMED = next(name for name, one in ALL_SCHEMES.items() if one.self_timed)
-_ORDER = 12
+_ORDER = 12  # of KPSE
 _EXCHANGE = next(
     name for name, one in ALL_SCHEMES.items() if _ORDER in one.box_orders and one.conservative
 )
@@ -38,22 +39,21 @@ _WAYS: tuple[dict[str, Any], ...] = (
     {"scheme": _SELF_TIMED, **_OPEN},
     {"scheme": _EXCHANGE, "order": _ORDER, "integrator": "exponential", **_OPEN},
 )
-_FINER, _WIDER = 0.7, 1.4
-_FAR = 10.0  # an error so many times that asked for: two steps at once
+_FINER, _WIDER = 0.7, 1.4  # factors of spacing and half-width in a step of the search
+_FAR = 10.0  # error over the one asked for: from here the search takes two steps at once
 _BACK = 1.2  # the factor by which spacing and half-width are taken back at a time
-_SAFE = 0.7  # of the error that is asked for: a case must meet this
+_SAFE = 0.7  # share of the error asked for that a case must meet
 _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
 # A trial that leaves more than this part of the lowest error is in vain; so many of them in a row end the search.
 _LOWER, _MOST_IN_VAIN = 0.9, 5
-_HELD = 0.97  # of the mass of a point: what the lattice must hold where no radius is given
-_WIDE = 100.0  # radii of interest over (D T)^(1/alpha): beyond, the kernel of GPSE needs more particles than the data
-_MOST_SPREAD = 1e4  # (D T)^(1/alpha) over the radius, to the power of the dimension: some 2e6 particles, two minutes
-_POINTS = {
-    1: 1_000_000,
-    2: 5_000_000,
-    3: 5_000_000,
-}  # of an estimate, at most: many estimates are made
-_TERMS = {1: 3, 2: 3, 3: 2}  # that continue the solution beyond the lattice, by dimension
+_HELD = 0.97  # share of the mass of a point that the lattice must hold if no radius is given
+# Radius of interest over (D T)^(1/alpha): beyond it the kernel of GPSE needs more particles than the data.
+_WIDE = 100.0
+# (D T)^(1/alpha) over the radius, to the power of the dimension: some 2e6 particles, two minutes.
+_MOST_SPREAD = 1e4
+# The most points of an estimate, by dimension: many estimates are made.
+_POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}
+_TERMS = {1: 3, 2: 3, 3: 2}  # of the tail beyond the lattice, by dimension
 _SMALLEST = 1e-11  # error that may be asked for
 _START = 6.0  # spacings within the radius of interest, at first
 _FEWEST = 8.0  # spacings on either side of the lattice, at first
@@ -72,33 +72,32 @@ def suggest(
     dim: int = 1,
     within: float | None = None,
 ) -> Case:
-    """Return a case whose relative error, as `estimate_error` has it, is at most `error`.
+    """Return a case whose relative error, as estimated by `estimate_error`, is at most `error`.
 
     Parameters
     ----------
     initial : callable, measured data, or "fundamental"
-        What is known everywhere: a bare array has a lattice already.
+        Data that are known everywhere; a bare array has a lattice already.
     error : float
-        In the 1-norm over |x| <= within, from 1e-11 to 0.5.
+        The relative error in the 1-norm over |x| <= within, from 1e-11 to 0.5.
     alpha, beta : float
         The fractional order, one of them.
     t_initial, t_final, times, diffusivity, dim
-        As for `Case`. Of several times the first and the last must meet the error: the others lie between.
+        As for `Case`. With several times, the first and the last must meet the error; the others lie between.
     within : float, optional
-        The radius of interest. Left out: that which holds nine tenths of the data, and (D T)^(1/alpha) twice more; and
-        then the lattice holds nearly all of the solution,
-        and the error is met on all of it.
+        The radius of interest. Left out, it is the radius that holds nine tenths of the data plus 2 (D T)^(1/alpha);
+        the lattice then holds nearly all of the solution, and the error is met on all of it.
 
     Raises
     ------
     InvalidInput
-        If the problem is not valid, or the error cannot be reached on this machine; if the data are ten thousand times
-        narrower than they spread, so that they need other particles than those of a lattice.
+        If the problem is not valid, or the error cannot be reached on this machine; if the data are so narrow, and
+        spread so far, that they need other particles than those of a lattice.
 
     Warns
     -----
     AccuracyWarning
-        If measured data leave more than the error open; if the error is not met on all of the lattice.
+        If measured data leave a larger error open; if the error is not met on all of the lattice.
 
     Examples
     --------
@@ -170,7 +169,7 @@ def _search(
     error: float,
     reached: list[float],
 ) -> Case | None:
-    """Refine and widen until the error is met, and take back what is not needed; None where it cannot be met.
+    """Refine and widen until the error is met, then take back what is not needed; None if it cannot be met.
 
     The errors of all trials are added to `reached`.
     """
@@ -182,10 +181,8 @@ def _search(
         if isinstance(trial, InvalidInput):
             if trial.field in ("half_width", "truncation", "lattice"):
                 half *= _WIDER
-            elif (
-                trial.field == "overlap" and h > spread
-            ):  # a kernel narrower than the lattice resolves
-                h *= _FINER
+            elif trial.field == "overlap" and h > spread:
+                h *= _FINER  # the lattice does not resolve the kernel
             else:  # too many particles, or a kernel wider than can be summed
                 return None
             continue
@@ -229,7 +226,7 @@ def _taken_back(
 
 
 def _widened(case: Case, initial: Initial, fields: dict[str, Any], spread: float) -> Case:
-    """Return the case on a lattice wide enough for a run that warns of nothing, if there is one within reach."""
+    """Return the case on a lattice so wide that the run warns of nothing, or on the widest one that was tried."""
     for _ in range(_MOST_WIDENINGS):
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
@@ -246,12 +243,12 @@ def _widened(case: Case, initial: Initial, fields: dict[str, Any], spread: float
 def _met_everywhere(
     case: Case, initial: Initial, fields: dict[str, Any], spread: float, error: float
 ) -> Case:
-    """Return the case on a lattice on all of which the error is met: what is far out may be finer than the rest.
+    """Return the case on a lattice on all of which the error is met, since data far out may be finer than the rest.
 
     Warns
     -----
     AccuracyWarning
-        If there is none within reach.
+        If no such lattice is found.
     """
     h, half = case.spacing, case.reach
     for _ in range(_MOST_WIDENINGS):
@@ -290,7 +287,7 @@ def _alpha(fields: dict[str, Any]) -> float:
 
 
 def _errors(case: Case, initial: Initial, within: float | None) -> tuple[float, float, float]:
-    """Return the error and what spacing and half-width leave of it, at the worst of the first and the last time."""
+    """Return the error and its parts by spacing and half-width, at the worse one of the first and the last time."""
     times = {case.t_final} if case.times is None else {case.times[0], case.times[-1]}
     found = []
     with warnings.catch_warnings():

@@ -1,9 +1,9 @@
-"""Several output times of one run: how they are said, and the runs that they are made of.
+"""Several output times of one run: the forms in which they are given, and the runs that compute them.
 
-The steps of a run meet each output time: from one to the next they are equal, at most dt, and one Chebyshev series,
+The steps of a run end at each output time. From one to the next they are equal, at most dt, and one Chebyshev series,
 or one march, serves all. Where a step is part of the scheme (GPSE, whose kernel is that of its step) or the run is a
-single pair of transforms, each output is a run of its own from t_initial on; those of one step share it. What is called
-`case` here is a `Case`, which is made with these functions.
+single pair of transforms, each output is a run of its own from t_initial on; outputs with equal steps share a run. A
+`case` here is a `Case`; the type is not imported, since `Case` is made with these functions.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from fracparticles.errors import InvalidInput
 __all__ = ["Outputs", "legs", "parts", "steps_in", "with_times"]
 
 _STEP_SLACK = 1e-9  # a time span of n (1 + 1e-9) steps still takes n steps
-_SAME = 1e-9  # relative: steps that are one
+_SAME = 1e-9  # relative difference up to which two steps count as equal
 _ALLOWED = "numbers in ascending order, those of the output times"
 
 
 @dataclass(frozen=True)
 class Outputs:
-    """What a run with several output times computes.
+    """The results of a run with several output times.
 
     Attributes
     ----------
     times : tuple of float
         The m output times; the last is t_final.
     u : array, shape (m, N, .., N)
-        The strengths at each; of DVM the field.
+        The strengths at each time; for DVM the field.
     mass : array, shape (m,)
-        The total at each.
+        The total at each time.
     """
 
     times: tuple[float, ...]
@@ -51,7 +51,7 @@ def with_times(fields: dict[str, Any]) -> dict[str, Any]:
     Raises
     ------
     InvalidInput
-        If they are no ascending numbers, or t_final is given and another time.
+        If they are not ascending numbers, or if t_final is given and is not the last of them.
     """
     given = fields.get("times")
     if given is None:
@@ -72,14 +72,14 @@ def with_times(fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def steps_in(span: float, dt: float) -> int:
-    """Return how many equal steps of at most dt a span takes."""
+    """Return the number of equal steps of at most dt in a span."""
     return max(1, ceil(span / dt * (1 - _STEP_SLACK)))
 
 
 def legs(case: Any) -> list[tuple[float, int]]:
-    """Return the step from each output time to the next, and how many of them; none for the exponential.
+    """Return the step from each output time to the next, and the number of these steps.
 
-    A scheme whose step is part of it has one step for all: then the times must be whole numbers of it, see `parts`.
+    A scheme whose step is part of it has one step for all times; the times are then multiples of it, see `parts`.
     """
     if case.times is None:
         return [(case.time_step, case.steps)]
@@ -93,12 +93,12 @@ def legs(case: Any) -> list[tuple[float, int]]:
 
 
 def parts(case: Any) -> list[Any]:
-    """Return the runs that a run with several output times is made of, each on the same lattice; itself if it is one.
+    """Return the runs, all on the same lattice, that compute the output times of a run; itself if one run is enough.
 
     Raises
     ------
     InvalidInput
-        If one of them is not allowed: a step too short for the spacing.
+        If one of them is not allowed, because its step is too short for the spacing.
     """
     if case.times is None or not (case.kind.self_timed or case.evaluation == "convolution"):
         return [case]

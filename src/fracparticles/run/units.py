@@ -1,7 +1,7 @@
-"""Names of units: what the numbers of a run are in. They travel into the data set, and onto the axes of its plots.
+"""Names of the units of a run. They are stored in the data set, and shown on the axes of its plots.
 
-The equation has no scale of its own: a run in metres and days is a run in any units, and nothing is converted. The
-diffusivity is then in length^alpha / time, and the mass in concentration times length^dim.
+The equation has no scale of its own: its numbers hold for any units, and nothing is converted. The diffusivity is in
+length^alpha / time, and the mass in concentration times length^dim.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Units", "units_of", "with_units"]
 
-_LONGEST = 40
-_NONE = "1"
-# The powers of length, time and concentration; "alpha" and "dim" are those of the case.
+_LONGEST = 40  # characters of a name
+_NONE = "1"  # the name of no unit
+# The powers of length, time and concentration in the unit of each variable; "alpha" and "dim" stand for the case's.
 _DIMENSIONS: dict[str, tuple[float | str, float, float]] = {
     **dict.fromkeys(("x", "y", "z", "half_width", "spacing", "particle_spacing"), (1, 0, 0)),
     **dict.fromkeys(("graded_scale", "volume", "particle_position"), (1, 0, 0)),
@@ -39,7 +39,7 @@ _DIMENSIONS: dict[str, tuple[float | str, float, float]] = {
 
 @dataclass(frozen=True)
 class Units:
-    """Names of units, each a text as it is to stand on an axis; "1" for none.
+    """Names of units, each as it is shown on an axis; "1" for none.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Units:
     Raises
     ------
     InvalidInput
-        If one is no short text of one line.
+        If a name is not a text of one line and at most 40 characters.
     """
 
     length: str = _NONE
@@ -79,7 +79,7 @@ class Units:
         return cls(*names)
 
     def of(self, name: str, case: Case) -> str | None:
-        """Return the unit of a variable of a data set; None for what has no dimension."""
+        """Return the unit of a variable of a data set; None for a variable that has none."""
         powers = _DIMENSIONS.get(name)
         if powers is None:
             return None
@@ -99,7 +99,7 @@ def units_of(source: Any, given: Units | None = None) -> Units | None:
     Raises
     ------
     InvalidInput
-        If the data name others than were given.
+        If the data name other units than those given.
     """
     if given is not None and not isinstance(given, Units):
         named = "fp.Units(length=..., time=..., concentration=...)"
@@ -115,14 +115,14 @@ def units_of(source: Any, given: Units | None = None) -> Units | None:
 
 
 def _told(source: Any) -> Units | None:
-    """What the data name: the units of x, of t_final and of u."""
+    """The units of x, t_final and u that the data name; None if they name none."""
     if isinstance(source, Measured):
         length, concentration = (name or _NONE for name in source.units)
         found = Units(length, _NONE, concentration)
         return None if found == Units() else found
     if isinstance(source, str | os.PathLike):
         path = Path(os.fspath(source))
-        if source == FUNDAMENTAL or not path.is_file():  # whoever reads it says so
+        if source == FUNDAMENTAL or not path.is_file():  # a missing file is refused when it is read
             return None
         source = load_netcdf(path, ("u", "x", "t_final"))
     xarray = sys.modules.get("xarray")
