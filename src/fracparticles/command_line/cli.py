@@ -1,8 +1,8 @@
 """The command line: `fracparticles solve`, `show`, `plot`, `compare` and `limit`.
 
-Results go to standard output, everything else to standard error, one line each. Exit status: 0 done, 1 the
-machine failed (a full disk, no memory), 2 the input cannot be worked with, 3 the solution blew up, 130 interrupted.
-Nothing that takes long is imported before `main` runs: it says so if it is interrupted.
+Results go to standard output, and everything else to standard error, one line each. The exit status is 0 for a run that
+is done, 1 if the machine failed (a full disk, no memory), 2 if the input cannot be used, 3 if the solution blew up, and
+130 if the run was interrupted. Nothing that takes long is imported before `main` runs, which reports an interruption.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def _run(arguments: Sequence[str] | None) -> int:
         except NonFiniteSolution as error:
             return _fail(error, 3)
         except BrokenPipeError:
-            # The reader, `head` say, has gone. Nothing must be left for the interpreter to flush at exit.
+            # The reader, such as `head`, has ended. Nothing must be left for the interpreter to flush at exit.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 141  # 128 + SIGPIPE
         except (FracparticlesError, OSError, MemoryError) as error:
@@ -64,9 +64,9 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _open_streams() -> None:
-    """Give the streams that were closed to nobody, or the first file opened would take their place and their text.
+    """Open streams that were closed on the null device. Otherwise the first file opened would receive their text.
 
-    A name that the terminal cannot show is shown by its codes.
+    Characters that the terminal cannot show are shown as their codes.
     """
     for name, number, mode in (("stdin", 0, "r"), ("stdout", 1, "w"), ("stderr", 2, "w")):
         if getattr(sys, name) is None:

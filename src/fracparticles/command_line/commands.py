@@ -24,7 +24,7 @@ from fracparticles.schemes.stability import stability_limit
 __all__ = ["limit", "number_or_text", "solve"]
 
 _ALIASES = {"dt": "--time-step"}
-_NEEDED = ("scheme",)  # by `limit`; `Case` says itself what it needs
+_NEEDED = ("scheme",)  # flags that `limit` needs; for `solve`, `Case` refuses what is missing
 _OF_A_LIMIT = (
     *_NEEDED,
     "beta",
@@ -105,7 +105,7 @@ def solve(
         _note(f"estimated relative error {spelled((f'{e:.1e}' for e in errors), ', ')}{at}")
 
 
-_DOWN = Context(prec=6, rounding=ROUND_FLOOR)  # what is printed must be a stable step, too
+_DOWN = Context(prec=6, rounding=ROUND_FLOOR)  # downwards, so that the printed step is stable, too
 
 
 def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
@@ -138,9 +138,9 @@ def limit(*, flags: Annotated[LimitFlags, Parameter(name="*")]) -> None:
 
 
 def number_or_text(text: str) -> Any:
-    """Return the number that the text stands for, or the text if it stands for none.
+    """Return the number that the text stands for, or the text if it is no number.
 
-    1_0, which Python reads as ten, stands for none: it may be a slip of 1.0.
+    1_0, which Python reads as ten, is taken as text, since it may be a slip of 1.0.
     """
     for number in (int, float) if "_" not in text else ():
         try:
@@ -151,7 +151,7 @@ def number_or_text(text: str) -> Any:
 
 
 def _values(flags: Mapping[str, str]) -> dict[str, Any]:
-    """Numbers of the flags, read as text: text where one belongs is then refused in the same words as in Python."""
+    """The values of the flags, numbers where they can be read. Other text is refused by the fields, as in Python."""
     return {name: _value(name, text) for name, text in flags.items()}
 
 
@@ -166,7 +166,7 @@ def _note(text: str) -> None:
 
 
 def _writable(output: str | None) -> Path:
-    """Return the path of the output if it can be written, before any work is done."""
+    """Return the path of the output, and refuse one that cannot be written before any work is done."""
     if output is None:
         raise InvalidInput("output", None, "the path of the file to write", "Give -o run.nc.")
     folder, where = replaceable(output, "output").parent, "a file in a directory that"

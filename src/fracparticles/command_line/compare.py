@@ -1,10 +1,10 @@
-"""Two runs side by side: what they were asked, what came out, and how far their strengths are apart.
+"""Two runs side by side: their parameters, their results, and the distance of their strengths.
 
-Over the particles that the lattices share, and the output times that the runs share,
+The distance is taken over the particles that the lattices share, and the output times that the runs share,
 
     sum |u - v| / sum |u|   and   max |u - v| / max |u|,
 
-u of the first run and v of the second.
+with u of the first run and v of the second.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["compare", "comparison", "distance"]
 
-_SAME_PLACE = 1e-9  # of a spacing, and of the last time
-_NO_UNIT = "1"
-_UNITS = {"x": "length", "t_final": "time", "u": "u"}  # the variables that have them
-_NOT_TOLD = ("initial", "store", "times")  # of a case: in `initial_data`, and seen from u
+_SAME_PLACE = 1e-9  # share of a spacing, and of the last time: nearer points are the same
+_NO_UNIT = "1"  # the name of no unit
+_UNITS = {"x": "length", "t_final": "time", "u": "u"}  # the variables with units: what these are of
+_NOT_TOLD = ("initial", "store", "times")  # fields of a case that are not shown: other rows tell
 
 Row = tuple[str, str, str]
 
@@ -51,9 +51,9 @@ def compare(first: str, second: str) -> None:
 
 
 def comparison(first: xr.Dataset, second: xr.Dataset) -> list[Row]:
-    """Return in what two runs differ: name, value in the first and in the second.
+    """Return the differences of two runs: the name, and the values in the first and in the second.
 
-    These are the parameters and scalar results, what the initial data were, coefficients that are texts, and units.
+    Compared are the parameters and scalar results, the initial data, coefficients that are texts, and units.
     """
     one, other = _told(first), _told(second)
     each = [(name, one.get(name), other.get(name)) for name in dict.fromkeys([*one, *other])]
@@ -61,7 +61,7 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> list[Row]:
 
 
 def distance(first: xr.Dataset, second: xr.Dataset) -> str:
-    """Return in a line how far the strengths of two runs are apart; see the module."""
+    """Return the distance of the strengths of two runs in a line; see the module."""
     if "u" not in first or "u" not in second:
         return "u: a file holds no strengths to compare; run the case with --store field"
     u, v = _with_times(first), _with_times(second)
@@ -96,12 +96,12 @@ def distance(first: xr.Dataset, second: xr.Dataset) -> str:
 
 
 def _with_times(run: xr.Dataset) -> xr.DataArray:
-    """u with its output times as the first axis; of a run without them the final one."""
+    """u with its output times as the first axis; a run without them has its final time only."""
     return run.u if "t" in run.u.dims else run.u.expand_dims(t=[float(run.t_final)])
 
 
 def _told(run: xr.Dataset) -> dict[str, Any]:
-    """The scalars of a run, what its case or problem says beside them, its initial data and its units."""
+    """The scalars of a run, the other fields of its case or problem, its initial data and its units."""
     told = _scalars(run)
     stored = stored_in(run) or {}
     told |= {
@@ -131,7 +131,7 @@ def _equal(one: Any, other: Any) -> bool:
 
 
 def _shown(one: Any, other: Any) -> tuple[str, str]:
-    """Six digits of each, or all where six are the same."""
+    """Six digits of each value, or all digits if six are the same."""
     first, second = (
         "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
         for value in (one, other)

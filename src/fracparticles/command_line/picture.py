@@ -1,6 +1,6 @@
-"""A picture of a run: u against x, a line for each output time, or a map of the last one in the plane.
+"""A picture of a run: u against x, with a line for each output time, or a map of the last output in the plane.
 
-Beside a run from the fundamental solution stands the exact one, dashed. The axes carry the units of the file.
+For a run from the fundamental solution the exact solution is drawn, too, dashed. The axes have the units of the file.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["draw", "plot"]
 
 _KINDS = (".png", ".svg", ".pdf")
-_SIZE = (6.0, 4.5)
+_SIZE = (6.0, 4.5)  # inches
 _EXACT: dict[str, Any] = {"linestyle": "--", "color": "0.4", "linewidth": 1.0}
 
 
@@ -88,7 +88,7 @@ def _known(run: xr.Dataset) -> Case | None:
 
 
 def _lines(outputs: xr.DataArray, known: Case | None, log: bool) -> Any:
-    """A line for each output time, and the exact one where it is known; on a logarithmic axis what is positive."""
+    """Draw a line for each output time, and the exact one if it is known; on a logarithmic axis positive u only."""
     where: dict[str, Any] = {"figsize": _SIZE}
     for u in outputs.where(outputs > 0.0) if log else outputs:
         time = float(u.t)
@@ -106,7 +106,7 @@ def _lines(outputs: xr.DataArray, known: Case | None, log: bool) -> Any:
 
 
 def _map(u: xr.DataArray, log: bool) -> Any:
-    """A map in the plane, in space of the middle layer."""
+    """Draw a map of u in the plane; in space it is the middle layer."""
     middle = u if "z" not in u.dims else u.sel(z=0.0, method="nearest")
     if log:
         middle = middle.copy(data=np.log10(middle.where(middle > 0.0))).assign_attrs(

@@ -1,4 +1,4 @@
-"""The commands of the command line, see `cli`. What is heavy is imported by the command that needs it."""
+"""The commands of the command line, see `cli`. Heavy modules are imported by the commands that need them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ app = App(
     version=__version__,
     suppress_keyboard_interrupt=False,  # `main` reports it
 )
-# By their addresses: the flags are fields of Case, which takes the whole core to import.
+# Commands by their addresses: their flags are fields of Case, whose import takes the whole core.
 _COMMANDS = {
     "commands:solve": "Run a case and write its file.",
     "picture:plot": "Draw the strengths of a run.",
@@ -26,7 +26,7 @@ _COMMANDS = {
 }
 for _place, _help in _COMMANDS.items():
     app.command(f"fracparticles.command_line.{_place}", name=_place.split(":")[1], help=_help)
-# Those of other packages that are there, of the study for one.
+# The commands of other installed packages, such as the study.
 for _entry in entry_points(group="fracparticles.commands"):
     if find_spec(_entry.module.split(".")[0]) is not None:
         app.command(_entry.load(), name=_entry.name)

@@ -1,4 +1,4 @@
-"""How far a run is, in a line on a terminal: nothing for the first seconds, and nothing at all in a pipe."""
+"""The progress of a run in a line on a terminal. It is not shown in the first seconds, and never in a pipe."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from time import monotonic
 __all__ = ["on_terminal"]
 
 _FIRST = 2.0  # seconds of silence: most runs are over by then
-_BETWEEN = 0.2  # seconds between two looks at the line
+_BETWEEN = 0.2  # seconds between two updates of the line
 
 
 @contextmanager
 def on_terminal(what: str) -> Iterator[Callable[[float], None] | None]:
-    """Give a function that is told the share that is done, or None if nobody would see it. The line goes at the end."""
+    """Yield a function to call with the share that is done, or None without a terminal. At the end the line goes."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -27,7 +27,7 @@ def on_terminal(what: str) -> Iterator[Callable[[float], None] | None]:
 
 
 class _Line:
-    """The line; it begins after some seconds, and rich is imported then."""
+    """The line. It appears after some seconds, and rich is imported only then."""
 
     def __init__(self, what: str) -> None:
         self._what, self._next, self._stop = what, monotonic() + _FIRST, lambda: None
@@ -35,7 +35,7 @@ class _Line:
 
     def __call__(self, share: float) -> None:
         if share >= 1.0:
-            self.stop()  # warnings come next, each in a line of its own
+            self.stop()  # warnings may follow, each on a line of its own
         now = monotonic()
         if now < self._next or share >= 1.0:
             return
@@ -55,5 +55,5 @@ class _Line:
         self._show, self._stop = (lambda share: bar.update(task, completed=share)), bar.stop
 
     def stop(self) -> None:
-        """Take the line away."""
+        """Remove the line."""
         self._stop()
