@@ -1,7 +1,7 @@
 """The report: pages in Markdown, one for the summary and one for each document.
 
 They are put together from captions, figures, tables and the ledger. Every number comes from a data file: the tables and
-`claims.csv` in the results; what a caption may ask for is in `lookup`. The pages can be read as they are, and `site`
+`claims.csv` in the results. `lookup` says what a caption may ask for. The pages can be read as they are, and `site`
 makes a site of them.
 """
 
@@ -33,12 +33,12 @@ __all__ = ["ReportError", "build", "pages"]
 
 FINDINGS = "findings"
 FIGURE_FORMATS = (".svg", ".png")
-# Rows and columns of a table that a page shows; larger tables have a page of their own.
+# The most rows and columns of a table that a page shows; larger tables have a page of their own.
 _INLINE = (32, 8)
 
 
 class ReportError(FracparticlesError, ValueError):
-    """Something the report needs is missing; says what, and what makes it."""
+    """Something that the report needs is missing; the message names it, and the command that makes it."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class _Section:
 
 @dataclass(frozen=True)
 class _Page:
-    """A document, or what is our own: its sections, and what came of its claims."""
+    """A document, or studies of our own: its sections, and the verdicts on its claims in a line."""
 
     name: str
     title: str
@@ -94,9 +94,9 @@ def build(
     template_dir : path
         Holds ``summary.md.j2``, ``document.md.j2`` and ``findings.md.j2``.
     out_dir : path
-        Where the pages go; their links to the results are relative to it.
+        The folder of the pages; their links to the results are relative to it.
     conventions : mapping, optional
-        What the words of the documents mean; by default those of the project.
+        The meanings of the words of the documents; by default those of the project.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def build(
 
 
 def _refuted(df: pd.DataFrame, scenes: Sequence[Scene]) -> list[dict[str, str]]:
-    """The refuted statements of sentences of which nothing holds, each with the section that shows it."""
+    """The refuted statements of sentences in which nothing holds, each with the section that shows it."""
     home = {item: scene for scene in scenes for item in scene.items}
     whole = df.groupby("sentence")["status"].transform(lambda words: str(sentence_status(words)))
     rows = df[(df["sentence"] != "") & (whole == str(Status.REFUTED))]
@@ -195,7 +195,7 @@ def _section(scene: Scene, look_ups: LookUps, results: Path, out: Path) -> _Sect
 
 
 def _runs(scene: Scene, results: Path, out: Path) -> list[tuple[str, int]]:
-    """The folders of the run files of a scene, and how many are in each."""
+    """The folders of the run files of a scene, and the number of files in each."""
     folders = Counter((results / "runs" / case.path).parent for case in scene.cases)
     return [(_link(folder, out), count) for folder, count in folders.items()]
 
@@ -210,7 +210,7 @@ def _figures(stem: Path, scene: Scene) -> list[Path]:
 
 
 def _table(stem: Path, scene: Scene) -> tuple[str, int]:
-    """A table if it is small enough to be shown, and how many rows it has."""
+    """The table, or an empty text if it is too large to be shown, and the number of its rows."""
     text, csv = (stem.with_name(stem.name + suffix) for suffix in (".md", ".csv"))
     _require(text, _target(text, scene))
     _require(csv, _target(csv, scene))

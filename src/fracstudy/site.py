@@ -1,7 +1,7 @@
-"""The site: the README, the report, the pages of `docs` and the API, as pages that ask nothing of the outside.
+"""The site: the README, the report, the pages of `docs` and the API, as pages that load nothing from elsewhere.
 
-The sources are laid out in one folder, much as they are in the repository. What a page links to is copied there, and
-the link follows; a link to a folder, which a site cannot show, becomes plain text.
+The sources are laid out in one folder, much as they are in the repository. Files that a page links to are copied there,
+and the links are adapted. A link to a folder, which a site cannot show, becomes plain text.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ __all__ = ["SiteError", "build", "ledger_page"]
 
 _LINK = re.compile(r"(\]\(|(?:href|src)=\")(?!https?://|#|mailto:)([^)\"#\s]+)(#[^)\"\s]*)?")
 _FOLDER_LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)#\s]+)\)")
-# Pages of `docs`: those that a newcomer reads first, and those about the project itself.
+# Pages of `docs` that a newcomer reads first, and pages about the project itself.
 _FIRST, _PROJECT = ("own_problem", "other_equations"), ("architecture",)
-# Nobody looks for a number by the search, whose index would hold mostly numbers.
+# Begins pages of tables: without it the index of the search would consist mostly of numbers.
 _UNSEARCHED = "---\nsearch: {exclude: true}\n---\n\n"
 _SCHEMES = ("DD", "DPSE", "FPSE", "KPSE", "GPSE", "DVM", "FD")
 
@@ -63,16 +63,17 @@ def build(
     results, report : Path
         The folders of the results and of the report; on the site they stand at `results` and `report`.
     sources : Path
-        Where the sources are laid out, made anew.
+        The folder in which the sources are laid out; it is made anew.
     site : Path
-        Where the site goes, made anew.
+        The folder of the site; it is made anew.
     api : bool
-        Whether it has a page for each room of the library: half of the time, and the same whatever is studied.
+        Whether the site has a page for each room of the library. They take half of the time, and do not depend on the
+        study.
 
     Raises
     ------
     SiteError
-        If a page links to what does not exist, or the site generator complains of anything.
+        If a link of a page leads nowhere, or the site generator complains of anything.
     """
     root, results, report = root.absolute(), results.absolute(), report.absolute()
     shutil.rmtree(sources, ignore_errors=True)
@@ -103,7 +104,7 @@ def build(
 
 
 def _lay_out(page: Path, pages: Mapping[Path, Path], places: Mapping[Path, Path]) -> None:
-    """Copy a page to its place, and what it links to."""
+    """Copy a page, and the files that it links to, to their places."""
     place = pages[page]
 
     def placed(match: re.Match[str]) -> str:
@@ -131,7 +132,7 @@ def _lay_out(page: Path, pages: Mapping[Path, Path], places: Mapping[Path, Path]
 
 
 def _examples(scripts: Path, outputs: Path, out: Path) -> list[Path]:
-    """Write a page for each worked example: what its docstring says, the code, what it printed, what it drew."""
+    """Write a page for each worked example: its docstring, the code, the printed output, and the figure."""
     pages = []
     for script in sorted(scripts.glob("*.py")):
         text = script.read_text("utf-8")

@@ -1,4 +1,4 @@
-"""Verdicts, in the words of the ledger, and that on a printed number."""
+"""Verdicts, in the words of the ledger, and the verdict on a printed number."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["LedgerError", "Status", "judge_value", "unit_of_last_digit"]
 
 
 class LedgerError(FracparticlesError, ValueError):
-    """Claims, criteria and findings that do not fit together; says which claim and why."""
+    """Claims, criteria and findings do not fit together; the message names the claim and the reason."""
 
 
 class Status(StrEnum):
@@ -32,7 +32,7 @@ class Status(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """When a number, a statement or a sentence gets it."""
+        """The condition under which a number, a statement or a sentence gets it."""
         return {
             Status.REPRODUCED: "A number: ours rounds to all printed digits. A statement: it meets its criterion, in "
             "every case that it speaks of.",
@@ -49,7 +49,7 @@ class Status(StrEnum):
 
     @property
     def needs_reason(self) -> bool:
-        """Whether the ledger must say why."""
+        """Whether the ledger must give a reason for it."""
         return self not in (Status.REPRODUCED, Status.WITHIN_ROUNDING)
 
 
@@ -61,10 +61,11 @@ def unit_of_last_digit(printed: str) -> Fraction:
 
 
 def judge_value(printed: str, ours: float) -> Status:
-    """Hold our number against the printed digits, in exact arithmetic.
+    """Compare our number with the printed digits, in exact arithmetic.
 
-    With u one unit of the last printed digit, a value is reproduced up to u/2 (ours rounds to the printed digits),
-    reproduced within the print's rounding up to u (a truncated print, 8.83 for 8.8354), and deviates beyond.
+    Let u be one unit of the last printed digit. A number is reproduced if ours differs by at most u/2, and so rounds to
+    the printed digits. It is reproduced within the print's rounding up to u (a truncated print, 8.83 for 8.8354), and
+    deviates beyond.
     """
     units = abs(Fraction(ours) - Fraction(printed)) / unit_of_last_digit(printed)
     if units <= Fraction(1, 2):

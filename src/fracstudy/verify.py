@@ -4,8 +4,8 @@
 
 The sample is drawn with a seed, at least one scene of each document. It leaves out scenes with run times, which differ
 from run to run, and scenes that read the tables of others. A file must agree byte for byte. If another machine rounds
-differently, the numbers of a table may differ: by 1e-6 of each, or by 1e-9 for what is round-off itself. The figure of
-such a table is then another drawing.
+differently, the numbers of a table may differ by 1e-6 of each, or by 1e-9 if they are round-off themselves. The figure
+of such a table is then another drawing.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from fracstudy.scene import Scene
 
 __all__ = ["agreement", "compare", "main", "sample"]
 
-_RELATIVE, _ABSOLUTE = 1e-6, 1e-9
+_RELATIVE, _ABSOLUTE = 1e-6, 1e-9  # by which numbers of a table may differ
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:e[-+]?\d+)?")
 SAME, CLOSE, DIFFERS = "same bytes", "same to round-off", "DIFFERS"
 
@@ -45,7 +45,7 @@ def sample(scenes: Mapping[str, Scene], count: int, seed: int) -> list[str]:
 
 
 def agreement(tracked: str, made: str) -> str:
-    """Return how far two tables agree: in their bytes, their numbers to round-off, or not."""
+    """Return in words whether two tables agree in their bytes, in their numbers to round-off, or not."""
     if tracked == made:
         return SAME
     if _NUMBER.sub("#", tracked) != _NUMBER.sub("#", made):
@@ -56,7 +56,7 @@ def agreement(tracked: str, made: str) -> str:
 
 
 def compare(names: Sequence[str], tracked: Path, made: Path) -> pd.DataFrame:
-    """Return one row a file of the scenes: how far it agrees with that which is tracked."""
+    """Return one row for each file of the scenes, with its agreement with the tracked one."""
     rows = []
     for name in names:
         table = f"tables/{name}.csv"
@@ -82,7 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         made = Path(folder) / "results"
         places = [f"results_dir={made}", f"report_dir={folder}/report", f"site_dir={folder}/site"]
         call = [sys.executable, "-m", "snakemake", "-j2"]
-        # The names before the options that take several values.
+        # The names go before the options, which may take several values.
         done = subprocess.run([*call, *names, "--quiet", "all", "--config", *places], check=False)
         if done.returncode:
             return done.returncode

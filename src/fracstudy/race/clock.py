@@ -1,4 +1,4 @@
-"""How times and memory are measured, and what is said of the machine."""
+"""Measurements of times and memory, and a description of the machine."""
 
 from __future__ import annotations
 
@@ -46,10 +46,10 @@ __all__ = [
 ]
 
 LONG = 0.25
-"""Seconds; what takes longer is timed once."""
-_SHORT = 0.1  # seconds of clock, of which nothing is said
+"""Seconds; an action that takes longer is timed once."""
+_SHORT = 0.1  # seconds of measurements: with less the load of other processes is not known
 _COUNTERS = Path("/proc/stat")
-_TICKS = os.sysconf("SC_CLK_TCK")  # a second, of the counters
+_TICKS = os.sysconf("SC_CLK_TCK")  # of the counters in a second
 _LINE = 256  # bytes, more than the first line of the counters has
 _LIBRARIES = ("mkl_fft", "numba", "numpy", "pyfftw", "scipy")
 
@@ -62,16 +62,16 @@ class Timing:
 
     @property
     def minimum(self) -> float:
-        """The least."""
+        """The least time."""
         return min(self.times)
 
     @property
     def median(self) -> float:
-        """The one in the middle."""
+        """The median time."""
         return statistics.median(self.times)
 
     def columns(self, name: str, factor: float = 1.0) -> dict[str, float]:
-        """Return what a data set holds of them: <name>_time, <name>_time_median, times a factor, and <name>s."""
+        """Return columns of a data set: <name>_time and <name>_time_median, times a factor, and the count <name>s."""
         least, middle = factor * self.minimum, factor * self.median
         return {f"{name}_time": least, f"{name}_time_median": middle, f"{name}s": len(self.times)}
 
@@ -85,15 +85,15 @@ def measure(
     seconds: float = float("inf"),
     before: Callable[[], object] | None = None,
 ) -> tuple[Timing, Any]:
-    """Time an action so many times, fewer if that takes longer than `seconds`; return the last result, too.
+    """Time an action `repeats` times, or fewer if that takes longer than `seconds`; return the last result, too.
 
-    What is to be done `before` each time is not timed.
+    `before` is called before each time, and is not timed.
     """
     times: list[float] = []
     result = None
     began, others = time.perf_counter(), _seconds_of_others()
     for _ in range(repeats):
-        result = None  # before the next one takes its memory
+        result = None  # its memory is free before the next one is made
         if before is not None:
             before()
         start = time.perf_counter()
@@ -109,20 +109,20 @@ def measure(
 def measure_warm(
     action: Callable[[], Any], repeats: int = 1, seconds: float = float("inf")
 ) -> tuple[Timing, Any]:
-    """Time an action after a first time, which warms up what is short; of what takes longer than that the first counts.
+    """Time an action after a first time that warms it up; for an action longer than `LONG` the first time counts.
 
-    What is compiled at a first call, or kept on disk, must be there already.
+    Code that is compiled at a first call, or kept on disk, must be compiled already.
     """
     first, result = measure(action)
     return (first, result) if first.minimum > LONG else measure(action, repeats, seconds)
 
 
-# Seconds that the clock ran since `one_core`, and what all other processes took meanwhile, in seconds of a core.
+# Since `one_core`: the seconds of all measurements, and the core seconds of all other processes during them.
 _WATCHED = {"clock": 0.0, "others": 0.0}
 
 
 def _seconds_of_others() -> float:
-    """What all processes but this one have taken of the cores since the start of the system; nan outside Linux."""
+    """The core seconds of all processes but this one since the start of the system; nan outside Linux."""
     counters = _open_counters()
     if counters is None:
         return float("nan")
@@ -133,14 +133,14 @@ def _seconds_of_others() -> float:
 
 @cache
 def _open_counters() -> int | None:
-    """Kept open for the life of the process: they are read around each measurement."""
+    """Open the counters once for the life of the process, since they are read around each measurement."""
     return os.open(_COUNTERS, os.O_RDONLY) if _COUNTERS.exists() else None
 
 
 def other_load() -> float:
-    """Return the share of a core that other processes took while the clock ran, since `one_core`; nan if unknown.
+    """Return the share of a core that other processes took during the measurements since `one_core`; nan if unknown.
 
-    The system counts in ticks of some milliseconds: of many short measurements the sum is right, not each.
+    The system counts in ticks of some milliseconds: the sum over many short measurements is right, but not each one.
     """
     if _WATCHED["clock"] < _SHORT:
         return float("nan")
@@ -148,7 +148,7 @@ def other_load() -> float:
 
 
 def forget_tables() -> None:
-    """Empty the tables that the package keeps from call to call, and the plans that FFTW does.
+    """Empty the tables that the package keeps from call to call, and the plans that FFTW keeps.
 
     A set-up is then measured as the first one of a process.
     """
@@ -159,19 +159,19 @@ def forget_tables() -> None:
 
 @lru_cache(maxsize=1)
 def _tables(modules: int) -> list[_lru_cache_wrapper[Any]]:
-    """The tables of the modules that are loaded, looked for again when there are more of these."""
+    """The tables of the loaded modules, found again when the number of modules has changed."""
     return [
         kept
         for name, module in list(sys.modules.items())
         if name.startswith("fracparticles.")
         for kept in vars(module).values()
-        # What has no largest size is no table: the list of schemes.
+        # A cache without a largest size, such as the list of schemes, is not a table.
         if isinstance(kept, _lru_cache_wrapper) and kept.cache_parameters()["maxsize"]
     ]
 
 
 def one_core() -> None:
-    """Begin a benchmark: keep this process to one thread, numba's parallel loops and BLAS; watch the others anew."""
+    """Begin a benchmark: keep numba's parallel loops and BLAS to one thread, and watch other processes anew."""
     _WATCHED.update(clock=0.0, others=0.0)
     threadpool_limits(1)
     nb.set_num_threads(1)
@@ -180,7 +180,7 @@ def one_core() -> None:
 def peak_so_far() -> float:
     """Return the peak resident memory of this process, in bytes; nan outside Linux.
 
-    VmHWM and not ru_maxrss, which a process inherits from the one that starts it.
+    It is VmHWM and not ru_maxrss, which a process inherits from the one that starts it.
     """
     status = Path("/proc/self/status")
     if not status.exists():
@@ -190,7 +190,7 @@ def peak_so_far() -> float:
 
 
 def in_fresh_process(function: Callable[..., Any], *arguments: Any) -> Any:
-    """Return function(*arguments) from a process of its own, whose peak memory is its own; all of it plain data."""
+    """Return function(*arguments) from a process of its own, with a peak memory of its own; all data must be plain."""
     program = (
         "import json, sys\n"
         "sys.path[:], arguments = json.loads(sys.argv[1])\n"
@@ -204,14 +204,14 @@ def in_fresh_process(function: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def conditions() -> dict[str, float]:
-    """Return what holds for this process and not for another: its threads, and the load beside it."""
+    """Return the conditions of this process: its threads, and the load by other processes."""
     blas = [pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"]
     threads = {"threads_numba": nb.get_num_threads(), "threads_blas": max(blas, default=0)}
     return {**threads, "other_load": other_load()}
 
 
 def machine() -> dict[str, Any]:
-    """Return what the times were measured on, as attributes of a data set."""
+    """Return a description of the machine and its software, as attributes of a data set."""
     facts: dict[str, Any] = {
         "cpu": _cpu_model(),
         "cores": len(os.sched_getaffinity(0)),
@@ -245,14 +245,14 @@ def timings_dataset(
     title: str,
     facts: Mapping[str, Any],
 ) -> Measurements:
-    """Return measurements as a data set, one element of `dimension` a row.
+    """Return measurements as a data set, with one element of `dimension` for each row.
 
     Parameters
     ----------
     dimension : str
         Name of the dimension.
     rows : sequence of mapping
-        The measurements; a number that is not there becomes nan, a text the empty one.
+        The measurements; a missing number becomes nan, and a missing text empty.
     labels : mapping
         The coordinates: name and long name.
     variables : mapping
@@ -260,7 +260,7 @@ def timings_dataset(
     title : str
     facts : mapping
         More attributes, such as the repeats; the package, its version and commit, and those of the machine are
-        added. What was measured in another process says its `conditions` here.
+        added. For measurements in another process its `conditions` must be given here.
     """
     import xarray as xr
 

@@ -1,4 +1,4 @@
-"""What a contender of the race is."""
+"""The interface of the contenders of the race, and the grids that they try."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ Trials = Generator[dict[str, Any], float | None, None]
 Solve = Callable[[np.ndarray], np.ndarray]
 """From the data at the points to the solution there."""
 Grids = Mapping[tuple[int, int], dict[str, Any]]
-"""Keywords of grids, by how fine and how wide they are: 0, 1, .."""
+"""Keywords of grids, by the numbers of their spacing and of their width: 0, 1, .."""
 
-SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
-TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)
+SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)  # in units of the finest detail of the data
+TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)  # C = D / (R_alpha t_f^(1/alpha))
 ENOUGH = 1e-10
-"""An error of which no smaller one is asked for."""
-_LEFT = 0.9  # of an error that is not due to what was refined
-_MOST = {1: 2**16, 2: 2**20, 3: 2**21}  # points
+"""An error that is small enough: finer grids are not tried."""
+_LEFT = 0.9  # share of an error: if two refinements leave more, it is not due to what was refined
+_MOST = {1: 2**16, 2: 2**20, 3: 2**21}  # points of a grid, by dimension
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,9 @@ class Ready:
     Attributes
     ----------
     x : tuple of array
-        Its points, one array a coordinate.
+        Its points, one array for each coordinate.
     volumes : array or float
-        What each of them stands for.
+        The volume of each point.
     solve : Solve
     batched : bool
         Whether `solve` takes several data at once, along a first axis.
@@ -70,14 +70,14 @@ class Ready:
 
     @property
     def points(self) -> int:
-        """How many unknowns there are."""
+        """The number of unknowns."""
         return int(np.prod(np.broadcast_shapes(*(line.shape for line in self.x))))
 
 
 class Contender:
-    """A method with a `name`, in a module of the folder; `trials` says what is tried, `prepare` makes one ready.
+    """A method with a `name`, in a module of the folder: `trials` yields its trials, and `prepare` makes one ready.
 
-    One that `follows` another, of which it differs by no error, tries only what is near the front of that one.
+    A contender that `follows` another has the same errors, and tries only the trials near the front of the other.
     """
 
     name: str
@@ -90,7 +90,7 @@ class Contender:
     dims: tuple[int, ...] = (1,)
 
     def takes(self, problem: Problem) -> bool:
-        """Whether it can solve the problem at all."""
+        """Whether it can solve the problem."""
         return problem.dim in self.dims
 
     def trials(self, problem: Problem) -> Trials:
@@ -119,10 +119,11 @@ def lattices(
     spacings: Iterable[float] | None = None,
     truncations: Iterable[float] = TRUNCATIONS,
 ) -> Grids:
-    """Return `points` an axis and `half_width` D = C R_alpha t_f^(1/alpha): each spacing with each truncation factor C.
+    """Return grids of every spacing with every truncation factor C, those of few points first.
 
-    Spacings are those of a problem with details of the size 1, and smaller for finer ones. The number of points is the
-    next even one that transforms fast; the spacing falls with it. Grids of few points come first.
+    A grid has `points` along each axis and the `half_width` D = C R_alpha t_f^(1/alpha). Spacings are in units of the
+    finest detail of the problem. The number of points is the next even one whose transforms are fast; the spacing is
+    then a little smaller.
     """
     grids: dict[tuple[int, int], dict[str, Any]] = {}
     for (fine, spacing), (wide, truncation) in product(
@@ -137,11 +138,11 @@ def lattices(
 
 
 def sweep(grids: Grids, **fields: Any) -> Trials:
-    """Yield the fields with each grid, those of few points first, without those that gain nothing.
+    """Yield the fields with each grid, those of few points first, without grids that gain nothing.
 
-    None is tried after one whose error is as small as anybody asks for. Where two widenings at a spacing have left nine
-    tenths of the error, it is not due to the width, and wider grids of that spacing are not tried. The same holds of
-    two refinements at a width. One is not enough: errors may cross zero.
+    Once an error is small enough, no more grids are tried. If two widenings at a spacing have left nine tenths of the
+    error, it is not due to the width, and wider grids of this spacing are not tried. The same holds for two refinements
+    at a width. One widening or refinement is not enough to judge by, since errors may cross zero.
     """
     errors: dict[tuple[int, int], float] = {}
     for (fine, wide), grid in grids.items():

@@ -1,4 +1,4 @@
-"""What there is: the classes with a name in the modules of a folder."""
+"""The discovery of contenders and problems: the classes with a name in the modules of a folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a problem of the race is: data, exact solution, and how a result is judged."""
+"""The problems of the race: data, exact solution, and the error of a result."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from fracparticles.special.stable import green, mean_radius
 __all__ = ["Points", "Problem", "distance", "lattice"]
 
 Points = tuple[np.ndarray, ...]
-"""One array a coordinate, of shapes that broadcast."""
+"""One array for each coordinate; their shapes broadcast."""
 
 
 def distance(x: Points, centre: Sequence[float] = ()) -> np.ndarray:
-    """Return |x - centre|; the centre is the origin where it says nothing."""
+    """Return |x - centre|; coordinates of the centre that are not given are zero."""
     offsets = [*centre, *(0.0,) * (len(x) - len(centre))]
     return np.sqrt(sum((line - c) ** 2 for line, c in zip(x, offsets, strict=True)))
 
 
 def lattice(points: int, half_width: float, dim: int) -> Points:
-    """Return x_i = (i - N // 2) h, h = 2 D / N, along each axis."""
+    """Return x_i = (i - N // 2) h, h = 2 D / N, along each axis; N is `points` and D `half_width`."""
     x = (np.arange(points) - points // 2) * (2.0 * half_width / points)
     return tuple(np.meshgrid(*(x,) * dim, indexing="ij", sparse=True))
 
@@ -45,10 +45,10 @@ class Problem:
 
     name = ""
     title = ""  # in a few words
-    place = 100  # among the others
-    dims: ClassVar[tuple[int, ...]] = (1, 2, 3)  # where it exists
+    place = 100  # in lists
+    dims: ClassVar[tuple[int, ...]] = (1, 2, 3)  # the dimensions in which it exists
     time = 1.0
-    finest = 1.0  # spacings are in units of it
+    finest = 1.0  # the size of the finest detail, the unit of spacings
 
     @property
     def alpha(self) -> float:
@@ -67,7 +67,7 @@ class Problem:
 
     @property
     def error_radius(self) -> float:
-        """The error is taken over |x| <= 5 R_alpha (48) on the line, over |x| <= 5 (59) beyond."""
+        """The error is taken over |x| <= 5 R_alpha (48) on the line, and over |x| <= 5 (59) for dim = 2 and 3."""
         return 5.0 * mean_radius(self.alpha) if self.dim == 1 else 5.0
 
     def initial(self, x: Points) -> np.ndarray:
@@ -83,7 +83,7 @@ class Problem:
         return np.asarray(green(distance(x, centre), time, self.alpha, self.dim))
 
     def error(self, x: Points, volumes: np.ndarray | float, u: np.ndarray) -> float:
-        """Return sum V |u - exact| / sum V |exact| over the points within the error radius; nan without two of them."""
+        """Return sum V |u - exact| / sum V |exact| over the points within the error radius; nan for fewer than two."""
         inside = distance(x) <= self.error_radius
         if np.count_nonzero(inside) < 2:
             return float("nan")
@@ -102,7 +102,7 @@ class Problem:
     def kept(self, which: str, x: Points) -> np.ndarray:
         """Return the `initial` data, or the `exact` solution, which is nan beyond two error radii.
 
-        Both are kept for the points that were asked for last, since many contenders try the same lattices.
+        Both are kept for the last few sets of points, since many contenders try the same lattices.
         """
         return _kept(self, which, tuple(x.tobytes() for x in x), tuple(x.shape for x in x))
 

@@ -1,4 +1,4 @@
-"""Contenders tried on a problem: each trial judged once, those that matter timed again and again."""
+"""Contenders tried on a problem: the error of each trial is found once, and trials that matter are timed repeatedly."""
 
 from __future__ import annotations
 
@@ -21,15 +21,18 @@ from fracstudy.race.problem import Problem
 __all__ = ["BLOCK", "LABELS", "VARIABLES", "run_trials"]
 
 BLOCK = 1000
-"""Data at once, where what is asked for is many solves."""
+"""Data that are solved at once, if many solves are timed."""
 _NOT_YET = Timing(())
-# A trial is timed again if no other one of its contender is so much faster and as good.
+# A trial is timed again only if no trial that is as good is faster by these factors: of its own contender, and of all
+# contenders. Noise cannot put one ahead that is slower.
 _SLACK = 1.5
-_FAR = 4.0  # nor if one of anybody is so much faster and as good: noise cannot put it ahead
-_FOLLOWED = 3.0  # who follows a contender tries more of its trials: their first times decide, and may be slow ones
-# What leads, or may be said to be so much slower than what does, is timed at more moments: a machine has slow ones.
+_FAR = 4.0
+# The same factor for the trials that a follower tries: their first times decide, and may have met a slow moment.
+_FOLLOWED = 3.0
+# Trials within these factors, of the front of their contender and of the front of all, are timed in so many times as
+# many rounds: a machine has slow moments.
 _LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 20
-_SPENT = 0.05  # seconds on it, after which there are no more
+_SPENT = 0.05  # seconds spent on a trial, after which it is not timed again
 _MATRIX = 600  # points up to which the whole run may be one matrix
 _MOST = 2**17  # numbers in a block
 
@@ -93,12 +96,12 @@ def run_trials(
     seconds: float,
     most: int | None = None,
 ) -> list[dict[str, Any]]:
-    """Run every trial once, then time those that matter in `rounds` rounds, set-ups and solves; one row a trial.
+    """Run every trial once, then time the set-ups and solves of those that matter in `rounds` rounds; one row a trial.
 
-    A trial matters if it is on the front of its contender in error and time, or within a factor of 1.5 of it, within a
-    factor of 4 of the front of all, and does not take a quarter of a second. The rounds go through all of them, so
-    that each is measured at several moments; the best of each contender are in up to twenty times as many, in the fewer
-    the longer they take. The memory is that of the trials on the front of all.
+    A trial matters if it is within a factor of 1.5 of the front of its contender in error and time, is within a factor
+    of 4 of the front of all, and takes less than a quarter of a second. Each round goes through all of them, so that
+    each is measured at several moments. The best of each contender are timed in up to twenty times as many rounds, in
+    fewer if they take longer. The memory is measured for the trials on the front of all.
 
     Parameters
     ----------
@@ -106,9 +109,9 @@ def run_trials(
     contenders : iterable of Contender
     rounds : int
     repeats, seconds : int, float
-        Set-ups and solves in a round, fewer if they take longer than that.
+        Set-ups and solves in a round, and the seconds after which there are fewer.
     most : int, optional
-        Only the first trials of each contender.
+        The number of trials of each contender; left out, all are run.
     """
     records: list[_Record] = []
     for contender in contenders:
@@ -143,15 +146,15 @@ def _judged(records: Iterable[_Record]) -> list[_Record]:
 
 
 def _again(records: Iterable[_Record]) -> Trials:
-    """Yield what was near the front of one contender."""
+    """Yield the keywords of the trials near the front of one contender."""
     for record in _near_own(records, _FOLLOWED):
         yield record.given
 
 
 def _tried(problem: Problem, contender: Contender, trials: Trials) -> Iterator[_Record]:
-    """Make the trials of a contender, which hear of each error."""
+    """Run the trials of a contender, and send it the error of each."""
     given = next(trials)
-    _first(problem, contender, given)  # does once what a process does once
+    _first(problem, contender, given)  # it takes the costs that a process has only once
     with suppress(StopIteration):
         while True:
             record = _first(problem, contender, given)
@@ -160,7 +163,7 @@ def _tried(problem: Problem, contender: Contender, trials: Trials) -> Iterator[_
 
 
 def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Record:
-    """The errors, and the times of a first set-up and of a second solve."""
+    """Return a trial with its errors, and the times of a first set-up and of a second solve."""
     parameters = {name: value for name, value in given.items() if name != "variant"}
     row = {
         "problem": problem.name,
@@ -194,7 +197,7 @@ def _first(problem: Problem, contender: Contender, given: dict[str, Any]) -> _Re
 
 
 def _block_time(record: _Record) -> float:
-    """The time of one of many solves: of a block by the contender, or of a product with its whole matrix."""
+    """The time of one of many solves: of a block by the contender, or by a product with the matrix of the run."""
     ready, u0 = record.ready, record.u0
     assert ready is not None
     if not ready.linear or ready.scale != 1.0:
@@ -211,13 +214,13 @@ def _block_time(record: _Record) -> float:
 
 @lru_cache(maxsize=_MATRIX)
 def _matrix_time(count: int, points: int) -> float:
-    """The time of a block's product with a matrix, measured once: it is the same for all methods."""
+    """The time of the product of a block and a matrix, measured once, since it is the same for all methods."""
     block, matrix = np.zeros((count, points)), np.zeros((points, points))
     return measure_warm(partial(np.dot, block, matrix), 5)[0].minimum
 
 
 def _peak_memory(problem: Problem, record: _Record) -> float:
-    """In bytes, of what numpy allocates."""
+    """The peak memory that numpy allocates, in bytes."""
     forget_tables()
     tracemalloc.start()
     try:
@@ -228,7 +231,7 @@ def _peak_memory(problem: Problem, record: _Record) -> float:
 
 
 def _near_own(records: Iterable[_Record], slack: float) -> list[_Record]:
-    """Those near the front of their contender, in the time of a solve or in that of set-up and solve."""
+    """The records near the front of their contender, in the time of a solve or in that of set-up and solve."""
     by_contender: dict[str, list[_Record]] = {}
     for record in records:
         by_contender.setdefault(record.contender.name, []).append(record)
@@ -242,7 +245,10 @@ def _near_own(records: Iterable[_Record], slack: float) -> list[_Record]:
 def _near(
     records: Sequence[_Record], others: Sequence[_Record], which: int, slack: float
 ) -> np.ndarray:
-    """Which records none of the others, among which they are, beats by more than `slack`, with an error as small."""
+    """For each record, whether none of the others with an error as small is faster by more than `slack`.
+
+    The records are among the others. `which` is 0 for the time of a solve, and 1 for that of set-up and solve.
+    """
     errors = np.array([other.row["error"] for other in others])
     order = np.argsort(errors)
     least = np.minimum.accumulate(np.array([other.times[which] for other in others])[order])

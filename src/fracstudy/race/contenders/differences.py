@@ -19,10 +19,10 @@ _TRUNCATIONS = (5.0, 10.0, 40.0, 160.0)
 
 
 class _Differences(Contender):
-    """What they share: periodic in a wide box, or with the tails of `whole_space`, which are lent to them."""
+    """The base of the formulas: periodic in a wide box, or with the tails of `whole_space`, which are lent to them."""
 
     dims = (1,)
-    far = (1.0, 1.0)  # of the even and of the odd weights over C m^(-1-alpha), far away
+    far = (1.0, 1.0)  # the even and the odd weights over C m^(-1-alpha), far away
 
     def symbol(self, theta: np.ndarray, alpha: float) -> np.ndarray:
         """Return a(theta) at the waves of a circle: its weights are sums over images, a_m ~ C m^(-1-alpha) far away."""

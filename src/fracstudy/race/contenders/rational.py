@@ -20,7 +20,7 @@ from fracstudy.race.problem import Problem
 
 
 class RationalLine:
-    """An even number of points x on the line, and the coefficients of a real u there, those of n >= 0."""
+    """An even number of points x on the line, and the coefficients with n >= 0 of a real u there."""
 
     def __init__(self, points: int, scale: float) -> None:
         self.count = points // 2

@@ -40,7 +40,7 @@ _WAYS = tuple(
 
 
 class _Scheme(Contender):
-    """A scheme, its whole run as one sum: a Chebyshev series of its operator takes longer."""
+    """A scheme whose whole run is one sum, since a Chebyshev series of its operator takes longer."""
 
     group = "schemes"
     dims: tuple[int, ...] = (1, 2)
@@ -59,7 +59,7 @@ class _Scheme(Contender):
             yield from sweep(_lattices(problem), variant=variant, **open_one, **fields)
 
     def prepare(self, problem: Problem, variant: str, **fields: Any) -> Ready:
-        """Return the case made ready; its times differ by 1 as those of the problem."""
+        """Return the case made ready; its span is 1, like that of the problem."""
         case = Case(scheme=self.name, beta=problem.beta, dim=problem.dim, **fields)
         points = np.meshgrid(*(case.x,) * case.dim, indexing="ij", sparse=True)
         return Ready(tuple(points), case.volumes, prepare(case).solve)
@@ -116,7 +116,7 @@ class MovingParticles(Contender):
 
 
 class PapersWay(Contender):
-    """Sums over all pairs and midpoint steps of 5e-5: a step timed, the rest extrapolated."""
+    """Sums over all pairs and midpoint steps of 5e-5: one step is timed, and the run is extrapolated."""
 
     name = label = "papers' way"
     reference = "Lucchesi et al. (2020), Sec. 4.1"
@@ -128,7 +128,7 @@ class PapersWay(Contender):
         return problem.dim == 1 and problem.name == "fundamental"
 
     def trials(self, problem: Problem) -> Trials:
-        """Yield the schemes on truncated lattices, of order IV: a step of order II takes as long."""
+        """Yield the schemes of order IV on truncated lattices; a step of order II takes as long."""
         lattices = ((20.0, 0.2), (160.0, 0.1))
         for scheme, (truncation, spacing) in product(("DD", "FPSE", "KPSE"), lattices):
             fields = {"scheme": scheme, "order": 4, "spacing": spacing}
@@ -143,7 +143,7 @@ class PapersWay(Contender):
 
 
 def few_steps(case: Case, steps: int, summation: str) -> Case:
-    """Return the same lattice with so many of the time steps, one by one, and sums of that kind."""
+    """Return the case with only `steps` of its time steps, one by one, and the given summation."""
     fields = case.model_dump(exclude_none=True, exclude={"truncation"})
     few = {
         "half_width": case.reach,  # C would follow from the final time

@@ -1,4 +1,4 @@
-"""Ours where one symbol does it: the exact symbol with tails in closed form, judged (`fp.evolve`) or not."""
+"""Ours for problems with one symbol: the exact symbol with tails in closed form, judged (`fp.evolve`) or not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _TRUNCATIONS = (1.5, 2.2, 3.0, 4.1, 5.0, 8.0, 12.0, 20.0)
 
 
 class Unjudged(Contender):
-    """`fracparticles.WholeSpace.solve`: like the peers it says nothing of its errors."""
+    """`fracparticles.WholeSpace.solve`, which like the peers does not estimate its errors."""
 
     name, label = "WholeSpace", "fp.WholeSpace (exact symbol, tails continued)"
     reference = "this library"
@@ -39,7 +39,7 @@ class Unjudged(Contender):
 
 
 class Evolve(Unjudged):
-    """`fracparticles.evolve`: the same, which estimates what the tail and the lattice miss, and warns of it."""
+    """`fracparticles.evolve`: the same run, with estimates of the errors by tail and lattice, and warnings of them."""
 
     name, label = "evolve", "fp.evolve (the same, judged)"
     follows = Unjudged.name
