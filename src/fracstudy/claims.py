@@ -1,4 +1,4 @@
-"""What the documents print: numbers, and sentences that make statements (`report/printed/<document>/*.yaml`).
+"""The printed claims of the documents: numbers, and sentences with statements (`report/printed/<document>/*.yaml`).
 
 A file is a list. A number of a table or a text stands alone; a sentence is quoted whole and holds the statements that
 it makes, each with the criterion by which it is judged:
@@ -15,7 +15,7 @@ it makes, each with the criterion by which it is judged:
           what: FPSE's stability limit is several times that of DD and of KPSE.
           holds: [{of: ratio, means: FPSE's limit over that of the other scheme, word: several}]
 
-A table of numbers stands as it is printed, rows by columns, with an id and a sentence that hold for all of them:
+A table of numbers is written as it is printed, rows by columns, with one id and one sentence for all of them:
 
     - table: L-T3.{scheme}.beta{beta}
       where: Table 3
@@ -24,7 +24,7 @@ A table of numbers stands as it is printed, rows by columns, with an id and a se
       columns: {beta: ["0.1", "0.5"]}
       printed: {DD: ["4.81", "5.25"], FPSE: ["7.05", "8.83"]}
 
-The part of an id before the first dot is the item, a figure, table or statement of the inventory.
+The part of an id before the first dot is the item: a figure, table or statement of the inventory.
 """
 
 from __future__ import annotations
@@ -55,20 +55,20 @@ class _Record(BaseModel):
 
 
 class _Claim(_Record):
-    """What values and statements share.
+    """The fields that values and statements share.
 
     Attributes
     ----------
     id : str
-        The item and what of it, in dots: ``L-T3.DD.beta0.1``.
+        The item and its part, separated by dots: ``L-T3.DD.beta0.1``.
     what : str
-        One plain sentence of what is claimed, in our words.
+        The claim in one plain sentence of ours.
     reason : str
-        Why it is not simply reproduced. Text in which ``{name:.2f}`` stands for a number that was measured.
+        Why it is not simply reproduced. ``{name:.2f}`` in the text stands for a number that was measured.
     note : str
-        A remark of wording or rounding, shown whatever the verdict.
+        A remark on wording or rounding, shown whatever the verdict.
     by : list of str
-        What made its number, where no run did: dotted names of functions, and tests as ``tests/file.py::name``.
+        The makers of its number if no run made it: dotted names of functions, and tests as ``tests/file.py::name``.
     """
 
     id: str = Field(pattern=_ID)
@@ -79,7 +79,7 @@ class _Claim(_Record):
 
     @property
     def item(self) -> str:
-        """The figure, table or statement that it belongs to."""
+        """The figure, table or statement to which it belongs."""
         return self.id.partition(".")[0]
 
 
@@ -97,16 +97,16 @@ class Value(_Claim):
     where: str = Field(pattern=_TEXT)
     printed: str = Field(pattern=PRINTED_NUMBER)
     name: ClassVar[str] = ""
-    """It stands in no sentence."""
+    """Empty: a value stands in no sentence."""
 
     @property
     def words(self) -> str:
-        """What is printed."""
+        """The printed number."""
         return self.printed
 
     @property
     def claims(self) -> Sequence[Self]:
-        """It claims itself."""
+        """Its only claim, itself."""
         return [self]
 
 
@@ -116,15 +116,15 @@ class Table(_Record):
     Attributes
     ----------
     table, where, what : str
-        The id, the place and the sentence of each, in which `{name}` stands for what names its row or its column.
+        The id, the place and the sentence of each number; `{name}` in them stands for a label of its row or column.
     rows : list of str
-        The names of what a row is named by, in the order in which it is; none for a table of one row.
+        The names of the labels of a row, in their order; empty for a table of one row.
     columns : dict
-        What names each column, by name.
+        The labels of the columns, by name.
     printed : dict or list
-        By row, "DD" or "DD, II", the numbers of its columns; of one row without a name their list.
+        The numbers of each row, by its labels, "DD" or "DD, II"; for one row without labels a list.
     reason, note, by
-        Of each, as for one.
+        For each number, as in `Value`.
     """
 
     table: str = Field(min_length=1)
@@ -143,7 +143,7 @@ class Table(_Record):
         Raises
         ------
         ValueError
-            If a row has not a number for each column, or not a name for each of `rows`.
+            If a row does not have a number for each column, or a label for each of `rows`.
         """
         lines = self.printed if isinstance(self.printed, dict) else {"": self.printed}
         found = []
@@ -158,14 +158,14 @@ class Table(_Record):
 
 
 class Intended(_Record):
-    """What a misprinted formula was meant to be, and the criterion that shows it to be right."""
+    """The intended form of a misprinted formula, and the criterion that shows it to be right."""
 
     what: str = Field(pattern=_TEXT)
     holds: list[Condition] = Field(min_length=1)
 
 
 class Statement(_Claim):
-    """Something that a sentence says and that can be checked.
+    """One thing that a sentence says and that can be checked.
 
     Attributes
     ----------
@@ -209,9 +209,9 @@ class Sentence(_Record):
     quote : str
         The sentence as printed, whole.
     statements : list of Statement
-        What it says, one thing each.
+        Its statements, one for each thing that it says.
     by : list of str
-        What made the numbers of all of them, as for one.
+        The makers of the numbers of all of them, as in `Statement`.
     """
 
     sentence: str = Field(min_length=1)
@@ -232,5 +232,5 @@ class Sentence(_Record):
 
     @property
     def claims(self) -> Sequence[Statement]:
-        """What it says."""
+        """Its statements."""
         return self.statements

@@ -1,4 +1,4 @@
-"""All runs of the study as one data set: what was asked for, what came out, and the file that holds the field.
+"""All runs of the study as one data set: their parameters, their results, and the files that hold the fields.
 
 >>> runs = xr.open_dataset("results/runs.nc").to_dataframe()
 >>> kpse = runs.query("scheme == 'KPSE' and order == 4 and beta == 0.5 and exterior == 'open'")
@@ -24,14 +24,14 @@ _KEPT = ("Conventions", "source", "references")
 
 
 def collect(files: Sequence[str], out: Path) -> None:
-    """Write one data set of all runs, with the dimension `run`: every scalar of each, and its file.
+    """Write one data set of all runs, with the dimension `run`: every scalar of each run, and its file.
 
     Parameters
     ----------
     files : sequence of str
         The run files.
     out : Path
-        Where the data set goes. A run that has nothing of a name holds nan there, or an empty text.
+        The file of the data set. Where a run has no scalar of a name, it holds nan or an empty text.
     """
     frame = Inputs("all runs", runs=files).scalars.rename(columns={"run": "file"})
     names = {"file": "file of the run"}

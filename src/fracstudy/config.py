@@ -1,7 +1,7 @@
-"""The configuration of the study: what is global, the scenes that are found, their cases, and the batches of these.
+"""The configuration of the study: the global settings, the scenes, their cases, and batches of cases.
 
-The run blocks of a scene are fields of `Case`, each with a value or a list of values; a block stands for the Cartesian
-product. Cases that several scenes need are computed once.
+The run blocks of a scene are fields of `Case`, each with a value or a list of values. A block stands for the Cartesian
+product of its lists. Cases that several scenes need are computed once.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ __all__ = [
 CONFIG = Path("config/study.yaml")
 """The configuration, below the folder of the project."""
 _STORES = ("metrics", "profile", "field")  # each holds what the one before it holds
-# Runs of a job by dimension: its start takes as long as a few of them. Those of particles that move take a hundred
+# Runs of a job by dimension: the start of a job takes as long as a few runs. Runs with moving particles take a hundred
 # times as long.
 _AT_ONCE = {1: 120, 2: 24, 3: 8}
 _MOVING_AT_ONCE = 6
-_SMOKE_JOBS = 2  # where it takes longer than all of them
+_SMOKE_JOBS = 2  # jobs of a smoke run, where the start of a job takes longer than all its runs
 
 
 class _Strict(BaseModel):
@@ -54,7 +54,8 @@ class Document(_Strict):
     title : str
         Heading in the report.
     printed : str, optional
-        The folder of what the document prints, one file a folder of scenes; left out for studies of our own.
+        The folder of the printed numbers and sentences, with one file for each folder of scenes; left out for studies
+        of our own.
     """
 
     title: str = Field(min_length=1)
@@ -62,30 +63,30 @@ class Document(_Strict):
 
 
 class StudyConfig(_Strict):
-    """What is global.
+    """The global settings.
 
     Attributes
     ----------
     results_dir : str
-        Where runs, tables and figures go.
+        The folder of runs, tables and figures.
     report_dir : str
-        Where the report goes.
+        The folder of the report.
     site_dir : str
-        Where the site goes.
+        The folder of the site.
     site_api : bool
-        Whether the site has the pages of the library's API, which are the same whatever is studied.
+        Whether the site has the pages of the library's API, which do not depend on the study.
     scenes_dir : str
-        Where the scenes are, `<document>/<scene>/scene.yaml`.
+        The folder of the scenes, `<document>/<scene>/scene.yaml`.
     documents : dict
         The documents by the name of their folder, in the order of the report.
     grids : str, optional
-        The file that says on which grid the claims of an item can be judged.
+        The file that says on which grids the claims of an item can be judged.
     figure_formats : list of str
-        What each figure is written as: "svg", "png" or both. The report shows the first of them that is there.
+        The formats of each figure: "svg", "png" or both. The report shows the first one that exists.
     smoke : bool
         Whether the scenes take their `smoke` values: tiny grids, too coarse to judge the claims.
     dvm_dt : float, optional
-        Time step of every run of DVM, whatever the scenes say, but for studies of the step.
+        The time step of every run of DVM, instead of those of the scenes; studies of the step keep theirs.
     """
 
     results_dir: str = Field(min_length=1)
@@ -100,12 +101,12 @@ class StudyConfig(_Strict):
     dvm_dt: float | None = Field(default=None, gt=0.0)
 
     def printed(self, scene: Scene) -> Path | None:
-        """Return the file of what is printed that a scene measures, None for a study of our own."""
+        """Return the file of the printed claims that a scene judges; None for a study of our own."""
         folder = self.documents[scene.document].printed
         return Path(folder) / f"{scene.folder.name}.yaml" if folder and scene.items else None
 
     def all_printed(self, scenes: Iterable[Scene]) -> list[Path]:
-        """Return those of scenes, in their order, each once."""
+        """Return the printed files of several scenes, in their order, each once."""
         files = (self.printed(scene) for scene in scenes)
         return list(dict.fromkeys(file for file in files if file is not None))
 
@@ -126,7 +127,7 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
     if study.dvm_dt is not None:
         scenes = {name: _with_dvm_step(scene, study.dvm_dt) for name, scene in scenes.items()}
     timed = [name for name, scene in scenes.items() if scene.benchmark is not None]
-    # A smoke run says of what it cannot judge that its grids are too coarse.
+    # In a smoke run every claim that cannot be judged has the reason that its grids are too coarse.
     grids = {}
     if study.grids is not None and not study.smoke:
         grids = read_yaml(Path(study.grids))
@@ -144,7 +145,7 @@ def read_config(config: Mapping[str, Any]) -> tuple[StudyConfig, dict[str, Scene
 
 
 def read_project(project: Path) -> tuple[StudyConfig, dict[str, Scene]]:
-    """Return what `read_config` does of the project in a folder, from wherever it is called."""
+    """Return `read_config` of the project in a folder, which need not be the working directory."""
     config = read_yaml(project / CONFIG)
     folder = config.get("scenes_dir", StudyConfig.model_fields["scenes_dir"].default)
     return read_config({**config, "scenes_dir": str(project / folder)})
@@ -165,7 +166,7 @@ def _check_order(scenes: Mapping[str, Scene]) -> None:
 
 
 def _check_runs(scene: Scene) -> None:
-    """Refuse parameters that say what the runs say, and runs that lack what the study compares."""
+    """Refuse parameters that repeat fields of the runs, and runs that lack values that the study compares."""
     cases, _ = scene.cases, scene.heading
     for name in Case.model_fields.keys() & scene.parameters.keys():
         if all(getattr(case, name) is None for case in cases):
@@ -188,7 +189,7 @@ def _check_runs(scene: Scene) -> None:
 
 
 def _check_grid(scene: Scene, grids: Mapping[str, Mapping[str, list[Any]]]) -> None:
-    """Refuse to judge a claim on a grid that it does not speak of."""
+    """Refuse to judge a claim on a grid without the values that it speaks of."""
     for item in scene.items if scene.runs else ():
         for name, values in grids.get(item, {}).items():
             found = dict.fromkeys(getattr(case, name) for case in scene.cases)
@@ -203,7 +204,7 @@ def _check_grid(scene: Scene, grids: Mapping[str, Mapping[str, list[Any]]]) -> N
 
 
 def _with_dvm_step(scene: Scene, dt: float) -> Scene:
-    """Return the scene with that step for DVM; a block with a list of steps is a study of the step and stays."""
+    """Return the scene with another step for DVM; a block with a list of steps is a study of the step and is kept."""
     blocks = []
     for block in scene.runs:
         fields = block.model_dump(exclude_none=True)
@@ -218,7 +219,7 @@ def _with_dvm_step(scene: Scene, dt: float) -> Scene:
 
 
 def targets(scenes: Mapping[str, Scene]) -> dict[str, list[str]]:
-    """Return what can be asked for: a scene by its name, the scenes of a folder by that of the folder."""
+    """Return the scenes by each name that can be asked for: that of a scene, or that of a folder for all its scenes."""
     folders: dict[str, list[str]] = {}
     for name, scene in scenes.items():
         folders.setdefault(scene.folder.name, []).append(name)
@@ -226,10 +227,10 @@ def targets(scenes: Mapping[str, Scene]) -> dict[str, list[str]]:
 
 
 def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str]]:
-    """Return the scenes that one job makes: one, so that nothing is done that was not asked for.
+    """Return the scenes that each job makes. It is one scene, so that nothing is made that was not asked for.
 
-    On the tiny grids of a smoke run, where the start of a job outweighs what it does, those go together that wait for
-    the same: for runs only, for benchmarks, for tables of other scenes.
+    On the tiny grids of a smoke run the start of a job takes longer than its work. There scenes share a job if they
+    wait for the same: for runs only, for benchmarks, or for tables of other scenes.
     """
     if not smoke:
         return {name: [name] for name in scenes}
@@ -240,7 +241,7 @@ def jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str
 
 
 def benchmark_jobs(scenes: Mapping[str, Scene], smoke: bool = False) -> dict[str, list[str]]:
-    """Return the scenes whose benchmarks one job runs: one, but in a smoke run, which times nothing of use, half."""
+    """Return the scenes whose benchmarks each job runs: one, but half of all in a smoke run, whose times are no use."""
     timed = [name for name, scene in scenes.items() if scene.benchmark is not None]
     return _parts([timed]) if smoke else {name: [name] for name in timed}
 
@@ -251,7 +252,7 @@ def _parts(waves: Iterable[list[str]]) -> dict[str, list[str]]:
 
 
 def _depth(name: str, scenes: Mapping[str, Scene]) -> int:
-    """How many scenes must be made before this one, one after the other."""
+    """The number of scenes that must be made before this one, one after the other."""
     return max((1 + _depth(other, scenes) for other in scenes[name].tables), default=0)
 
 
@@ -260,7 +261,7 @@ def batches(
 ) -> tuple[dict[str, list[Case]], dict[str, list[Case]]]:
     """Return the cases of each scene and the batches of cases that one job computes.
 
-    Two scenes that need the same run share it; it stores the more that either needs. A batch holds only cases
+    Scenes that need the same run share it, and it stores as much as any of them needs. A batch holds only cases
     that are needed by the same scenes, so that one scene never computes a run that it does not need.
     """
     needed_by: dict[str, list[str]] = {}

@@ -1,4 +1,4 @@
-"""Criteria as data: what is measured, the threshold, and what follows.
+"""Criteria as data: a measured number, its threshold, and the verdict.
 
 A condition compares one number with a threshold. The number may depend on a case (a scheme, a fractional order); the
 statement then holds in some cases and not in others. With m the number and t the threshold:
@@ -7,8 +7,8 @@ statement then holds in some cases and not in others. With m the number and t th
     at_least t, above t    m >= t, m > t     margin m / t
     near c, within t       |m - c| <= t      margin |m - c| / t
 
-A verdict is a close call if it changes when a threshold is 1.5 times as large or as small. The thresholds of "below"
-and "above" are not tested for that: they stand for what has an exact border, such as a sign.
+A verdict is a close call if it changes when a threshold is multiplied or divided by 1.5. The thresholds of "below" and
+"above" are not tested for this: they are exact borders, such as zero for a sign.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ __all__ = [
 ]
 
 CONVENTIONS = Path(__file__).parents[2] / "report/printed/conventions.yaml"
-"""What the words of the documents are taken to mean."""
+"""The file of the meanings of the documents' words."""
 CLOSE = 1.5
 """A verdict that changes when the threshold changes by this factor is a close call."""
 _KINDS = ("at_most", "at_least", "below", "above", "within")
 _LOWER = ("at_least", "above")  # bounds from below
-_EXACT = ("below", "above")  # no choice of ours
+_EXACT = ("below", "above")  # exact borders, not chosen by us
 
 
 class _Record(BaseModel):
@@ -46,12 +46,12 @@ class _Record(BaseModel):
 
 
 class Convention(_Record):
-    """What a word is taken to mean, in every row in which it stands.
+    """The meaning of a word, in every row in which it occurs.
 
     Attributes
     ----------
     means : str
-        In words, and why.
+        The meaning in words, and the reason for it.
     at_most, at_least : float
         The threshold, one of the two.
     """
@@ -80,13 +80,13 @@ class Condition(_Record):
     of : str
         The name of the number that the study measures.
     means : str
-        What it is, in words.
+        Its meaning in words.
     at_most, at_least, below, above, near, within : float
         The threshold: one of the first four, or `near` and `within`.
     word : str
-        Instead of a threshold: the word of the document whose convention gives it.
+        Instead of a threshold, the word of the document whose convention gives it.
     why : str
-        Why this threshold; needed unless a word gives it.
+        The reason for this threshold; needed unless a word gives it.
     """
 
     of: str = Field(min_length=1)
@@ -123,9 +123,9 @@ class Condition(_Record):
         return conventions[self.word].threshold
 
     def in_words(self, conventions: Mapping[str, Convention], factor: float = 1.0) -> str:
-        """Return the criterion as people read it, with its word or its why: "at least 2 (several)".
+        """Return the criterion in words, with the word or the reason behind it: "at least 2 (several)".
 
-        With its threshold times a factor it is a criterion that nobody set, and has neither.
+        If the threshold is multiplied by a factor, there is no word or reason behind it, and none is shown.
         """
         kind, threshold = self.threshold(conventions)
         t = f"{factor * threshold:{'g' if factor == 1.0 else '.3g'}}"
@@ -154,7 +154,7 @@ class Condition(_Record):
 
 
 def _threshold(of: Condition | Convention) -> tuple[str, float]:
-    """The one that is given; records without are refused when they are made."""
+    """The kind and the value of the threshold that is given; records without one are refused when they are made."""
     ((kind, t),) = ((k, t) for k in _KINDS if (t := getattr(of, k, None)) is not None)
     return kind, t
 
@@ -166,14 +166,14 @@ class Judged:
     Attributes
     ----------
     status : Status
-        REPRODUCED where all conditions hold in all cases, REFUTED where in none, PART otherwise; MISPRINT where they
-        do not all hold, and all those of the statement as it was meant do.
+        REPRODUCED if all conditions hold in all cases, REFUTED if they hold in none, PART otherwise. MISPRINT if they
+        do not all hold, and all conditions of the statement as it was meant do.
     where, where_not : list of str
         The cases in which all conditions hold, and the others.
     margin : float
-        The margin, over the cases and conditions, that is nearest to failing or fails by most; nan if there is none.
+        The margin, among the cases and conditions, that is nearest to failing or fails by most; nan if there is none.
     close : list of str
-        The verdicts that a threshold 1.5 times as large or as small would give, where they are others.
+        The other verdicts that a threshold multiplied or divided by 1.5 would give.
     """
 
     status: Status
@@ -189,12 +189,12 @@ def judged(
     conventions: Mapping[str, Convention],
     intended: Sequence[Condition] = (),
 ) -> Judged:
-    """Hold numbers against conditions, and against those of the statement as it was meant, if it is misprinted.
+    """Judge numbers by conditions, and if the statement may be misprinted, by those of the statement as it was meant.
 
     Raises
     ------
     LedgerError
-        For a number that is not there or is none, and a word without a convention.
+        If a number is missing or is not a number, or a word has no convention.
     """
 
     def verdict(factors: Mapping[Condition, float]) -> tuple[Status, list[str], list[str]]:
@@ -222,7 +222,7 @@ def _outcome(
     conventions: Mapping[str, Convention],
     factors: Mapping[Condition, float],
 ) -> tuple[Status, list[str], list[str]]:
-    """A case holds where every condition on it holds, and every condition that is the same in all cases."""
+    """A statement holds in a case if every condition on this case holds, and every condition without cases."""
     held: dict[str, bool] = {}
     always = True
     for condition in conditions:
@@ -245,7 +245,7 @@ def _worst(
     conventions: Mapping[str, Convention],
 ) -> float:
     def strain(kind: str, margin: float) -> float:
-        """How far a threshold is used up, more than 1 where it fails, for both sides alike."""
+        """The used share of a threshold, more than 1 where it fails, for bounds from above and below alike."""
         if kind not in _LOWER:
             return margin
         return 1.0 / margin if margin > 0.0 else math.inf
@@ -260,7 +260,7 @@ def _worst(
 
 
 def _cases(condition: Condition, numbers: Mapping[str, Any]) -> Iterator[tuple[str | None, float]]:
-    """Each number with the name of its case; several without names are of no case, and all must hold."""
+    """Each number with the name of its case; several numbers without names have no case, and all must hold."""
     name = condition.of
     if name not in numbers:
         raise LedgerError(f"{name} was not measured; measured: {', '.join(numbers) or 'none'}")

@@ -1,4 +1,4 @@
-"""The files of a figure: the same bytes for what is the same, whatever was drawn before."""
+"""The files of a figure: equal figures have equal bytes, whatever was drawn before."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) ->
         layout.execute(figure)
         if figure.subfigs:
             _settle(figure)
-        figure.set_layout_engine(None)  # "none" does nothing, and has the figure drawn twice
+        figure.set_layout_engine(None)  # the engine "none" would have the figure drawn twice
     for kind in formats:
         with replacing(stem.with_suffix(f".{kind}")) as temporary:
             figure.savefig(temporary, format=kind, **_FORMATS[kind])
 
 
 def _settle(figure: Figure) -> None:
-    """Round what the layout has found: its solver puts a corner at 0 or -4e-16, by what was drawn before."""
+    """Round the layout: depending on what was drawn before, its solver puts a corner at 0 or at -4e-16."""
     for part in figure.subfigs:
         part.bbox_relative.set_points(np.round(part.bbox_relative.get_points(), 12) + 0.0)
     for ax in figure.axes:
@@ -48,7 +48,7 @@ def _settle(figure: Figure) -> None:
 def _plain_powers(axis: Axis) -> None:
     """Label a logarithmic axis of more than a decade with plain text, 10⁻⁴.
 
-    The usual labels are formulas, and to typeset them takes longer than all else in a figure.
+    The usual labels are formulas, and typesetting them takes longer than the rest of a figure.
     """
     low, high = sorted(axis.get_view_interval())
     if isinstance(axis.get_major_formatter(), LogFormatterSciNotation) and high > 10.0 * low > 0.0:

@@ -1,8 +1,8 @@
 """Findings: the numbers that a study measures for the claims of its scene (`results/findings/<scene>.json`).
 
-A study measures; the criterion that the claim carries judges. Words that need the numbers look them up:
-``{ratio:.2f}`` gives "3.13 (KPSE), 1.47 (DD)" where `ratio` depends on the scheme, ``{ratio[KPSE]:.2f}`` one of them,
-``{ratio.least:.2f}`` and ``{ratio.greatest:.2f}`` the ends.
+A study measures, and the criterion of the claim judges. Texts look the numbers up: if `ratio` depends on the scheme,
+``{ratio:.2f}`` gives "3.13 (KPSE), 1.47 (DD)", ``{ratio[KPSE]:.2f}`` one of them, and ``{ratio.least:.2f}`` and
+``{ratio.greatest:.2f}`` the least and the greatest.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ __all__ = ["Finding", "each", "filled", "measured", "read_findings", "write_find
 
 
 class Finding(BaseModel):
-    """What a study measured for one claim.
+    """The measurements of a study for one claim.
 
     Attributes
     ----------
     claim : str
         Id of the claim.
     numbers : dict
-        By name: a number, several, numbers by case, or a word. That of a value is called `ours`; it is left out where
-        it could not be had.
+        By name: a number, several, numbers by case, or a word. The number of a value is called `ours`; it is left out
+        if it could not be measured.
     others : dict
-        The same numbers in another reading that the print leaves open (another seed, another loading), by its name.
+        The same numbers in other readings that the print leaves open (another seed, another loading), by reading.
     runs : list of str
-        Relative paths of the runs behind it.
+        Relative paths of the runs behind the numbers.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
@@ -57,7 +57,7 @@ def measured(
     others: Mapping[str, Mapping[str, Any]] | None = None,
     **numbers: Any,
 ) -> Finding:
-    """Return what a study measured for a claim, as numbers of Python.
+    """Return the finding for a claim, with numbers as those of Python.
 
     Parameters
     ----------
@@ -68,15 +68,15 @@ def measured(
     others : mapping, optional
         The numbers in other readings, by the name of the reading.
     **numbers
-        Each a number, a truth value, a word, an array or list of numbers, or a mapping or Series of numbers by case.
-        The name of a case is its key, the parts of a tuple joined; where a Series names its index, a number is called
-        by it: "KPSE, beta = 0.1".
+        Each is a number, a truth value, a word, an array or list of numbers, or a mapping or Series of numbers by case.
+        The name of a case is its key, with the parts of a tuple joined. If a Series names its index, numbers in the key
+        are shown with these names: "KPSE, beta = 0.1".
 
     Raises
     ------
     LedgerError
-        For what is no finite number, for none at all where there should be several, for two cases of one name, and for
-        another reading of a number that is not among the numbers.
+        If a number is not finite, a list or mapping is empty, two cases have one name, or another reading has a number
+        that is not among the numbers.
     """
     for reading, of_reading in (others or {}).items():
         if unknown := sorted(of_reading.keys() - numbers.keys()):
@@ -93,7 +93,7 @@ def measured(
 
 
 def each(quantity: Callable[..., Any], **cases: Iterable[Any]) -> pd.Series:
-    """Return a quantity of each case, or of each combination of them: `each(f, n=(1, 2), beta=betas)` of f(n, beta).
+    """Return a quantity for each case, or each combination of cases: `each(f, n=(1, 2), beta=betas)` for f(n, beta).
 
     The index of the Series has the names of the arguments, as `measured` takes it.
     """
@@ -143,7 +143,7 @@ def _case(key: Any, names: Iterable[Any]) -> str:
 
 
 class _Several:
-    """Numbers that a text may show: all of them, one of them, the least, the greatest."""
+    """Numbers of which a text may show all, one, the least or the greatest."""
 
     def __init__(self, numbers: Mapping[str, Any] | Sequence[Any]) -> None:
         self._numbers = numbers
@@ -167,7 +167,7 @@ def filled(text: str, finding: Finding) -> str:
     Raises
     ------
     LedgerError
-        If it asks for a number that is not there, or cannot be shown as it asks.
+        If it asks for a number that is missing, or in a form in which the number cannot be shown.
     """
     try:
         shown = {

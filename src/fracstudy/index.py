@@ -27,7 +27,7 @@ _SPAN = re.compile(rf"({_NUMBER})(?:\s*(-|to)\s*({_NUMBER}))?")
 
 
 def index(project: Path) -> str:
-    """Return the text of INDEX.md for the project in that folder."""
+    """Return the text of INDEX.md for the project in a folder."""
     study, scenes = read_project(project)
     lines = [
         "# Index",
@@ -77,7 +77,7 @@ def _place(module: str, names: list[str]) -> str:
 
 
 def _equations(project: Path) -> dict[str, dict[str, dict[str, list[str]]]]:
-    """By document and number, where the library names an equation: links to modules, each with names in it."""
+    """The places where the library names an equation, by document and number: links to modules, with names in them."""
     found: dict[str, dict[str, dict[str, list[str]]]] = defaultdict(lambda: defaultdict(dict))
     root = project / "src/fracparticles"
     for file in sorted(root.rglob("*.py")):

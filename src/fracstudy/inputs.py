@@ -1,4 +1,4 @@
-"""What every study takes and gives."""
+"""The inputs and the results of every study."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ NUMERALS = {**ORDERS, 6: "VI", 8: "VIII", 10: "X", 12: "XII"}
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a scene hands to its study.
+    """The inputs that a scene gives to its study.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Inputs:
     tables : mapping
         Tables of other scenes that this one reads, by scene.
     benchmarks : mapping
-        The data of benchmarks that it reads, one row a measurement, by scene; the machine is in `attrs`.
+        The data of benchmarks that it reads, by scene, one row for each measurement; the machine is in `attrs`.
     printed : mapping
         The printed numbers of its items by claim.
     """
@@ -61,13 +61,13 @@ class Inputs:
 
     @cached_property
     def scalars(self) -> pd.DataFrame:
-        """One row a run: every scalar of its file, and the file itself as `run`."""
+        """One row for each run: every scalar of its file, and the path of the file as `run`."""
         import netCDF4
 
         rows = []
         for path in self.runs:
             with netCDF4.Dataset(intact(Path(path))) as file:
-                # Nothing is masked or scaled; to find that out of each number takes as long as all else.
+                # Nothing is masked or scaled, and checking it for each number takes as long as all the rest.
                 file.set_auto_maskandscale(False)
                 row = {
                     name: _plain(variable.getValue())
@@ -112,7 +112,7 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Result:
-    """What a study gives.
+    """The results of a study.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ class Result:
     findings : sequence of Finding
         One for each claim that the scene judges.
     series : DataFrame, optional
-        What the scene's figure draws, in long form: panel, series, x, y and what else the figure needs.
+        The data of the scene's figure in long form: panel, series, x, y and other columns that the figure needs.
     """
 
     table: pd.DataFrame
@@ -130,7 +130,7 @@ class Result:
 
 
 def write_table(table: pd.DataFrame, csv: Path, md: Path | None = None) -> None:
-    """Write a table as CSV with full precision and, if asked, as Markdown with four digits, a | in it escaped."""
+    """Write a table as CSV with full precision and, if `md` is given, as Markdown with four digits and | escaped."""
     write_text(csv, table.to_csv(index=False, lineterminator="\n") if len(table.columns) else "\n")
     if md is not None:
         shown = table.map(_shown).astype(object).where(table.notna(), None)

@@ -1,4 +1,4 @@
-"""The ledger: what is printed and what we measured, judged, side by side; as a table, as CSV and as Markdown."""
+"""The ledger: a table of the printed claims, our measurements, and the verdicts, side by side."""
 
 from __future__ import annotations
 
@@ -52,31 +52,31 @@ def ledger(
     conventions: Mapping[str, Convention] | None = None,
     smoke: bool = False,
 ) -> pd.DataFrame:
-    """Judge what is printed by what was found, one row a value or statement, in the order of the print.
+    """Judge the printed claims by the findings, one row for each value or statement, in the order of the print.
 
     Parameters
     ----------
     printed : sequence of Value or Sentence
-        What the documents print.
+        The claims that the documents print.
     findings : sequence of Finding
-        What we measured, exactly one for each value and statement that can be tested.
+        Our measurements, exactly one for each value and statement that can be tested.
     conventions : mapping, optional
-        What words mean; by default those of the project.
+        The meanings of words; by default those of the project.
     smoke : bool
-        Whether the grids are too coarse, which is then the reason of every verdict that has none.
+        Whether the grids are too coarse. This is then the reason of every verdict that has no other.
 
     Returns
     -------
     pandas.DataFrame
-        Columns `COLUMNS`, all text but: `ours`, our number for a value and the evidence for a statement; `margin`, the
-        worst measured number over its threshold; and `relative_deviation`, nan for statements. `sentence` is empty for
-        a value.
+        Columns `COLUMNS`, all text except three: `ours`, our number for a value and the evidence for a statement;
+        `margin`, the worst measured number over its threshold; and `relative_deviation`, nan for statements. `sentence`
+        is empty for a value.
 
     Raises
     ------
     LedgerError
-        For a claim without a finding or with two, a finding for an unknown claim, a number that a condition or a text
-        asks for and the finding lacks, and a verdict that needs a reason and has none.
+        If a claim has no finding or two, a finding belongs to no claim, a finding lacks a number that a condition or a
+        text asks for, or a verdict needs a reason and has none.
     """
     import pandas as pd
 
@@ -220,13 +220,13 @@ def _in_words(conditions: Iterable[Condition], conventions: Mapping[str, Convent
 
 
 def _numbers(conditions: Iterable[Condition], finding: Finding) -> str:
-    """The measured numbers, each after what it is."""
+    """The measured numbers, each after its meaning."""
     shown = (f"{c.means}: {_shown(finding.numbers[c.of])}" for c in conditions)
     return "; ".join(dict.fromkeys(shown)) + "."
 
 
 def _shown(number: Any) -> str:
-    """A number, a few, or the ends of many, by case if they have one."""
+    """A number, a few numbers, or the least and the greatest of many, with their cases if they have them."""
     if isinstance(number, Mapping):
         pairs = [(m, f"{m:.3g} ({case})") for case, m in number.items()]
     else:

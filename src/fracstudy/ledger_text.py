@@ -1,4 +1,4 @@
-"""The ledger as people read it: counted in a line, as Markdown, as CSV."""
+"""The ledger as text: counted in a line, as Markdown, as CSV."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ __all__ = [
 
 
 def sentence_status(statuses: Iterable[str]) -> Status:
-    """Return the one verdict on a sentence from those on the statements that it makes.
+    """Return the verdict on a sentence from the verdicts on its statements.
 
-    What cannot be tested is left out unless nothing else is said. A sentence is true in part if some of it holds and
-    some does not.
+    Statements that cannot be tested are left out, unless there are no others. A sentence is true in part if some of its
+    statements hold and some do not.
     """
     found = {Status(status) for status in statuses}
     tested = found - {Status.NOT_TESTABLE} or found
@@ -47,7 +47,7 @@ def summary_line(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
     df : DataFrame
         The ledger.
     shown : Series of bool, optional
-        The rows to count; a sentence counts if one of its statements does, with the verdict on the whole of it.
+        The rows to count. A sentence counts if one of its statements does, with the verdict on the whole sentence.
 
     Returns
     -------
@@ -77,13 +77,13 @@ def _counted(status: Status, count: int) -> str:
 
 
 _Row = dict[str, Any]
-_Columns = Mapping[str, Callable[[_Row], str]]  # by heading, what a cell shows of a row
+_Columns = Mapping[str, Callable[[_Row], str]]  # heading: the text of a cell from a row
 
 
 def _split(
     df: pd.DataFrame, shown: pd.Series | None
 ) -> tuple[list[_Row], list[tuple[Status, list[_Row]]]]:
-    """The rows of printed numbers, and those of each sentence with the verdict on the whole of it."""
+    """The rows of printed numbers, and the rows of each sentence with the verdict on the whole sentence."""
     statuses: dict[str, list[str]] = {}
     for sentence, status in zip(df["sentence"], df["status"], strict=True):
         statuses.setdefault(sentence, []).append(status)
@@ -96,7 +96,7 @@ def _split(
 
 
 def ledger_markdown(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
-    """Render the ledger as Markdown: a table of the values, then one of the sentences and what they say.
+    """Render the ledger as Markdown: a table of the values, then one of the sentences and their statements.
 
     Either is left out when it has no rows.
 
@@ -105,7 +105,7 @@ def ledger_markdown(df: pd.DataFrame, shown: pd.Series | None = None) -> str:
     df : DataFrame
         The ledger.
     shown : Series of bool, optional
-        The rows to show; a sentence keeps the verdict on the whole of it.
+        The rows to show; a sentence keeps the verdict on the whole sentence.
     """
     of_values = {
         "claim": _named,
@@ -133,7 +133,7 @@ def short_markdown(df: pd.DataFrame, shown: pd.Series, ledger: str) -> str:
     shown : Series of bool
         The rows to show.
     ledger : str
-        Where the whole ledger is, relative to the page.
+        The path of the whole ledger, relative to the page.
     """
 
     def verdict(row: _Row) -> str:
@@ -174,7 +174,7 @@ def _named(row: _Row) -> str:
 
 
 def _quoted(row: _Row, whole: Status) -> str:
-    """The sentence, and the verdict on the whole of it where that is another than that on the statement beside it."""
+    """The sentence, and the verdict on the whole of it if the statement beside it has another verdict."""
     quote = f"“{_cell(row['printed'])}” ({_cell(row['where'])})"
     return quote if whole == row["status"] else f"{quote}<br>as a whole: {_status(whole)}"
 
@@ -237,7 +237,7 @@ _NUMBERS: _Columns = {
 def write_ledger(
     df: pd.DataFrame, csv_path: str | os.PathLike[str], md_path: str | os.PathLike[str]
 ) -> None:
-    """Write the ledger as CSV and as Markdown, each whole or not at all."""
+    """Write the ledger as CSV and as Markdown; each file is written whole or not at all."""
     write_text(csv_path, df.to_csv(index=False, lineterminator="\n"))
     write_text(md_path, f"{summary_line(df)}\n\n{ledger_markdown(df)}")
 

@@ -1,4 +1,4 @@
-"""The scenes of the study, with what of the documents each makes: `fracparticles scenes`."""
+"""The scenes of the study, and the items of the documents that each makes: `fracparticles scenes`."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def scenes(document: str | None = None) -> None:
 
 
 def listed(project: Path, document: str | None = None) -> list[str]:
-    """Return the lines of the list for the project in that folder; raises `InvalidInput` if there is none."""
-    from fracstudy.config import CONFIG, read_project  # heavy, and not for those who ask for --help
+    """Return the lines of the list for the project in a folder; raises `InvalidInput` if it holds none."""
+    from fracstudy.config import CONFIG, read_project  # heavy, and --help does not need it
 
     if not (project / CONFIG).is_file():
         found = f"a folder that holds {CONFIG}"

@@ -1,4 +1,4 @@
-"""Numbers in prose: looked up in what the pipeline made, never typed.
+"""Numbers in prose: they are looked up in the results, never typed.
 
 A caption or a page is a Jinja template. It may ask for
 
@@ -33,11 +33,11 @@ __all__ = ["LookUpError", "LookUps"]
 
 
 class LookUpError(FracparticlesError, ValueError):
-    """A text asks for what is not there; says which text and what."""
+    """A text asks for something that does not exist; the message names both."""
 
 
 class LookUps:
-    """What texts may ask for.
+    """The numbers that texts may ask for.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class LookUps:
         Raises
         ------
         LookUpError
-            For a template that cannot be read, and for what is not there, with the file.
+            If the template cannot be read, or asks for something that does not exist; names the file.
         """
         environment = jinja2.Environment(undefined=jinja2.StrictUndefined, autoescape=False)
         environment.globals |= {

@@ -1,4 +1,4 @@
-"""Make what a scene consists of: table, findings, series, figure."""
+"""Make the files of a scene: table, findings, series, figure."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["made", "make"]
 
 
 def made(scene: Scene, results: Path, figure_formats: Sequence[str]) -> list[Path]:
-    """Return the files that a scene consists of, below the folder of the results: those of its figure come last."""
+    """Return the files of a scene, below the folder of the results; those of its figure come last."""
     kinds = ["tables/{}.csv", "tables/{}.md", "findings/{}.json", "series/{}.csv"]
     if scene.file("figure.py"):
         kinds += [f"figures/{{}}.{suffix}" for suffix in figure_formats]
@@ -32,7 +32,7 @@ def make(
     printed: Path | None,
     figure_formats: Sequence[str] = ("svg", "png"),
 ) -> None:
-    """Run the study of a scene, write what it gives, and draw its figure from what was written.
+    """Run the study of a scene, write its results, and draw its figure from the files that were written.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def make(
     runs : sequence of str
         Its run files, in the order of its cases.
     printed : Path, optional
-        The file of what is printed that the scene measures.
+        The file of the printed claims that the scene judges.
     figure_formats : sequence of str
-        What its figure is written as.
+        The formats of its figure.
     """
     csv, md, findings, series, *figures = made(scene, results, figure_formats)
     claims = [] if printed is None else read_claims(printed)

@@ -15,7 +15,7 @@ __all__ = ["fitted_power", "observed", "orders_by", "orders_of"]
 
 
 def fitted_power(x: ArrayLike, y: ArrayLike) -> float:
-    """Return the p of the law y = c x^p that comes nearest to the points, in the squares of their logarithms."""
+    """Return the p of the law y = c x^p that fits the logarithms of the points with the least squares."""
     return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 
@@ -33,5 +33,5 @@ def orders_by(table: pd.DataFrame, by: str | Sequence[str], error: str) -> pd.Se
 
 
 def orders_of(index: pd.MultiIndex) -> pd.Index:
-    """Return the orders of an index with a level `order`, in which they stand as the paper writes them, as numbers."""
+    """Return the orders of an index as numbers; its level `order` has them as the paper writes them."""
     return index.get_level_values("order").map({name: order for order, name in ORDERS.items()})

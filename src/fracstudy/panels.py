@@ -1,4 +1,4 @@
-"""What a figure draws, in long form: one row a point, with its panel and its series."""
+"""The data of a figure in long form: one row for each point, with its panel and its series."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ _COLUMNS = ("panel", "series", "x", "y")
 
 
 class Panels:
-    """Collects the points of a figure: columns panel, series, x, y, and what else is given, or those named alone."""
+    """Collects the points of a figure: columns panel, series, x, y, and others that are given by name."""
 
     def __init__(self) -> None:
         self._parts: list[pd.DataFrame] = []
 
     def add(self, *columns: Any, **more: Any) -> None:
-        """Add points by panel, series, x and y, or by name: all but `x` is one value, or one for each of them."""
+        """Add points by panel, series, x and y, or by name; each but `x` is one value for all or one for each point."""
         points = dict(zip(_COLUMNS, columns, strict=False)) | more
         self._parts.append(pd.DataFrame(points | {"x": np.atleast_1d(points["x"])}))
 

@@ -1,4 +1,4 @@
-"""The files of what the documents print, and of what their words are taken to mean; their records are in `claims`."""
+"""The files of the printed claims, and of the meanings of their words; the records are in `claims`."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ __all__ = ["read_claims", "read_conventions", "read_printed", "refuse_repeats"]
 
 
 def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
-    """Read what documents print, each from the YAML files of its folder in the order of their names, or one file.
+    """Read the printed claims of documents, each from one YAML file, or from those of a folder in the order of names.
 
     Two files may hold one sentence, each with statements of its own.
 
     Raises
     ------
     LedgerError
-        If a file is not a list of valid records, if an id occurs twice, or a sentence twice in a file, or in two files
-        in different words.
+        If a file is not a list of valid records; if an id occurs twice; if a sentence occurs twice in a file, or in two
+        files in different words.
     """
     found: list[Value | Sentence] = []
     quotes: dict[str, str] = {}
@@ -37,7 +37,7 @@ def read_printed(*paths: str | os.PathLike[str]) -> list[Value | Sentence]:
             tree = read_yaml(path)
             trees = TypeAdapter(list[dict]).validate_python(tree)
             records = [record for tree in trees for record in _records(tree)]
-        except (yaml.YAMLError, ValueError, KeyError) as error:  # no YAML, or no such record
+        except (yaml.YAMLError, ValueError, KeyError) as error:  # not YAML, or not such a record
             raise LedgerError(f"{path}: {error}") from error
         found += records
         ids = [claim.id for record in found for claim in record.claims]
@@ -69,7 +69,7 @@ def read_claims(*paths: str | os.PathLike[str]) -> list[Value | Statement]:
 
 
 def read_conventions(path: str | os.PathLike[str] = CONVENTIONS) -> dict[str, Convention]:
-    """Read what the words of the documents are taken to mean, the same in every row.
+    """Read the meanings of the documents' words, which are the same in every row.
 
     Raises
     ------
@@ -84,6 +84,6 @@ def read_conventions(path: str | os.PathLike[str] = CONVENTIONS) -> dict[str, Co
 
 
 def refuse_repeats(ids: Iterable[str], complaint: str) -> None:
-    """Raise LedgerError, with the complaint and the names, if some come twice."""
+    """Raise LedgerError, with the complaint and the names, if some occur twice."""
     if repeated := sorted(name for name, count in Counter(ids).items() if count > 1):
         raise LedgerError(f"{complaint}: {', '.join(repeated)}")

@@ -65,18 +65,18 @@ class Probe:
     Attributes
     ----------
     kind : str
-        What of the family it belongs to, in a word or two.
+        The part of the family to which it belongs, in a word or two.
     case : str
-        What was done.
+        The action, in words.
     expected : str
-        What must come out.
+        The right result, in words.
     source : str
-        Where that is known from: "closed form", "mpmath", "dense matrix", "scipy" and the like; empty where the code is
-        only held against itself.
+        The source of the right result: "closed form", "mpmath", "dense matrix", "scipy" and the like; empty if the code
+        is only compared with itself.
     found : str
-        What came out, or what the error or the first warning says.
+        The result, or the message of the error or of the first warning.
     deviation, bound : float
-        How far it is from what must come out, and how far it may be; nan where there is no number.
+        The distance from the right result, and the largest one allowed; nan if there is no number.
     verdict : Verdict
     """
 
@@ -92,18 +92,18 @@ class Probe:
 
 @dataclass(frozen=True)
 class Kind:
-    """What probes have in common, said once; called, it makes one of them.
+    """The attributes that several probes share. A call makes one of these probes.
 
     Attributes
     ----------
     kind, expected, source : str
         See `Probe`.
     bound : float
-        The greatest deviation that is right.
+        The greatest deviation allowed.
     must : Verdict, optional
-        The only verdict that will do: `HELD` where nothing excuses a wrong number, `WARNED` where growth is expected,
-        found and must be spoken of, `REFUSED` for input that means nothing. With `WARNED` the deviation is that from
-        the predicted growth, and has to be within the bound.
+        The only verdict that is accepted: `HELD` if nothing excuses a wrong number, `WARNED` if growth is expected and
+        must be warned of, `REFUSED` for input without a meaning. With `WARNED` the deviation is that from the predicted
+        growth, and must be within the bound.
     """
 
     kind: str
@@ -113,17 +113,17 @@ class Kind:
     must: Verdict | None = None
 
     def __call__(self, case: str, run: Callable[..., Any], *arguments: Any, **other: Any) -> Probe:
-        """Do something that may go wrong, and judge it.
+        """Run something that may go wrong, and judge it.
 
         Parameters
         ----------
         case : str
-            What is done, in words.
+            The action, in words.
         run : callable
-            Does it, with the arguments, and returns the deviation from what must come out, a number of at least zero;
-            with it, if a number says too little, what came out in words. What must be refused may return anything.
+            It is called with the arguments, and returns the deviation from the right result, a number of at least zero.
+            It may return the result in words with it. If it must be refused, it may return anything.
         **other
-            Attributes of this kind that are other for this probe.
+            Attributes of this kind that differ for this probe.
 
         Returns
         -------
@@ -166,25 +166,25 @@ class Kind:
         return Probe(self.kind, case, self.expected, self.source, found, deviation, bound, verdict)
 
     def of(self, cases: Mapping[str, Callable[[], Any]]) -> Iterator[Probe]:
-        """Make one probe of each, by its name."""
+        """Make a probe of each case, by its name."""
         for case, run in cases.items():
             yield self(case, run)
 
     def over(
         self, run: Callable[..., Any], cases: Mapping[str, tuple[Any, ...]], **other: Any
     ) -> Iterator[Probe]:
-        """Make one probe of each, by its name: the same with other arguments."""
+        """Make a probe of each case, by its name: the same run with other arguments."""
         for case, arguments in cases.items():
             yield self(case, run, *arguments, **other)
 
 
 def _stray(category: type[Warning]) -> bool:
-    """Whether a warning is one of numpy's, that something overflowed or was divided by zero unseen."""
+    """Whether a warning is numpy's, of an overflow or a division by zero that the library did not notice."""
     return issubclass(category, RuntimeWarning)
 
 
 def probes_of(*modules: ModuleType, **given: Any) -> Iterator[Probe]:
-    """Make the probes of modules: each generator in its turn makes a family, from those of the values that it takes."""
+    """Make the probes of modules: each generator makes a family, and is called with the values that it takes."""
     for module in modules:
         for name, family in list(vars(module).items()):
             own = isgeneratorfunction(family) and family.__module__ == module.__name__
@@ -193,13 +193,13 @@ def probes_of(*modules: ModuleType, **given: Any) -> Iterator[Probe]:
 
 
 def frame(probes: Iterable[Probe]) -> pd.DataFrame:
-    """Return the table of probes, one row each."""
+    """Return a table with one row for each probe."""
     return pd.DataFrame([asdict(one) for one in probes])
 
 
 @contextmanager
 def overheard() -> Iterator[list[str]]:
-    """Listen to our warnings in a block, which go on to whoever else listens: they are in the list afterwards."""
+    """Collect our warnings in a block in a list, which is filled at its end; they are then issued again."""
     words: list[str] = []
     try:
         with warnings.catch_warnings(record=True) as caught:

@@ -18,7 +18,7 @@ def _value_or_list(annotation: Any) -> Any:
     return Union[annotation, list[annotation], None]  # noqa: UP007  (an annotation known at run time only)
 
 
-# Output times are a list themselves, taken whole.
+# Output times are a list themselves, which is one value.
 _FIELDS: dict[str, Any] = {
     name: (
         list[float] | None if takes_lists(field.annotation) else _value_or_list(field.annotation),

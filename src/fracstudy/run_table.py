@@ -7,7 +7,7 @@ from fracstudy.inputs import Inputs, Result
 
 __all__ = ["study"]
 
-# What is shown of every run: parameters, and what came of it.
+# The columns of every run: parameters, and results by their headings.
 _ALWAYS = ("scheme", "order", "beta")
 _SHOWN = {
     "relative_l1_error": "relative error",
@@ -18,7 +18,7 @@ _SHOWN = {
 
 
 def study(inputs: Inputs) -> Result:
-    """Return one row a run: scheme, order, beta and what else differs, the error (48), the masses, the applications.
+    """Return one row for each run: scheme, order, beta, other parameters that differ, error (48), masses, applications.
 
     A figure draws the same rows.
     """

@@ -38,17 +38,17 @@ class Scene(BaseModel):
     name : str
         Its name: that of the folder, or of the variant. It is the target, and the name of its results.
     folder : Path
-        Where its files are.
+        The folder of its files.
     title : str
-        Heading in the report; `{beta}` in it is what all runs have, or a parameter, of that name.
+        Heading in the report; `{beta}` in it stands for the value that all runs have, or for a parameter.
     place : int
-        Where in its document it stands: smaller numbers first, then by name.
+        Its place in its document: smaller numbers come first, and equal ones by name.
     items : list of str
         Items of the inventory whose claims it judges; empty for a study of our own.
     study : str, optional
         `<document>/<folder>` of another scene, whose study and figure it takes.
     parameters : dict
-        What the study and the figure need beyond the runs: the keywords of their functions.
+        The keywords of the functions of the study and the figure.
     runs : list of RunBlock
         The cases.
     tables : list of str
@@ -74,9 +74,9 @@ class Scene(BaseModel):
     benchmark: dict[str, Any] | None = None
 
     def packed(self, runs: bool = False) -> dict[str, Any]:
-        """Return what `Scene(**packed)` makes the scene of, in another process; its runs are left out unless asked for.
+        """Return the fields from which `Scene(**packed)` makes the scene in another process, without or with its runs.
 
-        Not as JSON, in which the numbers that are keys of a parameter would become text.
+        They are not JSON, in which numbers that are keys of a parameter would become text.
         """
         fields = self.model_dump(exclude=None if runs else {"runs"}, exclude_none=True)
         return {**fields, "folder": str(self.folder)}
@@ -91,7 +91,7 @@ class Scene(BaseModel):
         return self.folder.parent.name
 
     def file(self, kind: str) -> Path | None:
-        """Return the file "study.py", "figure.py", "benchmark.py" or "caption.md" of the scene, None without it."""
+        """Return the file "study.py", "figure.py", "benchmark.py" or "caption.md" of the scene, or None without it."""
         own = self.study is None or kind in ("benchmark.py", "caption.md")
         folder = self.folder if own else self.folder.parents[1] / str(self.study)
         return folder / kind if (folder / kind).is_file() else None
@@ -103,7 +103,7 @@ class Scene(BaseModel):
         Raises
         ------
         InvalidInput
-            For a case that is not allowed, with the scene's file.
+            If a case is not allowed; names the file of the scene.
         """
         try:
             return expand(self.runs)
@@ -118,7 +118,7 @@ class Scene(BaseModel):
         Raises
         ------
         InvalidInput
-            If it asks for what is no parameter, and not the same in all runs.
+            If it asks for a name that is neither a parameter nor a field with the same value in all runs.
         """
         known = dict(self.parameters)
         for name in Case.model_fields.keys() - known.keys() if self.cases else ():
@@ -133,7 +133,7 @@ class Scene(BaseModel):
 
     @property
     def needs(self) -> dict[str, list[Any]]:
-        """What the runs must hold for the study: values of fields of a case, `NEEDS` of study.py."""
+        """The values of fields of a case that the runs must have for the study, `NEEDS` of study.py."""
         return getattr(sys.modules[self.function("study").__module__], "NEEDS", {})
 
     def function(self, kind: str) -> Callable[..., Any]:
@@ -158,7 +158,7 @@ class Scene(BaseModel):
 
 
 def call(function: Callable[..., Any], *arguments: Any, **parameters: Any) -> Any:
-    """Call a study, figure or benchmark with those of the parameters that it takes."""
+    """Call a study, figure or benchmark with the parameters that it takes; the others are left out."""
     taken = inspect.signature(function).parameters
     return function(*arguments, **{k: v for k, v in parameters.items() if k in taken})
 
@@ -169,7 +169,7 @@ def check_parameters(scene: Scene) -> None:
     Raises
     ------
     InvalidInput
-        For a parameter that none of them takes, one that is needed and left out, or one of the wrong type.
+        If none of them takes a parameter, a needed one is left out, or one has the wrong type.
     """
     kinds = [kind for kind in ("study", "figure") if kind == "study" or scene.file("figure.py")]
     functions = [scene.function(kind) for kind in kinds]

@@ -1,7 +1,8 @@
 """The files of the scenes, `workflow/scenes/<document>/<scene>/scene.yaml`.
 
-What a smoke run changes stands beside the full value: any mapping may hold `smoke`, which is laid over it, and
-`smoke: null` leaves it out. A folder with `variants` stands for several scenes: the common part, and over it its own.
+The changes of a smoke run stand beside the full values: any mapping may hold `smoke`, which is laid over it, and
+`smoke: null` leaves the mapping out. A folder with `variants` stands for several scenes: each is the common part, with
+its own part laid over it.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def _natural(name: str) -> list[tuple[bool, int, str]]:
 def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
     try:
         tree = read_yaml(file)
-    # Also what is not UTF-8, no such date, or too deep.
+    # Also if it is not UTF-8, has a date that does not exist, or is too deep.
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         problem = " ".join(str(error).split())
         raise InvalidInput(str(file), problem, "YAML", "Mend the file.") from None
@@ -119,9 +120,9 @@ def resolved(tree: _Tree, smoke: bool) -> _Tree:
 
 
 def complaint(error: ValidationError, where: str, model: type[BaseModel]) -> InvalidInput:
-    """Return the first mistake that pydantic found, in our words."""
+    """Return the first mistake that pydantic found, in our words; `where` begins the name of the field."""
     first = error.errors()[0]
-    # A run block's field may be a value or a list: pydantic complains about both; the first will do.
+    # A field of a run block may be a value or a list. Pydantic complains about both; the first complaint is enough.
     place = [str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)]
     field = where + (".".join(place) or "configuration")
     if first["type"] == "extra_forbidden":

@@ -1,4 +1,4 @@
-"""Which source files a module is made of, so that a change reruns just what it may change."""
+"""The source files of a module, so that a change reruns only the jobs that it may affect."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _HOMES = {"fracparticles": "src", "fracstudy": "src", "scenes": "workflow"}
 
 
 def sources_of(path: Path, root: Path = Path(), ends: Collection[Path] = ()) -> list[str]:
-    """Return a module's file and those of all modules of our packages that it imports, directly or not.
+    """Return the file of a module, and those of all modules of our packages that it imports, directly or not.
 
-    Imports inside functions count. Where names are imported from a package itself, all its modules count.
+    Imports inside functions count. If names are imported from a package itself, all its modules count.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def sources_of(path: Path, root: Path = Path(), ends: Collection[Path] = ()) -> 
     root : Path
         The folder of the project.
     ends : collection of Path
-        Modules that count themselves, but not what they import.
+        Modules whose own imports do not count.
     """
     found: set[Path] = set()
     open_ends = [path]
@@ -58,7 +58,7 @@ def _imported(module: Path, root: Path) -> Iterator[Path]:
 
 
 def _statements(node: ast.AST) -> Iterator[ast.AST]:
-    """All below a node but expressions, which are most of it and import nothing."""
+    """All nodes below a node except expressions, which are most of them and import nothing."""
     for child in ast.iter_child_nodes(node):
         if not isinstance(child, ast.expr | ast.arguments):
             yield child
@@ -66,7 +66,7 @@ def _statements(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _files(place: Path, names: Iterable[str]) -> Iterator[Path]:
-    """The file of a module; of a package all its modules, unless only some are imported from it."""
+    """The file of a module, or all modules of a package, unless only some are imported from it."""
     if place.with_suffix(".py").exists():
         yield place.with_suffix(".py")
         return
@@ -74,4 +74,4 @@ def _files(place: Path, names: Iterable[str]) -> Iterator[Path]:
     modules = [place / f"{name}.py" for name in names if (place / f"{name}.py").exists()]
     yield from modules
     if len(modules) < len(names) or not names:
-        yield from place.glob("*.py")  # what the package finds by path, too
+        yield from place.glob("*.py")  # among them modules that the package finds by path

@@ -1,4 +1,4 @@
-"""One style for all figures: Okabe-Ito colours, one marker a scheme, direct labels."""
+"""One style for all figures: Okabe-Ito colours, one marker for each scheme, direct labels."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ mpl.use("Agg")
 mpl.style.use(Path(__file__).with_name("fracstudy.mplstyle"))
 
 Look = dict[str, Any]
-"""What a line, a point or a text is drawn with: keywords of matplotlib."""
+"""The style of a line, a point or a text: keywords of matplotlib."""
 
 # Okabe & Ito (2008); one colour and one marker for each scheme, everywhere.
 BLUE, RED, GREEN = "#0072B2", "#D55E00", "#009E73"
@@ -77,7 +77,7 @@ UNDERLAID: Look = {"color": "black", "linewidth": 3.5, "alpha": 0.25}
 ERROR = r"relative error $\varepsilon_{D_\varepsilon}$, Eq. (48)"
 
 ALONG: Look = {"xycoords": ("axes fraction", "data")}
-"""A place of a text: how far along the panel, and at what value."""
+"""The place of a text: the share of the width of the panel, and the value of y."""
 
 _CURVES = "osD^vPX"
 
@@ -89,9 +89,9 @@ def axes_row(
     rows: int = 1,
     **options: Any,
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure with a row of panels, or more, and the panels, lettered (a), (b), ... if there are several.
+    """Return a figure with one or more rows of panels, and the panels, lettered (a), (b), ... if there are several.
 
-    `panels` is how many there are, or the title of each.
+    `panels` is their number, or the title of each. `height` and `width` of a panel are in inches.
     """
     titles = [""] * panels if isinstance(panels, int) else panels
     columns = len(titles) // rows
@@ -111,21 +111,21 @@ def draw(ax: Axes, points: pd.DataFrame, *line: str, **style: Any) -> None:
 def curves(
     ax: Axes, points: pd.DataFrame, *line: str, name: str | None = "{}", **style: Any
 ) -> None:
-    """Draw a curve for each series, in their order, with a colour and a marker of its own; `name` makes its label."""
+    """Draw a curve for each series, in order, each with its own colour and marker; `name` is the form of its label."""
     for k, (series, own) in enumerate(points.groupby("series", sort=False)):
         label = name and name.format(series)
         draw(ax, own, *line, **{"color": f"C{k}", "marker": _CURVES[k], "label": label, **style})
 
 
 def log_log(ax: Axes, **more: Any) -> None:
-    """Make both axes logarithmic, and set what else is given: labels, limits."""
+    """Make both axes logarithmic, and set other properties that are given: labels, limits."""
     ax.set(xscale="log", yscale="log", **more)
 
 
 def name_ticks(
     ax: Axes, values: Iterable[float], axis: str = "x", form: str = "g", inside: bool = False
 ) -> None:
-    """Put ticks at these values of an axis, or those `inside` the panel, as plain numbers, and nowhere else."""
+    """Put ticks only at these values of an axis, as plain numbers; with `inside` only at those within the panel."""
     low, high = sorted(getattr(ax, f"get_{axis}lim")())
     named = {v: f"{v:{form}}" for v in values if not inside or low <= v <= high}
     ax.set(**{f"{axis}ticks": list(named), f"{axis}ticklabels": list(named.values())})
@@ -133,7 +133,7 @@ def name_ticks(
 
 
 def plain_times(ax: Axes) -> None:
-    """Label a logarithmic axis of times by plain numbers: powers of ten, 0.1, 1, 10; of a short axis 2 and 5, too."""
+    """Label a logarithmic axis of times by plain numbers: powers of ten, 0.1, 1, 10; on a short axis 2 and 5, too."""
     low, high = ax.get_xlim()
     ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 20 * low else (1,), numticks=8))
     ax.xaxis.set_major_formatter(FuncFormatter(lambda time, _: f"{time:g}"))
@@ -147,7 +147,7 @@ def note(ax: Axes, text: str, at: tuple[Any, Any], shift: tuple[float, float], *
 
 
 def border(ax: Axes, value: float, text: str = "", along: float = 1.0, **more: Any) -> None:
-    """Draw a dotted line at a value of y, and name it above, in small print, up to a place along the panel."""
+    """Draw a dotted line at a value of y, with its name above in small print; the name ends at `along` the panel."""
     ax.axhline(value, **DOTTED)
     if text:
         shift, style = more.pop("shift", (0, 2)), {**ALONG, "ha": "right", "color": "0.35", **more}
@@ -164,7 +164,7 @@ def scheme_style(scheme: str, order: int | str | None = None, **more: Any) -> di
     order : int or str, optional
         2, 4, ..., or as the paper writes them.
     **more
-        What else a line is drawn with, or otherwise than here.
+        Other properties of the line, or other values of these.
     """
     colour, low = COLOURS[scheme], order in (None, 2, "II")
     line = {"linestyle": "-" if low else "--", "markerfacecolor": colour if low else "white"}
@@ -172,7 +172,7 @@ def scheme_style(scheme: str, order: int | str | None = None, **more: Any) -> di
 
 
 def scheme_lines(ax: Axes, frame: pd.DataFrame, x: str = "x", y: str = "y", **more: Any) -> None:
-    """Draw one column against another, a line a scheme and order, in `scheme_style`."""
+    """Draw one column against another, with a line in `scheme_style` for each scheme and order."""
     for (scheme, order), points in frame.sort_values(x).groupby(["scheme", "order"]):
         ax.plot(points[x], points[y], **scheme_style(scheme, order, **more))
 
@@ -203,19 +203,19 @@ def scheme_legend(
     pairs: pd.DataFrame | Iterable[tuple[str, int | str | None]],
     extra: Iterable[Line2D] = (),
 ) -> None:
-    """Name schemes and orders, see `legend_entries`, and what else is given below the panels."""
+    """Put a legend of schemes and orders, see `legend_entries`, and of extra entries below the panels."""
     legend_below(figure, [*legend_entries(pairs), *extra])
 
 
 def small_legend(ax: Axes, place: Any, **more: Any) -> None:
-    """Name what has a label in small print, at a place within the panel."""
+    """Put a legend in small print at a place within the panel."""
     ax.legend(loc=place, **{"fontsize": 7, **more})
 
 
 def legend_below(
     figure: Figure, entries: Axes | Sequence[Artist], columns: int | None = None
 ) -> None:
-    """Put one frameless legend below the panels: the entries given, or those of `ax`; all in a row if not told."""
+    """Put one frameless legend below the panels, of the entries given or those of a panel; all in a row by default."""
     handles = entries.get_legend_handles_labels()[0] if isinstance(entries, Axes) else list(entries)
     ncols = len(handles) if columns is None else columns
     figure.legend(handles=handles, loc="outside lower center", ncols=ncols)
@@ -227,7 +227,7 @@ def legend_under(ax: Axes, columns: int = 2, **more: Any) -> None:
 
 
 def note_below(figure: Figure, text: str) -> None:
-    """Write what was timed, and on what machine, in small print: above the legend, or below the panels without one."""
+    """Write a note, such as the machine, in small print: above the legend, or below the panels without one."""
     if not figure.legends:
         figure.supxlabel(text, fontsize=7, color="0.4")
         return
@@ -237,9 +237,10 @@ def note_below(figure: Figure, text: str) -> None:
 
 
 def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = False) -> None:
-    """Draw a triangle of that slope on log-log axes beside the point (x, y) of a rising curve.
+    """Draw a triangle of a slope on log-log axes beside the point (x, y) of a rising curve.
 
-    Below the curve the right angle is at the lower right, above it at the upper left; `x` is the left corner.
+    A triangle below the curve has its right angle at the lower right, one above it at the upper left. `x` is the left
+    corner.
     """
     right, top = 2.0 * x, y * 2.0**slope
     corner = (x, top) if above else (right, y)
@@ -257,7 +258,7 @@ def slope_triangle(ax: Axes, x: float, y: float, slope: float, above: bool = Fal
 
 
 def finest_slope(ax: Axes, errors: pd.DataFrame, order: float) -> bool:
-    """Draw the triangle of an order above the finest piece of a curve, if it is the steepest: it ends at no floor."""
+    """Draw the triangle of an order above the finest piece of a curve, if this is the steepest: it is at no floor."""
     h, error = errors.sort_values("x")[["x", "y"]].to_numpy().T
     slopes = np.diff(np.log(error)) / np.diff(np.log(h))
     steepest = slopes.size > 0 and slopes.argmax() == 0
@@ -269,7 +270,7 @@ def finest_slope(ax: Axes, errors: pd.DataFrame, order: float) -> bool:
 def guide(
     ax: Axes, x: Sequence[float], through: tuple[float, float], slope: float, label: str = ""
 ) -> None:
-    """Draw a dotted line of that slope on log-log axes between two `x`, through a point; its label at the upper end."""
+    """Draw a dotted line of a slope on log-log axes between two `x`, through a point, with a label at its upper end."""
     ends = np.array([min(x), max(x)])
     y = through[1] * (ends / through[0]) ** slope
     ax.plot(ends, y, color="0.45", linewidth=0.9, linestyle=":")
