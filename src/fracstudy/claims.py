@@ -170,16 +170,15 @@ class Statement(_Claim):
     Attributes
     ----------
     holds : list of Condition
-        It holds where all of these do.
+        It holds where all these conditions hold.
     intended : Intended, optional
-        For a misprint: the statement as it was meant.
+        For a misprint, the statement as it was meant.
     evidence : str
-        What we found, with the numbers looked up like those of a reason; empty for the numbers of the conditions alone.
+        Our result in words, with numbers looked up as in a reason; if empty, the numbers of the conditions are shown.
     untestable : str
-        Why it cannot be judged; empty if it can.
+        The reason why it cannot be judged; empty if it can.
     changed : str
-        The criterion before it was changed, with the verdict that it gave, where it was changed after the result
-        was known.
+        The earlier criterion and its verdict, if the criterion was changed after the result was known.
     """
 
     holds: list[Condition] = []

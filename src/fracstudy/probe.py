@@ -1,6 +1,6 @@
-"""A probe: something that may go wrong is done, and what comes of it is judged.
+"""A probe: something that may go wrong is run, and its result is judged.
 
-A result is right if it is within a bound of a value known from elsewhere. If it is not, somebody must have been told.
+A result is right if it is within a bound of a value known from elsewhere. If it is not, there must be a warning.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ __all__ = [
 
 
 class Verdict(StrEnum):
-    """What came of a probe."""
+    """The verdict on a probe."""
 
     HELD = "held"
     """Right, within the bound."""

@@ -1,4 +1,4 @@
-"""The exact symbol on a periodic box: one pair of transforms. What is left is the period, and the lattice.
+"""The exact symbol on a periodic box: one pair of transforms. The only errors are by the period and the lattice.
 
 u^_k(t) = exp(-t |k|^alpha) u^_k(0)
 """

@@ -10,9 +10,9 @@ from fracstudy.race.contender import ENOUGH, Contender, Ready, Trials
 from fracstudy.race.problem import Problem
 
 _COUNTS = (25, 35, 49, 69, 97, 137, 193, 273)
-_MANY = 49  # from here on set-ups take long, and the worse half of the scales is left out each time
-_REACHES = (200.0, 5000.0)
-_SCALES = (0.01, 0.1, 1.0, 3.0)
+_MANY = 49  # particles from which set-ups take long: the worse half of the scales is then left out
+_REACHES = (200.0, 5000.0)  # half-widths
+_SCALES = (0.01, 0.1, 1.0, 3.0)  # lengths L of the grading
 
 
 class Graded(Contender):
