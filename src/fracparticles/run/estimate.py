@@ -154,9 +154,8 @@ def estimate_of(
     measured = source.error if isinstance(source, Measured) else 0.0
     if change > _UNSETTLED * min(total, 1.0) and total > _ROUND_OFF:
         warnings.warn(
-            f"the estimate of the error, {max(total, change):.1g}, is no more than that: the reference that it is "
-            f"made with still changes by {change:.1g}. The data vary over far shorter lengths than the spacing, or "
-            "fall too slowly.",
+            f"the estimate of the error, {max(total, change):.1g}, is uncertain: its reference still changes by "
+            f"{change:.1g}. The data vary over far shorter lengths than the spacing, or fall too slowly.",
             AccuracyWarning,
             stacklevel=3,
         )
