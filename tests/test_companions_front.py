@@ -452,7 +452,7 @@ NOT_CALLED = {
     # Constants, types of functions and protocols, what is made by other calls, and errors.
     "BROOKSHAW_ETA", "COMPLETED", "FUNCTIONS", "METHODS", "SUPPORT", "SHAPES", "REMESHINGS", "Flux", "Kernel",
     "Profile", "ScatteredSum", "Function", "Extremes", "MarkerRun", "Elimination", "History", "FieldNotPositive",
-    "REMESHING", "REMESH_ABOVE", "THRESHOLD",
+    "MIDPOINT_LIMIT", "REMESHING", "REMESH_ABOVE", "THRESHOLD",
     # No argument, or inside `run` only.
     "Gaussian", "Square", "Tent", "diffusion", "kdv", "Shape",
 }  # fmt: skip

@@ -117,6 +117,16 @@ def test_a_blow_up_says_when(kind):
     assert said == pytest.approx(3.5, abs=1e-4)
 
 
+@pytest.mark.parametrize("kind", [StabilisedStep, EighthOrderStep])
+def test_steps_that_would_never_reach_the_end_say_where_they_are(kind):
+    """u' = -sgn u comes to zero at t = 0.2 and is driven across it for ever; none of the steps fails."""
+    steps = kind(lambda t, u: -np.sign(u), 1e-4, 1e-7)
+    with pytest.raises(
+        NonFiniteSolution, match=r"shrunk to .* at t = 0\.20.*would not reach t = 2"
+    ):
+        steps.advance(np.array([0.2, 0.3]), 2.0)
+
+
 def test_an_exponential_that_overflows_says_so():
     with pytest.raises(NonFiniteSolution, match="grows without bound near t ="):
         KrylovStep(lambda u: 500.0 * u, 5, 1e-8, 0.0, 10.0).advance(np.ones(5), 10.0)

@@ -18,7 +18,7 @@ from functools import lru_cache
 import numpy as np
 
 from fracparticles.time.rkc import ChebyshevStep
-from fracparticles.time.steps import Absolute, Rate, absolute, blown_up, norm
+from fracparticles.time.steps import Absolute, Pace, Rate, absolute, blown_up, norm
 
 __all__ = ["StabilisedStep", "spectral_radius"]
 
@@ -65,9 +65,10 @@ class StabilisedStep:
         Raises
         ------
         NonFiniteSolution
-            If u grows without bound, so that the step shrinks to nothing; the message says when.
+            If it grows without bound, or comes to where the right-hand side is singular: the steps have shrunk to
+            nothing; says when.
         """
-        t, end = start, start + span
+        t, end, pace = start, start + span, Pace(start, span)
         r = self._rate(t, u)
         self._look(t, u, r)
         dt = min(span, self._dt or self._first(t, u, r, span))
@@ -91,6 +92,7 @@ class StabilisedStep:
                 continue
             self.accepted += 1
             t = t + dt if end - t - dt > 1e-14 * span else end
+            pace.stepped(t)
             u, r = new, after
             self._dt, dt = dt, dt * self._growth(dt, max(error, 1e-10))
             since += 1

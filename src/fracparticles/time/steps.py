@@ -10,7 +10,17 @@ from scipy.integrate import DOP853
 
 from fracparticles.errors import NonFiniteSolution
 
-__all__ = ["STAGES", "Absolute", "EighthOrderStep", "Rate", "Steps", "absolute", "blown_up", "norm"]
+__all__ = [
+    "STAGES",
+    "Absolute",
+    "EighthOrderStep",
+    "Pace",
+    "Rate",
+    "Steps",
+    "absolute",
+    "blown_up",
+    "norm",
+]
 
 Rate = Callable[[float, np.ndarray], np.ndarray]
 """R(t, u)."""
@@ -19,6 +29,8 @@ Absolute = float | Callable[[float, np.ndarray], float]
 """An absolute tolerance: a number, or a function of the time and of u."""
 
 STAGES = 12  # evaluations that a step of order 8 takes
+_LOOK = 2000  # steps between two looks at the pace
+_MOST = 1e6  # steps to go, beyond which there is no end
 
 
 class Steps(Protocol):
@@ -71,7 +83,8 @@ class EighthOrderStep:
         Raises
         ------
         NonFiniteSolution
-            If u grows without bound, so that the step shrinks to nothing; the message says when.
+            If it grows without bound, or comes to where the right-hand side is singular: the steps have shrunk to
+            nothing; says when.
         """
         first = None if self._dt is None else min(self._dt, span)
         tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, start, u)}
@@ -80,13 +93,14 @@ class EighthOrderStep:
                 lambda t, y: self._rate(t, y.reshape(u.shape)).reshape(-1),
                 start, u.reshape(-1), start + span, first_step=first, **tolerances,
             )  # fmt: skip
-            began, taken = solver.nfev, 0
+            began, taken, pace = solver.nfev, 0, Pace(start, span)
             while solver.status == "running":
                 solver.atol = absolute(self._atol, solver.t, solver.y)
                 solver.step()
                 taken += 1
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
                     raise blown_up(solver.t, solver.y)
+                pace.stepped(solver.t)
         self.accepted += taken
         self.rejected += round((solver.nfev - began) / STAGES) - taken
         self._dt = solver.h_abs
@@ -95,6 +109,38 @@ class EighthOrderStep:
     def forget(self) -> None:
         """Let the next step find its length anew."""
         self._dt = None
+
+
+class Pace:
+    """How far steps come: they end where they would never reach the end.
+
+    A solution that is driven to where its source jumps or is infinite, 1 / u at u = 0, crosses it again and again, in
+    steps that are ever so short but never fail.
+    """
+
+    def __init__(self, start: float, span: float) -> None:
+        self._end, self._before, self._taken, self._pace = start + span, start, 0, np.inf
+
+    def stepped(self, t: float) -> None:
+        """Note a step to the time t.
+
+        Raises
+        ------
+        NonFiniteSolution
+            If more than a million steps were to follow at a pace that does not fall: steps to a blow-up end by
+            themselves.
+        """
+        self._taken += 1
+        if self._taken % _LOOK:
+            return
+        before, self._before = self._before, t
+        last, self._pace = self._pace, t - before
+        if (self._end - t) * _LOOK > _MOST * self._pace and self._pace > 0.5 * last:
+            raise NonFiniteSolution(
+                f"the time steps have shrunk to {self._pace / _LOOK:.2g} at t = {t:.6g}, and would not reach "
+                f"t = {self._end:.6g}: the source may be singular where the solution has come to, or the problem too "
+                "stiff for these steps. End before, mend the source, or take another integrator."
+            )
 
 
 def absolute(atol: Absolute, t: float, u: np.ndarray) -> float:
@@ -106,7 +152,8 @@ def blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:
     """Return the error of a solution whose time step has shrunk to nothing."""
     return NonFiniteSolution(
         f"the solution grows without bound near t = {t:.6g}: the time step has shrunk to nothing, and the greatest |u| "
-        f"is {np.abs(u).max():.3g}. End before, or mend the source."
+        f"is {np.abs(u).max():.3g}. If that is not large, the source is singular where u has come to. End before, or "
+        "mend the source."
     )
 
 
