@@ -63,9 +63,8 @@ def test_the_profile_states_its_error(done):
     assert 0.0 < float(salt.interpolation_error) < 0.05
     assert names["later"].u.attrs["units"] == "g/L"
     assert (folder / "salt.nc").is_file()
-    assert fp.read_run(folder / "salt.nc").estimated_error.dims == (
-        "t",
-    )  # that of the command line
+    # Of the command line, which estimates the error.
+    assert fp.read_run(folder / "salt.nc").estimated_error.dims == ("t",)
 
 
 def test_the_puff_is_where_it_was_put(done):

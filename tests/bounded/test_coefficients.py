@@ -96,9 +96,8 @@ def test_transport_is_skew_but_for_half_of_the_slope_and_what_is_carried_out(ext
 )
 def test_no_wave_grows_faster_than_it_is_pressed_together(flow, pressed, speed, alpha):
     """d/dt sum V u^2 / 2 <= (max(-a') / 2 - lambda_1) sum V u^2; as a flux it was 1e9 for |a| = 100, alpha = 1.05."""
-    line = Interval(
-        alpha=alpha, particles=40, degree=4.0
-    )  # of 8 round-off is greater than what is looked for
+    # With degree 8 round-off would hide the bound.
+    line = Interval(alpha=alpha, particles=40, degree=4.0)
     a, root = speed * flow(line.x), np.sqrt(line.volumes)
     moved = np.stack([line.carried(u, 0.0 * u, [a]) for u in np.eye(40)], axis=1)
     form = root[:, None] * (line.matrix() + moved) / root

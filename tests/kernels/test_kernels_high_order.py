@@ -109,9 +109,8 @@ def test_the_first_orders_are_the_papers():
                 transforms = (kernel_transform, kernels.kernel_transform)
                 ours, papers = (f(name, k, alpha, dim=n) for f in transforms)
                 np.testing.assert_allclose(ours, papers, rtol=1e-12)
-            ours, papers = (
-                f("eta1", r, alpha, dim=n, order=4) for f in (kernel, kernels.kernel)
-            )  # (24)
+            # (24)
+            ours, papers = (f("eta1", r, alpha, dim=n, order=4) for f in (kernel, kernels.kernel))
             np.testing.assert_allclose(ours, papers, rtol=1e-12, atol=1e-14)
 
 

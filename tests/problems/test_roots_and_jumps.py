@@ -79,10 +79,7 @@ def test_a_jump_is_where_its_function_says(alpha):
     """In the middle third between two particles three times as many placed it as these do: a tenth of it was said."""
     fields, x, h = interval(144, alpha, (1.0, 2.0))
     left, right = (0.5 * (x[i] + x[i + 1]) for i in (71, 75))  # where half of them place it, too
-    low, high = (
-        left - 0.15 * h,
-        right + 0.15 * h,
-    )  # a thirteenth is between it and the particles'
+    low, high = left - 0.15 * h, right + 0.15 * h  # between that place and a particle
     width, middle = high - low, 0.5 * (low + high)
     given, transform = KINKS["box"]
     run, warned = solved(lambda x: given((x - middle) / width), **fields)

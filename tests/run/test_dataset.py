@@ -301,9 +301,7 @@ def test_what_is_not_a_data_set_is_refused(tmp_path):
         with pytest.raises(InvalidInput, match="path = "):
             fp.write(fp.solve(case(store="metrics")), path)
     with pytest.raises(InvalidInput, match=r"path = .* a NetCDF file, .* like a table"):
-        fp.write(
-            fp.solve(case(store="metrics")), tmp_path / "run.CSV"
-        )  # which solve would not read
+        fp.write(fp.solve(case(store="metrics")), tmp_path / "run.CSV")
 
 
 def test_the_mode_is_what_the_umask_leaves(tmp_path):

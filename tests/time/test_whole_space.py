@@ -460,9 +460,8 @@ def test_a_run_made_ready_has_all_digits_of_data_of_any_type(kind, terms):
 
 
 def test_after_no_time_the_solution_is_the_data():
-    u = np.cos(
-        np.arange(64.0)
-    )  # which no tail continues and no lattice of tails resolves: nothing is asked of them
+    # No tail continues a cosine, and the lattice does not resolve it: neither matters here.
+    u = np.cos(np.arange(64.0))
     for time in (0, 0.0, np.float64(0.0)):
         still = evolve(u, 0.1, 1.5, time)
         long, spacing = fp.evolve_long(u, 0.1, 1.5, time)

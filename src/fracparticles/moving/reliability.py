@@ -46,9 +46,8 @@ __all__ = [
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
 _OTHER = 0.05  # of the integral of |u|: the error of a run is this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
-_REMESHED = (
-    0.07  # above, a warning is given: the error of a run is about two thirds of this, of its peak
-)
+# Of the peak: a larger change is warned of. The error of a run is about two thirds of it.
+_REMESHED = 0.07
 _ROUNDED = 0.02  # epsilon: of the places, by all steps together
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 

@@ -49,9 +49,8 @@ def variable_diffusivity(alpha: float) -> Contest:
     bell = lambda x: np.exp(-x * x)
     diffusivity = lambda x: 1.0 + 0.5 * bell(x)
     fields: dict[str, Any] = {"alpha": alpha, "t_final": 1.0, "diffusivity": diffusivity}
-    fields["source"] = lambda x, t: source(
-        x, t
-    )  # a function: that is what a source is looked at as
+    # By its signature a source says of what it is a function.
+    fields["source"] = lambda x, t: source(x, t)
     peers = _peers(_PEERS, fields, bell, (diffusivity, None), source)
     error = greatest_error(lambda x: np.exp(-1.0) * bell(x))
     return Contest(error, on_lattices(["FPSE", "DD"], bell, **fields), peers)
