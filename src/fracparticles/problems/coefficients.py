@@ -1,4 +1,4 @@
-"""The coefficients of a problem, made of its fields, and what they say together."""
+"""The coefficients of a problem, made from its fields, and what follows from all of them."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class WithCoefficients(ProblemFields):
 
     @cached_property
     def diffusion(self) -> Coefficient:
-        """D."""
+        """The diffusivity D, a coefficient of place and time."""
         return Coefficient("diffusivity", self.diffusivity, (*AXES[: self.dim], "t"))
 
     @cached_property
     def transport(self) -> tuple[Coefficient, ...]:
-        """The components of a; none if there is no velocity."""
+        """The components of the velocity a, none without one; raises `InvalidInput` if they do not match the axes."""
         if self.velocity is None:
             return ()
         given = self.velocity if isinstance(self.velocity, tuple) else (self.velocity,)
@@ -39,41 +39,41 @@ class WithCoefficients(ProblemFields):
 
     @cached_property
     def reaction(self) -> Coefficient | None:
-        """f, or None."""
+        """The source f, or None."""
         if self.source is None:
             return None
         return Coefficient("source", self.source, (*AXES[: self.dim], "t", "u"))
 
     @cached_property
     def outside(self) -> Coefficient | None:
-        """g, or None."""
+        """The values g outside, or None."""
         if self.exterior_data is None:
             return None
         return Coefficient("exterior_data", self.exterior_data, (*AXES[: self.dim], "t"))
 
     @property
     def coefficients(self) -> list[Coefficient]:
-        """Those that there are."""
+        """All coefficients that the problem has."""
         every = [self.order_coefficient, self.diffusion, *self.transport]
         every += [one for one in (self.reaction, self.outside) if one is not None]
         return every
 
     @property
     def is_linear(self) -> bool:
-        """Whether the source says nothing of u."""
+        """Whether the source does not depend on u."""
         return self.reaction is None or "u" not in self.reaction.depends_on
 
     @property
     def adds(self) -> bool:
-        """Whether there is a source that says nothing of u: it adds to u, and leaves its errors as they are."""
+        """Whether there is a source that does not depend on u: it adds to u, and does not change the errors of u."""
         return self.reaction is not None and self.is_linear
 
     @property
     def is_autonomous(self) -> bool:
-        """Whether no coefficient says anything of t."""
+        """Whether no coefficient depends on t."""
         return all("t" not in one.depends_on for one in self.coefficients)
 
     @property
     def reproducible(self) -> bool:
-        """Whether the JSON text holds all of it: not if a coefficient is a function."""
+        """Whether the JSON text holds the whole problem; it does not if a coefficient is a function."""
         return all(one.reproducible for one in self.coefficients)

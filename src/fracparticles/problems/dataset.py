@@ -1,4 +1,4 @@
-"""A solved problem as a data set, of the same form as that of a run: see `run.dataset`."""
+"""A solved problem as a data set. Its form is that of the data set of a run, see `run.dataset`."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Layout", "domain_layout", "lattice_layout", "to_dataset"]
 
+# Fields that are stored as scalar coordinates: of every problem, and of one on a lattice.
 _STORED = ("half_width", "form", "exterior", "dim", "t_initial", "t_final", "rtol")
 _OF_A_LATTICE = ("order", "spacing", "overlap")
 
@@ -31,10 +32,11 @@ class Layout:
     axes : tuple of str
         Dimensions of u.
     coordinates : dict
-        By name, as xarray takes them.
+        The coordinates by name, as xarray takes them.
     integral : callable
-        The sum of V u.
+        Returns the sum of V u.
     scheme : str
+        The name of the scheme or of the kind of particles.
     """
 
     axes: tuple[str, ...]
@@ -44,7 +46,7 @@ class Layout:
 
 
 def lattice_layout(problem: Problem) -> Layout:
-    """Return that of a lattice."""
+    """Return the layout of a lattice."""
     case, fields = problem.case, type(problem).model_fields
     axes = ("x", "y")[: problem.dim]
     coordinates = {
@@ -57,7 +59,7 @@ def lattice_layout(problem: Problem) -> Layout:
 
 
 def domain_layout(problem: Problem) -> Layout:
-    """Return that of the particles of a bounded domain; those of a disc lie on rings, at equal angles."""
+    """Return the layout of the particles of a bounded domain. Those of a disc lie on rings, at equal angles."""
     domain = problem.bounded_domain
     place, places = _describe("particle position"), problem.places
     coordinates: dict[str, tuple] = {"domain": _scalar(problem.domain, "bounded domain")}
@@ -85,7 +87,7 @@ def to_dataset(
     estimates: dict[str, tuple[list[float], str]],
     origin: str,
 ) -> xr.Dataset:
-    """Return u at t_final, or along t at each of `times`, with what the solution took and may be off by.
+    """Return u at t_final, or along t at each of `times`, with the cost of the solution and estimates of its error.
 
     Parameters
     ----------
@@ -94,9 +96,9 @@ def to_dataset(
     u0 : array
         Initial strengths.
     estimates : dict
-        By name a value for each output time, and what it is in words.
+        By name: a value for each output time, and its meaning in words.
     origin : str
-        What the initial data were given as.
+        Where the initial data come from, in words.
     """
     import xarray as xr
 
@@ -158,7 +160,7 @@ def to_dataset(
 
 
 def _diffusion(problem: Problem) -> str:
-    """What the form converges to."""
+    """Return the diffusion operator to which the form converges, in words."""
     if problem.order_coefficient.constant is None:
         return "-D (-Laplacian)^(alpha(x)/2) u"
     if problem.form == "exchange" and problem.diffusion.depends_on - {"t"}:

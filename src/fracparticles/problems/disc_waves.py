@@ -1,12 +1,12 @@
 """Waves that a velocity makes on a disc of few particles.
 
-Some may grow, but no faster than u is pressed together, see `bounded.disc_transport`: at max(-div a) / 2, less the
-lowest rate of the diffusion. Where div a = 0 none does. Nor does any of u_t = D A u - div(a u): int |u| falls, or
-stays, while int u^2 grows. So an eigenvalue with a positive real part is the particles' own, of a layer that is pressed
-together to less than the distance of rings.
+Some waves may grow, at most at the rate max(-div a) / 2 less the lowest rate of the diffusion, see
+`bounded.disc_transport`. Where div a = 0 no wave grows. No mode of the equation u_t = D A u - div(a u) grows either:
+int |u| falls or stays, even while int u^2 grows. So an eigenvalue with a positive real part belongs to the particles.
+Its wave is a layer that the velocity presses together to less than the distance of rings.
 
-Others are too short for the angles. A velocity takes each wave along the rings for its neighbours, and those beyond the
-shortest for others. In the modes a high wave may be slow, so that its rate does not tell.
+Other waves are too short for the angles. A velocity couples each wave along the rings to its neighbours, and takes
+those beyond the shortest for longer ones. In the modes a high wave may be slow, so that its rate does not tell.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from fracparticles.problems.problem import Problem
 
 __all__ = ["high_waves", "warn_of_growth"]
 
-_MOST = 300  # particles whose eigenvalues take no longer than a run; of more those of fewer tell, by `space_error`
-_GROWTH = np.log(10.0)  # of a wave over the run, before there is a warning
-_ROUND_OFF = -np.log(np.finfo(float).eps)  # what makes of the last digit the first
+_MOST = 300  # particles whose eigenvalues take no longer than a run; for more, runs on fewer tell, by `space_error`
+_GROWTH = np.log(10.0)  # log of the growth of a wave over the run from which there is a warning
+_ROUND_OFF = -np.log(np.finfo(float).eps)  # log of the growth that makes the last digit the first
 
 
 def warn_of_growth(problem: Problem, rates: DomainRates) -> None:
-    """Look for waves that grow on a disc of few particles, by the velocity at three times, if they can.
+    """Look for waves that grow on a disc of few particles, with the velocity at three times.
 
     Raises
     ------
     NonFiniteSolution
-        If they grow so much that they are all that is left of u.
+        If they grow from round-off to the size of u.
 
     Warns
     -----

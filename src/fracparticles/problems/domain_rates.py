@@ -1,13 +1,14 @@
 """The right-hand side of a problem on a bounded domain, between its particles:
 
-    v' = B(t) v + div(...) of what is held outside - div(a u) + f(x, t, u) - w',    u = w + v,
+    v' = B(t) v + B(t) w - div(a u) + f(x, t, u) - w',    u = w + v.
 
-w has the values outside, v = 0 there, and B is D A, or the exchange with the mean of a pair, or on the interval
+The field w has the values outside, and v = 0 there. B is D A, or the exchange with the mean of a pair, or on the
+interval
 
     D A v + D' grad^beta v = div(D grad^beta v).
 
-On the interval and the disc B is taken in its modes: those of the greatest D of the run at each place; what is left of
-it is beside them, like all else.
+On the interval and the disc B is solved in its modes, those with the greatest D of the run at each place. The rest of B
+is beside the modes, like all other terms.
 """
 
 from __future__ import annotations
@@ -28,10 +29,11 @@ from fracparticles.time.fading import slope_of
 
 __all__ = ["DomainRates"]
 
-_LOOKS = 33  # at a diffusivity that depends on time
-_UNIFORM = 1e-6  # of a rate, its round-off where g is greater
-_FADED = 1e-290
-_KNOWN = 1e12  # of the slowest rate; the modes know 1e15 of it
+_LOOKS = 33  # times at which a diffusivity that depends on time is evaluated
+# The relative difference up to which rates of decay count as equal: it is round-off where g is greater than c u.
+_UNIFORM = 1e-6
+_FADED = 1e-290  # the greatest |u| up to which df/du is taken at u = 0
+_KNOWN = 1e12  # times the slowest rate up to which a mode counts as known; the modes reach 1e15
 
 
 class DomainRates:
@@ -40,11 +42,11 @@ class DomainRates:
     Attributes
     ----------
     evaluations : int
-        How often it has been asked for.
+        How often the right-hand side has been evaluated.
     lift : callable
-        w and what it does, by time.
+        Returns w and its terms at a time, see `bounded.given.Lift`.
     source : callable or None
-        f(t, u).
+        f(t, u) at the particles.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -64,7 +66,7 @@ class DomainRates:
         self._kept: tuple[float, tuple[Any, Any, list[Any]]] | None = None
 
     def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
-        """Return dv/dt for v = u, flat as that."""
+        """Return dv/dt for a v that is given as `u`, both flat."""
         field = u.reshape(self.shape)
         with np.errstate(over="ignore", invalid="ignore"):
             return np.asarray(self._spread(field, self._now(t)[0]) + self.beside(t, field)).reshape(
@@ -76,7 +78,7 @@ class DomainRates:
         return self._forcing(t, v) + self._lower(t, v)
 
     def _forcing(self, t: float, v: np.ndarray) -> np.ndarray:
-        """What is held outside, and the source."""
+        """Return the terms of the values outside, and the source."""
         self.evaluations += 1
         now, (d, slope, velocity), domain = self.lift(t), self._now(t), self.domain
         total = d * now.load - now.slope
@@ -91,7 +93,7 @@ class DomainRates:
         return np.asarray(total)
 
     def _lower(self, t: float, v: np.ndarray) -> np.ndarray:
-        """The linear parts of lower order than the diffusion."""
+        """Return the linear terms of lower order than the diffusion."""
         total, (_, slope, velocity) = np.zeros(v.shape), self._now(t)
         if self._flux:
             total += slope * self._line.gradient(v)
@@ -100,7 +102,7 @@ class DomainRates:
         return total
 
     def _now(self, t: float) -> tuple[Any, Any, list[Any]]:
-        """D, D' and a at one time, kept until another is asked for."""
+        """Return D, D' and a at one time; they are kept until the next time."""
         if self._kept is None or self._kept[0] != t:
             d = self._d(t)
             slope = self._line.slope(d) if self._flux else None
@@ -109,7 +111,7 @@ class DomainRates:
 
     @cached_property
     def modes(self) -> Modes:
-        """Those of the greatest D of the run."""
+        """The modes of B with the greatest D of the run."""
         problem, domain = self.problem, self.domain
         assert isinstance(domain, ModalDomain)
         if not self._varies:
@@ -118,11 +120,11 @@ class DomainRates:
         return domain.modes_with(np.asarray(self._greatest), problem.form)
 
     def beside_modes(self, t: float, v: np.ndarray) -> np.ndarray:
-        """Return dv/dt without what is in the modes."""
+        """Return dv/dt without the decay of the modes."""
         return self._forcing(t, v) + self.modes.back(self._in_modes(t, v))
 
     def derivative_in_modes(self, t: float, v: np.ndarray) -> np.ndarray:
-        """Return the derivative of what is beside the modes, between their amplitudes, shape (N, N)."""
+        """Return the derivative of `beside_modes` by v, between amplitudes of the modes, shape (N, N)."""
         modes = self.modes
         if not self._steady_matrix or self._matrix is None:
             columns = (self._in_modes(t, modes.back(e)) for e in np.eye(modes.rates.size))
@@ -138,11 +140,11 @@ class DomainRates:
         if self.source is None or self.problem.is_linear:
             return np.zeros(v.shape)
         u = v + self.lift(t).base
-        # A difference of a share of what has faded would be nothing over nothing.
+        # Where u has faded, a difference by a share of u would be zero over zero.
         return slope_of(self.source, t, u if np.abs(u).max() > _FADED else 0.0 * u)
 
     def decay(self, v: np.ndarray) -> float:
-        """Return c >= 0 of a source -c u + g(x), by what it makes of u and of -u/2; 0 of any other."""
+        """Return c >= 0 of a source -c u + g(x), from its values for u and for -u/2; 0 for any other source."""
         f, t, reaction = self.source, self.problem.t_initial, self.problem.reaction
         if f is None or reaction is None or "t" in reaction.depends_on or self.problem.is_linear:
             return 0.0
@@ -156,15 +158,15 @@ class DomainRates:
 
     @property
     def only_decays(self) -> bool:
-        """Whether nothing makes u where there is none: no value outside, and a source that is zero for u = 0."""
+        """Whether u = 0 stays zero: there are no values outside, and the source is zero for u = 0."""
         start = self.problem.t_initial
         made = 0.0 if self.source is None else self.source(start, np.zeros(self.shape))
         return self.problem.exterior != "given" and not np.any(made)
 
     def growth(self, t: float) -> float:
-        """Return the greatest real part of an eigenvalue of what is linear in v, without the source.
+        """Return the greatest real part of the eigenvalues of the terms linear in v, without the source.
 
-        That of the equation is not positive.
+        For the equation itself it is not positive.
         """
         each = (e.reshape(self.shape) for e in np.eye(self.domain.volumes.size))
         columns = (self._spread(e, self._now(t)[0]) + self._lower(t, e) for e in each)
@@ -181,17 +183,17 @@ class DomainRates:
         return least * float(self.domain.eigenvalues(1)[0])
 
     def _in_modes(self, t: float, v: np.ndarray) -> Any:
-        """What is linear beside the modes; of those so fast that they are not known nothing, and nothing of their D."""
+        """Return the linear terms beside the modes; modes too fast to be known, and their part of D, are left out."""
         modes, part = self.modes, self._lower(t, v)
         y = np.where(self._is_known, modes.into(v), 0.0)
         less = self._now(t)[0] - self._greatest
         if self._varies and "t" in self.problem.diffusion.depends_on:
             part += self._spread(modes.back(y), less)  # linear in D
         found = np.where(self._is_known, modes.into(part), 0.0)
-        if not self._varies:  # in the modes it is a factor
+        if not self._varies:  # D is then one factor for all modes
             found -= less / self._greatest * modes.rates * y
         if self.problem.exterior == "reflecting":
-            found.flat[0] = 0.0  # of the constant: the total
+            found.flat[0] = 0.0  # the mode of the constant: the total is kept
         return found
 
     @cached_property
@@ -210,7 +212,7 @@ class DomainRates:
 
     @property
     def _looks(self) -> np.ndarray:
-        """Times at which a diffusivity may differ."""
+        """Times at which the diffusivity is evaluated."""
         count = _LOOKS if "t" in self.problem.diffusion.depends_on else 1
         return np.linspace(self.problem.t_initial, self.problem.t_final, count)
 

@@ -1,8 +1,8 @@
-"""Problems on bounded domains: which fields they have, what of them makes sense together, and their particles.
+"""Problems on bounded domains: which fields they have, which values fit together, and their particles.
 
-On an interval, a square or a disc there is no lattice: `particles` says how many there are, and `exterior` what u is
-outside. A diffusivity that varies in space has the flux form div(D grad^beta u) on the interval (form="FPSE"), and
-everywhere that of the exchange with the mean of a pair (form="exchange"), which is the one that conserves.
+On an interval, a square or a disc there is no lattice. `particles` gives the number of particles, and `exterior` says
+what u is outside. On the interval a diffusivity that varies in space may have the flux form div(D grad^beta u)
+(form="FPSE"). On every domain it may have the exchange with the mean of a pair (form="exchange"), which conserves.
 """
 
 from __future__ import annotations
@@ -30,11 +30,12 @@ __all__ = [
 ]
 
 DOMAINS = ("interval", "square", "disc")
+# Particles on the interval, or along a side of the square, or rings of the disc: the default, the fewest and the most.
 _USUAL = {"interval": 200, "square": 64, "disc": 64}
 _RANGE = {"interval": (16, 4000), "square": (8, 512), "disc": (8, 128)}
 OF_A_LATTICE = ("spacing", "order", "overlap", "far_terms")
-_NORMAL = 1e-9  # of the greatest velocity, what may point through an edge that nothing leaves
-# Particles in a disc, whose modes with a diffusivity that varies are those of one matrix.
+_NORMAL = 1e-9  # share of the greatest velocity that may point through an edge that nothing leaves
+# Particles in a disc with a diffusivity that varies: all its modes are those of one matrix.
 _MOST = 2100
 
 
@@ -44,7 +45,7 @@ def is_bounded(exterior: str) -> bool:
 
 
 def with_dim(fields: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields with the dimension and the domain that the others say."""
+    """Return the fields with the dimension and the domain that follow from the others."""
     domain, exterior, dim = fields.get("domain"), fields.get("exterior"), fields.get("dim", 1)
     if isinstance(domain, str) and domain in ("square", "disc"):
         fields.setdefault("dim", 2)
@@ -55,7 +56,7 @@ def with_dim(fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def sample_points(domain: str | None, half_width: float, dim: int) -> tuple[np.ndarray, ...]:
-    """Return some points of the domain: its edge, its middle, and what lies between them."""
+    """Return some points of the domain: at its edge, in its middle and between them."""
     axis = np.linspace(-half_width, half_width, 257 if dim == 1 else 33)
     if domain != "disc":
         return tuple(np.meshgrid(*(axis,) * dim, indexing="ij", sparse=True))
@@ -72,16 +73,23 @@ def make_domain(problem: WithCoefficients) -> Domain:
         return Interval(alpha=alpha, particles=count, ends=(-half, half), exterior=exterior)
     if domain == "square":
         return Square(alpha, count, exterior, half_width=half)
-    # As many angles as rings at half the radius have room for, and an even number.
+    # The number of angles is even, and as great as the ring at half the radius has room for.
     return Disc(alpha, count, 2 * (max(8, count // 2) // 2), exterior, radius=half)
 
 
 def check_domain(problem: WithCoefficients, looks: np.ndarray) -> None:
-    """Refuse what a lattice has and a domain has not, the other way round, and what makes no sense there.
+    """Refuse fields of a lattice on a domain, fields of a domain on a lattice, and values that do not fit together.
+
+    Parameters
+    ----------
+    problem : WithCoefficients
+    looks : array
+        Times at which a velocity that depends on time is evaluated.
 
     Raises
     ------
     InvalidInput
+        If one of these is given; says what is allowed.
     """
     given = problem.model_fields_set
     if not is_bounded(problem.exterior):
@@ -161,7 +169,7 @@ def _sampled(one: Callable[..., Any], points: tuple[np.ndarray, ...], t: float) 
 
 
 def _through(domain: str | None, a: list[np.ndarray]) -> Iterator[tuple[str, np.ndarray]]:
-    """The part of a velocity at `sample_points` that points through the edge."""
+    """Yield the places of the edge, and the part of a velocity at `sample_points` that points through it."""
     if domain == "interval":
         yield "ends, zero there", a[0][[0, -1]]
     elif domain == "square":

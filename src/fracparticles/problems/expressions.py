@@ -1,6 +1,6 @@
 """The coefficients of a problem: a number, a text such as "1 + tanh(x)", or a function.
 
-What a text may hold, see `formulas`. A function is called with as many of the variables as it takes, in their order.
+For what a text may hold see `formulas`. A function is called with as many of the variables as it takes, in their order.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ class Coefficient:
     Parameters
     ----------
     field : str
-        What it is called in messages.
+        Its name in messages.
     given : float, str or callable
         The number, the text, or the function.
     variables : sequence of str
-        What it may depend on, in the order of the arguments of a function.
+        The variables that it may depend on, in the order of the arguments of a function.
 
     Attributes
     ----------
     depends_on : frozenset of str
-        The variables that the text holds; of a function, those that it takes.
+        The variables in the text; for a function, those that it takes.
 
     Raises
     ------
     InvalidInput
-        With the place in the text, what is there, and what is allowed.
+        If it is none of these, or a text holds something else; names the place in the text, and what is allowed.
     """
 
     def __init__(self, field: str, given: Any, variables: Sequence[str]) -> None:
@@ -65,20 +65,20 @@ class Coefficient:
 
     @property
     def constant(self) -> float | None:
-        """The number that it is everywhere and always, or None."""
+        """Its value if this is the same everywhere and always, else None."""
         if self.depends_on:
             return None
         return float(np.asarray(self(dict.fromkeys(self.variables, 0.0)))) + 0.0
 
     def __call__(self, values: Mapping[str, Any]) -> np.ndarray:
-        """Return its values by those of the variables, of the shape that these broadcast to.
+        """Return its values for values of the variables by name, of the shape to which these broadcast.
 
-        What overflows is infinite or nan.
+        Values that overflow are infinite or nan.
 
         Raises
         ------
         InvalidInput
-            If a function fails, or returns something else than a number for each point.
+            If a function fails, or does not return a number for each point.
         """
         shape = np.broadcast_shapes(*(np.shape(one) for one in values.values()))
         with np.errstate(all="ignore"):
@@ -102,7 +102,7 @@ class Coefficient:
             return self.given(*(_read_only(values[name]) for name in self.variables[: self._takes]))
         except InvalidInput:
             raise
-        except Exception as error:  # whatever it may raise
+        except Exception as error:  # it may raise anything
             what = f"a function of arrays of {', '.join(self.variables)} ({reason_of(error)})"
             raise InvalidInput(self.field, self.given, what, "Mend the function.") from error
 
@@ -112,7 +112,7 @@ class Coefficient:
         Raises
         ------
         InvalidInput
-            With the place and the time where it is not, of several the least.
+            If one is not; names the place and the time of the worst.
         """
         result = self(values)
         good = np.isfinite(result)
@@ -137,21 +137,21 @@ class Coefficient:
 
 
 def _read_only(value: Any) -> Any:
-    """A view that the function cannot change: the array is the integrator's, or the lattice."""
+    """Return a view that the function cannot change: the array belongs to the integrator, or is the lattice."""
     view = np.asarray(value).view()
     view.flags.writeable = False
     return view
 
 
 def _arguments_of(field: str, function: Callable[..., Any], variables: Sequence[str]) -> int:
-    """How many of the variables a function takes: as many as it can."""
+    """Return how many of the variables a function takes: as many as it can."""
     counts = range(len(variables), 0, -1)
     if isinstance(function, np.ufunc):
         takes = [count for count in counts if count == function.nin]
     else:
         try:
             signature = inspect.signature(function)
-        except (TypeError, ValueError):  # of one written in C
+        except (TypeError, ValueError):  # a function written in C
             return len(variables)
         takes = [count for count in counts if _binds(signature, count)]
     if not takes:

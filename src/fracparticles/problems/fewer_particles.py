@@ -1,20 +1,24 @@
-"""The error that the particles leave: what is known of it, and the rest by the problem on half and a quarter of them.
+"""The error that the particles leave: a known part, and the rest from the problem on half and a quarter of them.
 
-Known is what they make of the initial data alone, see `frozen` and `finer_particles`: the largest such error, where the
-data are an array and may be one or the other thing between the particles. That of the smoothest of these is taken off
-each u before they are compared, where that brings them together. With d_1 the distance between u and what half of the
-particles along each axis make of it, and d_2 that between half and a quarter, each half of the spacing leaves
-r = d_1 / d_2 of the distance before. All those that are still to come are the rest of the error,
+The known part is the error from the initial data alone, see `frozen` and `finer_particles`. An array may stand for
+several data between the particles: then the largest of their errors counts. Before two solutions are compared, the
+error of the smoothest of these data is taken off each, if that brings the two closer together.
 
-    d_1 (r + r^2 + ..) = d_1 r / (1 - r),
+Let d_1 be the distance between u and the solution on half of the particles along each axis, and d_2 that between half
+and a quarter. Each halving of the spacing leaves r = d_1 / d_2 of the distance before. The distances that are still to
+come add up to the rest of the error,
 
-of an order p d_1 / (2^p - 1), but at least d_1 / 32, and d_1 where r >= 1/2. So kinks and jumps of a coefficient, where
-the order is one or two whatever that of the kernels, have their own factor. The quarter is taken only where d_1 is
-large; else, or where a quarter is too few, the rest is d_1 / 3, that of the order two, and on a disc with a velocity
-d_1, since waves that its angles are too few for have no order. Where half of the particles make something infinite,
-nothing is known of the error: it is infinite. Fields are compared where the fewer particles are, by splines between the
-others; their distance is the larger of the greatest difference over the greatest |u|, and of int |difference| over
-int |u|, which sees what is beside a peak at an end.
+    d_1 (r + r^2 + ..) = d_1 r / (1 - r).
+
+For the order p this is d_1 / (2^p - 1). It is taken as d_1 / 32 at least, and as d_1 where r >= 1/2. So kinks and jumps
+of a coefficient, where the order is one or two for any kernel, have their own factor. The quarter is solved only if d_1
+is large. If not, or if a quarter is too few, the rest is d_1 / 3, as for the order two. On a disc with a velocity it is
+d_1, since waves for which the angles are too few have no order. If the solution on half of the particles becomes
+infinite, the error is infinite: nothing is known of it.
+
+Fields are compared at the fewer particles, by splines between the others. Their distance is the larger of two: the
+greatest |difference| over the greatest |u|, and int |difference| over int |u|. The second sees errors beside a peak at
+an end.
 """
 
 from __future__ import annotations
@@ -41,12 +45,13 @@ __all__ = [
 ]
 
 SPACE_ERROR = 0.03
-"""Of the greatest |u|, an error that is said."""
+"""The error over the greatest |u| from which there is a warning."""
 
-_HALVINGS = 2
-_LEAST, _UNKNOWN = 1 / 32, 1 / 3  # the factor: at least, and where d_2 is not known
+_HALVINGS = 2  # of the particles along each axis
+_LEAST, _UNKNOWN = 1 / 32, 1 / 3  # the factor of d_1: the least, and the one if d_2 is not known
+# The fewest particles across a domain, rings of a disc, or, on a lattice, from the middle to an end.
 _FEWEST = {"interval": 16, "square": 8, "disc": 8, None: 8}
-# Of fewer rings, half have about as many angles, and do not see what a velocity makes of those.
+# Half of fewer rings have about as many angles, and do not see the error by the angles.
 _LEAST_RINGS = 24
 
 Estimates = dict[str, tuple[list[float], str]]
@@ -65,9 +70,9 @@ def space_errors(
     solve: Solve,
     known: Known = _nothing,
 ) -> list[float] | None:
-    """Return the error at each output time; None if there are too few particles, or a function is for these alone.
+    """Return the relative error at each output time; None if the particles are too few, or a function needs them all.
 
-    Even then an error that is known, and large, is returned.
+    The known part is returned even then, if it is large.
 
     Parameters
     ----------
@@ -77,9 +82,9 @@ def space_errors(
     fields : list of arrays
         u at each output time.
     solve : callable
-        From a problem and its initial data to such a list.
+        Returns such a list for a problem and its initial data.
     known : callable
-        From these and such a list to the errors at the particles that may be known beforehand, see `frozen`.
+        Returns the known errors at the particles for a problem, its initial data and such a list, see `frozen`.
     """
     apart: list[np.ndarray] = []
     errors = _quietly(known, problem, initial, fields)
@@ -94,7 +99,7 @@ def space_errors(
             if not (initial is None or callable(initial)):
                 initial = among(problem, fewer, initial)
             coarse = _quietly(solve, fewer, initial)
-        except InvalidInput:  # too few particles, or a function that knows its own alone
+        except InvalidInput:  # too few particles, or a function that is valid only at its own
             break
         except NonFiniteSolution:
             apart.append(np.full(len(fields), np.inf))
@@ -109,7 +114,7 @@ def space_errors(
         if apart[0].max() <= SPACE_ERROR:
             break
         problem, fields, errors = fewer, coarse, coarse_errors
-    if not apart:  # what is known is a part of the error alone: said where it is large
+    if not apart:  # the known part is not the whole error: it counts only if it is large
         return list(least) if least.max() > SPACE_ERROR else None
     factor = np.full(len(fields), 1.0 if carried else _UNKNOWN)
     if len(apart) > 1:
@@ -122,21 +127,21 @@ def _smoothest(errors: list[list[np.ndarray]]) -> list[Any]:
 
 
 def _quietly(call: Callable[..., list[Any]], *given: Any) -> list[Any]:
-    """Call without warnings: the run itself has given them, and some are of places that are no particles."""
+    """Call without warnings: the run itself has given them, and some concern places without a particle."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         return call(*given)
 
 
 def _still_to_come(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """r / (1 - r), r = d_1 / d_2, of each output time; 1 where a quarter says nothing."""
+    """Return r / (1 - r), r = d_1 / d_2, for each output time; 1 where the quarter tells nothing."""
     known = np.isfinite(second) & (first < 0.5 * second)
     factor = first / np.where(known, second - first, 1.0)
     return np.where(known, np.maximum(factor, _LEAST), 1.0)
 
 
 def with_space_error(found: Estimates, *given: Any) -> Estimates:
-    """Return the estimates with that of `space_errors`, if there is one."""
+    """Return the estimates, together with that of `space_errors` if there is one."""
     errors = space_errors(*given)
     if errors is None:
         return found
@@ -153,7 +158,7 @@ def _distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:
 
 
 def halved(problem: Problem) -> Problem:
-    """The problem on half as many particles along each axis; raises `InvalidInput` if these are too few."""
+    """Return the problem on half as many particles along each axis; raises `InvalidInput` if these are too few."""
     half, least = _count(problem) // 2, _FEWEST[problem.domain]
     if half < least:
         raise InvalidInput("particles", half, f"at least {least}", "Take more.")
@@ -169,14 +174,14 @@ def halved(problem: Problem) -> Problem:
 
 
 def _count(problem: Problem) -> int:
-    """Particles across an interval or a square, rings of a disc; on a lattice from the middle to an end."""
+    """Return the particles across an interval or a square, rings of a disc, or, on a lattice, from the middle on."""
     if problem.is_bounded:
         return problem.bounded_domain.volumes.shape[0]
     return problem.case.x.size // 2
 
 
 def axes_of(problem: Problem) -> list[tuple[np.ndarray, bool]]:
-    """For each axis the variable in which its particles are equally spaced, from 0 to 1, and whether it is an angle."""
+    """Return for each axis a variable from 0 to 1 in which its particles are equally spaced, and if it is an angle."""
     if not problem.is_bounded:
         return [(np.linspace(0.0, 1.0, problem.case.x.size), False)] * problem.dim
     angle = [False, problem.domain == "disc"]
@@ -188,7 +193,7 @@ def axes_of(problem: Problem) -> list[tuple[np.ndarray, bool]]:
 
 
 def among(problem: Problem, fewer: Problem, u: np.ndarray) -> np.ndarray:
-    """Return a field of the problem where the fewer particles are, by splines along each axis."""
+    """Return a field of the problem at the fewer particles, by splines along each axis."""
     for axis, ((s, turns), (at, _)) in enumerate(
         zip(axes_of(problem), axes_of(fewer), strict=True)
     ):

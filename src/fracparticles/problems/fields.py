@@ -1,4 +1,4 @@
-"""The fields of a problem, one by one; what they say together is in `problem`."""
+"""The fields of a problem, one by one; `problem` checks them together."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _COEFFICIENT = "A number, an expression in x, y and t, or a function of them."
 
 
 class ProblemFields(Checked):
-    """What a problem is given as."""
+    """The fields that define a problem."""
 
     beta: Any = Field(
         description="Fractional order beta = alpha - 1. Between 0 and 1 (exclusive); a number, or for a variable order "

@@ -1,27 +1,27 @@
-"""What the particles of a bounded domain make of the initial data by diffusion alone, beside three times as many.
+"""The error of diffusion alone on the particles of a bounded domain, from runs on three times as many.
 
-A kink between the particles has its error from the first moment on, which half of the particles cannot tell, see
-`frozen`. Three times as many along each axis have a third of it, so that two thirds are known. Without a velocity and a
-source, and with a D that rests, a step may have any length: see `steady_diffusion`.
+A kink between the particles has its error from the first moment on. Half of the particles cannot tell it, see `frozen`.
+Three times as many along each axis have a third of the error, so that two thirds of it are known. Without a velocity
+and a source, and with a steady D, a step may have any length: see `steady_diffusion`.
 
-A function is given to three times as many as its mean over the cell of each, less a twenty-fourth of the second
-differences: so their total is that of the function, and of what is smooth these are its values but for h^4. By values a
-jump would be placed as the fewer place it, wherever it is in the middle third between two of these.
+On three times as many particles a function is given by its mean over each cell, less a twenty-fourth of the second
+differences. So the total is that of the function, and where the function is smooth these are its values up to h^4. With
+values alone, a jump in the middle third between two of the fewer particles would lie where those place it.
 
-Data that are |x|^p with an infinite bend look the same from a third of the spacing, 3^-p as large, and what is three
-times as narrow spreads in the time 3^-alpha. So with d(t) the distance from three times as many, the error at t is
+Data like |x|^p with an infinite bend look the same at a third of the spacing, 3^-p as large, and a shape a third as
+wide spreads in 3^-alpha of the time. So with d(t) the distance from the run on three times as many, the error at t is
 
     sum_k 3^(-k p) d(3^(k alpha) t),
 
-of times up to h^alpha / D; what is beyond falls by thirds. Before h^alpha the first of these does not see that three
-times as many leave most of the tip of a root: without the others a seventh of its error was known.
+over times up to h^alpha / D; the terms beyond fall by thirds. Before h^alpha the first term is too small, because three
+times as many particles still leave out most of the tip of a root: it was a seventh of the error.
 
-Where three times as many take more than a second, and the data are rough, fewer are given the same data. At the same
-t / h^alpha the error of n' particles for n is (n' / n)^p of theirs. Where that is no time for their domain theirs is
-taken at an earlier one, t l^alpha, and falls with the spacing for the rest: as (n' / n)^(1 + p) l. How a jump lies
-between n' particles is not how it lies between n, and so there it may lie anywhere, as in an array: see `interpolants`.
-Of data that are not rough nothing is known then: fewer particles may not see how smooth they are. With a D or values
-outside that change in time each time is its own, l = 1, and the sum has one term.
+If a run on three times as many takes more than a second, and the data are rough, n' < n particles are given the same
+data. At the same t / h^alpha the error of n particles is (n' / n)^p times theirs. If that time is too long for the
+domain, their error is taken at an earlier time, t l^alpha, and falls with the spacing for the rest: as
+(n' / n)^(1 + p) l. A jump lies differently between n' particles than between n. So it may lie anywhere there, as in an
+array: see `interpolants`. If the data are not rough, nothing is known then: fewer particles may not see how smooth they
+are. If D or values outside change in time, the time is not scaled, l = 1, and the sum has one term.
 """
 
 from __future__ import annotations
@@ -41,34 +41,31 @@ from fracparticles.problems.steady_diffusion import diffused
 
 __all__ = ["errors_of_diffusion", "values_of"]
 
-_MOST = {
-    "interval": 300,
-    "square": 32,
-    "disc": 24,
-}  # particles of which thrice as many take a second
+# Particles along an axis, or rings, of which three times as many take a second.
+_MOST = {"interval": 300, "square": 32, "disc": 24}
 # Rings likewise, where D varies in space: all their modes are in one matrix.
 _MOST_IN_ONE = 16
-_WRAPPED = 12  # places that an angle goes on beyond a turn
-_PARTS = 8  # of a cell along each axis, at which a function is looked at
-_JUMP = 0.25  # a power that is that of a jump
-_TERMS = 4  # of the sum: a ninth of the last is left out at a jump
+_WRAPPED = 12  # particles by which an angle is continued beyond a turn
+_PARTS = 8  # parts of a cell along each axis, in whose middles a function is evaluated
+_JUMP = 0.25  # a smaller power p is that of a jump
+_TERMS = 4  # terms of the sum; at a jump the others are a ninth of the last
 
 
 def errors_of_diffusion(
     problem: Problem, initial: Any, fields: list[np.ndarray], solve: Solve
 ) -> list[list[np.ndarray]]:
-    """Return at each output time the error at the particles, for all that the data may be; none where nothing is known.
+    """Return at each output time the errors at the particles, one for each form of the data; none if none is known.
 
     Parameters
     ----------
     problem : Problem
-        Of a bounded domain.
+        A problem on a bounded domain.
     initial : callable or array
         The initial data: a function, or values at the particles, see `interpolants`.
     fields : list of arrays
-        u at each output time, in whose size the errors are.
+        u at each output time; the errors are scaled to its size.
     solve : callable
-        From a problem and its initial data to such a list.
+        Returns such a list for a problem and its initial data.
     """
     nothing: list[list[np.ndarray]] = [[] for _ in fields]
     count = fields[0].shape[0]
@@ -89,7 +86,7 @@ def errors_of_diffusion(
         some, many = some.model_copy(update=update), many.model_copy(update=update)
         made = diffused(some, values, solve)
         finer = [[among(many, some, w) for w in diffused(many, one, solve)] for one in given]
-    except (InvalidInput, NonFiniteSolution):  # a function that knows its own particles alone
+    except (InvalidInput, NonFiniteSolution):  # a function that is valid only at its own particles
         return nothing
     sizes = [1.0 if problem.adds else 1.0 / (_greatest(v) or 1.0) for v in made]
     return [
@@ -107,7 +104,7 @@ def errors_of_diffusion(
 def _terms(
     some: Problem, ratio: float, p: float | None, most_terms: int
 ) -> list[list[tuple[float, float]]]:
-    """For each output time the times at which the distance is taken, and the share of each, see above."""
+    """Return for each output time the times at which the distance is taken, and the factor of each, see the module."""
     start, d, outside = some.t_initial, some.diffusion, some.outside
     steady = "t" not in d.depends_on and (outside is None or "t" not in outside.depends_on)
     if p is None or not steady:
@@ -127,7 +124,7 @@ def _terms(
 
 
 def _with_means(problem: Problem, initial: Any) -> np.ndarray:
-    """The mean of a function over each cell, less a twenty-fourth of the second differences; at an end its value."""
+    """Return the mean of a function over each cell, less 1/24 of the second differences; at an end its value."""
     values, axes = values_of(problem, initial), axes_of(problem)
     parts = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
     places = []
@@ -163,14 +160,14 @@ def _most(problem: Problem) -> int:
 
 
 def values_of(problem: Problem, initial: Any) -> np.ndarray:
-    """Return the initial data at the particles; raises `InvalidInput` if a function does not know these."""
+    """Return the initial data at the particles; raises `InvalidInput` if a function is not valid at these."""
     return _asked(lambda: problem.bounded_domain.values("initial", initial), initial)
 
 
 def _asked(values: Callable[[], Any], initial: Any) -> np.ndarray:
     try:
         return np.asarray(values())
-    except Exception as error:  # whatever a function may raise that knows its own particles alone
+    except Exception as error:  # a function that is valid only elsewhere may raise anything
         what = "a function of the place"
         raise InvalidInput(
             "initial", initial, what, "Evaluate it where it is asked for."
@@ -178,7 +175,7 @@ def _asked(values: Callable[[], Any], initial: Any) -> np.ndarray:
 
 
 def _interpolated(some: Problem, many: Problem, values: np.ndarray) -> list[np.ndarray]:
-    """What the values of some particles may be at many."""
+    """Return what data with these values at some particles may be at many, see `interpolants`."""
     places = [
         np.round(at * n - 0.5 * (not turns), 9)  # at a particle, without round-off
         for n, (_, turns), (at, _) in zip(values.shape, axes_of(some), axes_of(many), strict=True)
@@ -190,7 +187,7 @@ def _interpolated(some: Problem, many: Problem, values: np.ndarray) -> list[np.n
 def _unwound(
     problem: Problem, values: np.ndarray, places: list[np.ndarray]
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Values that go on beyond a turn along each angle, and places among them, in spacings behind the first."""
+    """Return values continued beyond a turn along each angle, and places among them, in spacings behind the first."""
     places = list(places)
     for axis, (_, turns) in enumerate(axes_of(problem)):
         if turns:

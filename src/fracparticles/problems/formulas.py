@@ -21,7 +21,7 @@ from fracparticles.errors import InvalidInput, spelled
 __all__ = ["FUNCTIONS", "Formula"]
 
 _LONGEST = 2000  # characters
-_DEEPEST = 100
+_DEEPEST = 100  # operations within one another
 
 _NUMPY = """
 sin cos tan arcsin arccos arctan arctan2 sinh cosh tanh exp expm1 log log1p sqrt abs sign minimum maximum where
@@ -29,12 +29,13 @@ sin cos tan arcsin arccos arctan arctan2 sinh cosh tanh exp expm1 log log1p sqrt
 FUNCTIONS: dict[str, Callable[..., Any]] = {name: getattr(np, name) for name in _NUMPY.split()} | {
     "gamma": gamma
 }
+# Values in the brackets of a function, where there is not one.
 _TAKES = {"where": 3, "arctan2": 2, "minimum": 2, "maximum": 2}
 _CONSTANTS = {"pi": np.pi, "e": np.e}
 
 
 def _of_truth(test: Callable[..., Any], one: Any, other: Any) -> Any:
-    """Return 1 where it holds and 0 elsewhere: numbers, which add up."""
+    """Return 1 where the test holds and 0 elsewhere: numbers, which can be added."""
     return test(one, other) * 1.0
 
 
@@ -75,7 +76,7 @@ class Formula:
     Parameters
     ----------
     field : str
-        What it is called in messages.
+        Its name in messages.
     text : str
     variables : sequence of str
         The names that it may hold.
@@ -88,7 +89,7 @@ class Formula:
     Raises
     ------
     InvalidInput
-        With the place in the text, what is there, and what is allowed.
+        If the text holds anything else; names the place in the text, and what is allowed.
     """
 
     def __init__(self, field: str, text: str, variables: Sequence[str]) -> None:
@@ -103,7 +104,7 @@ class Formula:
 
 
 def _function_of(node: ast.expr) -> Values:
-    """Return what a node that is allowed stands for."""
+    """Return the function that an allowed node stands for."""
     match node:
         case ast.Constant(value=number):
             return lambda _: number
@@ -126,7 +127,7 @@ def _function_of(node: ast.expr) -> Values:
 
 
 def _parsed(field: str, text: str, variables: Sequence[str]) -> ast.expr:
-    """The syntax tree of a text, every node of it allowed, and its numbers floats."""
+    """Return the syntax tree of a text; all its nodes are allowed, and its numbers are floats."""
     clean = " ".join(text.replace("\t", " ").splitlines())
     if not clean.strip() or len(clean) > _LONGEST:
         raise InvalidInput(field, text, f"an expression of 1 to {_LONGEST} characters", "Give one.")
@@ -148,7 +149,7 @@ def _parsed(field: str, text: str, variables: Sequence[str]) -> ast.expr:
 
 
 def _complaints(tree: ast.expr, variables: Sequence[str]) -> Iterator[tuple[str, ast.expr, str]]:
-    """What is not allowed, where, and what to do; the numbers become floats on the way."""
+    """Yield what is allowed, the node that is not, and a remedy; the numbers become floats on the way."""
     from fracparticles.run.complaints import closest
 
     known = (*variables, *_CONSTANTS)

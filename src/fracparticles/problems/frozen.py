@@ -1,15 +1,16 @@
-"""What the particles make of the initial data, and what the equation makes of them, where the coefficients are frozen.
+"""The error of the particles with frozen coefficients: the scheme beside the equation, both from the initial data.
 
-With the D and the a of one place everywhere both are known, wave by wave. Of a wave k in a time t
+If D and a are the same everywhere, both solutions are known wave by wave. In a time t a wave k is multiplied
 
-    the scheme makes exp(t (D A^(k) - i a T^(k))),    the equation exp(-t (D |k|^alpha + i a k)),
+    by the scheme with exp(t (D A^(k) - i a T^(k))),    by the equation with exp(-t (D |k|^alpha + i a k)).
 
-A^ and T^ the symbols of the diffusion and the transport. The equation is given the data on a finer lattice, between the
-particles: so a kink or a jump has its error from the first moment on. Half of the particles cannot tell that error. For
-a time of some h^alpha they see as little of the kink as all of them do, and the difference is small.
+A^ and T^ are the symbols of the diffusion and the transport. The equation starts from the data on a finer lattice
+between the particles, so that a kink or a jump has its error from the first moment on. Half of the particles cannot
+tell that error: for a time of about h^alpha they miss as much of the kink as all of them do, and the difference is
+small.
 
-Each place has the error of the nearest of five D; a is the mean over |u|, alpha the greatest. The data go on beyond the
-ends as in a mirror.
+Each place has the error for the nearest of five values of D. The velocity a is its mean weighted by |u|, and alpha is
+the greatest order. The data are continued beyond the ends as in a mirror.
 """
 
 from __future__ import annotations
@@ -29,15 +30,15 @@ from fracparticles.schemes import SCHEMES
 __all__ = ["frozen_errors"]
 
 _FINER = {1: 16, 2: 2}  # samples between two particles
-_LEVELS = 5  # of D, from its least to its greatest
-_LOOKS = 9  # in time, at a coefficient that changes
-_LEAST = 1e-3  # of the greatest D, the least that is told from nothing
-_STEEPEST = 100.0  # the exponent of a wave that grows
-_MOST = 2**23  # places of the finer lattice, of whose waves some ten arrays are held at a time
+_LEVELS = 5  # values of D, from its least to its greatest
+_LOOKS = 9  # times over which a coefficient that changes is averaged
+_LEAST = 1e-3  # the least value of D over the greatest
+_STEEPEST = 100.0  # the greatest exponent of a wave that grows
+_MOST = 2**23  # places of the finer lattice; about ten arrays of its waves are held at a time
 
 
 class _Waves(NamedTuple):
-    """The transform of the data, and what a unit of D t and of a t / h takes from the exponent of each wave."""
+    """The transform of the data, and by how much a unit of D t and of a t / h lowers the exponent of each wave."""
 
     data: Any
     spread: FloatArray
@@ -52,20 +53,20 @@ class _Waves(NamedTuple):
 def frozen_errors(
     problem: Problem, initial: Any, u0: np.ndarray, fields: list[np.ndarray]
 ) -> list[list[np.ndarray]]:
-    """Return at each output time the error at the particles, for all that the data may be; none where nothing is known.
+    """Return at each output time the errors at the particles, one for each form of the data; none if none is known.
 
     Parameters
     ----------
     problem : Problem
-        Of the whole space. On a large lattice it is half of what half of the particles say, as that of a jump is; and
-        of data that are smooth there nothing is known.
+        A problem on the whole space. On a large lattice the error is half of that on half of the particles, as it is
+        for a jump; if the data are smooth there, nothing is known.
     initial : callable or any
-        The initial data; if they are no function, each of what an array may be between the particles, the smoothest
-        first, see `interpolants`. Nothing is the fundamental solution, which is smooth.
+        The initial data. An array has one form for each entry of `interpolants`, the smoothest first. None stands for
+        the fundamental solution, which is smooth.
     u0 : array
-        Their values at the particles.
+        The initial data at the particles.
     fields : list of arrays
-        u at each output time, in whose size the errors are.
+        u at each output time; the errors are scaled to its size.
     """
     size = float(np.abs(u0).max())
     places = (2 * _FINER[problem.dim] * u0.shape[0]) ** problem.dim
@@ -78,7 +79,7 @@ def frozen_errors(
     errors: list[list[np.ndarray]] = []
     for t, u in zip(problem.output_times, fields, strict=True):
         found = [_error(problem, t, u0, scheme, one) for one in equations]
-        # Whatever else than a source that adds to it makes u grow or fall does so with its error.
+        # Whatever makes u grow or fall does the same to its error, except a source that adds to u.
         now = float(np.abs(u).max())
         errors.append([(size if problem.adds else now / greatest) * off for off, greatest in found])
     return errors
@@ -97,7 +98,7 @@ def _by_half(
 def _error(
     problem: Problem, t: float, u0: np.ndarray, scheme: _Waves, equation: _Waves
 ) -> tuple[np.ndarray, float]:
-    """The error at each particle with its own D, and the greatest |u| made of data whose greatest |u| is 1."""
+    """Return the error at each particle with its own D, and the greatest |u| from data whose greatest |u| is 1."""
     h, span = problem.case.particle_spacing, t - problem.t_initial
     weight = np.abs(u0) / np.abs(u0).sum()
     carried = [span / h * float((_mean(problem, a, t) * weight).sum()) for a in problem.transport]
@@ -142,7 +143,7 @@ def _of_the_equation(problem: Problem, u: np.ndarray) -> _Waves:
 
 
 def _wavenumbers(shape: tuple[int, ...], finer: int) -> list[FloatArray]:
-    """K h along each axis, h the spacing of the particles."""
+    """Return k h along each axis, with the spacing h of the particles."""
     every = (2.0 * np.pi * finer * np.fft.fftfreq(n) for n in shape)
     return list(np.meshgrid(*every, indexing="ij", sparse=True))
 
@@ -155,13 +156,13 @@ def _levels(d: np.ndarray) -> np.ndarray:
 
 
 def _mean(problem: Problem, one: Coefficient, t: float) -> Any:
-    """The mean in time up to t, at the particles."""
+    """Return the mean of a coefficient in time up to t, at the particles."""
     times = np.linspace(problem.t_initial, t, _LOOKS) if "t" in one.depends_on else [t]
     return sum(one(problem.places | {"t": np.array(time)}) for time in times) / len(times)
 
 
 def _between(problem: Problem, initial: Any, u0: np.ndarray) -> list[np.ndarray]:
-    """What the data may be at m places between each two particles, equally spaced, none of them at a particle."""
+    """Return each form of the data at m equally spaced places between two particles, none of them at a particle."""
     m, dim = _FINER[problem.dim], problem.dim
     part = (np.arange((u0.shape[0] - 1) * m) + 0.5) / m
     x = problem.case.x[0] + part * problem.case.particle_spacing
@@ -171,7 +172,7 @@ def _between(problem: Problem, initial: Any, u0: np.ndarray) -> list[np.ndarray]
                 initial(*np.meshgrid(*(x,) * dim, indexing="ij", sparse=True)), float
             )
             values = np.broadcast_to(values, (x.size,) * dim)
-        except Exception:  # whatever a function may raise that knows its own particles alone
+        except Exception:  # a function that is valid only at its own particles may raise anything
             values = np.array(np.nan)
         if np.isfinite(values).all():
             return [values]
@@ -180,7 +181,7 @@ def _between(problem: Problem, initial: Any, u0: np.ndarray) -> list[np.ndarray]
 
 
 def _folded(fine: Any, shape: tuple[int, ...]) -> Any:
-    """The waves of the finer lattice as the particles see them: those that differ by 2 pi / h are one."""
+    """Return the waves of the finer lattice as the particles see them: waves that differ by 2 pi / h are one."""
     for axis, n in enumerate(shape):
         fine = fine.reshape(*fine.shape[:axis], -1, n, *fine.shape[axis + 1 :]).sum(axis)
     return fine

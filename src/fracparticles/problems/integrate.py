@@ -1,4 +1,4 @@
-"""The time integration of a problem: which way, from output time to output time, and what it took."""
+"""The time integration of a problem: the method, the steps from output time to output time, and their cost."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from fracparticles.time.sudden import instant
 
 __all__ = ["Integration", "advanced", "integrate", "size_of_start", "size_to_come"]
 
-_FINEST = 1e-9  # rtol of RKC2; below, the estimate of its error is round-off
-_LOOKS = 17  # at a source that starts from nothing
-_FAINT = 1e-12  # of what a source makes
-_REAL_AXIS = 5.5  # |lambda| dt that a step of DOP853 bears
+_FINEST = 1e-9  # the least rtol of RKC2; below, the estimate of its error is round-off
+_LOOKS = 17  # times at which a source that starts from u = 0 is evaluated
+_FAINT = 1e-12  # share of what a source makes, below which u is not followed to its own digits
+_REAL_AXIS = 5.5  # the greatest |lambda| dt at which a step of DOP853 is stable
 
 
 @dataclass(frozen=True)
 class Integration:
-    """What a time integration gives.
+    """The result of a time integration.
 
     Attributes
     ----------
     u : list of arrays, shape (N,)
-        At each output time.
+        u at each output time.
     method : str
         "exponential", "rkc2" or "dop853"; on an interval "radau", too.
     accepted, evaluations : int
@@ -52,7 +52,7 @@ class Integration:
 
 
 class RightHandSide(Protocol):
-    """R(t, u), flat as u, that counts how often it is asked for."""
+    """R(t, u), flat like u; it counts its evaluations."""
 
     evaluations: int
     shape: tuple[int, ...]
@@ -122,9 +122,9 @@ def integrate(
 def advanced(
     problem: Problem, steps: Steps, u0: np.ndarray, sudden: list[float]
 ) -> list[np.ndarray]:
-    """Return u at each output time; where something changes suddenly, steps end and find their length anew.
+    """Return u at each output time. Steps end at each sudden change, and find their length anew after it.
 
-    None is taken within a jump: a solution that has faded would be followed into it beyond the last digit of the time.
+    No step is taken within a jump: a faded solution would be followed into it beyond the last digit of the time.
     """
     times, outputs, u = problem.output_times, [], u0
     at_once = instant(problem.t_initial, problem.span)
@@ -139,16 +139,16 @@ def advanced(
 
 
 def size_of_start(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
-    """Return the greatest |u| at t_initial, or what the source may make of it where that is zero."""
+    """Return the greatest |u| at t_initial; if that is zero, the size that the source may give it."""
     size = float(np.abs(u0).max()) or _made(problem, rates, u0)
     return size if 0.0 < size < np.inf else 1.0
 
 
 def size_to_come(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
-    """Return a size that is nothing beside what a source makes of nothing.
+    """Return a size that is negligible beside what the source makes from u = 0.
 
-    A solution below it, at the start or faded since, is not followed to its own digits: what the source begins then
-    could not be.
+    A smaller solution, at the start or after it has faded, is not followed to its own digits. If it were, steps could
+    not follow a source that begins then.
     """
     if problem.reaction is None:
         return 0.0
@@ -162,7 +162,7 @@ def _made(problem: Problem, rates: RightHandSide, u0: np.ndarray) -> float:
 
 
 def _filled(u: np.ndarray) -> float:
-    """The share of the lattice on which |u| is, (sum |u|)^2 / (N sum u^2)."""
+    """Return the share of the lattice that |u| fills, (sum |u|)^2 / (N sum u^2)."""
     size = np.abs(u).max()
     if not size > 0.0:
         return 1.0
@@ -171,9 +171,9 @@ def _filled(u: np.ndarray) -> float:
 
 
 def _cheaper(problem: Problem, stiffness: float) -> str:
-    """The explicit method that takes fewer evaluations: of order 8, bound by stability, or 2, bound by accuracy.
+    """Return the explicit method with fewer evaluations. Stability limits that of order 8, accuracy that of order 2.
 
-    RKC2 in n = tol^(-1/2) steps, of sqrt(1.54 T rho / n) stages; waves that travel it does not bear.
+    RKC2 takes n = tol^(-1/2) steps of sqrt(1.54 T rho / n) stages. It is not stable for waves that travel.
     """
     if problem.transport or problem.rtol < _FINEST:
         return "dop853"

@@ -1,25 +1,25 @@
-"""What initial data that are an array may be between the particles.
+"""The forms that initial data given as an array may have between the particles.
 
-Data that are smooth on the scale of h are their cubic spline there. An array of a kink does not say where the kink is,
-nor does one of a jump. How smooth the data are is told by the cubic through four: what it misses of the value in their
-middle,
+Data that are smooth on the scale of h are their cubic spline there. An array does not say where between two particles a
+kink or a jump is. The cubic through four particles tells how smooth the data are: it misses the value in the middle by
 
-    r_s = |u_i - (9 u_(i-s) + 9 u_(i+s) - u_(i-3s) - u_(i+3s)) / 16|,
+    r_s = |u_i - (9 u_(i-s) + 9 u_(i+s) - u_(i-3s) - u_(i+3s)) / 16|.
 
-falls with the stride s, from two to one, to a sixteenth where u is smooth, to 2^-p at a |x|^p: to a half at a kink and
-not at all at a jump. Beside an end 9/24 of the fourth difference has its place, which asks for four strides. Where it
-falls to no less than a fourth, u is one of these instead:
+From the stride s = 2 to s = 1 this falls to a sixteenth where u is smooth, and to 2^-p at a |x|^p: to a half at a kink,
+and not at all at a jump. Beside an end 9/24 of the fourth difference takes its place, which needs four strides. Where
+r falls to no less than a fourth, u has one of these forms instead:
 
-    about the particle with the greater r of the two beside it, even and odd part each a power of the distance y,
+    About the particle with the greater r of the two beside a place, even and odd part are each a power of the distance,
 
-        u_i + e |y|^p + o sgn(y) |y|^q,    -1 <= y <= 1 spacings,
+        u_i + e |y|^p + o sgn(y) |y|^q,    -1 <= y <= 1 spacings.
 
-    as the particles one and two from it say: straight lines, right of a kink at a particle, or a root;
-    or, where two particles differ by more than twice what those beside them do, the lesser or the greater of the two
-    between them, right of a jump just beside a particle.
+    They meet the particles at one and two spacings. This is exact for straight lines, a kink at a particle, or a root.
 
-A kink between two particles has an error in between those of the spline and of the straight line, and a jump in between
-those of its two ends; with the lesser everywhere, or the greater, the total is off by most.
+    Where two particles differ by more than twice the differences beside them, u between them is the lesser or the
+    greater of the two values. This is exact for a jump just beside a particle.
+
+The error of a kink between two particles is between those of the spline and of the straight lines. The error of a jump
+is between those for its two ends. With the lesser value everywhere, or the greater, the total is off by most.
 """
 
 from __future__ import annotations
@@ -30,25 +30,26 @@ from scipy.ndimage import maximum_filter1d
 
 __all__ = ["interpolants", "is_rough", "power"]
 
-_ROUGH = 0.25  # of what the cubic misses at twice the stride
-_JUMP = 2.0  # of the differences beside it
-_LEAST = 1e-4  # of the greatest |u|, a miss that is no matter
-_JUMPS = None, np.minimum, np.maximum
+_ROUGH = 0.25  # the miss of the cubic over that at twice the stride, above which u is rough
+_JUMP = 2.0  # the difference of two particles over those beside it, above which u jumps
+_LEAST = 1e-4  # share of the greatest |u| below which a miss does not count
+_JUMPS = None, np.minimum, np.maximum  # the value between the ends of a jump, if not powers
 _NEAR = {1: 5, 2: 9}  # particles among which the greatest miss is taken, by stride
+# The weights of r_s, and of 9/24 of the fourth difference, by stride.
 _CUBIC = np.array([1.0, 0.0, -9.0, 16.0, -9.0, 0.0, 1.0]) / 16.0
 _FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) * 9.0 / 24.0
-_EVEN, _ODD = 2.0, 1.0  # the powers of what is smooth
+_EVEN, _ODD = 2.0, 1.0  # the powers p and q of a smooth u
 
 
 def interpolants(u: np.ndarray, *at: np.ndarray) -> list[np.ndarray]:
-    """Return what u may be at other places: its spline first, and where it is rough each of the others.
+    """Return the forms of u at other places: first its spline, and each of the others if u is rough.
 
     Parameters
     ----------
     u : array, shape (N,) or (N, M)
         Values at particles that are equally spaced in some variable along each axis.
     *at : arrays
-        The places along each axis, in spacings behind the first particle; what lies outside has the spline alone.
+        The places along each axis, in spacings behind the first particle; beyond the ends all forms are the spline.
     """
     spline, rough = u, [u, u, u]
     for axis, places in enumerate(at):
@@ -56,17 +57,17 @@ def interpolants(u: np.ndarray, *at: np.ndarray) -> list[np.ndarray]:
         rough = [_in_parts(one, places, axis, of) for one, of in zip(rough, _JUMPS, strict=True)]
     if np.array_equal(spline, rough[0]):
         return [spline]
-    # What lies anywhere between the ends of a jump has less error than one of them.
+    # A jump anywhere in between has less error than one at either end.
     return [spline, rough[0]] if np.array_equal(rough[1], rough[2]) else [spline, *rough[1:]]
 
 
 def is_rough(u: np.ndarray) -> bool:
-    """Return whether there are places where the spline is not all that u may be."""
+    """Return whether u has another form than its spline somewhere."""
     return power(u) is not None
 
 
 def power(u: np.ndarray) -> float | None:
-    """Return p where u is |x|^p by its greatest miss, 0 at a jump; None where it is rough nowhere."""
+    """Return the power p of |x|^p at the greatest miss of u, 0 at a jump; None if u is rough nowhere."""
     greatest, p = 0.0, None
     for axis in range(u.ndim):
         fine, coarse, rough = _misses(np.moveaxis(u, axis, 0))
@@ -82,7 +83,7 @@ def _splined(u: np.ndarray, at: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _in_parts(u: np.ndarray, at: np.ndarray, axis: int, of_jump: np.ufunc | None) -> np.ndarray:
-    """The spline, where u is rough powers, and where it jumps one of the two values, if that is asked for."""
+    """Return the spline, with powers where u is rough, and where it jumps one of the two values, if `of_jump` says."""
     values = np.moveaxis(u, axis, 0)
     cell = np.clip(np.floor(at).astype(int), 0, values.shape[0] - 2)
     part = (at - cell).reshape((-1,) + (1,) * (u.ndim - 1))
@@ -96,14 +97,14 @@ def _in_parts(u: np.ndarray, at: np.ndarray, axis: int, of_jump: np.ufunc | None
 
 
 def _in_powers(values: np.ndarray, cell: np.ndarray, part: np.ndarray) -> np.ndarray:
-    """The powers about the one of the two particles beside each place which the cubic misses by more."""
+    """Return the powers about one of the two particles beside each place: the one that the cubic misses by more."""
     missed = _missed(values, 1)
     left, right = (_powers(values, cell + side, part - side) for side in (0, 1))
     return np.where(missed[cell + 1] > missed[cell], right, left)
 
 
 def _powers(values: np.ndarray, i: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """u_i + e |y|^p + o sgn(y) |y|^q; u goes on beyond an end as in a point of symmetry."""
+    """Return u_i + e |y|^p + o sgn(y) |y|^q; beyond an end, u is continued by point symmetry."""
     n, others = values.shape[0], [(0, 0)] * (values.ndim - 1)
     u = np.pad(values, [(2, 2), *others], "reflect", reflect_type="odd")
     after, before = ([u[2 + side * s : n + 2 + side * s] for s in (1, 2)] for side in (1, -1))
@@ -117,19 +118,19 @@ def _powers(values: np.ndarray, i: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def _power(near: np.ndarray, far: np.ndarray, most: float) -> np.ndarray:
-    """That of what is `near` at one spacing and `far` at two: none at a jump, at most that of what is smooth."""
+    """Return the power of a part that is `near` at one spacing and `far` at two: 0 at a jump, `most` if smooth."""
     ratio = np.divide(far, near, out=np.ones_like(near), where=near != 0.0)
     return np.asarray(np.log2(np.clip(ratio, 1.0, 2.0**most)))
 
 
 def _are_rough(values: np.ndarray) -> np.ndarray:
-    """Whether u is rough between each two particles along the first axis."""
+    """Return whether u is rough between each two particles along the first axis."""
     *_, rough = _misses(values)
     return np.asarray(rough[:-1] | rough[1:])
 
 
 def _misses(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The greatest r_1 and r_2 near each particle along the first axis, and whether u is rough there."""
+    """Return the greatest r_1 and r_2 near each particle along the first axis, and whether u is rough there."""
     fine, coarse = (
         maximum_filter1d(_missed(values, stride), near, axis=0) for stride, near in _NEAR.items()
     )
@@ -137,7 +138,7 @@ def _misses(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _missed(values: np.ndarray, stride: int) -> np.ndarray:
-    """r_s at each particle; beside an end that of the outermost which has both others on either side."""
+    """Return r_s at each particle; beside an end, 9/24 of the fourth difference."""
     missed = _differences(values, stride, _FOURTH)
     inner = slice(3 * stride, max(3 * stride, values.shape[0] - 3 * stride))
     missed[inner] = _differences(values, stride, _CUBIC)[inner]
@@ -145,7 +146,7 @@ def _missed(values: np.ndarray, stride: int) -> np.ndarray:
 
 
 def _differences(values: np.ndarray, stride: int, weights: np.ndarray) -> np.ndarray:
-    """|sum_k w_k u_(i + k s)| at each particle, beside an end that of the outermost which has them all."""
+    """Return |sum_k w_k u_(i + k s)| at each particle; beside an end, that of the outermost that has all terms."""
     far = stride * (weights.size // 2)
     count = values.shape[0] - 2 * far
     if count < 1:
@@ -155,7 +156,7 @@ def _differences(values: np.ndarray, stride: int, weights: np.ndarray) -> np.nda
 
 
 def _jumps(values: np.ndarray) -> np.ndarray:
-    """Whether two particles differ by more than twice what those beside them do, along the first axis."""
+    """Return whether two particles differ by more than twice the differences beside them, along the first axis."""
     steps = np.abs(np.diff(values, axis=0))
     longer = np.pad(steps, [(1, 1)] + [(0, 0)] * (values.ndim - 1))
     return np.asarray(steps > _JUMP * np.maximum(longer[:-2], longer[2:]))

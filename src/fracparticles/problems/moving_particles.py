@@ -1,14 +1,14 @@
-"""Transport by particles that move with the field: the other way, on the line, to compare with `transport`.
+"""Transport by particles that move with the field, on the line: another method, to compare with `transport`.
 
 One step of length dt, Strang's splitting with the exact diffusion of the whole space S (`time.whole_space`),
 
     u <- S(dt / 2) u,    dx_p/dt = a(x_p, t), U_p = h u_p constant,    remesh,    u <- S(dt / 2) u.
 
 The particles start on the lattice, move for one step by the classical Runge-Kutta scheme, and their strengths are put
-back on the lattice (`moving.remeshing`). Beyond its ends are as many more as may move in, whose u goes on like
-|x|^(-1-alpha) from the last. Mass is conserved but for what passes the ends. The error is of second
-order in dt, from the splitting, and each remeshing adds one of its own, of an order in h: more steps, more of it.
-Half as many steps say how large it is, and the strengths that pass the ends are counted.
+back on the lattice (`moving.remeshing`). Beyond each end there are as many more as may move in; their u falls like
+|x|^(-1-alpha) from the last. Mass is conserved except for the strengths that pass the ends, which are counted. The
+splitting has an error of second order in dt. Each remeshing adds an error of some order in h, so that more steps have
+more of it. A run with half as many steps tells how large the error is.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from fracparticles.time.whole_space import WholeSpace
 __all__ = ["solve_with_moving_particles"]
 
 
-_NOTICED = 0.05  # of the peak, what half as many steps may differ by; of sum |U|, what may leave
-_ROOM = 8  # particles beyond the ends, and as many as the ends move
+_NOTICED = 0.05  # share of the peak by which half as many steps may differ; share of sum |U| that may leave
+_ROOM = 8  # particles beyond each end, besides the spacings by which the ends move
 
 
 def solve_with_moving_particles(
@@ -44,19 +44,20 @@ def solve_with_moving_particles(
     initial : array, shape (N,)
         Initial strengths u.
     steps : int
-        How many steps of equal length.
+        The number of steps, of equal length.
     remeshing : {"Lambda3", "M4'", "Lambda6,4"}
         Interpolation function.
 
     Raises
     ------
     InvalidInput
-        If the problem is another, or a particle runs away.
+        If the problem is not such a one, or a particle runs away.
 
     Warns
     -----
     AccuracyWarning
-        If half as many steps (of one: two) differ by a twentieth of the peak, or as much of the strengths has left.
+        If the solution in half as many steps (two instead of one) differs by a twentieth of the peak, or a twentieth
+        of the strengths has left the lattice.
     """
     problem = check.instance("problem", problem, Problem)
     steps = check.positive_integer("steps", steps)
@@ -83,7 +84,7 @@ def solve_with_moving_particles(
 def _run(
     problem: Problem, u: np.ndarray, steps: int, d: float, remeshing: str
 ) -> tuple[np.ndarray, float]:
-    """U at t_final, and the share of sum |U| that has left."""
+    """Return u at t_final, and the share of sum |U| that has left."""
     case, h, dt = problem.case, problem.case.particle_spacing, problem.span / steps
     left, start = 0.0, float(np.abs(u).sum()) or 1.0
     half = WholeSpace(case.particles, 1, case.alpha, 0.5 * d * dt * h**-case.alpha)
@@ -100,13 +101,13 @@ def _run(
 
 
 def _continued(u: np.ndarray, pad: int, n: int, alpha: float) -> np.ndarray:
-    """u with `pad` more at either end."""
+    """Return u with `pad` more particles at either end."""
     fall = (n / np.arange(n + 1.0, n + pad + 1.0)) ** (1.0 + alpha)
     return np.concatenate([u[0] * fall[::-1], u, u[-1] * fall])
 
 
 def _moved(velocity: Coefficient, x: np.ndarray, t: float, dt: float) -> np.ndarray:
-    """Where the particles are after dt, by the classical Runge-Kutta scheme."""
+    """Return the positions of the particles after dt, by the classical Runge-Kutta scheme."""
 
     def a(x: np.ndarray, t: float) -> np.ndarray:
         return velocity.checked({"x": x, "t": np.array(t)})
@@ -121,7 +122,7 @@ def _moved(velocity: Coefficient, x: np.ndarray, t: float, dt: float) -> np.ndar
 def _on_lattice(
     places: np.ndarray, strength: np.ndarray, h: float, n: int
 ) -> tuple[np.ndarray, float]:
-    """u on -n .. n, and the sum of |u| that lies beyond and has left."""
+    """Return u on -n .. n, and the sum of |u| beyond, which has left."""
     u, index = np.zeros(2 * n + 1), np.rint(places / h).astype(int) + n
     inside = (index >= 0) & (index < u.size)
     u[index[inside]] = strength[inside] / h

@@ -1,9 +1,9 @@
-"""A problem on a bounded domain, and the way through time: see `domain_rates` for what is integrated.
+"""A problem on a bounded domain and its time integration; `domain_rates` has the right-hand side.
 
-On the interval and the disc the diffusion is taken in its modes, and with it a source -c u, whose steps would be those
-of its decay. What is left is for the exponential integrator of `bounded.exponential`; with a velocity, a D that changes
-in time, or fast rates of a source, on the interval for the implicit one of `bounded.implicit`. On the square the
-lattice is not stiff, and the integrators of the whole space take it as it is.
+On the interval and the disc the diffusion is solved in its modes. So is a source -c u, because its decay would set the
+length of the steps. The exponential integrator of `bounded.exponential` takes the rest. On the interval the implicit
+one of `bounded.implicit` takes it if there is a velocity, a D that changes in time, or a source with fast rates. On the
+square the lattice is not stiff, and the integrators of the whole space serve.
 """
 
 from __future__ import annotations
@@ -44,7 +44,10 @@ if TYPE_CHECKING:
 
 __all__ = ["solve_on_domain"]
 
-_FAST, _FASTEST = 100.0, 2e4  # rates of a source times the time of the run
+# The rate of a source times the time of the run: from the first the interval takes implicit steps, and above the second
+# the disc refuses the source.
+_FAST, _FASTEST = 100.0, 2e4
+# The value of each estimate above which there is a warning.
 _LIMITS = {"atol_share": FADED, "space_error": SPACE_ERROR, "unresolved_share": 0.02}
 
 
@@ -89,7 +92,7 @@ def _known(problem: Problem, initial: Any, fields: list[np.ndarray]) -> list[lis
 
 
 def _integrated(problem: Problem, rates: DomainRates, u0: np.ndarray, held: Held) -> Integration:
-    """The integration of v, with u in its place."""
+    """Integrate v, and return u in its place."""
     v0 = u0 - rates.lift(problem.t_initial).base
     if isinstance(rates.domain, ModalDomain):
         result = _in_modes(problem, rates, u0, v0, held)
@@ -108,7 +111,7 @@ def _in_short_waves(rates: DomainRates, t: float, u: np.ndarray) -> float:
 
 
 def _warn(problem: Problem, found: Estimates) -> None:
-    """Warn of each estimate that is too large, at the first output time; of short waves if nothing more is known."""
+    """Warn of each estimate that is too large, at its first output time; of short waves only without `space_error`."""
     says = {
         "atol_share": "u has fallen, and the steps are accurate to {:.2g} of what is left at an output time. Take a "
         "smaller rtol, or atol, or an earlier end.",
@@ -126,7 +129,7 @@ def _warn(problem: Problem, found: Estimates) -> None:
 
 
 def _held(problem: Problem, rates: DomainRates, u0: np.ndarray) -> Held:
-    """What is held outside, or `atol`; where there is neither and nothing to begin with, what the source may make."""
+    """Return the size of the values outside, or that of `atol`; without both, and for u = 0, that which f may make."""
     least = problem.atol / problem.rtol if problem.atol else 0.0
     v0 = u0 - rates.lift(problem.t_initial).base
     if not (least or v0.any() or rates.lift(problem.t_initial).base.any()):
@@ -153,10 +156,10 @@ def _in_modes(
         shown = f"a rate of {fastest / problem.span:.3g}"
         what = f"a source whose rates times the time of the run are below {_FASTEST:g} on the disc"
         raise InvalidInput("source", shown, what, "End before, or take the square.")
-    last = 0.0  # by how much u decays beside the steps
+    last = 0.0  # the rate at which u decays beside the steps
     moves = problem.transport or "t" in problem.diffusion.depends_on or fastest > _FAST
     if moves and problem.domain == "interval":
-        # A decay -c u alone is a factor exp(-c t): steps would follow u to where it is nothing.
+        # A decay -c u alone is a factor exp(-c t): steps would follow u until it underflows.
         last = decay if rates.only_decays else 0.0
 
         def derivative(t: float, v: np.ndarray) -> np.ndarray:
@@ -181,7 +184,7 @@ def _in_modes(
 
 
 def _look_at_coefficients(problem: Problem) -> None:
-    """Warn if the particles do not resolve what varies in space, in three moments."""
+    """Warn if the particles do not resolve a coefficient that varies in space, at three moments."""
     every = [problem.diffusion, *problem.transport]
     if problem.reaction is not None and problem.is_linear:
         every.append(problem.reaction)
@@ -195,7 +198,7 @@ def _look_at_coefficients(problem: Problem) -> None:
             def at(
                 *place: np.ndarray, one: Any = one, now: Any = now, level: float = level
             ) -> np.ndarray:
-                # What is compared is int |..|, whose kinks are no matter.
+                # int |..| is compared: lifted by its greatest value, a coefficient has no kinks there.
                 lifted = 0.0 if one.field == "source" else level
                 return one({**dict(zip(("x", "y"), place, strict=False)), **now}) + lifted
 
@@ -203,7 +206,7 @@ def _look_at_coefficients(problem: Problem) -> None:
 
 
 def _initial(problem: Problem, initial: Any) -> tuple[np.ndarray, str]:
-    """The initial strengths, and where they come from."""
+    """Return the initial strengths, and where they come from."""
     domain = problem.bounded_domain
     if initial is None or isinstance(initial, str | bytes):
         what = "a function of the place, a number or an array: a bounded domain has no fundamental solution"

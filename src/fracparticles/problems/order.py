@@ -1,4 +1,4 @@
-"""The order of a problem by either of its names, whatever kind of coefficient it is."""
+"""The order of a problem, given as alpha or as beta, by any kind of coefficient."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["with_any_order"]
 
 
 def with_any_order(fields: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of a problem with beta = alpha - 1 for alpha, whatever kind it is of."""
+    """Return the fields of a problem with beta = alpha - 1 in place of alpha, for any kind of coefficient."""
     alpha, beta = fields.get("alpha"), fields.get("beta")
     if beta is not None or not (isinstance(alpha, str) or callable(alpha)):
         return with_beta(fields)

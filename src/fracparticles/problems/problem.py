@@ -1,4 +1,4 @@
-"""A problem, validated: the equation, its coefficients, the particles, the times, and how well it is to be solved.
+"""A validated problem: the equation, its coefficients, the particles, the times, and the tolerances.
 
     u_t + div(a(x,t) u) = div(D(x,t) grad^beta u) + f(x,t,u),    div grad^beta = -(-Laplacian)^(alpha/2),
 
@@ -35,8 +35,8 @@ __all__ = ["FORMS", "Problem"]
 FORMS = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 """The schemes of a constant diffusivity, by the form of the equation."""
 
-_SHORT = 0.05  # of the half-width, how far the solution spreads
-_LOOKS = 33  # between t_initial and t_final, at coefficients that depend on time
+_SHORT = 0.05  # share of the half-width to which the solution spreads in the short run of `case`
+_LOOKS = 33  # times from t_initial to t_final at which coefficients that depend on time are checked
 _FUNCTION = "a function, which the file does not hold"  # in JSON
 
 
@@ -44,16 +44,17 @@ class Problem(WithCoefficients):
     """One problem; the fields are the parameters, keyword only.
 
     A text is an expression, see `expressions`: "1 + 0.5*sin(x)*exp(-t)". A function takes arrays x, t on the line and
-    x, y, t in the plane, or the first of these alone; that of a source u, too, as the last. `alpha` may be given
-    instead of `beta`.
+    x, y, t in the plane, or only the first of these; a source also takes u, as the last. `alpha` may be given instead
+    of `beta`.
 
     Raises
     ------
     InvalidInput
-        With the field, the value, what is allowed and what to do; of a coefficient with the place where it is wrong.
+        If a field is wrong; names the field, the value, what is allowed and what to do. For a coefficient it names the
+        place where it is wrong.
     """
 
-    def __init__(self, **data: Any) -> None:  # alpha is no field, for those who check types
+    def __init__(self, **data: Any) -> None:  # alpha is no field: for type checkers
         super().__init__(**data)
 
     @model_validator(mode="before")
@@ -79,7 +80,7 @@ class Problem(WithCoefficients):
             if self.diffusion.depends_on - {"t"}:
                 what = "a number, or an expression in t alone, beside a variable order"
                 raise InvalidInput("diffusivity", self.diffusivity, what, "Leave the place out.")
-        _ = self.reaction, self.outside  # which are checked, as the case is
+        _ = self.reaction, self.outside  # they are checked when they are made, as the case is
         between = np.linspace(self.t_initial, self.t_final, _LOOKS)
         check_domain(self, between)
         places = points if self.is_bounded else self.places
@@ -120,7 +121,7 @@ class Problem(WithCoefficients):
 
     @property
     def is_bounded(self) -> bool:
-        """Whether it is on a bounded domain."""
+        """Whether the problem is on a bounded domain."""
         return is_bounded(self.exterior)
 
     @property
@@ -146,8 +147,9 @@ class Problem(WithCoefficients):
     def case(self) -> Case:
         """The lattice and its scheme, as a run of constant coefficients: the greatest at t_initial.
 
-        Of diffusion alone it has the times, too, and refuses a lattice that the solution outgrows. A field may hold the
-        solution together, and a source spread it: then it is a short run, and what leaves the lattice is told after.
+        For diffusion alone the case also has the times, and refuses a lattice that the solution outgrows. A velocity
+        may hold the solution together, and a source may spread it. Then the case is a short run, and the solution tells
+        how much has left the lattice.
         """
         if self.is_bounded:
             what = "open or truncated for a lattice"
@@ -160,7 +162,7 @@ class Problem(WithCoefficients):
             short = (_SHORT * self.half_width) ** (1.0 + beta) / (d or 1.0)
             soon = max(self.t_initial + short, float(np.nextafter(self.t_initial, np.inf)))
             fields["t_final"] = min(self.t_final, soon)
-        # Where D varies the flux has kernels of every order, in the plane, too; the lattice is that of any scheme.
+        # Where D varies, the flux has kernels of every order in the plane too. The lattice is that of any scheme.
         varies = bool(self.diffusion.depends_on - {"t"})
         scheme = "DD" if varies and self.form == "FPSE" else FORMS[self.form]
         return Case(

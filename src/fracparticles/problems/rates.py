@@ -20,7 +20,7 @@ Part = Callable[[float, np.ndarray], np.ndarray]
 
 
 class Rates:
-    """R(t, u) = div(D grad^beta u) - div(a u) + f, of a problem made ready.
+    """R(t, u) = div(D grad^beta u) - div(a u) + f of a problem, made ready.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class Rates:
     Attributes
     ----------
     evaluations : int
-        How often R has been asked for.
+        How often R has been evaluated.
 
     Raises
     ------
@@ -43,7 +43,7 @@ class Rates:
         self._parts: list[Part] = [part for part in parts if part is not None]
 
     def __call__(self, t: float, u: np.ndarray) -> np.ndarray:
-        """Return du/dt, flat as u; what overflows is infinite or nan in it."""
+        """Return du/dt, flat like u; values that overflow are infinite or nan."""
         self.evaluations += 1
         lattice = np.ascontiguousarray(u, dtype=float).reshape(self.shape)
         total = np.zeros(self.shape)
@@ -60,7 +60,7 @@ def _named(points: tuple[np.ndarray, ...] | list[np.ndarray]) -> dict[str, Any]:
 def over_time(
     coefficient: Coefficient, points: Any, least: float | None = None, start: float = 0.0
 ) -> Callable[[float], Any]:
-    """Return the values of a coefficient at some points as a function of time; evaluated once if they do not change."""
+    """Return a function of time to the values of a coefficient at some points; they are computed once if constant."""
     named = _named(points)
     values = coefficient.checked({**named, "t": np.array(start)}, least)
     if "t" in coefficient.depends_on:
@@ -122,6 +122,7 @@ def probe_source(problem: Problem, u0: np.ndarray) -> None:
     Raises
     ------
     InvalidInput
+        If it is not; names the place and the time.
     """
     if problem.reaction is None:
         return

@@ -1,27 +1,27 @@
-"""What a solution says of its accuracy: has it reached the ends of the lattice, does the lattice resolve it.
+"""Estimates of accuracy from a solution: has it reached the ends of the lattice, and does the lattice resolve it?
 
-As `run.reliability`, at each output time:
+They are those of `run.reliability` and some more, at each output time:
 
 outside_share
     The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha) from the outermost particles.
 far_field_error
-    In an open exterior, how far the powers that continue u miss it at particles that they were not made to meet, times
-    that share, times the share that travels from the outside well into the lattice during the run.
+    In an open exterior. The powers that continue u miss it at particles that they need not meet. The estimate is this
+    relative miss, times `outside_share`, times the share that travels from outside well into the lattice in the run.
 resolution
     s theta, the overlap (but at least 1.1) times the wavenumber of u in units of 1 / h.
 wave_error
-    sum |u^| |1 - exp(-T delta)| / sum |u^|, T the time since t_initial and delta the error of the symbol, of the
-    diffusion with the mean of D over |u|, and of the transport with that of |a|: the error of a peak over the peak.
+    The error of a peak over the peak, sum |u^| |1 - exp(-T delta)| / sum |u^|. T is the time since t_initial. delta is
+    the error of the symbols, with the means of D and of |a| weighted by |u|.
 between_particles
-    What initial data that are a function hide between the particles.
+    The part of initial data given as a function that is hidden between the particles.
 coefficient_misfit
-    sum |c - I| / sum (|c| + |I|) between the particles, I the cubic through the four that are next, c the coefficient
-    less its least value. Of a source, c itself, and of the sum and that of 2 |u| / (t_final - t_initial) the larger.
-    That of the worst coefficient: what the particles do not see of it. Of a diffusivity in a flux that of 1 / D, too:
-    a barrier that no particle meets holds the flux back.
+    sum |c - I| / sum (|c| + |I|) between the particles for the worst coefficient: the part that the particles do not
+    see. I is the cubic through the four nearest particles, c the coefficient less its least value. For a source, c is
+    the source itself, and the last sum is at least that of 2 |u| / (t_final - t_initial). For a diffusivity in a flux,
+    1 / D counts as well: a barrier that no particle meets holds the flux back.
 space_error
-    The error over u that the particles leave, by what they see of the data, see `frozen`, and by the same on half and a
-    quarter of them, see `fewer_particles`.
+    The relative error that the particles leave, from the initial data, see `frozen`, and from runs on half and a
+    quarter of the particles, see `fewer_particles`.
 atol_share
     The errors of early steps over the greatest |u|, see `time.fading`; or the absolute tolerance, if one was asked for.
 """
@@ -57,23 +57,24 @@ __all__ = ["estimates", "warn_if_doubtful"]
 
 Estimates = dict[str, tuple[list[float], str]]
 
-_LEAST_SMOOTHING = 1.1  # as there
+_LEAST_SMOOTHING = 1.1  # the least overlap in `resolution`, as in `run.reliability`
+# The value of each estimate above which there is a warning.
 _LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": FADED, "space_error": SPACE_ERROR}
-_MOST = 2.0  # of the error of a wave over it
-_BARRIER = 1e-4  # of the greatest D: below, it is nothing
-_CONSTANT = 1e-9  # of a coefficient, a variation that is round-off
+_MOST = 2.0  # the greatest error of a wave over the wave
+_BARRIER = 1e-4  # share of the greatest D; a smaller D counts as zero
+_CONSTANT = 1e-9  # relative variation of a coefficient that is round-off
 
 
 def estimates(problem: Problem, solutions: list[np.ndarray], initial: Any = None) -> Estimates:
-    """Return each estimate by name: a value for each output time, the worse of it and t_initial, and what it is.
+    """Return each estimate by name: for each output time the worse of its value and that at t_initial; its meaning.
 
     Parameters
     ----------
     problem : Problem
     solutions : list of arrays, shape (N, .., N)
-        At t_initial and at each output time.
+        u at t_initial and at each output time.
     initial : any, optional
-        What the initial data were given as.
+        The initial data as they were given.
     """
     case = problem.case
     smoothing = max(_LEAST_SMOOTHING, case.resolved_overlap)
@@ -157,7 +158,7 @@ def _wave_error(problem: Problem, t: float, u: np.ndarray) -> float:
 def _coefficient_misfit(
     problem: Problem, one: Coefficient, t: float, u: np.ndarray, part: float
 ) -> float:
-    """Between the particles along all axes at once, as far from the ends as the cubic asks for."""
+    """Return the misfit between the particles along all axes at once, as far from the ends as the cubic needs."""
     case, h = problem.case, problem.case.particle_spacing
     at = dict(zip(("x", "y"), case.positions, strict=False))
     apart = np.meshgrid(*(case.x[1:-2] + part * h,) * case.dim, indexing="ij", sparse=True)
@@ -166,7 +167,7 @@ def _coefficient_misfit(
     every = {**at, "t": np.array(t), "u": u}, {**there, "t": np.array(t), "u": v}
     try:
         values, found = (one({name: each[name] for name in one.variables}) for each in every)
-    except InvalidInput:  # a function that knows the particles alone
+    except InvalidInput:  # a function that is valid only at the particles
         return 0.0
     values = np.broadcast_to(values, u.shape)
     if one.field == "source":
@@ -181,7 +182,7 @@ def _coefficient_misfit(
 def _missed(
     values: np.ndarray, found: np.ndarray, part: float, least: float | None = None, size: float = 0
 ) -> float:
-    """sum |c - I| / sum (|c| + |I|), c and I less the least of both if none is given; the sum is at least `size`."""
+    """Return sum |c - I| / sum (|c| + |I|), both less `least` or their least; the last sum is at least `size`."""
     guess = _between(values, part)
     if least is None:
         least = min(guess.min(), found.min())
@@ -208,6 +209,7 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
     Warns
     -----
     AccuracyWarning
+        If an estimate is above its limit.
     """
     reach = f"|x| <= {problem.half_width:.4g}"
     says = {

@@ -1,4 +1,4 @@
-"""Solve a problem of one's own: the one call that does all."""
+"""Solve a problem of one's own: one call does everything."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ __all__ = ["solve_problem"]
 def solve_problem(
     problem: Problem, initial: Initial | None = None, *, estimate: bool = True
 ) -> xr.Dataset:
-    """Solve a problem.
+    """Solve a problem, and estimate the errors of the solution.
 
     Parameters
     ----------
     problem : Problem
     initial : array, labelled data, callable or path, optional
-        Initial strengths, as those of `solve`: an array of shape `problem.case.shape`, or a function of x, of x and y;
-        on a bounded domain these two alone, the array of the shape of `problem.bounded_domain.volumes`.
-        Left out, the fundamental solution at `t_initial`, of a problem with a constant order and diffusivity.
+        Initial strengths, as in `solve`: an array of shape `problem.case.shape`, or a function of x, or of x and y. On
+        a bounded domain only these two, and the array has the shape of `problem.bounded_domain.volumes`. If left out,
+        the fundamental solution at `t_initial`, for a problem with a constant order and diffusivity.
     estimate : bool
-        Whether to solve on fewer particles, too, for the error that the particles leave, `space_error`: see
-        `fewer_particles`. It takes some half as long again, on an interval up to a second more; on a bounded domain
-        with a D of the place and the time up to three times as long.
+        Whether to solve on fewer particles as well, for `space_error`, the error that the particles leave: see
+        `fewer_particles`. It takes about half as long again, and on an interval up to a second more. On a bounded
+        domain with a D that depends on place and time it takes up to three times as long.
 
     Returns
     -------
@@ -56,14 +56,14 @@ def solve_problem(
     Warns
     -----
     AccuracyWarning
-        If the solution has reached the ends of the lattice, the lattice does not resolve it, the initial data or a
-        coefficient, or the solution is of the size of `atol`.
+        If the solution has reached the ends of the lattice; if the lattice does not resolve the solution, the initial
+        data or a coefficient; or if the solution is of the size of `atol`.
 
     Notes
     -----
-    What depends on t is looked at before the run at 1025 times, or at 65 and more if it is a function that takes the
-    particles alone as its places, and the steps end where it jumps. A pulse that is on between two of these times is
-    not seen: let one of `times` be in it.
+    Before the run, coefficients that depend on t are evaluated at 1025 times, or at 65 and more if a function is valid
+    only at all particles. The steps end where they jump. A pulse that is on between two of these times is not seen: let
+    one of `times` be in it.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def solve_problem(
     if initial is None and not plain:
         given = "data of your own: there is no fundamental solution with these coefficients"
         raise InvalidInput("initial", None, given, "Pass an array, or a function.")
-    # So t_initial counts as given, though it be the default.
+    # So t_initial counts as given, even if it is the default.
     case = problem.case.model_copy(update={"t_initial": problem.t_initial})
     u0, origin = initial_strengths(case, initial)
     probe_source(problem, u0)

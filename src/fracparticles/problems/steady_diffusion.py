@@ -1,12 +1,12 @@
-"""Diffusion alone, by a D that does not change within a step: so that a step may have any length.
+"""Diffusion alone, with a D that does not change within a step, so that a step may have any length.
 
-A D of the time alone is one in the time
+A D that depends only on time is 1 in the time
 
     s = int D(t) dt,    u_s = A u.
 
-Of one that depends on the place, too, the mean in time is taken at each place, from output time to output time; of many
-times up to one at which the run has lasted twice as long. A kink or a jump has spread by int D dt at its own place, see
-`frozen`; what is left out is that the operators of two times do not commute.
+If D depends on the place as well, its mean in time is taken at each place, from output time to output time. If these
+are many, a mean goes on up to the one at which the run has lasted twice as long. A kink or a jump has spread by
+int D dt at its own place, see `frozen`. The operators of two times do not commute; this is left out.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from fracparticles.problems.problem import Problem
 
 __all__ = ["diffused"]
 
-_LOOKS = 64  # at D, from one output time to the next
+_LOOKS = 64  # times from one output time to the next at which D is evaluated
 
 Solve = Callable[[Problem, Any], list[np.ndarray]]
 
@@ -48,7 +48,7 @@ def diffused(problem: Problem, initial: Any, solve: Solve) -> list[np.ndarray]:
 
 
 def _doubling(times: tuple[float, ...]) -> list[tuple[float, ...]]:
-    """The times in pieces, the last of one the first of the next; each ends where the run has lasted twice as long."""
+    """Return the times in pieces that share their ends; each ends where the run has lasted twice as long."""
     pieces, start = [], 0
     for n, t in enumerate(times):
         if n == len(times) - 1 or (n and t - times[0] >= 2.0 * (times[start] - times[0])):

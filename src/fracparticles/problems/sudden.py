@@ -16,14 +16,15 @@ __all__ = ["sudden_changes"]
 Index = tuple[Any, ...]
 Places = dict[str, np.ndarray]
 
-_PLACES = 33  # equally spaced, and as many by the mass of the data
-_NUMBERS, _FEWEST = 2**21, 64  # where a function is evaluated at all particles: values, times
+_PLACES = 33  # particles that are looked at, equally spaced, and as many by the mass of the data
+# If a function has to be evaluated at all particles: the most values in all, and the fewest times.
+_NUMBERS, _FEWEST = 2**21, 64
 
 
 def sudden_changes(problem: Problem, u0: np.ndarray) -> list[float]:
     """Return the times before and after each sudden change, ascending, between t_initial and t_final.
 
-    Values outside a bounded domain are not looked at here: where these jump, `bounded.given` refuses them.
+    Values outside a bounded domain are not looked at here: `bounded.given` refuses those that jump.
 
     Raises
     ------
@@ -61,7 +62,7 @@ def _changes(
 def _takes_any_points(
     one: Coefficient, some: Places, lattice: Places, chosen: Index, t: np.ndarray
 ) -> bool:
-    """Whether it can be evaluated at some of the particles alone: a function may know no other points than all."""
+    """Whether a coefficient can be evaluated at some of the particles: a function may be valid only at all of them."""
     try:
         alone, all_of_them = one(_of(one, some, t)), one(_of(one, lattice, t))
     except InvalidInput:
@@ -70,7 +71,7 @@ def _takes_any_points(
 
 
 def _takes_many_times(one: Coefficient, some: Places, start: float, span: float) -> bool:
-    """Whether a function can be evaluated at many times at once, and then says what it says at each."""
+    """Whether a function can be evaluated at many times at once, with the values that it has at each."""
     few = irregular_times(start, span, 4)
     try:
         together = one(_of(one, some, few[:, None]))

@@ -2,12 +2,12 @@
 
     du_i/dt = (1 / h) sum_d sum_j c_{i-j} (F_j + F_i),    F = a_d u,    c_m = -s^(-2) eta1(m / s),
 
-the second pass of FPSE, with the flux of the velocity in place of the fractional one; along the lines of the lattice in
-each coordinate d, with the kernel of one dimension, so that it has every order. c is odd: what j gives, i takes, and
-sum_i u_i stays on a truncated lattice, to round-off. Waves of the lattice's own length stand still.
+This is the second pass of FPSE, with the flux of the velocity in place of the fractional one. It goes along the lines
+of the lattice in each coordinate d, with the kernel of one dimension, so that it has every order. c is odd: i takes
+what j gives, and on a truncated lattice sum_i u_i stays to round-off. The shortest waves of the lattice stand still.
 
 In an open exterior the flux is also taken at the points next to the ends, as far as c reaches; then the sum over all
-neighbours of c F_i is zero. There the solution goes on as it falls far away: on the line by the powers
+neighbours of c F_i is zero. There the solution is continued as it falls far away: on the line by the powers
 |x|^(-1-k alpha), k = 1 .. `far_terms`, that meet it as those of the diffusion do, see `lattice.exterior`; in the plane
 from the last particle of each line of the lattice, u(x) = u(x_end) (|x_end| / |x|)^(2+alpha).
 """
@@ -26,7 +26,7 @@ from fracparticles.schemes.fpse import divergence_weights
 
 __all__ = ["Transport"]
 
-_WAVES = 257  # at which the symbol is looked at for its greatest value
+_WAVES = 257  # wavenumbers among which the greatest value of the symbol is taken
 
 
 class Transport:
@@ -40,8 +40,8 @@ class Transport:
     Attributes
     ----------
     points : tuple of tuples of arrays
-        For each coordinate d the coordinates where a_d is wanted, which broadcast to the lattice, in an open exterior
-        longer by some points at either end along d.
+        For each d the coordinates of the places where a_d is needed. They broadcast to the lattice; in an open exterior
+        it is longer by some points at either end along d.
     """
 
     def __init__(self, setting: Setting) -> None:
@@ -76,20 +76,20 @@ class Transport:
             self._falls = [self._fall(d, setting.alpha) for d in range(setting.dim)]
 
     def symbol(self, theta: np.ndarray) -> np.ndarray:
-        """Return what the wavenumber theta = k h is taken for: theta at small ones, zero at pi."""
+        """Return the value that stands for the wavenumber theta = k h: about theta for small ones, zero at pi."""
         return np.abs(2.0 * np.sin(theta[:, None] * np.arange(self._weights.size)) @ self._weights)
 
     def _powers(self, setting: Setting) -> tuple[np.ndarray, np.ndarray]:
-        """Depths p from the end, and what u_(n-p) adds to the points beyond it, shape (terms, pad)."""
+        """Return depths p from the end, and the weights of u_(n-p) at the points beyond it, shape (terms, pad)."""
         n, powers = setting.n, 1.0 + setting.alpha * np.arange(1, setting.far_terms + 1)
         depth = np.array([round(n * share) for share in (0.0, 0.25, 0.5)[: setting.far_terms]])
-        # Its inverse makes their amplitudes of the strengths.
+        # The inverse takes strengths at the depths to the amplitudes of the powers.
         met = (n / (n - depth)[:, None]) ** powers
         beyond = (n / np.arange(n + 1, n + self._pad + 1)[:, None]) ** powers
         return depth, np.linalg.solve(met.T, beyond.T)
 
     def _fall(self, d: int, alpha: float) -> np.ndarray:
-        """(|x_end| / |x|)^(2+alpha) beyond the right end along d, as the sum over one depth."""
+        """Return (|x_end| / |x|)^(2+alpha) beyond the right end along d, as the weights of one depth."""
         square = np.moveaxis(np.asarray(sum(np.square(part) for part in self.points[d])), d, 0)
         fall = (square[-self._pad - 1] / square[-self._pad :]) ** (1.0 + 0.5 * alpha)
         return np.moveaxis(fall, 0, d)[None]
@@ -117,7 +117,7 @@ class Transport:
         return total
 
     def _extended(self, u: np.ndarray, d: int) -> np.ndarray:
-        """u with the points beyond the ends of its lines along d."""
+        """Return u with the points beyond the ends of its lines along d."""
         shape = list(u.shape)
         shape[d] += 2 * self._pad
         longer = np.empty(shape)
@@ -132,5 +132,5 @@ class Transport:
         return longer
 
     def fastest(self, velocity: Sequence[np.ndarray]) -> float:
-        """Return a bound of |lambda| of the infinite lattice: that of each wave at the greatest speed."""
+        """Return a bound of |lambda| on the infinite lattice, where each wave has the greatest speed."""
         return self._fastest * sum(float(np.abs(speed).max()) for speed in velocity)
