@@ -1,4 +1,4 @@
-r"""The powers (1 - |x|^2)_+^p, whose fractional Laplacian is known in the unit ball of n = 1, 2 dimensions and outside:
+r"""The powers (1 - |x|^2)_+^p. Their fractional Laplacian is known inside and outside the unit ball, n = 1, 2:
 
     (-Laplacian)^s u = 2^alpha Gamma(s + n/2) Gamma(p + 1) / (Gamma(n/2) Gamma(p + 1 - s))
                        2F1(s + n/2, s - p; n/2; r^2),
@@ -25,12 +25,12 @@ __all__ = ["power_in_ball", "riesz_of_power"]
 
 
 def power_in_ball(squared: FloatArray, power: float) -> FloatArray:
-    """Return (1 - r^2)_+^p by r^2."""
+    """Return (1 - r^2)_+^p for the squares r^2, of their shape."""
     return np.asarray(np.maximum(1.0 - squared, 0.0) ** power)
 
 
 def riesz_of_power(squared: FloatArray, alpha: float, power: float, dim: int) -> FloatArray:
-    """Return (-Laplacian)^(alpha/2) (1 - r^2)_+^p by r^2, of points not on the sphere.
+    """Return (-Laplacian)^(alpha/2) (1 - r^2)_+^p for the squares r^2 of points not on the sphere, of their shape.
 
     Raises
     ------

@@ -4,14 +4,14 @@ r"""Fractional diffusion in a disc |x| < R, by strengths that rings of particles
 
 with one of three exteriors:
 
-- "absorbing": u = 0 outside, the restricted fractional Laplacian. All decays at the rate of the first eigenvalue at
-  last, Dyda, Kuznetsov & Kwasnicki, J. London Math. Soc. 95 (2017) 500;
+- "absorbing": u = 0 outside, the restricted fractional Laplacian. At last u decays at the rate of the first eigenvalue,
+  Dyda, Kuznetsov & Kwasnicki, J. London Math. Soc. 95 (2017) 500;
 - "reflecting": the integral is over the disc only, the regional fractional Laplacian, Guan & Ma, Probab. Theory Relat.
   Fields 134 (2006) 649. The total is conserved;
 - "given": u = g outside. A constant stays a constant.
 
 The particles lie on rings that crowd at the edge, at equal angles on each. A discrete Fourier transform in the angle
-makes of the operator one symmetric matrix for each wave number (`disc_rings`), whose eigenvectors give the solution
+turns the operator into one symmetric matrix for each wave number (`disc_rings`). Its eigenvectors give the solution
 exactly in time. The error is O(N^(alpha-4)) for N rings; a plain lattice has the order one.
 """
 
@@ -35,10 +35,10 @@ from fracparticles.bounded.plane_resolution import warn_of_the_unseen
 
 __all__ = ["Disc"]
 
-# Beyond, the innermost digits of 1 - r ~ N^-3 are worth less than the order gains.
+# With more, the round-off of the least 1 - r ~ N^-3 costs more than the order gains.
 _MOST_RINGS = 128
 _MOST_ANGLES = 512
-_TURN = 0.382  # of a step of the angle, where fields are looked at again: no simple fraction
+_TURN = 0.382  # share of a step of the angle by which fields are looked at again: irregular
 
 
 class Disc(ModalDomain):
@@ -59,12 +59,12 @@ class Disc(ModalDomain):
     Attributes
     ----------
     x, y, volumes : array, shape (radial, angular)
-        Where the particles are, and their volumes; a field is an array of that shape.
+        The places of the particles, and their volumes; a field is an array of that shape.
 
     Raises
     ------
     InvalidInput
-        If one of them is not allowed.
+        If an argument is outside its range.
     """
 
     balance = 1e-3
@@ -101,14 +101,14 @@ class Disc(ModalDomain):
         return -self._rate * self._back(out / root)
 
     def at_rest(self, load: FloatArray) -> FloatArray:
-        """Return u of D A u + load = 0; of a reflecting exterior that of total 0."""
+        """Return the u with D A u + load = 0; for a reflecting exterior the one of total 0."""
         modes = self.all_modes()
         z = modes.rates
-        held = np.where(z == 0.0, 0.0, 1.0 / np.where(z == 0.0, 1.0, z))  # of the constant nothing
+        held = np.where(z == 0.0, 0.0, 1.0 / np.where(z == 0.0, 1.0, z))  # zero for the constant
         return modes.back(held * modes.into(load))
 
     def lifted(self, g: Callable[..., Any]) -> Lift:
-        """Return the mean of g at the edge and what the rest of g holds in place: of that, D A w is nothing."""
+        """Return w, the mean of g at the edge and the steady field for the rest of g; D A w is zero."""
         level, inflow = self._inflow_of(g)
         held = self.at_rest(self._rate * self._back(inflow))
         nothing = np.zeros(held.shape)
@@ -119,9 +119,9 @@ class Disc(ModalDomain):
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -div(a u), u = v + base: but for div a it is skew in v, see `disc_transport`.
+        """Return -div(a u), u = v + base: except for div a it is skew in v, see `disc_transport`.
 
-        Where nothing leaves, the sum of all is kept.
+        Where nothing leaves, the total is kept.
         """
         along = self._polar(velocity)
         moved = self._transport.carried(v, *along)
@@ -130,11 +130,11 @@ class Disc(ModalDomain):
         return moved / self.radius
 
     def divergence(self, velocity: Sequence[FloatArray]) -> FloatArray:
-        """Return div a, as `carried` has it."""
+        """Return div a as `carried` takes it."""
         return self._transport.divergence(*self._polar(velocity)) / self.radius
 
     def _polar(self, velocity: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-        """a_r and a_theta."""
+        """Return a_r and a_theta."""
         a_x, a_y = (np.broadcast_to(one, self.volumes.shape) for one in velocity)
         cos, sin = self._direction
         return a_x * cos + a_y * sin, a_y * cos - a_x * sin
@@ -144,11 +144,11 @@ class Disc(ModalDomain):
         return DiscTransport(self._rings, self.exterior == "reflecting")
 
     def modes_with(self, d: FloatArray, form: str) -> Modes:
-        """Return all modes of the negative of `spread`, of a symmetric matrix between all particles."""
+        """Return all modes of the negative of `spread`, from one symmetric matrix between all particles."""
         root = np.sqrt(self._rings.volumes)
         block = np.fft.irfft(self._matrices * np.outer(root, root), self.angular, axis=0)
         angle = np.arange(self.angular)
-        # V_i A between the particles (i, a) and (j, b) of the rings i, j.
+        # V_i A between the particles (i, a) and (j, b) on the rings i, j.
         whole = block[(angle[:, None] - angle) % self.angular].transpose(2, 0, 3, 1)
         size = self.radial * self.angular
         exchange, d = -whole.reshape(size, size), d.reshape(-1)
@@ -185,7 +185,7 @@ class Disc(ModalDomain):
 
     @cached_property
     def _given_up(self) -> FloatArray:
-        """V_i times the rate at which ring i gives to all others, and to the exterior."""
+        """V_i times the rate at which ring i gives to all other rings and to the exterior."""
         lost = self._rings.exchange(self.alpha, 0).sum(axis=1)
         if self.exterior != "reflecting":
             lost = lost + self._rings.volumes * self._rings.outward_rate(self.alpha)
@@ -199,7 +199,7 @@ class Disc(ModalDomain):
 
     @cached_property
     def _matrices(self) -> FloatArray:
-        """The same between the values of V^(1/2) f, for each wave number."""
+        """`_form` between the values of V^(1/2) f, for each wave number."""
         forms = np.array([self._form(wave) for wave in range(self.angular // 2 + 1)])
         return np.asarray(forms / np.outer(self._root, self._root))
 
@@ -215,7 +215,7 @@ class Disc(ModalDomain):
         """Return all modes of -D A, by wave number."""
         values, vectors = self._spectra
         waves = np.arange(len(values))
-        # int u^2 is the sum of |y|^2: of a cosine and its sine together, 2 pi r V and half of that each.
+        # int u^2 is the sum of |y|^2. A cosine and its sine share one amplitude, and each has half of 2 pi r V.
         both = np.where((waves == 0) | (2 * waves == self.angular), 1.0, 2.0)
         size = np.sqrt(self.volumes[:, 0] / self.angular * both[:, None])  # (waves, N)
 
@@ -228,10 +228,10 @@ class Disc(ModalDomain):
         return Modes(self._rate * values, into, back)
 
     def _inflow_of(self, g: Callable[..., Any]) -> tuple[float, Any]:
-        """The mean g_0 of g at the edge, and c int_(|y| > 1) (g(y) - g_0) |x - y|^(-2-alpha) dy wave by wave.
+        """Return the mean g_0 of g at the edge, and c int_(|y| > 1) (g(y) - g_0) |x - y|^(-2-alpha) dy wave by wave.
 
-        The latter as the rate to the outside times g - g_0 at the edge, and the rest. Since all else works with
-        u - g_0, a constant stays one to the last digit.
+        The integral has two parts: the rate to the outside times g - g_0 at the edge, and the rest. Since everything
+        else works with u - g_0, a constant stays one to the last digit.
         """
         rings = self._rings
 
@@ -249,7 +249,7 @@ class Disc(ModalDomain):
 
     @cached_property
     def _from_outside(self) -> tuple[FloatArray, FloatArray]:
-        """The rate to the outside that no ring there stands for, and those of the rings for each wave number."""
+        """The rate to the outside beyond the rings there, and the rates to these rings for each wave number."""
         waves = range(self.angular // 2 + 1)
         rates = np.array([exterior_rate(self._rings, self.alpha, wave) for wave in waves])
         return self._rings.outward_rate(self.alpha) - rates[0].sum(axis=1), rates
@@ -279,7 +279,7 @@ def _products(matrices: FloatArray, vectors: Any) -> Any:
 
 
 def _with_the_constant(rates: FloatArray, vectors: FloatArray, root: FloatArray) -> None:
-    """Put the constant for the first vector, and its rate zero: to all digits, not to those of the largest."""
+    """Put the constant in place of the first vector, and zero for its rate: exactly, not to the round-off of others."""
     rates[0] = 0.0
     vectors[:, 0] = root / np.linalg.norm(root)
     vectors[:, 1:] -= np.outer(vectors[:, 0], vectors[:, 0] @ vectors[:, 1:])

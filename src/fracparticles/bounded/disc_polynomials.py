@@ -1,4 +1,4 @@
-r"""The absorbing disc by polynomials instead of particles: what `disc` is judged by.
+r"""The absorbing disc by polynomials instead of particles; tests compare `disc` with it.
 
 On the unit disc, with s = alpha/2 and P_n^(s,l) Jacobi's polynomials,
 
@@ -6,7 +6,7 @@ On the unit disc, with s = alpha/2 and P_n^(s,l) Jacobi's polynomials,
     mu_n = 2^alpha Gamma(1+s+n) Gamma(1+s+l+n) / (n! (l+n)!),
 
 Dyda, Kuznetsov & Kwasnicki, Constr. Approx. 45 (2017) 427, Theorem 3. In this basis the quadratic form of the operator
-is diagonal; the mass matrix is one of Gauss-Jacobi quadratures. The eigenvalues converge from above: with 20
+is diagonal; the mass matrix follows from Gauss-Jacobi quadratures. The eigenvalues converge from above: with 20
 polynomials the first have ten digits (J. London Math. Soc. 95 (2017) 500 bounds them from both sides).
 """
 
@@ -31,16 +31,21 @@ class AbsorbingDisc:
     Parameters
     ----------
     alpha : float
-        0 < alpha < 2: orders below one serve to compare with what is printed.
+        0 < alpha < 2; orders below one serve to compare with printed values.
     wave : int
-        l.
+        The wave number l.
     terms : int
-        Polynomials, to 60.
+        The number of polynomials, up to 60.
 
     Attributes
     ----------
     eigenvalues : array, shape (terms,)
-        In rising order; the first third of them is good to round-off.
+        In rising order; the first third of them is accurate to round-off.
+
+    Raises
+    ------
+    InvalidInput
+        If an argument is outside its range.
     """
 
     def __init__(self, alpha: float, wave: int = 0, terms: int = 40) -> None:
@@ -71,7 +76,7 @@ class AbsorbingDisc:
         return np.asarray((1.0 - np.square(r)) ** self._s * np.asarray(r) ** self._wave * values)
 
     def _gram(self, power: float) -> FloatArray:
-        """int (1 - t)^power (1 + t)^l P_m P_n dt."""
+        """Return int (1 - t)^power (1 + t)^l P_m P_n dt."""
         nodes, weights = roots_jacobi(2 * self._n.size + 8, power, self._wave)
         values = self._polynomials(nodes)
         return np.asarray((values * weights) @ values.T)

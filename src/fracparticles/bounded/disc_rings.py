@@ -1,26 +1,27 @@
-r"""What rings of particles in the unit disc exchange, one angular wave number l at a time.
+r"""The exchange between rings of particles in the unit disc, one angular wave number l at a time.
 
-A field f(r) cos(l theta) of the singular operator of the plane, c = c_(2,alpha) and mu = 1 + alpha/2,
+The singular operator of the plane, with c = c_(2,alpha) and mu = 1 + alpha/2,
 
     L u(x) = c p.v. int (u(y) - u(x)) |x - y|^(-2-alpha) dy,
 
-is again one. The integral over the angle is done exactly; with rho = r< / r>, DLMF 15.8.1,
+takes a field f(r) cos(l theta) to another of this form. The integral over the angle is exact; with rho = r< / r>,
+DLMF 15.8.1,
 
     K_l(r, r') = c int_0^(2 pi) cos(l phi) |r - r' e^(i phi)|^(-2 mu) dphi
                = 2 pi c (mu)_l / l! rho^l r>^(-2 mu) (1 - rho^2)^(-1-alpha) 2F1(l - alpha/2, -alpha/2; l + 1; rho^2).
 
-The rings lie at r_i = r(xi_i), xi_i = (i - 1/2) h, h = 1 / N, with volumes V_i = r r'(xi) h a radian and
+The rings lie at r_i = r(xi_i), xi_i = (i - 1/2) h, h = 1 / N, with volumes V_i = r r'(xi) h for each radian and
 
-    r'(xi) ~ xi (1 - xi)^2,
+    r'(xi) ~ xi (1 - xi)^2.
 
-so that they crowd at the edge, where fields behave like (1 - r)^(alpha/2) or (1 - r)^alpha, and no end of the
-trapezoidal rule costs an order. A punctured rule V_i V_j K_l(r_i, r_j) leaves out the neighbourhood of i = j. What that
-costs follows from the sum over pairs, sum_ij V_i V_j K_l (u_i - u_j)^2 / 2, which is even in xi_i - xi_j:
+So they crowd at the edge, where fields behave like (1 - r)^(alpha/2) or (1 - r)^alpha, and neither end of the
+trapezoidal rule costs an order. A punctured rule V_i V_j K_l(r_i, r_j) leaves out the neighbourhood of i = j. Its error
+follows from the sum over pairs, sum_ij V_i V_j K_l (u_i - u_j)^2 / 2, which is even in xi_i - xi_j:
 
-- across rings, where K_l ~ c_1 |r - r'|^(-1-alpha) / r: neighbours exchange -zeta(alpha - 1) c_1 r |dr|^(1-alpha)
-  more, Navot, J. Math. Phys. 40 (1961) 271. It is positive, and the same for all l;
-- along a ring the loss of K_0 - K_l, finite at r = r' but for |r - r'|^(1-alpha), is that of a wave l / r along lines
-  dr apart, `loss_along_a_line`, and what the curvature of the ring adds, `_curvature`.
+- Across rings K_l ~ c_1 |r - r'|^(-1-alpha) / r. Neighbours exchange -zeta(alpha - 1) c_1 r |dr|^(1-alpha) more, Navot,
+  J. Math. Phys. 40 (1961) 271. This is positive, and the same for all l.
+- Along a ring the loss by K_0 - K_l is finite at r = r', except for a term |r - r'|^(1-alpha). It is that of a wave
+  l / r along lines dr apart, `loss_along_a_line`, and a term by the curvature of the ring, `_curvature`.
 
 The error is O(h^(4-alpha)). All exchange is symmetric: what one ring loses another gains.
 """
@@ -40,8 +41,8 @@ __all__ = ["Rings", "exterior_rate", "loss_along_a_line", "plane_constant", "rin
 
 _AT_CENTRE, _AT_EDGE = 2.0, 3.0  # r ~ xi^2 at the centre, 1 - r ~ (1 - xi)^3 at the edge
 _BETA = gamma(_AT_CENTRE) * gamma(_AT_EDGE) / gamma(_AT_CENTRE + _AT_EDGE)
-_RESOLVED = 0.3  # q below which the series is good to 1e-5 of the loss
-_LINES = 150  # K_nu(0.3 150) is 1e-20
+_RESOLVED = 0.3  # q below which the series is accurate to 1e-5 of the loss
+_LINES = 150  # lines that are summed: K_nu(0.3 150) is 1e-20
 
 
 def plane_constant(alpha: float) -> float:
@@ -65,12 +66,12 @@ class Rings:
 
     @classmethod
     def graded(cls, count: int) -> Rings:
-        """Return so many rings, graded to the edge."""
+        """Return `count` rings, graded towards the edge."""
         return cls(*_graded((np.arange(count) + 0.5) / count, count))
 
     @classmethod
     def between(cls, count: int) -> Rings:
-        """Return the rings between those."""
+        """Return the count - 1 rings between those of `graded`."""
         return cls(*_graded(np.arange(1.0, count) / count, count))
 
     @property
@@ -79,7 +80,7 @@ class Rings:
         return self.r * self.slope
 
     def exchange(self, alpha: float, wave: int) -> FloatArray:
-        """Return W_ij = V_i V_j K_l(r_i, r_j) with what is due to neighbours, and 0 on the diagonal, shape (N, N)."""
+        """Return W_ij = V_i V_j K_l(r_i, r_j), more for neighbours, and 0 on the diagonal, shape (N, N)."""
         gap = np.abs(self.edge[:, None] - self.edge)
         np.fill_diagonal(gap, 1.0)
         v = self.volumes
@@ -94,16 +95,16 @@ class Rings:
         return w
 
     def loss(self, alpha: float, wave: int) -> FloatArray:
-        """Return what of K_0 - K_l the punctured rule leaves out, a rate, shape (N,)."""
+        """Return the part of K_0 - K_l that the punctured rule leaves out, a rate, shape (N,)."""
         if wave == 0:
             return np.zeros_like(self.r)
         along = loss_along_a_line(wave * self.slope / self.r, alpha) * self.slope**-alpha
         return along + self.volumes * self.r ** (-2.0 - alpha) * _curvature(alpha, wave)
 
     def outward_rate(self, alpha: float) -> FloatArray:
-        """Return kappa(r) = c int_(|y| > 1) |x - y|^(-2-alpha) dy, the rate to all that lies outside, shape (N,).
+        """Return kappa(r) = c int_(|y| > 1) |x - y|^(-2-alpha) dy, the rate to the outside, shape (N,).
 
-        (2 pi c / alpha) 2F1(alpha/2, 1 + alpha/2; 1; r^2): the integral of K_0 over r' > 1, term by term.
+        It is (2 pi c / alpha) 2F1(alpha/2, 1 + alpha/2; 1; r^2), the integral of K_0 over r' > 1, term by term.
         """
         a = 0.5 * alpha
         regular = hyp2f1(-a, 1.0 - a, 1.0, self.r**2) * (self.edge * (1.0 + self.r)) ** -alpha
@@ -132,16 +133,16 @@ def ring_kernel(
 
 
 def loss_along_a_line(q: FloatArray, alpha: float) -> FloatArray:
-    r"""Return the rate at which the particles of one line lose a wave q along it, less what other lines take.
+    r"""Return the rate at which the particles of one line lose a wave q along it, less the part that other lines take.
 
-    Lines a unit apart, q the wave number. All lines and the plane between them take q^alpha. Of that the lines at the
-    distances k take c_1 k^(-1-alpha) (1 - M(q k)) each, c_1 the constant of the line and M the correlation of Matern
-    (z/2)^nu 2 K_nu(z) / Gamma(nu), nu = (1 + alpha)/2. What is left is
+    The lines are a unit apart, and q is the wave number. All lines and the plane between them take q^alpha. The lines
+    at the distances k take c_1 k^(-1-alpha) (1 - M(q k)) each, with the constant c_1 of the line and the correlation M
+    of Matern, (z/2)^nu 2 K_nu(z) / Gamma(nu), nu = (1 + alpha)/2. The rest is
 
         q^alpha - 2 c_1 sum_(k >= 1) k^(-1-alpha) (1 - M(q k))
             ~ c_1 (-zeta(alpha-1) q^2 / (alpha-1) + g q^(1+alpha) + zeta(alpha-3) q^4 / (16 (1-nu) (2-nu)))
 
-    for small q, g = 4^(-nu) pi / (sin(nu pi) Gamma(nu) Gamma(1+nu)); positive, and q^alpha itself for large q.
+    for small q, g = 4^(-nu) pi / (sin(nu pi) Gamma(nu) Gamma(1+nu)). It is positive, and q^alpha itself for large q.
     """
     q = np.asarray(q, dtype=float)
     nu, c = 0.5 * (1.0 + alpha), tail_constant(alpha)
@@ -159,13 +160,13 @@ def loss_along_a_line(q: FloatArray, alpha: float) -> FloatArray:
 
 
 def _curvature(alpha: float, wave: int) -> float:
-    """r^(2+alpha) times the finite part of K_0 - K_l at r = r', less that of a straight line.
+    """Return r^(2+alpha) times the finite part of K_0 - K_l at r = r', less that of a straight line.
 
-    By the connection of 2F1 to 1 - rho^2 (DLMF 15.8.4) that part of K_l is, in the same units,
+    By the connection of 2F1 to 1 - rho^2 (DLMF 15.8.4) the finite part of K_l is, in the same units,
 
-        2 pi c Gamma(-1-alpha) / (Gamma(mu) Gamma(-alpha/2)) Gamma(mu + l) / Gamma(l - alpha/2),
+        2 pi c Gamma(-1-alpha) / (Gamma(mu) Gamma(-alpha/2)) Gamma(mu + l) / Gamma(l - alpha/2).
 
-    whose last quotient is l^(1+alpha) on a straight line.
+    On a straight line the last quotient is l^(1+alpha).
     """
 
     def quotient(wave: int) -> float:
@@ -177,6 +178,6 @@ def _curvature(alpha: float, wave: int) -> float:
 
 
 def _graded(xi: FloatArray, count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """r, 1 - r and dr/dxi / count."""
+    """Return r, 1 - r and dr/dxi / count."""
     slope = xi ** (_AT_CENTRE - 1.0) * (1.0 - xi) ** (_AT_EDGE - 1.0) / (_BETA * count)
     return betainc(_AT_CENTRE, _AT_EDGE, xi), betainc(_AT_EDGE, _AT_CENTRE, 1.0 - xi), slope

@@ -1,4 +1,4 @@
-r"""What an interval, a disc and a square have in common: particles, and the equation that is solved on them,
+r"""The common part of an interval, a disc and a square: particles, and the equation that is solved on them,
 
     u_t = D A u + f(x, t, u),    A u(x) = c int (u(y) - u(x)) |x - y|^(-n-alpha) dy,
 
@@ -10,10 +10,10 @@ reflecting
     Nothing is outside: the integral is over the domain alone, the regional operator (Guan & Ma, Probab. Theory Relat.
     Fields 134 (2006) 649), which conserves.
 given
-    u = g outside, taken off as in `given`.
+    u = g outside; g is taken off as in `given`.
 
-A domain says what A is between its particles, what holds a load in place, and how what is left decays. Where nothing
-depends on time, u is the steady field and what is left of the distance from it; else steps are taken.
+A domain defines A between its particles, the steady field under a load, and the decay towards it. If nothing depends on
+time, u is the steady field and the decayed distance from it. Otherwise steps are taken.
 """
 
 from __future__ import annotations
@@ -36,41 +36,42 @@ from fracparticles.time.sudden import instant, sudden_times
 
 __all__ = ["EXTERIORS", "Domain"]
 
-_FEW = 9  # times, at what a source makes in a piece of them
+_FEW = 9  # times in a piece of the run at which a source is evaluated for the size that it may make
 
 EXTERIORS = ("absorbing", "reflecting", "given")
-"""What may be outside."""
+"""The three exteriors of a bounded domain."""
 
 
 class Domain(DomainOperator):
     """Particles in a bounded domain, and the problems that can be solved on them."""
 
     def __repr__(self) -> str:
-        """Return what it is in a line."""
+        """Return its kind, exterior, order and number of particles in a line."""
         count = self.volumes.size
         return (
             f"<{type(self).__name__}: {self.exterior}, alpha = {self.alpha:.6g}, {count} particles>"
         )
 
     def stationary(self, source: Any = 0.0, outside: Any = None) -> FloatArray:
-        """Return u of D A u + f = 0; of reflecting edges the one of total 0.
+        """Return the u with D A u + f = 0; for reflecting edges the one of total 0.
 
         Parameters
         ----------
         source : callable, array or number
-            f of the places, or its values.
+            f as a function of places, or its values at the particles.
         outside : callable or number, optional
-            g of places, where the exterior is given.
+            g as a function of places, if the exterior is given.
 
         Raises
         ------
         InvalidInput
-            If they are not finite, `outside` is missing or superfluous, or f makes what reflecting edges keep.
+            If they are not finite, `outside` is missing or superfluous, or the total of f is not zero between
+            reflecting edges.
 
         Warns
         -----
         AccuracyWarning
-            If the particles do not resolve what is given.
+            If the particles do not resolve the source.
         """
         lift = self._lift_at(given_outside(self.exterior, outside, len(self.points)), 0.0)
         f = self.seen("source", source)
@@ -91,32 +92,34 @@ class Domain(DomainOperator):
         outside: Any = None,
         tolerance: float = 1e-10,
     ) -> FloatArray:
-        """Return u at the particles a time after `initial`: exact in time, if nothing depends on it.
+        """Return u at the particles a time after `initial`: exact in time if nothing depends on time.
 
         Parameters
         ----------
         initial : callable, array or number
             u at the time 0: a function of places, or its values at the particles.
         time : float
+            The time from `initial` on.
         source : callable, array or number, optional
-            f of places and time, or of places alone, or values that do not change.
+            f as a function of places and time, or of places alone, or values that do not change.
         outside : callable or number, optional
-            g of places and time, or of places alone, where the exterior is given.
+            g as a function of places and time, or of places alone, if the exterior is given.
         tolerance : float
-            Of each step in time, relative to u or what is held outside, if something depends on it. A pulse that is on
-            between two of 513 times is not seen.
+            The error of each step in time, relative to u or to the values outside, if steps are taken. A pulse that is
+            on between two of 513 times is not seen.
 
         Raises
         ------
         InvalidInput
-            If they are not finite, `outside` is missing or superfluous, or the time is not what it may be.
+            If they are not finite, `outside` is missing or superfluous, or the time is outside its range.
         NonFiniteSolution
             If g varies too fast in time, or numbers overflow.
 
         Warns
         -----
         AccuracyWarning
-            If the particles do not resolve what is given, or little is left of u beside the errors of early steps.
+            If the particles do not resolve the data or the source, or little of u is left beside the errors of early
+            steps.
         """
         dim = len(self.points)
         time = self._lasting(time)
@@ -146,12 +149,24 @@ class Domain(DomainOperator):
     ) -> FloatArray:
         """Return u at the particles a time after `initial`, with a source f of places, time and u.
 
+        Parameters
+        ----------
+        initial, time, outside, tolerance
+            As those of `evolve`.
+        source : callable
+            f as a function of places, time and u.
+
         Raises
         ------
         InvalidInput
-            If an argument is not what it may be.
+            If an argument is outside its range.
         NonFiniteSolution
             If u becomes infinite, or the steps too short or too many; says when.
+
+        Warns
+        -----
+        AccuracyWarning
+            As `evolve`.
         """
         check.function("source", source)
         time = self._lasting(check.positive_real("time", time))
@@ -172,7 +187,7 @@ class Domain(DomainOperator):
     def _relaxed(
         self, start: FloatArray, time: float, f: FloatArray, g: Outside | None
     ) -> FloatArray:
-        """The steady field, and what is left of the distance from it; the mean of f, where nothing leaves, adds up."""
+        """Return the steady field and the decayed distance from it; where nothing leaves, the mean of f adds up."""
         lift = self._lift_at(g, 0.0)
         mean = self._mean(f) if self.exterior == "reflecting" else 0.0
         steady = self.at_rest(f - mean + lift.load)
@@ -192,7 +207,7 @@ class Domain(DomainOperator):
             return start
         sudden = sudden_times(lambda t: f(t, start).reshape(-1), 0.0, time, looks=LOOKS)
         pieces, made = list(pairwise((0.0, *sudden, time))), 0.0
-        if not start.any() and not lift(0.0).base.any():  # what the source may make of it
+        if not start.any() and not lift(0.0).base.any():  # the size that the source may make
             made = sum(
                 (b - a) * max(float(np.abs(rest(t, start)).max()) for t in np.linspace(a, b, _FEW))
                 for a, b in pieces

@@ -1,11 +1,11 @@
-r"""Diffusion in its modes, and all else beside it, by an exponential integrator: y' = -lambda y + N(y, t).
+r"""Diffusion in its modes, and all other terms beside it, by an exponential integrator: y' = -lambda y + N(y, t).
 
 Krogstad's scheme of order 4 (J. Comput. Phys. 203 (2005) 72) has the coefficients
 
-    phi_k(-z) = int_0^1 e^(-z r) (1 - r)^(k-1) / (k-1)! dr,   k = 1, 2, 3,   z = lambda h:
+    phi_k(-z) = int_0^1 e^(-z r) (1 - r)^(k-1) / (k-1)! dr,   k = 1, 2, 3,   z = lambda h.
 
-stiff rates cost nothing, and what N does not say is exact. Each step is compared with two of half its length, which
-are kept.
+Stiff rates cost nothing, and without N the steps are exact. Each step is compared with two of half its length; these
+two are kept.
 """
 
 from __future__ import annotations
@@ -22,13 +22,14 @@ from fracparticles.errors import NonFiniteSolution
 
 __all__ = ["ExponentialSteps", "moments_of_decay"]
 
-_FIRST = 1e-3  # of the time: the first step
-_SHORTEST = 1e-10
+_FIRST = 1e-3  # the first step over the time span
+_SHORTEST = 1e-10  # the shortest step over the time span
 _MOST = 20_000  # steps
-_NOTHING = 1e-300
+_NOTHING = 1e-300  # the least size of u by which an error is divided
+# The share of the step that would just meet the tolerance, and the least and the greatest ratio of two steps.
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 3.0
-_ORDER = 3.0  # of the difference, where N does not vanish at the edge
-_TERMS = 24  # of the series for z <= 1
+_ORDER = 3.0  # the order of the difference in the step, where N does not vanish at the edge
+_TERMS = 24  # terms of the series for z <= 1
 
 
 class ExponentialSteps(ModalSteps):
@@ -85,7 +86,7 @@ class ExponentialSteps(ModalSteps):
 
 
 class _Step:
-    """One step of Krogstad's scheme, of one length."""
+    """Steps of Krogstad's scheme of one length h."""
 
     def __init__(self, rates: FloatArray, h: float) -> None:
         self._h = h
@@ -107,7 +108,7 @@ class _Step:
 
 
 def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """phi_1, phi_2 and phi_3 of -z."""
+    """Return phi_1, phi_2 and phi_3 of -z."""
     zero, one, two = moments_of_decay(z, 2)
     return zero, zero - one, 0.5 * (zero - 2.0 * one + two)
 
@@ -115,8 +116,8 @@ def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
 def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
     """Return I_m = int_0^1 e^(-z r) r^m dr for m = 0, .., degree, shape (degree + 1, ..).
 
-    For z <= 1 sum_k (-z)^k / (k! (m + 1 + k)), beyond I_0 = (1 - e^-z) / z and I_m = (m I_(m-1) - e^-z) / z,
-    which loses m! / z^m: it is for low degrees.
+    For z <= 1 it is sum_k (-z)^k / (k! (m + 1 + k)), beyond I_0 = (1 - e^-z) / z and I_m = (m I_(m-1) - e^-z) / z. The
+    recursion loses digits by a factor m! / z^m, so that it is for low degrees.
     """
     small, large = np.minimum(z, 1.0), np.maximum(z, 1.0)
     m, k = np.arange(degree + 1.0), np.arange(float(_TERMS))

@@ -1,7 +1,7 @@
-r"""What a caller gives of a bounded domain: sources, and values outside, that may depend on time.
+r"""Values outside a bounded domain that a caller gives, and that may depend on time.
 
-Values g outside are taken off: u = w + v, where w has the values g outside. With the operator D A of the domain, for
-any w
+The values g outside are taken off: u = w + v, where w has the values g outside. With the operator D A of the domain,
+for any w
 
     v' = D A v + (D A w - w') + f,    v = 0 outside.
 
@@ -25,38 +25,38 @@ from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = ["Lift", "Outside", "given_outside", "lifted_in_time", "takes"]
 
-_FIRST, _LAST = 8, 512  # degrees
-_MISSED = 1e-6  # of the greatest coefficient, at a sudden change
-_RESOLVED = 1e-11  # the last coefficients over the greatest
+_FIRST, _LAST = 8, 512  # the first and the last degree that is tried
+_MISSED = 1e-6  # the greatest miss at a sudden change over the greatest coefficient
+_RESOLVED = 1e-11  # the last coefficients over the greatest, of polynomials that resolve g
 
 
 def takes(f: Callable[..., Any], count: int) -> bool:
-    """Return whether a function can be called with so many arguments; one that does not say so takes any number."""
+    """Return whether a function can be called with `count` arguments; True for one without a known signature."""
     if isinstance(f, np.ufunc):
         return bool(f.nin == count)
     try:
         inspect.signature(f).bind(*range(count))
     except TypeError:
         return False
-    except ValueError:  # of one written in C
+    except ValueError:  # a function written in C
         return True
     return True
 
 
 class Outside(NamedTuple):
-    """g(places, t) outside; `varies` if it depends on t."""
+    """g(places, t) outside; `varies` says whether it depends on t."""
 
     at: Callable[..., Any]
     varies: bool
 
 
 def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
-    """Return the values of a function g of places and time, or of places alone, or of a number; None for none.
+    """Return g from a function of places and time, a function of places alone, or a number; None if there is none.
 
     Raises
     ------
     InvalidInput
-        If there are none where the exterior is given, or some where it is not.
+        If values are missing where the exterior is given, or given where it is not.
     """
     if (outside is None) == (exterior == "given"):
         allowed = "values of u outside if the exterior is given, nothing otherwise"
@@ -72,7 +72,7 @@ def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
 
 
 class Lift(NamedTuple):
-    """w, D A w, (grad^beta w) on an interval, where it is wanted with a diffusivity that varies, and w'."""
+    """w, D A w, grad^beta w (on an interval, for a diffusivity that varies) and w'."""
 
     base: FloatArray
     load: FloatArray
@@ -87,19 +87,30 @@ def lifted_in_time(
     span: float,
     sudden: Sequence[float] = (),
 ) -> Callable[[float], Lift]:
-    """Return a lift as a function of the time from `start` on, by its values at some times, right at the sudden ones.
+    """Return a lift as a function of time, interpolated in time, and checked at the sudden times.
+
+    Parameters
+    ----------
+    lifted : callable
+        Returns the lift at a time.
+    varies : bool
+        Whether it depends on time.
+    start, span : float
+        The times from `start` to `start + span` are covered.
+    sudden : sequence of float
+        The times before and after each sudden change.
 
     Raises
     ------
     NonFiniteSolution
-        If they vary too fast in time for a polynomial of degree 1024.
+        If the values vary too fast in time for a polynomial of degree 512, or jump.
     """
     if not varies:
         fixed = lifted(start)
         return lambda t: fixed
 
     def at(steps: FloatArray) -> FloatArray:
-        """The parts at the times of these nodes, the last one first."""
+        """Return the parts at the times of these nodes, the last one first."""
         nodes = 0.5 + 0.5 * np.cos(np.pi * steps)
         return np.array([lifted(start + span * node)[:3] for node in nodes])
 
@@ -110,7 +121,7 @@ def lifted_in_time(
         values = np.insert(values, np.arange(1, len(values)), between, axis=0)
         c = dct(values, type=1, axis=0) / degree
         c[[0, -1]] *= 0.5
-        # Of w and D A w; D A w, and the flux at the ends, may be round-off of w.
+        # The size of w and D A w: D A w, and the flux at the ends, may be round-off of w.
         size = np.abs(c[:, :2]).max(axis=(0, 2, *range(3, c.ndim)), keepdims=True)
         if (np.abs(c[-2:, :2]) <= _RESOLVED * np.maximum(size, size[:, :1])).all():
             found = _Interpolated(c, start, span)
@@ -125,7 +136,7 @@ def lifted_in_time(
 
 
 class _Interpolated:
-    """A lift by Chebyshev coefficients of its parts, shape (degree + 1, 3, ..), and of the derivative of the first."""
+    """A lift from Chebyshev coefficients of its parts, shape (degree + 1, 3, ..); w' is the derivative of the first."""
 
     def __init__(self, c: FloatArray, start: float, span: float) -> None:
         self._shape, self._start, self._span = c.shape[2:], start, span

@@ -1,8 +1,8 @@
 r"""Diffusion in its modes and transport beside it, by implicit steps: y' = -lambda y + P(t) y + N(y, t).
 
-Waves that are carried as fast as they decay, P of the size of lambda, are no matter for an explicit N (`exponential`).
-Radau IIA of order 5, scipy's (Hairer & Wanner, Solving ODEs II, Sec. IV.8), takes them with the matrix -lambda + P; in
-the modes that is not afraid of rates of 1e15, each of which is known to its own digits.
+An explicit N (`exponential`) cannot follow waves that are carried as fast as they decay, where P has the size of
+lambda. Radau IIA of order 5 (Hairer & Wanner, Solving ODEs II, Sec. IV.8), from scipy, solves for them with the matrix
+-lambda + P. In the modes rates of 1e15 do no harm: each of them is known to its own digits.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ __all__ = ["ImplicitSteps"]
 
 Beside = Callable[[float, FloatArray], FloatArray]
 
-_FINEST = 1e-12  # of a relative tolerance
+_FINEST = 1e-12  # the least relative tolerance
 _MOST = 20_000  # steps
-_NOTHING = 1e-290  # of u, not followed any further: numbers end
+_NOTHING = 1e-290  # the least size of u to which steps are accurate: smaller numbers underflow
 
 
 class ImplicitSteps(ModalSteps):
-    """Steps of u' = A u + N(t, u) with the derivative of both in the modes of A; those thrown away are not counted.
+    """Steps of u' = A u + N(t, u) with the derivative of both in the modes of A; rejected steps are not counted.
 
     Parameters
     ----------
     modes, rest, tolerance, held
-        As those of all steps.
+        See `ModalSteps`.
     beside : callable
-        P(t, u), shape (N, N): what is to be taken implicitly of the derivative of N.
+        P(t, u), shape (N, N): the part of the derivative of N that is implicit.
     """
 
     def __init__(

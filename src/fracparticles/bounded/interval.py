@@ -1,6 +1,6 @@
 """Fractional diffusion on an interval (a, b): u_t = D A u + f(x, t), by particles that are graded towards the ends.
 
-With C = `special.tail_constant` and Omega = (a, b), the exterior says what A is:
+With C = `special.tail_constant` and Omega = (a, b), A depends on the exterior:
 
 absorbing
     u = 0 outside, the restricted operator -(-Laplacian)^(alpha/2): C int_Omega (u(y) - u(x)) |x - y|^(-1-alpha) dy -
@@ -8,14 +8,14 @@ absorbing
 reflecting
     Nothing crosses the ends, the regional operator: kappa is left out. int u is conserved.
 given
-    u = g(y, t) outside, C int_outside g |x - y|^(-1-alpha) dy is added to the first.
+    u = g(y, t) outside: C int_outside g |x - y|^(-1-alpha) dy is added to the first.
 
 The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`. With q weights
-of near neighbours, eigenvalues with absorbing ends and int |error| have the order min(2 q + 2 - alpha, p) in 1 / N: the
-first from inside, the second from the ends, like the distance d of the first particle. The greatest error is that at
-the ends, like d^(alpha/2): of the order min(2 q + 2 - alpha, p alpha/2).
-A lattice of equal volumes has p = 1, as linear finite elements of equal size have h in the L2 norm and h^(1/2) in that
-of the energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
+of near neighbours, eigenvalues with absorbing ends and int |error| have the order min(2 q + 2 - alpha, p) in 1 / N. The
+first entry is by the inside, the second by the ends, like the distance d of the first particle. The greatest error is
+at the ends, like d^(alpha/2): it has the order min(2 q + 2 - alpha, p alpha/2). A lattice of equal volumes has p = 1.
+Linear finite elements of equal size have likewise h in the L2 norm, and h^(1/2) in that of the energy (Acosta &
+Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 """
 
 from __future__ import annotations
@@ -45,11 +45,11 @@ from fracparticles.special import tail_constant
 
 __all__ = ["Interval"]
 
-_SHORTEST = 1e-9  # time times the slowest rate: before, modes matter that are not told apart
-_UNRESOLVED = 0.01  # of int |u|, what initial data may hold that the particles do not see
+_SHORTEST = 1e-9  # least time over that of the slowest mode; before, unresolved modes matter
+_UNRESOLVED = 0.01  # share of int |u|, or int |f|, that the particles may miss
 _FINE = 4001  # points at which a coefficient is looked at
-_COEFFICIENT = 0.05  # of the range of a coefficient, the same
-_EACH = 8  # particles for a mode; higher ones are off by more than 0.1 per cent
+_COEFFICIENT = 0.05  # share of the range of a coefficient that the particles may miss
+_EACH = 8  # particles for a mode; higher modes are off by more than 0.1 per cent
 
 
 class Interval(ModalDomain):
@@ -67,9 +67,9 @@ class Interval(ModalDomain):
     diffusivity : float
         D.
     degree : float
-        p of the map; 1 for equal volumes.
+        The degree p of the map; 1 for equal volumes.
     near : int
-        q, how many neighbours on either side have a weight, 0 to 6.
+        The number q of neighbours on either side that have a weight, 0 to 6.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class Interval(ModalDomain):
         self.x = self._place(self._unit.x)
         self.volumes = self._half * self._unit.volumes
         self.points = (self.x,)
-        # D A in the unit of (-1, 1).
+        # The unit of D A on (-1, 1).
         self._rate = self.diffusivity * self._half**-self.alpha
 
     def _place(self, unit: FloatArray) -> FloatArray:
@@ -138,7 +138,7 @@ class Interval(ModalDomain):
         return OutsideValues(self._unit, self.alpha, self._place)
 
     def matrix(self) -> FloatArray:
-        """Return D A, shape (N, N): du/dt = D A u, for what is inside."""
+        """Return D A, shape (N, N): du/dt = D A u for u = 0 outside."""
         return self._rate * rate_matrix(self._exchange, self._unit.volumes, self._loss)
 
     def eigenvalues(self, count: int = 1) -> FloatArray:
@@ -162,12 +162,12 @@ class Interval(ModalDomain):
         count = check.positive_integer("count", count, len(self.x) // _EACH)
         rates, vectors = self._inverse.modes(count)
         functions = vectors / np.sqrt(self.volumes)[:, None]
-        # One sign each time: the first that is not small is positive.
+        # The sign is the same every time: the first value that is not small is positive.
         first = np.argmax(np.abs(vectors) > 0.5 * np.abs(vectors).max(axis=0), axis=0)
         return self._rate * rates, functions * np.sign(vectors[first, range(count)])
 
     def all_modes(self) -> Modes:
-        """Return all modes of -D A; of eigenvalues above 1e15 times the first it is known only that they are."""
+        """Return all modes of -D A; an eigenvalue above 1e15 times the first is known only to be above."""
         return self._scaled(*self._modes, self.volumes)
 
     def _scaled(self, rates: FloatArray, vectors: FloatArray, volumes: FloatArray) -> Modes:
@@ -177,16 +177,16 @@ class Interval(ModalDomain):
         )
 
     def applied(self, u: FloatArray) -> FloatArray:
-        """Return D A u, with u = 0 outside: by the differences of pairs, of which what is equal has none."""
+        """Return D A u, with u = 0 outside, from the differences of pairs: a constant has none."""
         gained = (self._exchange * (u - u[:, None])) @ self._unit.volumes
         return np.asarray(self._rate * (gained if self._loss is None else gained - self._loss * u))
 
     def at_rest(self, load: FloatArray) -> FloatArray:
-        """Return u of D A u + load = 0; of reflecting ends that of mean zero."""
+        """Return the u with D A u + load = 0; for reflecting ends the one of mean zero."""
         return self._inverse.apply(self._unit.volumes * load / self._rate)
 
     def lifted(self, g: Callable[..., Any]) -> Lift:
-        """Return what values g(y) outside alone would hold in place: of that, D A w is nothing."""
+        """Return the steady field w for the values g(y) outside; D A w is zero."""
         level, load, flux = self._outside.load(g)
         w, nothing = self._inverse.apply(self._unit.volumes * load), np.zeros(self.x.size)
         flux = self.gradient(w) + self._half ** (1.0 - self.alpha) * flux
@@ -203,21 +203,21 @@ class Interval(ModalDomain):
 
     @cached_property
     def _odd(self) -> FloatArray:
-        """The exchange times (x_j - x_i) / alpha: the weights of near neighbours are the same."""
+        """The exchange times (x_j - x_i) / alpha, with the same weights of near neighbours."""
         distances = self._unit.distances
         side = np.sign(np.arange(self.x.size) - np.arange(self.x.size)[:, None])
         return np.asarray(self._exchange * distances * side / self.alpha)
 
     def slope(self, f: FloatArray) -> FloatArray:
-        """Return df/dx, by differences of order 8 in the variable of the map, where what is beyond an end is even."""
+        """Return df/dx, by differences of order 8 in the variable of the map; beyond an end f is even."""
         return differences(f) / self.volumes
 
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -(a u)', u = v + base: of v no wave grows that is not pressed together, see `interval_differences`.
+        """Return -(a u)', u = v + base: waves of v grow only where pressed together, see `interval_differences`.
 
-        Where nothing leaves the sum of V times it is zero.
+        Where nothing leaves, its sum weighted by V is zero.
         """
         a = np.broadcast_to(velocity[0], v.shape)
         if self.exterior == "reflecting":
@@ -231,7 +231,7 @@ class Interval(ModalDomain):
         return np.asarray(self._rate * (gained - lost))
 
     def modes_with(self, d: FloatArray, form: str) -> Modes:
-        """Return all modes of -D d A (FPSE), which is an exchange of volumes V / d, or of the negative of `spread`."""
+        """Return all modes of -D d A (FPSE), an exchange between volumes V / d, or of the negative of `spread`."""
         volumes = self._unit.volumes
         if form == "FPSE":
             kernel, volumes = self._exchange * np.outer(d, d), volumes / d
@@ -244,8 +244,12 @@ class Interval(ModalDomain):
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
         """Warn if the particles do not resolve f.
 
-        Initial data by their integral; a source by the integral of what straight lines between the particles miss of
-        it, a coefficient by the greatest of that.
+        Initial data are judged by their integral. Straight lines between the particles miss a part of other functions:
+        a source is judged by the integral of this part, a coefficient by its greatest value.
+
+        Warns
+        -----
+        AccuracyWarning
         """
         named, of, limit = f"the {name}", "of its range", _COEFFICIENT
         if name == "initial":

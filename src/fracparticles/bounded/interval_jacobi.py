@@ -1,15 +1,15 @@
-"""Eigenvalues of (-Laplacian)^(alpha/2) on (-1, 1), u = 0 outside, in Jacobi polynomials: to compare.
+"""Eigenvalues of (-Laplacian)^(alpha/2) on (-1, 1), u = 0 outside, by Jacobi polynomials: for comparison.
 
 With a = alpha / 2 (Dyda, Kuznetsov & Kwasnicki, Constr. Approx. 45 (2017) 427, Theorem 3)
 
     (-Laplacian)^a [(1 - x^2)^a P_n^(a, a)] = mu_n P_n^(a, a),   mu_n = Gamma(alpha + n + 1) / n!,
 
-so that in the Galerkin method with these functions the operator is diagonal, and all that is computed is
+so that in the Galerkin method with these functions the operator is diagonal. Only these have to be computed:
 
     M_mn = int (1 - x^2)^alpha P_m P_n dx,   lambda = 1 / eigenvalue of (mu k)^(-1/2) M (mu k)^(-1/2),
 
-k_n = int (1 - x^2)^a P_n^2 dx. The values are upper bounds. alpha may be any number from 0 to 2: for alpha = 2 they
-are those of the Laplacian, (n pi / 2)^2.
+k_n = int (1 - x^2)^a P_n^2 dx. The eigenvalues are upper bounds. alpha may be any number from 0 to 2: for alpha = 2 the
+eigenvalues are those of the Laplacian, (n pi / 2)^2.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ def jacobi_eigenvalues(alpha: float, count: int = 1, polynomials: int = 100) -> 
     alpha : float
         0 < alpha <= 2.
     count : int
+        The number of eigenvalues, up to 100.
     polynomials : int
         The size of the basis, three times the count or more, up to 300.
 

@@ -1,17 +1,17 @@
 """The third problem with closed ends: u = 0 outside, and no fractional flux through them. FPSE and DPSE solve it.
 
-A scheme that takes the flux q = -grad^beta u = -d/dx I u of what is on its particles alone, with the Riesz potential
-I u = c int u(y) |x - y|^(1-alpha) dy, and then exchanges it between them, keeps sum V u as the regional operator does.
-But
+Such a scheme takes the flux q = -grad^beta u = -d/dx I u of the u on its particles alone, with the Riesz potential
+I u = c int u(y) |x - y|^(1-alpha) dy. Then it exchanges the flux between the particles. This keeps sum V u, as the
+regional operator does. But
 
     u_t = -dq/dx,   q = -grad^beta u with u = 0 outside (-1, 1),   q(-1) = q(1) = 0,
 
-is another problem. It does not end in a constant but where I u is one, which is so for (Popov, 1982)
+is another problem. At last not u but I u is a constant. This holds for (Popov, 1982)
 
-    u = m Gamma(alpha) / (2^(alpha-1) Gamma(alpha/2)^2) (1 - x^2)^(alpha/2-1),   m = int u:
+    u = m Gamma(alpha) / (2^(alpha-1) Gamma(alpha/2)^2) (1 - x^2)^(alpha/2-1),   m = int u,
 
-infinite at the ends. All that decays has the rates of the absorbing problem: if -dq/dx = -lambda u, then q is zero
-outside and lambda q = -grad^beta (lambda u) = -grad^beta dq/dx = (-Laplacian)^(alpha/2) q.
+which is infinite at the ends. Every mode decays at a rate of the absorbing problem: if -dq/dx = -lambda u, then q is
+zero outside and lambda q = -grad^beta (lambda u) = -grad^beta dq/dx = (-Laplacian)^(alpha/2) q.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ __all__ = ["no_flux_state"]
 
 
 def no_flux_state(x: FloatArray, alpha: float, mass: float = 1.0) -> FloatArray:
-    """Return u of the last line at places inside (-1, 1).
+    """Return the final u of mass m, see the module, at places inside (-1, 1); of the shape of x.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What particles lose to the outside of an interval, and what they get of values that are given there.
+"""The loss of particles to the outside of an interval, and the gain from values that are given there.
 
 On (-1, 1), with the distances d of particle i from the two ends,
 
@@ -6,10 +6,11 @@ On (-1, 1), with the distances d of particle i from the two ends,
     b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds,
     (grad^beta u)_i = (C / alpha) int_outside g(y) sgn(y - x_i) |x_i - y|^-alpha dy + what is inside.
 
-In s the integrand is smooth on the scale one wherever the particle is, if g is smooth in log |y - end|: the trapezoidal
-rule, its step 1/4, has its own error of e^(-8 pi^2) for a constant g. The weights are scaled to add up to kappa_i, so
-that a constant outside is met by the same constant inside to round-off. Values that jump, or that swing for ever as
-cos(y) does, are not smooth in log |y - end|: every other point alone gives another sum then, and a warning says so.
+If g is smooth in log |y - end|, the integrand is smooth in s on the scale one, wherever the particle is. The
+trapezoidal rule with the step 1/4 has an error of e^(-8 pi^2) for a constant g. The weights are scaled to add up to
+kappa_i, so that a constant outside is met by the same constant inside to round-off. Values that jump, or that swing for
+ever like cos(y), are not smooth in log |y - end|. Then every other point alone gives another sum, and there is a
+warning.
 """
 
 from __future__ import annotations
@@ -29,15 +30,15 @@ from fracparticles.special import tail_constant
 
 __all__ = ["OutsideValues", "loss_rates"]
 
-_STEP = 0.25
-_FAR = 60.0  # e^60 interval lengths: what is beyond weighs e^(-60 alpha)
-# Of kappa max |g|, between all points and every other: for smooth values below 1e-8.
+_STEP = 0.25  # in s
+_FAR = 60.0  # the last s, e^60 half-widths: the values beyond weigh e^(-60 alpha)
+# The sums of all points and of every other, apart, over kappa max |g|: for smooth values below 1e-8.
 _UNRESOLVED = 1e-5
-_NEAR = 40.0  # e^-40 of the distance of the first particle
+_NEAR = 40.0  # the first point is at e^-40 of the distance of the first particle
 
 
 def loss_rates(particles: GradedParticles, alpha: float) -> FloatArray:
-    """Return kappa_i, shape (N,)."""
+    """Return kappa_i, the rate of loss to the outside, shape (N,)."""
     losses = particles.left**-alpha + particles.right**-alpha
     return np.asarray(tail_constant(alpha) / alpha * losses)
 
@@ -50,7 +51,7 @@ class OutsideValues:
     particles : GradedParticles
     alpha : float
     place : callable
-        From the interval (-1, 1) to the caller's.
+        Takes places of the unit of (-1, 1) to those of the caller.
     """
 
     def __init__(
@@ -84,7 +85,7 @@ class OutsideValues:
         )
 
     def load(self, g: Callable[..., Any]) -> tuple[float, FloatArray, FloatArray]:
-        """Return a level, b_i of g less that, and what grad^beta u has of it, both of shape (N,).
+        """Return a level, and for g less this level b_i and the part of grad^beta u, both of shape (N,).
 
         Raises
         ------
@@ -120,13 +121,13 @@ class OutsideValues:
 
 
 def _weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:
-    """Weights in proportion to (d + e^s)^(-1-alpha) e^s, each row of sum one."""
+    """Return weights in proportion to (d + e^s)^(-1-alpha) e^s, with the sum one in each row."""
     weights = (1.0 + beyond / distance[:, None]) ** (-1.0 - alpha) * (beyond / distance[:, None])
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
 def _flux_weights(distance: FloatArray, beyond: FloatArray, alpha: float) -> FloatArray:
-    """Weights in proportion to (d + e^s)^-alpha e^s, each row of sum one: the last point has all that is farther."""
+    """Return weights in proportion to (d + e^s)^-alpha e^s, with the sum one in each row: the last has all beyond."""
     ratio = beyond / distance[:, None]
     weights = (alpha - 1.0) * _STEP * (1.0 + ratio) ** -alpha * ratio
     weights[:, -1] += 1.0 - weights.sum(axis=1)

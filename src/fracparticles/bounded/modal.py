@@ -1,4 +1,4 @@
-"""Domains of which all modes are known: their diffusion is exact in time, whatever else there is beside it."""
+"""Domains whose modes are all known: their diffusion is exact in time, whatever other terms there are."""
 
 from __future__ import annotations
 

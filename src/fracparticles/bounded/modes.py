@@ -1,4 +1,4 @@
-"""An operator in its modes, and what all steps between their amplitudes have in common."""
+"""An operator in its modes, and the common part of all steps between their amplitudes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Rest = Callable[[float, FloatArray], FloatArray]
 """N(t, u), between fields."""
 
 Held = Callable[[float], FloatArray]
-"""By time, the size of what is added to the field that steps carry: the tolerance does not fall below its share."""
+"""From a time to the size of the field that is added to that of the steps; the tolerance is relative to it at least."""
 
 
 def size_of(y: Any) -> float:
@@ -25,7 +25,7 @@ def size_of(y: Any) -> float:
 
 
 class Modes(NamedTuple):
-    """The rates of the modes of an operator, and the way from fields to their amplitudes and back; |y|^2 = int u^2."""
+    """The rates of the modes of an operator, and the maps from fields to amplitudes and back; |y|^2 = int u^2."""
 
     rates: FloatArray
     into: Callable[[FloatArray], Any]
@@ -38,18 +38,20 @@ class ModalSteps:
     Parameters
     ----------
     modes : Modes
-        Of -A.
+        The modes of -A.
     rest : callable
         N.
     tolerance : float
-        Of each step, relative to the norm of u or, where u is smaller, of `held` at the time.
+        The error of each step, relative to the norm of u, or to that of `held` at the time if this is larger.
     held : callable, optional
+        See `Held`.
 
     Attributes
     ----------
     accepted : int
+        Steps taken.
     rejected : int or None
-        None if they are not counted.
+        Steps thrown away; None if they are not counted.
     largest : float
         The greatest |lambda|; zero where no eigenvalue limits the steps.
     """
@@ -64,7 +66,7 @@ class ModalSteps:
         self._h: float | None = None
 
     def _size(self, t: float, y: Any) -> float:
-        """What the tolerance is relative to."""
+        """Return the size to which the tolerance is relative."""
         held = 0.0 if self._held is None else size_of(self._modes.into(self._held(t)))
         return max(size_of(y), held)
 

@@ -1,4 +1,4 @@
-r"""What a domain says of its operator, and what follows of that for all of them: see `domain` for the equation.
+r"""The operator of a domain: its interface, and what follows from it for all domains. See `domain` for the equation.
 
 A u(x) = c int (u(y) - u(x)) |x - y|^(-n-alpha) dy
 """
@@ -21,8 +21,8 @@ from fracparticles.time.sudden import sudden_times
 
 __all__ = ["LOOKS", "DomainOperator"]
 
-LOOKS = 512  # times, at what depends on it
-_FAR = 1.1, 1.5, 3.0  # half-widths from the middle
+LOOKS = 512  # times at which a source or values outside are looked at for sudden changes
+_FAR = 1.1, 1.5, 3.0  # places outside for this, in half-widths from the middle
 
 
 class DomainOperator(ABC):
@@ -33,9 +33,9 @@ class DomainOperator(ABC):
     alpha, diffusivity : float
     exterior : str
     points : tuple of arrays
-        Where the particles are: x, or x and y.
+        The places of the particles: x, or x and y.
     volumes : array
-        What they stand for.
+        The volumes for which they stand.
     """
 
     alpha: float
@@ -45,7 +45,7 @@ class DomainOperator(ABC):
     volumes: FloatArray
 
     balance: float
-    """Of int |f|, what int f may be where nothing can leave and nothing shall change."""
+    """The greatest |int f| over int |f| of a source that counts as balanced between reflecting edges."""
 
     # --- what a domain says --------------------------------------------------------------------------
 
@@ -55,7 +55,7 @@ class DomainOperator(ABC):
 
     @abstractmethod
     def at_rest(self, load: FloatArray) -> FloatArray:
-        """Return u of D A u + load = 0, u = 0 outside; of a load of total 0, that of total 0, if nothing is outside."""
+        """Return the u with D A u + load = 0, u = 0 outside; if nothing leaves, load and u have the total 0."""
 
     @abstractmethod
     def decayed(self, u: FloatArray, time: float) -> FloatArray:
@@ -63,17 +63,17 @@ class DomainOperator(ABC):
 
     @abstractmethod
     def steps(self, rest: Rest, tolerance: float, held: Held) -> Steps:
-        """Return what takes steps of u' = D A u + rest(t, u), u = 0 outside, to the size of u or of `held`."""
+        """Return steps of u' = D A u + rest(t, u), u = 0 outside; the tolerance is relative to u or to `held`."""
 
     @abstractmethod
     def lifted(self, g: Callable[..., Any]) -> Lift:
-        """Return a field w with the values g(places) outside, and D A w."""
+        """Return a field w with the values g(places) outside, with D A w and the rest of `Lift`."""
 
     @abstractmethod
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -div(a (v + base)): v is 0 at an edge as u with u = 0 outside, the base is smooth there."""
+        """Return -div(a (v + base)): v vanishes at an edge as u does for u = 0 outside, the base is smooth there."""
 
     @abstractmethod
     def eigenvalues(self, count: int) -> FloatArray:
@@ -81,14 +81,14 @@ class DomainOperator(ABC):
 
     @abstractmethod
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
-        """Warn if the particles do not resolve f, the initial data or a source."""
+        """Warn if the particles do not resolve f: initial data, a source or a coefficient."""
 
     @abstractmethod
     def unresolved(self, v: FloatArray) -> float:
-        """Return the norm of what of v, 0 outside, is in the waves that the particles do not tell apart."""
+        """Return the norm of the part of v, v = 0 outside, in waves that the particles do not tell apart."""
 
     def spread(self, u: FloatArray, d: FloatArray) -> FloatArray:
-        """Return the exchange with a d that varies, the mean of a pair; with the outside by d itself.
+        """Return the exchange with a d that varies: a pair has the mean of its d, the loss to the outside d itself.
 
         D (C int_Omega (d(x) + d(y)) / 2 (u(y) - u(x)) |x - y|^(-n-alpha) dy - d kappa u)
         = (d A u + A(d u) - u A d + d u A 1) D / 2, A 1 = -kappa.
@@ -119,14 +119,14 @@ class DomainOperator(ABC):
         return np.asarray(check.finite_array(field, given, self.volumes.shape), dtype=float)
 
     def seen(self, field: str, given: Any) -> FloatArray:
-        """Return these values; warns if they are those of a function that the particles do not resolve."""
+        """Return `values`; warns if they are those of a function that the particles do not resolve."""
         values = self.values(field, given)
         if callable(given):
             self.warn_of_the_unseen(field, given, values)
         return values
 
     def lift_in_time(self, g: Outside | None, start: float, span: float) -> Callable[[float], Lift]:
-        """Return w and what it does as a function of the time, zero where nothing is given."""
+        """Return the lift as a function of the time from `start` to `start + span`; zero if nothing is given."""
         varies, sudden = g is not None and g.varies and span > 0.0, list[float]()
         if g is not None and varies:
             beyond, at = self._beyond(), g.at
@@ -134,7 +134,7 @@ class DomainOperator(ABC):
         return lifted_in_time(lambda t: self._lift_at(g, t), varies, start, span, sudden)
 
     def _beyond(self) -> tuple[FloatArray, ...]:
-        """Some places outside, along the axes and the diagonals."""
+        """Return some places outside, along the axes and the diagonals."""
         directions = np.array(list(product((-1.0, 0.0, 1.0), repeat=len(self.points))))
         directions = directions[np.abs(directions).max(axis=1) > 0.0]
         ends = [(float(x.min()), float(x.max())) for x in self.points]

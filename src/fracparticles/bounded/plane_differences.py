@@ -1,4 +1,4 @@
-"""Derivatives by polynomials through the nearest points: seven of them, of order 6, if not said otherwise."""
+"""Derivatives by polynomials through the nearest points: through seven, of order 6, if not said otherwise."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ __all__ = [
     "one_sided_differences",
 ]
 
-_POINTS = 7
-REACH = _POINTS // 2  # of those that are not one-sided
+_POINTS = 7  # points of a polynomial
+REACH = _POINTS // 2  # points on either side, of differences that are not one-sided
 
 
 def one_sided_differences(count: int, points: int = _POINTS) -> FloatArray:
@@ -28,14 +28,14 @@ def one_sided_differences(count: int, points: int = _POINTS) -> FloatArray:
 
 
 def differences_with_beyond(count: int) -> FloatArray:
-    """Return d/di of f_i at i = 0 .. count - 1, by the values at i = -3 .. count + 2, shape (count, count + 6)."""
+    """Return d/di of f_i at i = 0 .. count - 1 from the values at i = -3 .. count + 2, shape (count, count + 6)."""
     return one_sided_differences(count + 2 * REACH)[REACH:-REACH]
 
 
 def differences_through_centre(r: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return d/dr at the first three radii, by the values at all radii, shape (3, len(r)), and opposite, (3, 3).
+    """Return d/dr at the first three radii: from the values at all radii, shape (3, len(r)), and opposite, (3, 3).
 
-    Along a diameter a smooth field goes on through the centre, to the first radii on the other side of it.
+    Along a diameter a smooth field goes on through the centre to the first radii on the other side.
     """
     most = REACH
     line = np.concatenate([-r[most - 1 :: -1], r])  # from the other side of the centre
@@ -48,7 +48,7 @@ def differences_through_centre(r: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _weights(offsets: FloatArray) -> FloatArray:
-    """Those of the values at these offsets in f'(0)."""
+    """Return the weights of the values at these offsets in f'(0)."""
     unit = float(np.abs(offsets).max())
     powers = np.vander(offsets / unit, increasing=True).T  # f' is the second coefficient
     return np.asarray(np.linalg.solve(powers, np.eye(offsets.size)[1])) / unit

@@ -1,4 +1,4 @@
-"""Whether particles see a field of the caller's: its size by them against that by as many between them."""
+"""Whether particles resolve a field of the caller's: its size by them against that by as many points between them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fracparticles.errors import AccuracyWarning
 
 __all__ = ["warn_of_the_unseen"]
 
-_UNRESOLVED = 0.01  # of int |f|
+_UNRESOLVED = 0.01  # share of int |f| by which the two sizes may differ
 
 
 def warn_of_the_unseen(
@@ -22,6 +22,15 @@ def warn_of_the_unseen(
     volumes_between: FloatArray,
 ) -> None:
     """Warn if int |f| by the particles is not that by the points between them.
+
+    Parameters
+    ----------
+    name : str
+        The name of the field in the warning.
+    values, volumes : arrays
+        f at the particles, and their volumes.
+    between, volumes_between : arrays
+        f at points between the particles, and the volumes of these.
 
     Warns
     -----

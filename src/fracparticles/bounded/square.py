@@ -4,12 +4,12 @@ r"""Fractional diffusion in a square |x|, |y| < R, by strengths that the particl
 
 with one of three exteriors:
 
-- "absorbing": u = 0 outside, the restricted operator. The lattice is fitted to the edges, see `square_lattice`: the
-  order is 6 - alpha inside and 1 + alpha at the edges, where a lattice that is not fitted has the order one (as linear
-  finite elements on a uniform mesh, Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472);
+- "absorbing": u = 0 outside, the restricted operator. The lattice is fitted to the edges, see `square_lattice`. The
+  order is 6 - alpha inside and 1 + alpha at the edges. A lattice that is not fitted has the order one, like
+  linear finite elements on a uniform mesh (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472);
 - "reflecting": the integral is over the square only, the regional operator. The total is conserved. The order is 2;
 - "given": u = g outside. With v = u - g, which is zero there, v_t = D L v + D L g + f; a constant stays a constant. L g
-  takes a wider lattice and quadratures beyond (`square_outside`), so that g has to be smooth across the edge.
+  is computed on a wider lattice, with quadratures beyond (`square_outside`), so g has to be smooth across the edge.
 
 The N^2 particles lie at the middles of square cells, h = 2 R / N, and their sums are fast Fourier transforms. Time is
 exact, by Chebyshev series; steady fields are found by conjugate gradients.
@@ -49,8 +49,8 @@ from fracparticles.time.steps import EighthOrderStep, Steps, norm
 __all__ = ["Square"]
 
 _MOST = 512  # particles along a side
-_SOLVED = 1e-12  # the residual of a steady field, relative
-_MOST_STEPS = 20000
+_SOLVED = 1e-12  # the relative residual of a steady field
+_MOST_STEPS = 20000  # steps of conjugate gradients
 
 
 class Square(Domain):
@@ -66,17 +66,17 @@ class Square(Domain):
     half_width, diffusivity : float
         R and D.
     fitted : bool
-        Whether the lattice is fitted to the edges; False to see what that is worth.
+        Whether the lattice is fitted to the edges; False to compare.
 
     Attributes
     ----------
     x, y, volumes : array, shape (N, N)
-        Where the particles are, x along the first axis, and their volumes; a field is an array of that shape.
+        The places of the particles, x along the first axis, and their volumes; a field is an array of that shape.
 
     Raises
     ------
     InvalidInput
-        If one of them is not allowed.
+        If an argument is outside its range.
     """
 
     balance = 1e-6
@@ -98,7 +98,7 @@ class Square(Domain):
         self.diffusivity = check.scale("diffusivity", diffusivity)
         fitted = check.flag("fitted", fitted)
         h = self._spacing = 2.0 * self.half_width / self.side
-        # Of the operator on a lattice of spacing one.
+        # The unit of the operator: it is that of a lattice of spacing one.
         self._rate = self.diffusivity * h**-self.alpha
         middle = h * (np.arange(self.side) - 0.5 * (self.side - 1))
         self.x, self.y = self.points = tuple(np.meshgrid(middle, middle, indexing="ij"))
@@ -133,7 +133,7 @@ class Square(Domain):
         return self._rate * self._outer(self._operator.apply(self._inner(u)))
 
     def at_rest(self, load: FloatArray) -> FloatArray:
-        """Return u of D A u + load = 0; of a reflecting exterior that of total 0."""
+        """Return the u with D A u + load = 0; for a reflecting exterior the one of total 0."""
         return self._outer(self._at_rest(self._inner(load) / self._rate))
 
     def decayed(self, u: FloatArray, time: float) -> FloatArray:
@@ -165,9 +165,9 @@ class Square(Domain):
     def carried(
         self, v: FloatArray, base: FloatArray, velocity: Sequence[FloatArray]
     ) -> FloatArray:
-        """Return -div(a u), u = v + base: of v no wave grows that is not pressed together, see `square_transport`.
+        """Return -div(a u), u = v + base: waves of v grow only where pressed together, see `square_transport`.
 
-        Where nothing leaves, the sum of all is kept.
+        Where nothing leaves, the total is kept.
         """
         every = [np.broadcast_to(one, self.volumes.shape) for one in velocity]
         moved = self._transport.carried(v, *every)
@@ -176,7 +176,7 @@ class Square(Domain):
         return moved / self._spacing
 
     def divergence(self, velocity: Sequence[FloatArray]) -> FloatArray:
-        """Return div a, as `carried` has it."""
+        """Return div a as `carried` takes it."""
         every = (np.broadcast_to(one, self.volumes.shape) for one in velocity)
         return self._transport.divergence(*every) / self._spacing
 
@@ -195,7 +195,7 @@ class Square(Domain):
         operator = LinearOperator(
             (size, size), matvec=lambda v: -self._operator.apply(v), dtype=float
         )
-        start = np.random.default_rng(0).standard_normal(size)  # every symmetry is in it
+        start = np.random.default_rng(0).standard_normal(size)  # it has a part of every symmetry
         wanted = count - int(idle)
         found = eigsh(
             operator,
@@ -232,7 +232,7 @@ class Square(Domain):
         return (v / self._root).reshape(self.side, self.side)
 
     def _at_rest(self, f: FloatArray) -> FloatArray:
-        """The v with L v + f = 0, by conjugate gradients; of total 0 for a reflecting exterior."""
+        """Return the v with L v + f = 0, by conjugate gradients; for a reflecting exterior the one of total 0."""
         idle, f = self.exterior == "reflecting", f.reshape(-1)
         if idle:
             f = f - f.mean()
@@ -250,7 +250,7 @@ class Square(Domain):
         return np.asarray(v - v.mean() if idle else v)
 
     def _nearly_inverse(self, f: FloatArray) -> FloatArray:
-        """The inverse of the spectral power of the Laplacian, by sines or cosines: equivalent to the restricted one."""
+        """Apply the inverse of the spectral power of the Laplacian, by sines or cosines: -L is equivalent to it."""
         idle = self.exterior == "reflecting"
         there, back = (dctn, idctn) if idle else (dstn, idstn)
         k = np.pi / self.side * (np.arange(self.side) + float(not idle))
@@ -263,7 +263,7 @@ class Square(Domain):
 
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
         """Warn if the particles do not resolve f."""
-        # The corners of the cells, those at the edges for a half.
+        # The corners of the cells; those at the edges count for a half.
         line = np.linspace(-self.half_width, self.half_width, self.side + 1)
         part = np.full(self.side + 1, 2.0 * self.half_width / self.side)
         part[[0, -1]] *= 0.5
@@ -272,7 +272,7 @@ class Square(Domain):
         warn_of_the_unseen(name, values, cell, corners, np.multiply.outer(part, part))
 
     def _rate_of_smooth(self, g: Callable[..., Any]) -> FloatArray:
-        """L g in the square, in the unit of the lattice: a lattice twice as wide, and the mean beyond."""
+        """Return L g in the square, in the unit of the lattice, by a lattice twice as wide and the mean beyond."""
         n, h, margin = self.side, 2.0 * self.half_width / self.side, self._margin
         wide = h * (np.arange(n + 2 * margin) - 0.5 * (n + 2 * margin - 1))
         values = check.sampled("outside", g, *np.meshgrid(wide, wide, indexing="ij"))
@@ -291,7 +291,7 @@ class Square(Domain):
 
     @cached_property
     def _of_smooth(self) -> tuple[BoxConvolution, FloatArray, Outside]:
-        """The sums on the wider lattice, those of one, and what is beyond."""
+        """The sums on the wider lattice, the sums of one, and the means beyond."""
         n, h, margin = self.side, 2.0 * self.half_width / self.side, self._margin
         sums = BoxConvolution([weights(self.alpha, n + margin)], [None], n + 2 * margin, n)
         of_one = sums(np.ones((n + 2 * margin,) * 2))[0].copy()

@@ -1,34 +1,34 @@
-r"""The lattice of a square: what its particles exchange, and how it is fitted to the edges.
+r"""The lattice of a square: the exchange between its particles, and the fit to the edges.
 
-The bare kernel c |x - y|^(-2-alpha) on a lattice of spacing h, in the unit h = 1. A punctured rule leaves out the
-neighbourhood of i = j. The symbol says what that is: with sums over the m != 0 of the plane, continued (`epstein_zeta`,
-`harmonic_zeta`),
+The kernel is c |x - y|^(-2-alpha) on a lattice of spacing h, in the unit h = 1. A punctured rule leaves out the
+neighbourhood of i = j. The symbol shows the error, with sums over the m != 0 of the plane, continued (`epstein_zeta`,
+`harmonic_zeta`):
 
     sum w_m (1 - cos k.m) = |k|^alpha + c/2 sum |m|^(-2-alpha) (k.m)^2 - c/24 sum |m|^(-2-alpha) (k.m)^4 + ...
 
-Weights for three kinds of neighbours, at (1, 0), (1, 1) and (2, 0), take both away (`neighbours`): order 6 - alpha for
-a smooth field. The whole weight at (2, 0) is a little negative, all others are positive.
+Weights for three kinds of neighbours, at (1, 0), (1, 1) and (2, 0), remove both terms (`neighbours`). A smooth field
+then has the order 6 - alpha. The whole weight at (2, 0) is a little negative, all others are positive.
 
-A field that is zero outside behaves like d^(alpha/2) at the distance d from an edge. A lattice that takes no notice of
-it has the order one. Here two things do:
+A field that is zero outside behaves like d^(alpha/2) at the distance d from an edge. A lattice that is not fitted to
+this has the order one. Here two things are fitted:
 
-- the volumes of the outermost three lines, 1 + delta_k, are those with which the rule integrates d^p for p = alpha/2,
-  alpha/2 + 1 and 1, sum_k delta_k (k - 1/2)^p = -zeta(-p, 1/2), as in Navot's rule. The first two are in the field. The
-  third is its work: what the operator makes of d^(alpha/2 + 1) is d^(1 - alpha/2), times d^(alpha/2);
-- the rate at which line k gives to all others is such that d^(alpha/2) in the half-plane is harmonic, as it is for
-  the operator: D_k d_k^(alpha/2) = sum_(j != k) W_(k-j) V_j d_j^(alpha/2), W the sum of w along a line.
+- The volumes of the outermost three lines are 1 + delta_k. With them the rule integrates d^p for p = alpha/2,
+  alpha/2 + 1 and 1: sum_k delta_k (k - 1/2)^p = -zeta(-p, 1/2), as in Navot's rule. The first two powers are in the
+  field. The third is in its work: the operator takes d^(alpha/2 + 1) to d^(1 - alpha/2), which d^(alpha/2) multiplies.
+- The rate at which line k gives to all others makes d^(alpha/2) harmonic in the half-plane, as it is for the operator:
+  D_k d_k^(alpha/2) = sum_(j != k) W_(k-j) V_j d_j^(alpha/2), with the sum W of w along a line.
 
-The second replaces the rate of the infinite lattice, D = sum w, by D + `edge_fit`, which falls like k^-4. Near a
-corner those of two edges are added.
+This rate replaces that of the infinite lattice, D = sum w, by D + `edge_fit`, which falls like k^-4. Near a corner the
+fits of two edges are added.
 
-A field that nothing leaves has a slope along the edge, to the very edge. There the neighbourhood of a pair is cut, and
-these weights are not what is left out. For u = t, the coordinate along the edge, lines at the distance k exchange
-c_1 k^(1-alpha) / (alpha-1) each way, and what the sum over the lines on the far side of the edge differs by from
-its integral, in the mean over the cell of line k,
+A field that nothing leaves has a slope along the edge, up to the edge itself. There the neighbourhood of a pair is cut,
+and these weights do not make up for it. For u = t, the coordinate along the edge, lines at the distance k exchange
+c_1 k^(1-alpha) / (alpha-1) each way. The sum over the lines on the far side of the edge differs from its integral, in
+the mean over the cell of line k, by
 
-    zeta(alpha-1, k) + int_(k-1)^k y^(2-alpha) dy / (2-alpha),
+    zeta(alpha-1, k) + int_(k-1)^k y^(2-alpha) dy / (2-alpha).
 
-is mended by weights of neighbours on line k, `edge_exchange`. Without them the order is 3 - alpha. Nothing of all this
+Weights of neighbours on line k, `edge_exchange`, make up for this. Without them the order is 3 - alpha. None of this
 depends on h.
 """
 
@@ -57,9 +57,9 @@ __all__ = [
     "weights",
 ]
 
-_TERMS = 25  # of an accelerated alternating series: 5.8^-25 is below round-off
-_SHELLS = 4  # exp(-25 pi) is below round-off
-_ALIASES = 6  # K_nu(2 pi 6) is 1e-17
+_TERMS = 25  # terms of an accelerated alternating series: 5.8^-25 is below round-off
+_SHELLS = 4  # points on either side of the centre: exp(-25 pi) is below round-off
+_ALIASES = 6  # terms of Poisson's formula: K_nu(2 pi 6) is 1e-17
 
 
 def epstein_zeta(s: float) -> float:
@@ -112,7 +112,7 @@ def edge_volumes(alpha: float, count: int) -> FloatArray:
 
 
 def edge_fit(alpha: float, count: int) -> FloatArray:
-    """Return what the rate of a line differs by from that of the infinite lattice, shape (count,)."""
+    """Return the rate of each line less that of the infinite lattice, shape (count,)."""
     lines, s, k = 2 * count + 200, 0.5 * alpha, np.arange(count)
     d = np.arange(lines) + 0.5
     w = np.concatenate([[0.0], line_weights(alpha, lines)])
@@ -120,14 +120,14 @@ def edge_fit(alpha: float, count: int) -> FloatArray:
     own = 2.0 * (plane_constant(alpha) * zeta(2.0 + alpha) + next_to + second)
     volumes = edge_volumes(alpha, lines)
     inflow = w[np.abs(k[:, None] - np.arange(lines))] @ (volumes * d**s)
-    # Beyond, the sum is the integral of c_1 (y - d_k)^(-1-alpha) y^s, to the square of the distance in spacings.
+    # Beyond, the sum is the integral of c_1 (y - d_k)^(-1-alpha) y^s, up to the inverse square of the distance.
     far = hyp2f1(1.0 + alpha, s, s + 1.0, d[:count] / lines) * lines**-s / s
     inflow += tail_constant(alpha) * far
     return np.asarray(inflow / d[:count] ** s + volumes[:count] * own - rate_of_all(alpha))
 
 
 def edge_exchange(alpha: float, count: int) -> FloatArray:
-    """Return what neighbours on line k = 1 .. count exchange more, shape (count,)."""
+    """Return the additional exchange between neighbours on line k = 1 .. count, shape (count,)."""
     k = np.arange(1.0, count + 1.0)
     # zeta(s, k) = zeta(s) - sum_(i < k) i^-s
     passed = np.concatenate([[0.0], np.cumsum(k[:-1] ** (1.0 - alpha))])
@@ -142,7 +142,7 @@ def edge_exchange(alpha: float, count: int) -> FloatArray:
 def neighbours(alpha: float) -> tuple[float, float, float]:
     """Return the weights at (1, 0), (1, 1) and (2, 0) that are added to those of the kernel.
 
-    Of weights a, b, e there, sum w (k.m)^2 / 2 is (a + 2 b + 4 e) |k|^2, and sum w (k.m)^4 / 24 is
+    For weights a, b, e there, sum w (k.m)^2 / 2 is (a + 2 b + 4 e) |k|^2, and sum w (k.m)^4 / 24 is
     (a + 2 b + 16 e) (k_1^4 + k_2^4) / 12 + b k_1^2 k_2^2.
     """
     c = plane_constant(alpha)
@@ -158,8 +158,8 @@ def neighbours(alpha: float) -> tuple[float, float, float]:
 def harmonic_zeta(alpha: float) -> float:
     """Return the sum of |m|^(2-alpha) cos(4 theta_m) over the m != 0 of the plane, continued.
 
-    By the theta function of the harmonic polynomial P = |m|^4 cos 4 theta, which 1/t takes into t^5 times itself: with
-    w = 1 + alpha/2, pi^w / Gamma(w) sum P (g(w) + g(5 - w)), g(a) = int_1^inf t^(a-1) exp(-pi |m|^2 t) dt.
+    The theta function of the harmonic polynomial P = |m|^4 cos 4 theta at 1/t is t^5 times that at t. So the sum is,
+    with w = 1 + alpha/2, pi^w / Gamma(w) sum P (g(w) + g(5 - w)), g(a) = int_1^inf t^(a-1) exp(-pi |m|^2 t) dt.
     """
     w, m = 1.0 + 0.5 * alpha, np.arange(-_SHELLS, _SHELLS + 1.0)
     x, y = (v.reshape(-1) for v in np.meshgrid(m, m))
@@ -172,7 +172,7 @@ def harmonic_zeta(alpha: float) -> float:
 
 
 def _alternating(terms: Any) -> float:
-    """The sum of (-1)^k a_k: Cohen, Rodriguez Villegas & Zagier, Exp. Math. 9 (2000) 3, Algorithm 1."""
+    """Return the sum of (-1)^k a_k: Cohen, Rodriguez Villegas & Zagier, Exp. Math. 9 (2000) 3, Algorithm 1."""
     n = terms.size
     d = (3.0 + np.sqrt(8.0)) ** n
     d = 0.5 * (d + 1.0 / d)

@@ -1,11 +1,11 @@
-r"""What lies outside a square |x|, |y| < R, as seen from a point inside.
+r"""Integrals over the outside of a square |x|, |y| < R, for points inside.
 
     c int_outside g(y) |x - y|^(-2-alpha) dy
         = (c / alpha) int_0^(2 pi) rho^-alpha int_0^1 g(x + rho tau^(-1/alpha) e) dtau dtheta,
 
-rho(x, theta) the distance to the edge along e = (cos theta, sin theta). For the side at the distance d, rho is
-d / cos theta: the integral of cos^alpha from its foot is half an incomplete beta function, which serves for the rate
-kappa (g = 1) and as the variable of the quadrature in theta. Of a g that is constant the mean is that constant.
+with the distance rho(x, theta) to the edge along e = (cos theta, sin theta). For the side at the distance d, rho is
+d / cos theta. The integral of cos^alpha from the foot is half an incomplete beta function. It gives the rate
+kappa (g = 1), and is the variable of the quadrature in theta. The mean of a constant g is this constant.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from fracparticles.bounded.disc_rings import plane_constant
 
 __all__ = ["Outside", "outward_rate"]
 
-_DIRECTIONS, _DISTANCES = 12, 12  # nodes for each side
+_DIRECTIONS, _DISTANCES = 12, 12  # nodes of the two quadratures, for each side
 
 
 def outward_rate(x: FloatArray, y: FloatArray, half: float, alpha: float) -> FloatArray:
@@ -34,7 +34,7 @@ def outward_rate(x: FloatArray, y: FloatArray, half: float, alpha: float) -> Flo
 
 
 class Outside:
-    """Means over what lies outside the square |x|, |y| < half, for points x, y inside; the rays are found once."""
+    """Means over the outside of the square |x|, |y| < half, for points x, y inside; the rays are found once."""
 
     def __init__(self, x: FloatArray, y: FloatArray, half: float, alpha: float) -> None:
         self._x, self._y = x, y
@@ -43,7 +43,7 @@ class Outside:
         stretch, self._parts = _legendre(_DISTANCES)
         self._stretch = stretch ** (-1.0 / alpha)
         whole = alpha / plane_constant(alpha) * self.rate
-        # Of each side: outward and along it, the distance, and the weight and slope of each direction.
+        # For each side: outward and along it, the distance, and the weight and slope of each direction.
         self._rays = [
             (outward, along, d, [
                 (share * d**-alpha * (high - low) / whole, _slope(low + node * (high - low), alpha))
@@ -72,7 +72,7 @@ def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
 
 
 def _sides(x: FloatArray, y: FloatArray, half: float, alpha: float) -> Any:
-    """Of each side: outward and along it, the distance, and the integrals of cos^alpha to its two corners."""
+    """Yield for each side: outward and along it, the distance, and the integrals of cos^alpha to its two corners."""
     for d, t, outward, along in (
         (half - x, y, (1.0, 0.0), (0.0, 1.0)),
         (half + x, y, (-1.0, 0.0), (0.0, 1.0)),
@@ -83,13 +83,13 @@ def _sides(x: FloatArray, y: FloatArray, half: float, alpha: float) -> Any:
 
 
 def _angle(slope: FloatArray, alpha: float) -> FloatArray:
-    """The integral of cos^alpha theta from 0 to arctan(slope)."""
+    """Return the integral of cos^alpha theta from 0 to arctan(slope)."""
     part = betainc(0.5, 0.5 * (1.0 + alpha), slope**2 / (1.0 + slope**2))
     return np.asarray(0.5 * beta(0.5, 0.5 * (1.0 + alpha)) * np.sign(slope) * part)
 
 
 def _slope(angle: FloatArray, alpha: float) -> FloatArray:
-    """The inverse of `_angle`."""
+    """Return the slope for an integral: the inverse of `_angle`."""
     whole = 0.5 * beta(0.5, 0.5 * (1.0 + alpha))
     squared = betaincinv(0.5, 0.5 * (1.0 + alpha), np.minimum(np.abs(angle) / whole, 1.0))
     return np.asarray(np.sign(angle) * np.sqrt(squared / (1.0 - squared)))
