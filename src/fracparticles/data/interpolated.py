@@ -1,16 +1,17 @@
-"""Interpolation of measured data: values at points of any spacing, and what is not known of them.
+"""Interpolation of measured data: values between points of any spacing, and their error.
 
-Between the points goes a cubic spline, or the monotone cubic of Fritsch and Carlson, which does not overshoot:
-whichever is nearer to points that it was not given. The error of the interpolation is stated and not hoped for: every
-second point is left out, and then all but every fourth; what both miss, and how much less the first does, says what is
-missed with all of them:
+The data are interpolated by a cubic spline, or by the monotone cubic of Fritsch and Carlson, which does not overshoot:
+by the one that is nearer to points that it was not given. To estimate the error of the interpolation, every second
+point is left out, and then all but every fourth. With the relative 1-norms e_2 and e_4 of the two misses, the error
+with all points is
 
-    e = e_2 / r,   r = e_4 / e_2,  1 <= r <= 16,   the relative 1-norm of what is missed.
+    e = e_2 / r,   r = e_4 / e_2,  1 <= r <= 16.
 
-Noise has r = 1, and so have fewer than sixteen points along an axis. The few that are left out of fewer than 32 may be
-met by chance: e is then at least the distance of the two cubics; of fewer than eight nothing is known, and e is at
-least 1. Beyond the outermost points the data are zero; what may have been there, if it falls like |x|^(-1-alpha) or
-faster, is at most the sum of |u| d at the ends, d the distance to the middle of the data, and is stated as well.
+Noise has r = 1, and r = 1 is taken for fewer than sixteen points along an axis. With fewer than 32 points, the few that
+are left out may be met by chance: e is then at least the distance of the two cubics. With fewer than eight the error is
+unknown, and e is at least 1. Beyond the outermost points the data are zero. If they fall like |x|^(-1-alpha) or faster,
+the part beyond is at most the sum of |u| d at the ends, with the distance d to the middle of the data. This bound is
+stated as well.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ from fracparticles.errors import AccuracyWarning, InvalidInput
 __all__ = ["Measured"]
 
 _TOO_FEW, _SOME, _MANY = 8, 16, 32  # points along an axis, see the module
-_NOTICED = 0.05
-_MOST_GAIN = 16.0  # of half the spacing: the order of both cubics is four at most
+_NOTICED = 0.05  # the relative error, or the missing share of the mass, from which data are doubted
+_MOST_GAIN = 16.0  # the greatest r: the order of both cubics is four at most
 _FIELD = "initial"
 
 Interpolant = Callable[[Sequence[np.ndarray], np.ndarray, list[np.ndarray]], np.ndarray]
@@ -45,13 +46,13 @@ class Measured:
     axes : tuple of arrays
         The points along each axis, ascending.
     values : array
-        One for each point of the grid.
+        A value for each point of the grid.
     units : tuple of str
-        Those of the axes and of the values, as far as the data name them; "" where they do not.
+        The units of the axes and of the values, as far as the data name them; "" where they do not.
     source : str
-        Where they are from.
+        Where the data come from.
     is_file : bool
-        Whether that is the path of a file.
+        Whether `source` is the path of a file.
     """
 
     axes: tuple[np.ndarray, ...]
@@ -80,7 +81,7 @@ class Measured:
 
     @cached_property
     def method(self) -> str:
-        """Which interpolation: "cubic spline" or "monotone cubic"."""
+        """The interpolation that is used: "cubic spline" or "monotone cubic"."""
         return min(_INTERPOLANTS, key=lambda name: self._errors[name])
 
     @cached_property
@@ -93,7 +94,7 @@ class Measured:
 
     @cached_property
     def beyond(self) -> float:
-        """How much of the data may lie beyond the outermost points, at most, as a share of what is between them."""
+        """The part of the data beyond the outermost points at most, as a share of the part between them."""
         size = np.abs(self.values)
         total, outside = _integral(self.axes, size), 0.0
         for k, axis in enumerate(self.axes):
@@ -105,7 +106,7 @@ class Measured:
 
     @property
     def error(self) -> float:
-        """The interpolation error and what may lie beyond together."""
+        """The interpolation error together with the part that may lie beyond."""
         return self.interpolation_error + self.beyond
 
     @cached_property
@@ -116,7 +117,7 @@ class Measured:
 
     @property
     def estimates(self) -> dict[str, tuple[float, str]]:
-        """What a run states of its data, by name, each with what it is in words."""
+        """The estimates that a run states for its data: by name, each with its meaning in words."""
         between = f"relative error of the initial data between their points, by a {self.method}"
         return {
             "interpolation_error": (self.interpolation_error, between),
@@ -124,12 +125,19 @@ class Measured:
         }
 
     def check_lattice(self, strengths: np.ndarray, volume: float | np.ndarray) -> None:
-        """Refuse a lattice that does not hold the data, or is too coarse for them; warn where the data are.
+        """Refuse a lattice that does not hold the data, or is too coarse for them; warn if the data are too coarse.
+
+        Parameters
+        ----------
+        strengths : array
+            The data at the particles.
+        volume : float or array
+            The volume of each particle.
 
         Raises
         ------
         InvalidInput
-            If the mass on the lattice is off by more than a twentieth of what there is.
+            If the mass on the lattice is off by more than a twentieth of the mass of the data.
 
         Warns
         -----
@@ -160,7 +168,7 @@ class Measured:
 
     @property
     def _apart(self) -> float:
-        """How far the two cubics are apart, in the relative 1-norm."""
+        """The distance of the two cubics in the relative 1-norm."""
         fine = _finer(self.axes)
         one, other = (
             of(self.axes, self.values, list(np.meshgrid(*fine, indexing="ij", sparse=True)))
@@ -182,7 +190,7 @@ def _spline(axes: Sequence[np.ndarray], values: np.ndarray, x: list[np.ndarray])
 def _monotone(axes: Sequence[np.ndarray], values: np.ndarray, x: list[np.ndarray]) -> np.ndarray:
     from scipy.interpolate import PchipInterpolator
 
-    # Of data that have underflowed 1 / slope is infinite, and the slope zero.
+    # Where data have underflowed, 1 / slope is infinite, and the slope becomes zero.
     with np.errstate(over="ignore"):
         return _by_axes(PchipInterpolator, axes, values, x)
 
@@ -193,7 +201,7 @@ _INTERPOLANTS: dict[str, Interpolant] = {"monotone cubic": _monotone, "cubic spl
 def _by_axes(
     kind: Any, axes: Sequence[np.ndarray], values: np.ndarray, x: list[np.ndarray]
 ) -> np.ndarray:
-    """Interpolate along one axis after the other, where the points are a grid; or else point by point."""
+    """Interpolate along one axis after the other if the points are a grid, else point by point."""
     if len(axes) == 1:
         return np.asarray(kind(axes[0], values)(np.clip(x[0], axes[0][0], axes[0][-1])))
     clipped = [np.clip(one, axis[0], axis[-1]) for one, axis in zip(x, axes, strict=True)]
@@ -211,7 +219,7 @@ def _by_axes(
 
 
 def _left_out(interpolant: Interpolant, axes: Sequence[np.ndarray], values: np.ndarray) -> float:
-    """Return the error that the points left out say; see the module. The ends are always kept."""
+    """Return the error e from the points left out, see the module. The ends are always kept."""
     missed = []
     for stride in (2, 4):
         kept = [np.unique([*range(0, axis.size, stride), axis.size - 1]) for axis in axes]
@@ -226,7 +234,7 @@ def _left_out(interpolant: Interpolant, axes: Sequence[np.ndarray], values: np.n
     size = float(_integral(axes, np.abs(values)))
     if not missed or size == 0.0:
         return 0.0 if size == 0.0 else 1.0
-    # Half of the points were not left out, where nothing is missed: the others stand for all.
+    # At the half of the points that is kept nothing is missed: the other half stands for all.
     error = 2.0 * missed[0] / size
     enough = len(missed) == 2 and min(axis.size for axis in axes) >= _SOME
     gain = missed[1] / missed[0] if enough and missed[0] > 0.0 else 1.0

@@ -1,6 +1,6 @@
 """Measured data: values at points of any spacing, under any names, from a table, a file, labelled data or arrays.
 
-They are read into `Measured`, see `interpolated`: a function of x (y, z), which states its own error.
+They are read into a `Measured`, see `interpolated`: a function of x (y, z) that states its own error.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = ["MEASURED", "measured"]
 
-MEASURED = "measured:"  # before a path: what it holds is interpolated
-_FEWEST = 4
-_LEAST, _MOST = 1e-200, 1e200  # of values and their integrals: slopes and sums of both are numbers
+MEASURED = "measured:"  # before a path: the data in the file are interpolated
+_FEWEST = 4  # points along an axis
+# The sizes of values and of their integrals: slopes and sums of both do not overflow.
+_LEAST, _MOST = 1e-200, 1e200
 _FIELD = "initial"
 _AXES = ("x", "y", "z")
 
@@ -38,17 +39,17 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
     ----------
     data : path, DataArray, Dataset, Series, DataFrame, or a tuple of arrays (x, u)
         A table (csv, tsv, txt, dat) of two columns, or three or four for a rectangular grid of the plane or of space,
-        the values last. A first line, or the remark above the numbers, may name them, with units in brackets,
-        "x [m], c (mg/L)": then x, y, z are the places and u, or the other one, the values, wherever they stand. A
-        NetCDF file or labelled data: a variable on axes of any names, whose units are read.
+        the values last. A first line, or the remark above the numbers, may name the columns, with units in brackets,
+        "x [m], c (mg/L)". Then x, y, z are the places, and u, or the other column, has the values, in any order. In a
+        NetCDF file or labelled data: a variable on axes of any names, with units.
     x, u : str, optional
-        Names of the columns or axes, and of the values, where there are more than these.
+        Names of the columns or axes, and of the values, if there are more than these.
 
     Raises
     ------
     InvalidInput
-        If there are fewer than four points along an axis, two in one place, a value that is no finite number, points
-        that make no grid, axes in two units; or it is not clear which are the values.
+        If there are fewer than four points along an axis, or two points in one place; if a value is not finite; if the
+        points make no grid; if the axes have two units; or if it is not clear which column or variable has the values.
     """
     names = _names(x)
     if not isinstance(u, str | None):
@@ -80,7 +81,7 @@ def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None =
 
 
 def _names(x: Any) -> tuple[str, ...] | None:
-    """The names of the axes, one or several."""
+    """Return the names of the axes, one or several."""
     names = (x,) if isinstance(x, str) else x
     listed = isinstance(names, Sequence) and all(isinstance(name, str) for name in names)
     if not (names is None or listed):
@@ -89,7 +90,7 @@ def _names(x: Any) -> tuple[str, ...] | None:
 
 
 def _of_frame(data: Any) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """The columns by name and their units, as of a table in a file; an index that is not counted is a column, too."""
+    """Return the columns by name and their units, as for a table in a file; an index of its own is a column as well."""
     from pandas import RangeIndex
 
     if not isinstance(data.index, RangeIndex):
@@ -157,7 +158,7 @@ def _of_columns(
 
 
 def _by_their_names(known: list[str]) -> tuple[tuple[str, ...] | None, str | None]:
-    """Return which columns are places and which are values, if nobody said: x, y, z and the other one; or the last."""
+    """Return which columns are places and which has the values: x, y, z and the other one, or the last as values."""
     axes = [name for name in known if name.lower() in _AXES]
     others = [name for name in known if name not in axes]
     if axes and others:
@@ -176,7 +177,7 @@ def _in_order(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def _one_unit(units: list[str], source: str) -> str:
-    """The unit of all axes: a lattice has one."""
+    """Return the unit of all axes: a lattice has only one."""
     named = list(dict.fromkeys(unit for unit in units if unit and unit != "1"))
     if len(named) > 1:
         one = f"places in one unit, and these are in {spelled(named, ' and ')}"
@@ -185,7 +186,7 @@ def _one_unit(units: list[str], source: str) -> str:
 
 
 def _of_labels(data: xr.Dataset, x: tuple[str, ...] | None, u: str | None, source: str) -> Measured:
-    """The values are the one variable that varies, the axes its dimensions, with coordinates of their names."""
+    """Return the data of the one variable that varies, with its dimensions as axes, and coordinates of their names."""
     if u is None:
         candidates = [str(n) for n, one in data.data_vars.items() if 1 <= one.squeeze().ndim <= 3]
         if "u" in candidates:

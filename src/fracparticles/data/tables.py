@@ -18,17 +18,17 @@ _TABLES = (".csv", ".tsv", ".txt", ".dat")
 
 
 def is_table(path: str | os.PathLike[str]) -> bool:
-    """Say whether a file is a table, by its name."""
+    """Return whether a file is a table, by its name."""
     return Path(path).suffix.lower() in _TABLES
 
 
 def not_a_table(path: str | os.PathLike[str], field: str) -> None:
-    """Refuse the name of a table for a NetCDF file: nothing would read it again.
+    """Refuse the name of a table for a NetCDF file: it would be read as a table.
 
     Raises
     ------
     InvalidInput
-        If the name ends in one of these.
+        If the name ends like that of a table.
     """
     if is_table(path):
         allowed = f"a NetCDF file, and none that ends in {spelled(_TABLES)} like a table"
@@ -36,7 +36,13 @@ def not_a_table(path: str | os.PathLike[str], field: str) -> None:
 
 
 def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Return the columns of a table by name, and the units in their headings."""
+    """Return the columns of a table by name, and the units in their headings.
+
+    Raises
+    ------
+    InvalidInput
+        If there is no readable table of numbers with one name for each column.
+    """
     try:
         text = path.read_text("utf-8-sig")
     except FileNotFoundError:
@@ -54,7 +60,7 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     if not lines:
         raise InvalidInput("file", str(path), "a table with numbers", "It is empty.")
     separator = next((mark for mark in ";\t," if mark in lines[-1]), None)
-    # The decimal mark: in some row of the numbers, the first line may be names.
+    # The decimal mark is looked for in the rows of numbers: the first line may be names.
     comma = separator in (";", "\t") and any("," in line for line in lines[1:] or lines)
     if separator is None:
         rows = [line.split() for line in lines]
@@ -99,9 +105,9 @@ def _names_between_blanks(line: str) -> list[str]:
 
 
 def _names_in(remark: str, separator: str | None, count: int) -> list[str] | None:
-    """Return the headings in a remark above the numbers, "# u x" of `numpy.savetxt`; None if it is another remark.
+    """Return the headings in a remark above the numbers, like "# u x" of `numpy.savetxt`; None for another remark.
 
-    They are headings if there is one for each column, and one of them is x, y, z or u, or has a unit.
+    Words are headings if there is one for each column, and one of them is x, y, z or u, or has a unit.
     """
     cells = _names_between_blanks(remark) if separator is None else remark.split(separator)
     found = [cell.strip() for cell in cells]
@@ -111,7 +117,7 @@ def _names_in(remark: str, separator: str | None, count: int) -> list[str] | Non
 
 
 def _is_number(text: str, comma: bool) -> bool:
-    """Whether it is a number as tables have them: 1_0, which Python reads as ten, is none."""
+    """Return whether a text is a number as tables have them: 1_0, which Python reads as ten, is not."""
     try:
         float(text.replace(",", ".") if comma else text)
     except ValueError:
@@ -120,6 +126,6 @@ def _is_number(text: str, comma: bool) -> bool:
 
 
 def name_and_unit(heading: str) -> tuple[str, str]:
-    """Return "c", "mg/L" of "c [mg/L]" or "c (mg/L)"."""
+    """Return "c", "mg/L" for "c [mg/L]" or "c (mg/L)", and "c", "" for "c"."""
     found = re.fullmatch(r"(.*?)\s*[\[(](.*)[\])]", heading.strip())
     return (found[1].strip(), found[2].strip()) if found else (heading.strip(), "")
