@@ -14,10 +14,10 @@ far larger than epsilon do no harm here, unlike in `graded.green_step`: this pay
 heavy tails. As T goes to zero the matrix tends to the identity, except for the outermost particles, where the field
 jumps: they keep one half.
 
-The integrals are done by Gauss's rule on panels that double in length away from y = x_i, up to half the way to y = 0,
-and from y = 0: within each both factors are smooth, but for the waves of S_j, for which the rule has enough nodes. A
-node is kept as its distance from one of these two points, so that an epsilon far below an ulp of x_i is resolved: with
-a = y / L, b = x_i / L of one sign
+The integrals are done by Gauss's rule on panels. These double in length away from y = x_i, up to half the way to y = 0,
+and away from y = 0. Within each panel both factors are smooth except for the waves of S_j, for which the rule has
+enough nodes. A node is kept as its distance from one of these two points, so that an epsilon far below an ulp of x_i is
+resolved: with a = y / L, b = x_i / L of one sign
 
     s(y) - s(x_i) = arcsinh[(a - b) (a + b) / (a sqrt(1 + b^2) + b sqrt(1 + a^2))],
 
@@ -41,17 +41,17 @@ __all__ = ["GRADED_FORMS", "INTERPOLATED", "graded_step", "green_step_of_field"]
 INTERPOLATED = "interpolated"
 GRADED_FORMS = (*FORMS, INTERPOLATED)
 
-# The worst panel, of length d, has singularities over one of its ends, d away from it: the error of Gauss's rule is
-# about 4.6^(-2 n), 1e-16 for 12 nodes.
+# Nodes of a panel without waves. The worst panel, of length d, has singularities at the distance d over one of its
+# ends. There the error of Gauss's rule is about 4.6^(-2 n), 1e-16 for 12 nodes.
 _NODES = 12
 
 
 def graded_step(
     count: int, reach: float, scale: float, alpha: float, time: float, form: str = INTERPOLATED
 ) -> np.ndarray:
-    """Return the matrix of one step on graded particles in any of the `GRADED_FORMS`.
+    """Return the matrix of one step on graded particles in any of the `GRADED_FORMS`, shape (N, N).
 
-    It is that of `green_step_of_field` for "interpolated", and else that of `green_step`; parameters as there.
+    It is that of `green_step_of_field` for "interpolated", and else that of `green_step`, with the same parameters.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def green_step_of_field(
 def _panels_around(
     x: float, reach: float, scale: float, epsilon: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The ends of the panels next to x <= 0 as distances: from it down to -reach, and up to x / 2."""
+    """Return the ends of the panels next to x <= 0 as distances from x: down to -reach, and up to x / 2."""
     first = min(epsilon, math.hypot(x, scale))
     return _doubling(first, reach + x), _doubling(first, -0.5 * x)
 
@@ -117,7 +117,7 @@ def _panels_around(
 def _panels_around_zero(
     x: float, reach: float, scale: float, epsilon: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The ends of the others as distances from zero: down to x / 2, and up to reach."""
+    """Return the ends of the other panels as distances from zero: down to x / 2, and up to reach."""
     first = min(scale, math.hypot(x, epsilon))
     return _doubling(first, -0.5 * x), _doubling(first, reach)
 

@@ -3,9 +3,9 @@
 Eqs. (38)-(41) do not require a lattice. With epsilon^alpha = D T, so that one step covers the whole time, and
 particles x_j of volumes V_j, Eq. (41) is
 
-    u_i(T) = u_i + sum_j V_j (u_j - u_i) E_epsilon(x_i - x_j)                    (exchange)
+    u_i(T) = u_i + sum_j V_j (u_j - u_i) E_epsilon(x_i - x_j).                   (exchange)
 
-and what it approximates is u(x, T) = int E_epsilon(x - y) u(y, 0) dy, whose plain sum is
+It approximates u(x, T) = int E_epsilon(x - y) u(y, 0) dy. The plain sum of this is
 
     u_i(T) = sum_j V_j u_j E_epsilon(x_i - x_j).                                 (quadrature)
 
@@ -17,10 +17,10 @@ reach far with few of them, and need no model of the exterior. The quadrature is
 falls faster than any power of ds where the volumes resolve E, about V_j < epsilon. Far out they do not. There the
 exchange is right to leading order, since particle i keeps what no neighbour takes, and it conserves sum V u. The
 quadrature instead gives a particle V E(0) times its own strength, far more than it has. A step is a product with an N
-x N matrix: for tens or some hundred of particles, where it is faster than any sum by FFT.
+x N matrix. For tens of particles or some hundred it is faster than any sum by FFT.
 
 Volumes that do not fit the positions can make a particle give away more than twice what it has. Then the exchange
-amplifies: it is symmetric in the scalar product of V, so that its largest factor is from s - 1 to 2 s - 1, s
+amplifies. It is symmetric in the scalar product of V, so that its largest factor is between s - 1 and 2 s - 1, with s
 the largest sum of the weights of a particle's neighbours.
 """
 
@@ -38,7 +38,7 @@ __all__ = ["FORMS", "MOST", "graded_particles", "green_step", "refuse_many"]
 
 FORMS = ("exchange", "quadrature")
 MOST = 10001  # particles: the matrix then takes 800 MB
-_LARGEST = 1e150  # of the positions and volumes that `green_step` takes
+_LARGEST = 1e150  # the largest position or volume that `green_step` takes
 _DENSE = 64  # particles up to which all eigenvalues are computed
 _GROWS = 1e-6  # an amplification that exceeds 1 by more is warned of
 _TOO_MUCH = 1.25  # the most that the quadrature may make of a constant 1
@@ -91,14 +91,14 @@ def green_step(
     Parameters
     ----------
     x, volumes : array, shape (N,)
-        The particles, anywhere on the line, and what they stand for.
+        The positions of the particles, anywhere on the line, and their volumes.
     alpha : float
         Fractional order, 1 < alpha < 2.
     time : float
         D T.
     form : {"exchange", "quadrature"}
         The exchange keeps sum V u to round-off, however far volumes and smoothing length are apart: its diagonal is
-        1 less the weights of all others, in which the particle's own, V E(0), never enters.
+        1 less the weights of all other particles. The particle's own weight, V E(0), never enters.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def green_step(
     StabilityWarning
         If the exchange amplifies.
     AccuracyWarning
-        If the quadrature makes much more of a constant somewhere.
+        If the quadrature makes a constant more than a quarter larger somewhere.
     """
     check.choice("form", form, FORMS)
     alpha, time = check.fractional_order(alpha), check.positive_real("time", time)
@@ -143,11 +143,11 @@ def _warn_of_growth(matrix: np.ndarray, volumes: np.ndarray, most: float) -> Non
 
 
 def _least_eigenvalue(matrix: np.ndarray, root: np.ndarray) -> float:
-    """Of a matrix that the square roots of the volumes make symmetric."""
+    """Return the least eigenvalue of a matrix that the square roots of the volumes make symmetric."""
     n = root.size
     if n <= _DENSE:
         return float(np.linalg.eigvalsh(matrix * root[:, None] / root).min())
-    # It takes a tenth of a second to import.
+    # Imported here, since that takes a tenth of a second.
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
     symmetric = LinearOperator((n, n), lambda u: root * (matrix @ (u / root)), dtype=float)
