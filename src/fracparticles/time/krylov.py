@@ -1,4 +1,4 @@
-"""Linear problems with constant coefficients, u' = A u + b, without steps of their own: by Krylov spaces.
+"""Steps for linear problems with constant coefficients, u' = A u + b, by Krylov spaces:
 
     u(t + tau) = u + tau phi_1(tau A) r,    r = A u + b,    phi_1(z) = (e^z - 1) / z.
 
@@ -6,12 +6,12 @@ In the space of r, A r, .. A^(m-1) r, with the orthonormal basis V_m and the Hes
 
     tau phi_1(tau A) r ~ |r| V_m tau phi_1(tau H_m) e_1,    error ~ |r| h_(m+1,m) |e_m^T tau^2 phi_2(tau H_m) e_1|,
 
-Saad, SIAM J. Numer. Anal. 29 (1992) 209, Theorem 5.1. Both come from one exponential of H_m with two rows more. The
+Saad, SIAM J. Numer. Anal. 29 (1992) 209, Theorem 5.1. Both come from one exponential of H_m with two more rows. The
 space does not depend on tau: a step that is too long is taken shorter, without another application of A. The sums are
-those of einsum, in one order whatever the number of threads, which those of BLAS are not.
+done by einsum: unlike those of BLAS, their order does not depend on the number of threads.
 
-A v is (R(s v) - b) / s, in which a large b would cancel all digits of A v for s = 1. They are kept for s = T |b|, T the
-time of the run: the round-off of b is then an ulp of 1 / T in A, and A counts only if it is of the size of 1 / T.
+A v is (R(s v) - b) / s. For s = 1 a large b would cancel all digits of A v. They are kept for s = T |b|, with T the
+time of the run: the round-off of b is then an ulp of 1 / T in A, and A counts only if its size is that of 1 / T.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ from fracparticles.time.steps import Absolute, absolute, blown_up, norm
 
 __all__ = ["KrylovStep"]
 
-_MOST = 40  # vectors of a space,
-_NUMBERS = 4_000_000  # but with so many numbers in all at most,
-_FEWEST = 12  # unless there are fewer vectors than this
+_MOST = 40  # the most vectors of a space
+_NUMBERS = 4_000_000  # the most numbers in all of them together
+_FEWEST = 12  # vectors that a space may have in any case
 _SHORTER, _LONGER = 0.2, 4.0  # the least and the greatest ratio of a step to the one before
 _SAFETY = 0.85  # of the step that would just meet the tolerance
-_FADED = 1e-3  # a step leaves at least this of u: a longer one would cost digits, and be judged by the size before it
-_NOTHING = 1e-14  # of a vector of norm one: less is left of one that lies in the space
+# The least share of u that a step leaves. A longer one would cost digits, and be judged by the size of u before it.
+_FADED = 1e-3
+_NOTHING = 1e-14  # the share of a vector outside a space, below which it lies in the space
 
 
 class KrylovStep:
@@ -42,11 +43,11 @@ class KrylovStep:
     rate : callable
         R.
     size : int
-        Of u.
+        The number N of entries of u.
     rtol : float
     atol : float, or function of t and u
-        The error of the run in the 2-norm is to be below rtol |u| + atol sqrt(N), each step's share by its length; u is
-        the smaller of those before and after it.
+        The error of the run in the 2-norm is to be below rtol |u| + atol sqrt(N). Each step has a share of it by its
+        length; |u| is the smaller of the norms before and after the step.
     run : float
         The time of the run.
 
@@ -55,7 +56,7 @@ class KrylovStep:
     accepted, rejected : int
         Steps taken, and lengths that were too long.
     largest : float
-        The largest |lambda| that a space has seen.
+        The largest |lambda| found in a space.
     """
 
     def __init__(
@@ -85,7 +86,7 @@ class KrylovStep:
             return self._advanced(u, span, start)
 
     def forget(self) -> None:
-        """Nothing: there is no time in the right-hand side, and a step finds its length anew for each span."""
+        """Do nothing: the right-hand side does not depend on time, and a step finds its length anew for each span."""
 
     def _advanced(self, u: np.ndarray, span: float, start: float) -> np.ndarray:
         if self._origin is None:
@@ -127,13 +128,13 @@ class KrylovStep:
         return self._rtol * norm(u) + absolute(self._atol, t, u) * float(np.sqrt(u.size))
 
     def _arnoldi(self, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """V_m, shape (m, N), and H of shape (m + 1, m); m smaller where the space is full."""
+        """Return V_m, shape (m, N), and H, shape (m + 1, m); m is smaller if the space is full."""
         basis = np.empty((self._most, first.size))
         h = np.zeros((self._most + 1, self._most))
         basis[0] = first
         for j in range(self._most):
             w = (self._rate(self._size * basis[j]) - self._origin) / self._size
-            for _ in range(2):  # the second time for what the first leaves by round-off
+            for _ in range(2):  # the second time removes what the first leaves by round-off
                 along = np.einsum("ij,j->i", basis[: j + 1], w)
                 w -= np.einsum("i,ij->j", along, basis[: j + 1])
                 h[: j + 1, j] += along
@@ -152,15 +153,15 @@ class KrylovStep:
 
 
 def _power_of_two(size: float) -> float:
-    """Return the one at or below the size: the digits of a product with it are those of the other factor."""
+    """Return the power of two at or below a size: a product with it has the digits of the other factor."""
     return float(np.ldexp(0.5, np.frexp(size)[1]))
 
 
 def _phi(h: np.ndarray, m: int, tau: float) -> tuple[np.ndarray, float]:
-    """tau phi_1(tau H) e_1, and h_(m+1,m) |e_m^T tau^2 phi_2(tau H) e_1|."""
+    """Return tau phi_1(tau H) e_1, and h_(m+1,m) |e_m^T tau^2 phi_2(tau H) e_1|."""
     longer = np.zeros((m + 2, m + 2))
     longer[:m, :m] = tau * h[:m]
-    longer[0, m] = longer[m, m + 1] = 1.0  # not times tau, whose unit may be any
+    longer[0, m] = longer[m, m + 1] = 1.0  # not times tau: its unit is arbitrary
     e = expm(longer)
     error = tau * h[m, m - 1] * tau * abs(e[m - 1, m + 1])
     return tau * e[:m, m], float(error) if np.isfinite(e).all() else np.inf

@@ -23,14 +23,14 @@ __all__ = [
 ]
 
 Rate = Callable[[float, np.ndarray], np.ndarray]
-"""R(t, u)."""
+"""R(t, u) of u' = R(t, u)."""
 
 Absolute = float | Callable[[float, np.ndarray], float]
 """An absolute tolerance: a number, or a function of the time and of u."""
 
 STAGES = 12  # evaluations that a step of order 8 takes
 _LOOK = 2000  # steps between two looks at the pace
-_MOST = 1e6  # steps to go, beyond which there is no end
+_MOST = 1e6  # steps to go, beyond which the end is out of reach
 
 
 class Steps(Protocol):
@@ -83,8 +83,8 @@ class EighthOrderStep:
         Raises
         ------
         NonFiniteSolution
-            If it grows without bound, or comes to where the right-hand side is singular: the steps have shrunk to
-            nothing; says when.
+            If u grows without bound, or reaches a value where the right-hand side is singular: then the steps shrink to
+            nothing, or would never reach the end; says when.
         """
         first = None if self._dt is None else min(self._dt, span)
         tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, start, u)}
@@ -112,10 +112,10 @@ class EighthOrderStep:
 
 
 class Pace:
-    """How far steps come: they end where they would never reach the end.
+    """The pace of steps: they stop if they would never reach the end.
 
-    A solution that is driven to where its source jumps or is infinite, 1 / u at u = 0, crosses it again and again, in
-    steps that are ever so short but never fail.
+    A solution may be driven to a value where its source jumps or is infinite, like 1 / u at u = 0. It crosses this
+    value again and again, in steps that are very short but never fail.
     """
 
     def __init__(self, start: float, span: float) -> None:
@@ -127,8 +127,8 @@ class Pace:
         Raises
         ------
         NonFiniteSolution
-            If more than a million steps were to follow at a pace that does not fall: steps to a blow-up end by
-            themselves.
+            If more than a million steps would follow, and the pace does not fall. Where it falls, as in a blow-up,
+            steps end by themselves.
         """
         self._taken += 1
         if self._taken % _LOOK:

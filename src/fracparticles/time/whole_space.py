@@ -1,12 +1,12 @@
 """A run on the whole space by one pair of Fourier transforms, with tails that are continued in closed form.
 
 The solution of u_t = -D (-Laplacian)^(alpha/2) u is u^(k, t) = f(k) u^(k, 0) with f = exp(-D t |k|^alpha). On a lattice
-transforms give the sum over all periodic images of u, not u. Beyond the lattice u falls like powers, see `tails`, which
-meet the data at some points near the ends. They continue the data on a longer lattice; the images of the data are added
-before the transforms, and those of the result taken off after them (`special.images`). What is left is the error of
-the expansion after its last term, and that of a lattice sum, which falls as fast as u^ does.
+transforms give the sum over all periodic images of u, not u. Beyond the lattice u falls like powers, see `tails`. They
+meet the data at some points near the ends, and continue them on a longer lattice. The images of the data are added
+before the transforms, and the images of the result are taken off after them (`special.images`). Two errors are left:
+that of the expansion after its last term, and that of a lattice sum, which falls as fast as u^ does.
 
-A method of the lattice has its own f: the symbol of a scheme, or of a difference formula, over the time.
+A method on the lattice has another f, which follows from the symbol of its scheme or difference formula.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from fracparticles.time.short_waves import ShortWaves
 
 __all__ = ["WholeSpace", "evolve", "tail_exponents"]
 
-# Of the maximum: warned of are a tail that misses the solution by more, and more waves that the lattice lacks.
+# Share of the maximum: there is a warning if the tail misses the solution by more, or if the lattice lacks more waves.
 _NOTICED = 1e-3
-FEWEST = 8  # points an axis: the tail meets the data at six depths
+FEWEST = 8  # points along an axis: the tail meets the data at six depths
 _OUTGROWN = 0.9  # the least half-width of the lattice, over (D t)^(1/alpha)
 _TINY = float(np.finfo(float).tiny)
-_TIMES = 1e-300, 1e300  # scaled: beyond, all stays as it is, or has outgrown the lattice
-_STRETCH = {1: 3.0, 2: 2.0, 3: 1.5}  # the longer lattice over the given one
+_TIMES = 1e-300, 1e300  # scaled: before, nothing changes; after, all has outgrown the lattice
+_STRETCH = {1: 3.0, 2: 2.0, 3: 1.5}  # by dimension: the longer lattice over the given one
 
 
 def evolve(
@@ -59,11 +59,11 @@ def evolve(
         Values on a uniform lattice, the same number along each axis; further axes before these are different data.
         The coordinates of labelled data must be the spacing apart.
     spacing : float
-        h.
+        The spacing h of the lattice.
     alpha : float
         Fractional order, 1 < alpha < 2.
     time : float
-        The time to go, in units of length^alpha / D; after none the solution is the data.
+        The time of the run, in units of length^alpha / D; for zero the solution is the data.
     dim : {1, 2, 3}, optional
         How many of the axes are space; all of them if left out.
     diffusivity : float
@@ -72,15 +72,16 @@ def evolve(
         How many powers continue u beyond the lattice, 0 to 6; with 0 it is periodic.
     tail : sequence of float, optional
         The powers p, q, .. of |x|^(-p), |x|^(-q) by which the data fall: for 1/(1 + x^2) on the line (2, 4). Empty for
-        data that are zero beyond the lattice. Left out: those of the fundamental solution.
+        data that are zero beyond the lattice. If left out, the powers of the fundamental solution.
     stretch : float, optional
-        How much longer the lattice of the transforms is, at least 1: a doubling takes one or two digits off the error
-        near the ends. Left out: 3, 2 and 1.5 in one, two and three dimensions, and 1 without terms.
+        The length of the lattice of the transforms over that of the given one, at least 1. A doubling takes one or two
+        digits off the error near the ends. If left out, 3, 2 and 1.5 in one, two and three dimensions, and 1 without
+        terms.
 
     Returns
     -------
     array
-        Of the shape of u.
+        The solution, of the shape of u.
 
     Raises
     ------
@@ -91,7 +92,7 @@ def evolve(
     -----
     AccuracyWarning
         If the powers that continue the solution miss it at the faces of the lattice by a thousandth of its maximum, and
-        the time is long enough for that to count; if waves that the lattice does not hold may be as much of it.
+        the time is long enough for that to count; or if waves that the lattice does not hold may be a thousandth of it.
 
     Examples
     --------
@@ -226,10 +227,10 @@ class WholeSpace:
             How far the tail is from u at the faces of the lattice, over the maximum of u. It counts less if the time is
             short.
         lacking : float
-            How much waves that the lattice does not hold may be of the maximum of u, see `short_waves`. A value below a
-            thousandth may be an upper bound.
+            The size that waves which the lattice does not hold may have, over the maximum of u, see `short_waves`. A
+            value below a thousandth may be an upper bound.
 
-        Of several data, both are those of the worst.
+        For several data, both are those of the worst.
 
         Raises
         ------
@@ -250,7 +251,7 @@ class WholeSpace:
         """Return the solution, and the numbers of its tail if it has one; show u^ of the data to `look`."""
         points, dim = self._points, self._dim
         shape = (points,) * dim
-        # A transform has the digits of its data.
+        # Data of another type become float64: a transform has the digits of its data.
         if type(u) is not np.ndarray or u.dtype != np.float64:
             u = check.finite_array("u", u)
         if u.ndim < dim or u.shape[u.ndim - dim :] != shape:
@@ -266,7 +267,7 @@ class WholeSpace:
         return self._circle(longer, look)[self._inside], None
 
     def _lacking(self, waves: ShortWaves, peaks: list[float]) -> float:
-        """Return how much the waves that the lattice does not hold may be of the greatest value."""
+        """Return the size that the waves which the lattice does not hold may have, over the greatest value."""
         worst = _worst(waves.at_most(self._alpha, self._tau), peaks)
         if worst >= _NOTICED:
             worst = _worst(waves.of_a_peak(self._alpha, self._tau), peaks)
@@ -287,7 +288,7 @@ def _worst(wrong: list[float], peaks: list[float]) -> float:
 
 
 def _dimension_of(u: np.ndarray) -> int:
-    """Return how many axes space has, if nobody said: all."""
+    """Return how many axes space has if `dim` is not given: all."""
     if not (1 <= u.ndim <= 3 and len(set(u.shape)) == 1):
         _refuse_shape(u.shape, "as many points along each of one to three axes")
     return u.ndim
@@ -306,5 +307,5 @@ def _refuse_outgrown(points: int, spread: float) -> None:
 
 
 def _count(u: np.ndarray, dim: int) -> int:
-    """How many data there are in an array of shape (.., N, .., N)."""
+    """Return how many data there are in an array of shape (.., N, .., N)."""
     return math.prod(u.shape[: u.ndim - dim])
