@@ -1,4 +1,4 @@
-"""A data set says twice what was run: by its scalars, and by the case or the problem in its attributes."""
+"""A data set says twice what was run: in its scalars, and in the case or the problem in its attributes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 __all__ = ["refuse_contradiction", "stored_in"]
 
-# The fields whose scalar is what was asked for; others are stored as they were taken.
+# Fields whose scalar is the value that was asked for; other scalars are the values that were taken.
 _AS_ASKED = (
     "scheme", "form", "order", "beta", "dim", "diffusivity", "half_width", "spacing", "exterior", "t_initial",
     "t_final",
 )  # fmt: skip
-_SAME = 1e-9
+_SAME = 1e-9  # relative difference of numbers that are the same
 
 
 def stored_in(data: xr.Dataset) -> dict[str, Any] | None:
@@ -29,12 +29,18 @@ def stored_in(data: xr.Dataset) -> dict[str, Any] | None:
 
 
 def refuse_contradiction(field: str, data: xr.Dataset, name: str) -> None:
-    """Refuse a data set whose scalars are not those of its case.
+    """Refuse a data set whose scalars are not those of its case or problem.
+
+    Parameters
+    ----------
+    field, name : str
+        The argument and the data set, as the message names them.
+    data : xarray.Dataset
 
     Raises
     ------
     InvalidInput
-        With the first that is not.
+        If a scalar is another; names the first one.
     """
     stored = stored_in(data) or {}
     for one in _AS_ASKED:
@@ -53,7 +59,7 @@ def refuse_contradiction(field: str, data: xr.Dataset, name: str) -> None:
 
 
 def _same(asked: Any, scalar: np.ndarray) -> bool:
-    """Whether they are equal, to the digits of the type; a text is no number, and says nothing of one."""
+    """Return whether both are equal to the digits of the type. A text and a number do not contradict each other."""
     value = scalar.item()
     if isinstance(asked, str) or isinstance(value, str):
         return asked == value or type(asked) is not type(value)

@@ -39,7 +39,7 @@ REFERENCE = (
     "equations, Comput. Part. Mech. 7, 491-507, doi:10.1007/s40571-019-00275-8"
 )
 
-# What a scalar coordinate adds to the label of the field that it is named after.
+# Additions to the label of a field, for the scalar coordinate of this name.
 _REALISED = {
     "spacing": ", asked for",
     "particle_spacing": ", realised",
@@ -53,11 +53,11 @@ Variables = dict[str, tuple]
 def to_dataset(solution: Solution, estimates: Sequence[ErrorEstimate] = ()) -> xr.Dataset:
     """Return the data set of a run, with an estimate of its error at each output time if there is one.
 
-    Dimensions `x`, `y`, `z` as there are; `u` unless the case stores metrics only (for dim > 1 the profiles `u_axis`
-    and `u_diagonal` if it stores these); scalar coordinates for every parameter; the scalars `mass_initial`,
-    `mass_final`, `operator_applications` and, for a run from the fundamental solution, `relative_l1_error` of
-    Eqs. (48), (59). A case with `times` has the dimension `t`: of u, of the error, and of `mass`. For DVM also the
-    particles and their history; for graded particles their volumes.
+    The dimensions are `x`, `y`, `z`, as many as the case has. There is `u` unless the case stores only metrics; a
+    profile in dim > 1 is stored as `u_axis` and `u_diagonal`. Every parameter is a scalar coordinate. The scalars are
+    `mass_initial`, `mass_final`, `operator_applications` and, for a run from the fundamental solution, the
+    `relative_l1_error` of Eqs. (48), (59). In a case with `times`, u, the error and `mass` have the dimension `t`. DVM
+    adds its particles and their history, graded particles add their volumes.
     """
     import xarray as xr
 
@@ -106,7 +106,7 @@ def to_dataset(solution: Solution, estimates: Sequence[ErrorEstimate] = ()) -> x
 
 
 def _fields(solution: Solution) -> tuple[Variables, Variables]:
-    """The strengths that the case stores, and their coordinates."""
+    """Return the strengths that the case stores, and their coordinates."""
     case, u, x, kept = solution.case, solution.u, solution.case.x, slice(None)
     first: tuple[str, ...] = ()
     if case.store == "metrics":
@@ -128,7 +128,7 @@ def _fields(solution: Solution) -> tuple[Variables, Variables]:
         x, u = x[kept], u[..., kept]
     axes = ("x", "y", "z")[: case.dim]
     coordinates = {axis: _along(axis, x, place) for axis in axes}
-    # DVM's particles leave the lattice; there is the field that they make.
+    # The particles of DVM leave the lattice: u is the field that they make on it.
     what = f"field u{when}" if case.kind.moving else strength
     fields = {"u": ((*first, *axes), u, _describe(what))}
     if case.is_graded:
@@ -137,7 +137,7 @@ def _fields(solution: Solution) -> tuple[Variables, Variables]:
 
 
 def _errors(solution: Solution) -> tuple:
-    """The error against the fundamental solution, at each output time."""
+    """Return the error against the fundamental solution, at each output time."""
     meaning, outputs = "relative L1 error, Eqs. (48), (59)", solution.outputs
     if outputs is None:
         return _scalar(relative_l1_error(solution.case, solution.u), meaning)
@@ -147,7 +147,7 @@ def _errors(solution: Solution) -> tuple:
 
 
 def _estimated(solution: Solution, estimates: Sequence[ErrorEstimate]) -> Variables:
-    """The estimated error and its parts, at each output time."""
+    """Return the estimated error and its parts, at each output time."""
     if not estimates:
         return {}
     within = f"within |x| <= {estimates[-1].within:.6g}"
@@ -168,7 +168,7 @@ def _estimated(solution: Solution, estimates: Sequence[ErrorEstimate]) -> Variab
 
 
 def _particle_variables(run: ParticleRun, store: str) -> Variables:
-    """What happened to the particles of DVM, and unless only metrics are stored the particles themselves."""
+    """Return the history of the particles of DVM, and, unless only metrics are stored, the particles themselves."""
     was = run.history
     overtaking, eliminated = np.int64(was.overtaking_steps), np.int64(was.eliminated_count)
     data = {
@@ -204,8 +204,8 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
     Raises
     ------
     InvalidInput
-        If `path` is there and not a regular file, or has the name of a table, or the data set holds what NetCDF cannot
-        hold.
+        If `path` is there and not a regular file, or has the name of a table, or the data set has an attribute or a
+        variable that NetCDF cannot hold.
     OSError
         If the file cannot be written: a folder without permission, a full disk.
     """
@@ -234,7 +234,7 @@ def _to_netcdf(dataset: xr.Dataset, path: Path) -> None:
 
 
 def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:
-    """Name the attribute or the variable that NetCDF cannot hold, if that is why a data set could not be written."""
+    """Refuse the attribute or the variable that NetCDF cannot hold, if this is why a data set was not written."""
     import xarray as xr
 
     def refuse_unless_written(part: xr.Dataset, what: str, value: object) -> None:
@@ -243,7 +243,7 @@ def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:
         except (TypeError, ValueError, AttributeError, LookupError, OverflowError) as error:
             held = f"what a NetCDF file can hold ({reason_of(error)})"
             raise InvalidInput(what, value, held, "Leave it out, or make text of it.") from None
-        except Exception:  # that of the disk
+        except Exception:  # an error of the disk
             return
 
     holders = [("attribute", dataset.attrs)]
@@ -262,13 +262,13 @@ def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:
 
 
 def read_run(path: str | Path) -> xr.Dataset:
-    """Read the file of a run, or of a solved problem, closed again.
+    """Read the file of a run or of a solved problem, and close it.
 
     Raises
     ------
     InvalidInput
-        If the file is missing, not NetCDF, damaged, or not a run of this package; if its scalars are not those of its
-        case.
+        If the file is missing, not NetCDF, damaged, or not a run of this package; or if its scalars are not those of
+        its case.
     """
     if not isinstance(path, str | os.PathLike):
         raise InvalidInput("file", path, "the path of a file", "Give such a path.")
@@ -281,7 +281,7 @@ def read_run(path: str | Path) -> xr.Dataset:
 
 
 def read_benchmark(path: str | Path) -> pd.DataFrame:
-    """Read a benchmark's file: one row a measurement, the attributes of the file in `attrs`.
+    """Read the file of a benchmark: one row for each measurement, the attributes of the file in `attrs`.
 
     Raises
     ------
@@ -295,7 +295,7 @@ def read_benchmark(path: str | Path) -> pd.DataFrame:
 
 
 def _parameters(case: Case) -> dict[str, object]:
-    """Each parameter as it was taken, the defaults resolved; those that the case has nothing of are left out."""
+    """Return each parameter as it was taken, with the defaults resolved; those without a value are left out."""
     spread = (case.diffusivity * case.t_final) ** (1.0 / case.alpha) * mean_radius(case.alpha)
     parameters = {
         "scheme": case.scheme,
