@@ -59,7 +59,7 @@ def _found(module: str, name: str) -> Any:
 
 
 def _names(function: Callable[..., Any]) -> Iterator[tuple[dict[str, Any], str, Any]]:
-    """What a function may refer to: in which namespace, its own or that of a module, the name, and the value."""
+    """Yield what a function may refer to: the namespace, its own or that of a module, the name, and the value."""
     names = function.__code__.co_names  # those of attributes, too
     own = function.__globals__
     modules = [own[name] for name in names if isinstance(own.get(name), ModuleType)]

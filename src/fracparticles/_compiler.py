@@ -1,4 +1,4 @@
-"""What numba compiles a function with: its `njit`, and a cache that cannot stand in the way.
+"""Compilation by numba: its `njit`, and a cache that cannot stand in the way.
 
 Imported at the first call of a compiled function, by `_compiled`, since numba takes longer to import than most runs.
 Compiled functions are kept where numba keeps them: in the folder that NUMBA_CACHE_DIR names, in `__pycache__` beside
@@ -7,8 +7,8 @@ process. A cache that cannot be read, cut in half by a power cut say, is emptied
 written, on a full disk say, is left alone. numba compiles a function anew when its own file changes; here also when a
 file changes whose compiled functions it calls, since these are compiled into it.
 
-Code in which one byte has changed gives another number, or ends the process. So what is kept has a digest, and says
-what it was compiled from: the index may name code of another version, or for other arguments, if a process was killed
+Code in which one byte has changed gives another number, or ends the process. So code is kept with a digest, and with
+the version and the arguments for which it was compiled. The index may name code for others if a process was killed
 between the two files, or if two processes wrote them at the same moment.
 """
 
@@ -72,11 +72,11 @@ class _Cache(FunctionCache):
         )
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        # numba's own first loads all that it can compile, 0.2 s. Code that is ready needs the run-time system only.
+        # The method of numba first loads all that it can compile, 0.2 s. Ready code needs only the run-time system.
         rtsys.initialize(target_context)
         try:
             return self._load_overload(sig, target_context)
-        except Exception:  # of a damaged file unpickling raises nearly anything
+        except Exception:  # unpickling a damaged file raises nearly anything
             with suppress(OSError):
                 self.flush()
             return None
@@ -103,7 +103,7 @@ def _files(function: Callable[..., Any]) -> set[Path]:
 
 
 def compiled(function: Callable[..., Any], options: dict[str, Any]) -> Any:
-    """Return what compiles a function at its first call, and keeps what it compiled."""
+    """Return a dispatcher that compiles a function at its first call, and keeps the code."""
     dispatcher = numba.njit(**{"nogil": True, **options})(function)
     with suppress(RuntimeError):  # no folder that can be written
         dispatcher._cache = _Cache(function)

@@ -1,7 +1,7 @@
-"""What public functions accept: one place where arguments are checked and shapes restored.
+"""Checks of the arguments of public functions, in one place.
 
-A check takes the name of an argument and what was given, and returns it as a number or an array of its own kind, or
-raises `InvalidInput` with that name before any work starts. Nothing else is raised, whatever was given.
+A check takes the name of an argument and its value. It returns the value as a number or an array of one kind, or raises
+`InvalidInput` with that name before any work starts. It raises nothing else, whatever the value is.
 
 - One number: `finite_real`, `positive_real`, `real_between`, `scale`, `place`, `not_negative`, `whole_number`,
   `positive_integer`, `dimension`, `fractional_order`. An array without axes is the number that it holds, `plain`.
@@ -9,7 +9,7 @@ raises `InvalidInput` with that name before any work starts. Nothing else is rai
   range; `of_shape` for arrays that belong to others, `together` for those that are broadcast, `operand` for the
   arrays of an inner loop, whose entries are not looked at.
 - Other things: `choice`, `flag`, `function`, `generator`, `instance`, `pair`.
-- What comes back: `sampled` from a function of the caller's, `finite_result` from sums that may overflow.
+- Results: `sampled` for a function of the caller's, `finite_result` for sums that may overflow.
 
 `fields` puts the checks on the fields of a frozen dataclass. Modules with many checks say
 ``from fracparticles import arguments as check``.
@@ -31,10 +31,10 @@ FloatArray = NDArray[np.float64]
 Shape = tuple[int, ...]
 Kind = TypeVar("Kind")
 
-SIZES = 1e-100, 1e100  # of lengths and times: their squares and quotients are numbers too
+SIZES = 1e-100, 1e100  # the range of lengths and times: their squares and quotients do not overflow
 _SIZED = f"a number from {SIZES[0]:g} to {SIZES[1]:g}"
 MOST = 2**28  # numbers in one array, 2 GiB
-MOST_STEPS = 2**53  # more are not told apart in float64
+MOST_STEPS = 2**53  # time steps: more are not told apart in float64
 
 _VECTORISE = "Write it with numpy, or numpy.vectorize it."
 
@@ -55,7 +55,7 @@ def finite_array(
 ) -> NDArray[Any]:
     """Return finite numbers as a float64 array, or a complex128 one if they are complex and may be.
 
-    With a `shape` they have that; a single number stands for an array of equal ones.
+    With a `shape` the array must have it; then a single number stands for an array of equal numbers.
     """
     array = _numbers(field, value, "iufc" if complex_too else "iuf")
     if not all_finite(array):
@@ -70,7 +70,7 @@ def finite_array(
 def of_shape(
     field: str, array: NDArray[Any], shape: Shape, each: str = "a number for each of the others"
 ) -> NDArray[Any]:
-    """Return an array that has this shape; the message says what for `each` place of it."""
+    """Return an array that must have this shape; `each` says in the message what every entry is."""
     if array.shape != shape:
         raise _misfit(field, array, f"{each}, of shape {shape}")
     return array
@@ -81,7 +81,7 @@ def vector(
 ) -> NDArray[Any]:
     """Return a contiguous array of one dimension, finite, of `least` entries or more.
 
-    With a `size` it has that many; a single number does not stand for many here.
+    With a `size` it must have that many; here a single number does not stand for many.
     """
     array = finite_array(field, value, complex_too=complex_too)
     if array.ndim != 1 or array.size < least or size not in (None, array.size):
@@ -99,7 +99,7 @@ def places(field: str, value: Any) -> FloatArray:
 def positions(
     field: str, value: Any, *, least: int = 1, rising: bool = False, equal: bool = False
 ) -> FloatArray:
-    """Return a `vector` of places, none beyond 1e100; `rising` ones in order, and `equal` neighbours if allowed."""
+    """Return a `vector` of places, none beyond 1e100; `rising` asks for their order, `equal` allows equal ones."""
     x = within(field, vector(field, value, least=least), -SIZES[1], SIZES[1])
     if rising and not (np.diff(x) >= 0.0 if equal else np.diff(x) > 0.0).all():
         order = "numbers in rising order" + ("" if equal else ", no two of them equal")
@@ -136,7 +136,7 @@ def together(**arrays: NDArray[Any]) -> list[NDArray[Any]]:
 
 
 def operand(field: str, value: Any, shape: Shape, *, complex_too: bool = False) -> NDArray[Any]:
-    """Return an array of an inner loop: of numbers, only the shape is checked, once."""
+    """Return an array of an inner loop; of an array of numbers only the shape is checked."""
     kinds = "fc" if complex_too else "f"
     if type(value) is np.ndarray and value.dtype.kind in kinds and value.shape == shape:
         return value
@@ -155,12 +155,12 @@ def elementwise(
 
 
 def like(array: FloatArray, value: Any) -> FloatArray | float:
-    """Return the values of a function of an array; those of a scalar as a Python float."""
+    """Return the values of a function of an array; for an array without axes, a Python float."""
     return float(value) if array.ndim == 0 else value
 
 
 def _numbers(field: str, value: Any, kinds: str) -> NDArray[Any]:
-    """The array of `value`, float64 or, of a complex one that may be, complex128."""
+    """Return `value` as a float64 array, or a complex128 one if it is complex and may be."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise InvalidInput(field, value, "numbers without a mask", "Fill the masked entries.")
     try:
@@ -174,7 +174,7 @@ def _numbers(field: str, value: Any, kinds: str) -> NDArray[Any]:
     wanted = np.complex128 if array.dtype.kind == "c" else np.float64
     if array.dtype == wanted:
         return array
-    with np.errstate(over="ignore"):  # of a wider type; it is infinite then
+    with np.errstate(over="ignore"):  # a number of a wider type may become infinite
         return array.astype(wanted, copy=False)
 
 
@@ -193,13 +193,13 @@ def _interval(field: str, low: float, high: float, inside: bool) -> str:
 
 
 def plain(value: Any) -> Any:
-    """Return what an array without axes, labelled or not, or a NumPy scalar holds; anything else as it is."""
+    """Return the number in an array without axes, labelled or not, or in a NumPy scalar; anything else as it is."""
     bare = getattr(value, "shape", None) == () and hasattr(value, "dtype")
     return value.item() if bare and not isinstance(value, np.ma.MaskedArray) else value
 
 
 def _real(value: Any) -> float:
-    """The number as a float; nan if it is none."""
+    """Return the value as a float; nan if it is not a number."""
     if type(value) is float:
         return value
     value = plain(value)
@@ -271,7 +271,7 @@ def fractional_order(alpha: Any) -> float:
 
 
 def whole_number(field: str, value: Any, least: int = 0, most: int | None = None) -> int:
-    """Return a whole number from `least` on, to `most` if given, as an int; 2.0 and True are none."""
+    """Return a whole number from `least` on, to `most` if given, as an int; 2.0 and True are refused."""
     value = plain(value)
     whole = isinstance(value, int) and not isinstance(value, bool)
     if not (whole and least <= value and (most is None or value <= most)):
@@ -333,7 +333,7 @@ def generator(field: str, value: Any) -> np.random.Generator:
 
 
 def pair(field: str, value: Any, *, rising: bool = False) -> tuple[Any, Any]:
-    """Return the two entries of a tuple, a list or an array; `rising` ones are places in order."""
+    """Return the two entries of a tuple, a list or an array; with `rising` they must be places in order."""
     listed = isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim == 1)
     if not (listed and len(value) == 2):
         raise InvalidInput(field, value, "two values", "Give a tuple of two.")
@@ -346,16 +346,16 @@ def pair(field: str, value: Any, *, rising: bool = False) -> tuple[Any, Any]:
 
 
 def fields(record: Any, **checks: Callable[[str, Any], Any]) -> None:
-    """Put each field of a frozen dataclass through its check, and keep what that returns."""
+    """Put each field of a frozen dataclass through its check, and keep the result."""
     for name, check in checks.items():
         object.__setattr__(record, name, check(name, getattr(record, name)))
 
 
-# --- what comes back ------------------------------------------------------------------------------
+# --- results --------------------------------------------------------------------------------------
 
 
 def all_finite(array: NDArray[Any]) -> bool:
-    """Return whether no entry is infinite or nan. So it is if the sum of squares is finite, which is one pass."""
+    """Return whether no entry is infinite or nan. A finite sum of squares shows this in one pass."""
     return math.isfinite(np.vdot(array, array).real) or bool(np.isfinite(array).all())
 
 
@@ -376,7 +376,7 @@ def sampled(field: str, f: Any, *points: NDArray[Any]) -> NDArray[Any]:
 
 
 def finite_result(field: str, result: Any) -> Any:
-    """Return sums of what was given for `field`, if they have not overflowed."""
+    """Return sums of the numbers given for `field`, if they have not overflowed."""
     if not all_finite(np.asarray(result)):
         allowed = "numbers whose sums do not overflow"
         raise InvalidInput(field, "numbers of this size", allowed, "Change the units.")

@@ -1,4 +1,4 @@
-"""What can go wrong, each with one clear line."""
+"""The errors and the warnings of the package, each with one clear line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = [
 ]
 
 _LONGEST = 200  # characters of a value that a message shows
-_MOST_NUMBERS = 12
+_MOST_NUMBERS = 12  # of an array that a message shows
 
 
 class FracparticlesError(Exception):
@@ -52,7 +52,7 @@ class InvalidInput(FracparticlesError, ValueError):
 
 
 def _shown(value: Any) -> str:
-    """The value, or what kind of array it is: of many numbers the first say nothing."""
+    """Return the value as text; for an array of many numbers its shape and type, since the first numbers say little."""
     if getattr(value, "size", 0) > _MOST_NUMBERS and hasattr(value, "dtype"):
         return f"array of shape {value.shape} and type {value.dtype}"
     return repr(value)
@@ -74,7 +74,7 @@ def one_of(
     where: str = "",
     remedy: str = "Choose one of these.",
 ) -> InvalidInput:
-    """Return the error of a value that is none of the choices; `where` says what has only these."""
+    """Return the error for a value that is none of the choices; `where` names what has only these."""
     allowed = f"{spelled(choices)} for {where}" if where else f"one of {spelled(choices, ', ')}"
     return InvalidInput(field, value, allowed, remedy)
 

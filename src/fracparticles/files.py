@@ -1,7 +1,7 @@
-"""Files that are whole or not there, written under a temporary name and renamed when done; and how NetCDF is read.
+"""Files that are whole or not there: written under a temporary name and renamed when done. NetCDF is read here, too.
 
-NetCDF does not notice a byte that has changed: the number that it belongs to is another one. So our files are sealed.
-They end with the digest of all that stands before it, where the NetCDF libraries do not look.
+NetCDF does not notice a changed byte: the number to which it belongs is then another one. So our files are sealed. They
+end with the digest of all bytes before it, where the NetCDF libraries do not look.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ __all__ = [
 ]
 
 _SEAL = b"\nsha256 "
-_LENGTH = len(_SEAL) + 64 + 1  # with the digest and the end of the line
+_LENGTH = len(_SEAL) + 64 + 1  # bytes of a seal, with the digest and the end of the line
 
 
 def replaceable(path: Any, field: str = "path") -> Path:
-    """Return the file that `path` stands for, a regular one or none yet: links are followed.
+    """Return the file to which `path` leads, a regular one or none yet; links are followed.
 
     Raises
     ------
@@ -65,8 +65,8 @@ def replaceable(path: Any, field: str = "path") -> Path:
 def replacing(path: Any) -> Iterator[Path]:
     """Give a temporary path beside the file `path`, which takes its place when the block ends without an error.
 
-    The file gets the mode that the umask gives; folders are made. A link is followed: what it links to is replaced.
-    What a call that was killed has left of the same file is removed.
+    The file gets the mode that the umask gives; folders are made. A link is followed: the file to which it leads is
+    replaced. Temporary files of the same file that a killed call has left are removed.
 
     Raises
     ------
@@ -94,10 +94,10 @@ def replacing(path: Any) -> Iterator[Path]:
 
 @contextmanager
 def _in_use(folder: Path, left: re.Pattern[str]) -> Iterator[None]:
-    """Say that a folder is written to; if nobody else is at it, first remove the temporary files left there.
+    """Mark a folder as written to; if nobody else writes to it, first remove the temporary files left there.
 
-    By a lock of the folder, shared by all who write. The system lets go of it when a process ends, whatever ends it.
-    Where there are no such locks, nothing is removed.
+    The mark is a lock of the folder, shared by all who write. The system releases it when a process ends, whatever ends
+    it. Where there are no such locks, nothing is removed.
     """
     handle = None
     try:
@@ -119,7 +119,7 @@ def _in_use(folder: Path, left: re.Pattern[str]) -> Iterator[None]:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Put off an interrupt, Ctrl-C, to the end of a block that holds locks: it could leave them closed for ever."""
+    """Put off an interrupt, Ctrl-C, to the end of a block that holds locks, which it could leave closed for ever."""
     before = signal.getsignal(signal.SIGINT)
     if before is None or threading.current_thread() is not threading.main_thread():
         yield  # only the main thread is interrupted, and only by what Python knows of
@@ -147,7 +147,7 @@ def write_text(path: Any, text: str) -> None:
 
 
 def seal(path: Path) -> None:
-    """End a file with the digest of what it holds, a line "sha256 ..."."""
+    """End a file with the digest of its content, a line "sha256 ..."."""
     with open(path, "rb+") as file:
         file.write(_seal_of(file_digest(file, "sha256")))  # which reads to the end
 
@@ -157,12 +157,12 @@ def _seal_of(digest: Any) -> bytes:
 
 
 def intact(path: Path) -> Path:
-    """Return the path of a NetCDF file that holds what was sealed, or has no seal: another program has written it.
+    """Return the path of a NetCDF file that is as it was sealed, or has no seal: another program has written it.
 
     Raises
     ------
     InvalidInput
-        If its digest is another one, or the seal is cut short, or more stands behind it.
+        If its digest is another one, the seal is cut short, or more bytes follow it.
     OSError
         If it cannot be read.
     """
@@ -176,7 +176,7 @@ def intact(path: Path) -> Path:
 
 
 def load_netcdf(path: Path, names: Sequence[str] | None = None) -> xr.Dataset:
-    """Read a NetCDF file, or some variables of it: no other is decoded. Units of time are left as they are.
+    """Read a NetCDF file, or only the variables of these names. Units of time are left as they are.
 
     Raises
     ------
