@@ -18,7 +18,7 @@ __all__ = [
 ]
 
 _LONGEST = 200  # characters of a value that a message shows
-_MOST_NUMBERS = 12  # of an array that a message shows
+_MOST_NUMBERS = 12  # numbers of an array that a message shows; of more it shows the shape
 
 
 class FracparticlesError(Exception):

@@ -66,7 +66,21 @@ class AbsorbingDisc:
     def evolve(
         self, profile: Callable[[FloatArray], Any], time: float, r: FloatArray
     ) -> FloatArray:
-        """Return u(r, time) of the initial field (1 - r^2)^(alpha/2) r^l p(r), at distances r from the centre."""
+        """Return u(r, time) of the initial field (1 - r^2)^(alpha/2) r^l p(r), at distances r from the centre.
+
+        Parameters
+        ----------
+        profile : callable
+            p(r).
+        time : float
+        r : array
+            The result has its shape.
+
+        Raises
+        ------
+        InvalidInput
+            If the time is negative.
+        """
         t = check.not_negative("time", time)
         nodes, weights = roots_jacobi(2 * self._n.size + 8, 2.0 * self._s, self._wave)
         at = np.sqrt(0.5 * (1.0 + nodes))

@@ -40,6 +40,7 @@ from fracparticles.special.tails import tail_constant
 __all__ = ["Rings", "exterior_rate", "loss_along_a_line", "plane_constant", "ring_kernel"]
 
 _AT_CENTRE, _AT_EDGE = 2.0, 3.0  # r ~ xi^2 at the centre, 1 - r ~ (1 - xi)^3 at the edge
+# The integral of xi (1 - xi)^2: with it r goes from 0 to 1.
 _BETA = gamma(_AT_CENTRE) * gamma(_AT_EDGE) / gamma(_AT_CENTRE + _AT_EDGE)
 _RESOLVED = 0.3  # q below which the series is accurate to 1e-5 of the loss
 _LINES = 150  # lines that are summed: K_nu(0.3 150) is 1e-20

@@ -96,7 +96,7 @@ def lifted_in_time(
     varies : bool
         Whether it depends on time.
     start, span : float
-        The times from `start` to `start + span` are covered.
+        The lift is valid from `start` to `start + span`.
     sudden : sequence of float
         The times before and after each sudden change.
 

@@ -45,7 +45,7 @@ from fracparticles.special import tail_constant
 
 __all__ = ["Interval"]
 
-_SHORTEST = 1e-9  # least time over that of the slowest mode; before, unresolved modes matter
+_SHORTEST = 1e-9  # the least time, times the slowest rate; before, unresolved modes matter
 _UNRESOLVED = 0.01  # share of int |u|, or int |f|, that the particles may miss
 _FINE = 4001  # points at which a coefficient is looked at
 _COEFFICIENT = 0.05  # share of the range of a coefficient that the particles may miss
@@ -250,6 +250,7 @@ class Interval(ModalDomain):
         Warns
         -----
         AccuracyWarning
+            If the particles miss too large a share.
         """
         named, of, limit = f"the {name}", "of its range", _COEFFICIENT
         if name == "initial":

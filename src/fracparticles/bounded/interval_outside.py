@@ -4,7 +4,7 @@ On (-1, 1), with the distances d of particle i from the two ends,
 
     kappa_i = C int_outside |x_i - y|^(-1-alpha) dy = (C / alpha) sum_ends d^(-alpha),
     b_i = C int_outside g(y) |x_i - y|^(-1-alpha) dy = C sum_ends int g(end +- e^s) (d + e^s)^(-1-alpha) e^s ds,
-    (grad^beta u)_i = (C / alpha) int_outside g(y) sgn(y - x_i) |x_i - y|^-alpha dy + what is inside.
+    (grad^beta u)_i = (C / alpha) int_outside g(y) sgn(y - x_i) |x_i - y|^-alpha dy + the integral inside.
 
 If g is smooth in log |y - end|, the integrand is smooth in s on the scale one, wherever the particle is. The
 trapezoidal rule with the step 1/4 has an error of e^(-8 pi^2) for a constant g. The weights are scaled to add up to
@@ -32,7 +32,7 @@ __all__ = ["OutsideValues", "loss_rates"]
 
 _STEP = 0.25  # in s
 _FAR = 60.0  # the last s, e^60 half-widths: the values beyond weigh e^(-60 alpha)
-# The sums of all points and of every other, apart, over kappa max |g|: for smooth values below 1e-8.
+# The difference of the sums of all points and of every other, over kappa max |g|: for smooth values below 1e-8.
 _UNRESOLVED = 1e-5
 _NEAR = 40.0  # the first point is at e^-40 of the distance of the first particle
 
@@ -51,7 +51,7 @@ class OutsideValues:
     particles : GradedParticles
     alpha : float
     place : callable
-        Takes places of the unit of (-1, 1) to those of the caller.
+        Takes places in the unit of (-1, 1) to those of the caller.
     """
 
     def __init__(

@@ -47,7 +47,7 @@ class DomainOperator(ABC):
     balance: float
     """The greatest |int f| over int |f| of a source that counts as balanced between reflecting edges."""
 
-    # --- what a domain says --------------------------------------------------------------------------
+    # --- what a domain defines -----------------------------------------------------------------------
 
     @abstractmethod
     def applied(self, u: FloatArray) -> FloatArray:

@@ -1,9 +1,9 @@
 """Interpolation of measured data: values between points of any spacing, and their error.
 
 The data are interpolated by a cubic spline, or by the monotone cubic of Fritsch and Carlson, which does not overshoot:
-by the one that is nearer to points that it was not given. To estimate the error of the interpolation, every second
-point is left out, and then all but every fourth. With the relative 1-norms e_2 and e_4 of the two misses, the error
-with all points is
+whichever is nearer to points that it was not given. To estimate the error of the interpolation, every second point is
+left out, and then all but every fourth. With the relative 1-norms e_2 and e_4 of the two misses, the error with all
+points is
 
     e = e_2 / r,   r = e_4 / e_2,  1 <= r <= 16.
 
@@ -32,7 +32,7 @@ __all__ = ["Measured"]
 _TOO_FEW, _SOME, _MANY = 8, 16, 32  # points along an axis, see the module
 _NOTICED = 0.05  # the relative error, or the missing share of the mass, from which data are doubted
 _MOST_GAIN = 16.0  # the greatest r: the order of both cubics is four at most
-_FIELD = "initial"
+_FIELD = "initial"  # the argument that messages name
 
 Interpolant = Callable[[Sequence[np.ndarray], np.ndarray, list[np.ndarray]], np.ndarray]
 

@@ -28,7 +28,7 @@ MEASURED = "measured:"  # before a path: the data in the file are interpolated
 _FEWEST = 4  # points along an axis
 # The sizes of values and of their integrals: slopes and sums of both do not overflow.
 _LEAST, _MOST = 1e-200, 1e200
-_FIELD = "initial"
+_FIELD = "initial"  # the argument that messages name
 _AXES = ("x", "y", "z")
 
 

@@ -13,8 +13,8 @@ from fracparticles.errors import InvalidInput, spelled
 
 __all__ = ["is_table", "name_and_unit", "not_a_table", "read_table"]
 
-_KNOWN = ("x", "y", "z", "u")
-_TABLES = (".csv", ".tsv", ".txt", ".dat")
+_KNOWN = ("x", "y", "z", "u")  # names that are headings without a unit
+_TABLES = (".csv", ".tsv", ".txt", ".dat")  # the ends of their file names
 
 
 def is_table(path: str | os.PathLike[str]) -> bool:

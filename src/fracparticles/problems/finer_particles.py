@@ -48,7 +48,7 @@ _MOST_IN_ONE = 16
 _WRAPPED = 12  # particles by which an angle is continued beyond a turn
 _PARTS = 8  # parts of a cell along each axis, in whose middles a function is evaluated
 _JUMP = 0.25  # a smaller power p is that of a jump
-_TERMS = 4  # terms of the sum; at a jump the others are a ninth of the last
+_TERMS = 4  # terms of the sum; at a jump those that are left out are a ninth of the last
 
 
 def errors_of_diffusion(

@@ -67,7 +67,17 @@ def integrate(
     u0: np.ndarray,
     held: Callable[[float], float] = lambda t: 0.0,
 ) -> Integration:
-    """Integrate u' = R(t, u) from u0, shape (N,), to the output times; `held` is the size of what is added to u.
+    """Integrate u' = R(t, u) to the output times.
+
+    Parameters
+    ----------
+    problem : Problem
+    rates : RightHandSide
+        R.
+    u0 : array, shape (N,)
+        u at t_initial.
+    held : callable
+        Returns the size, at a time, of a field that is added to u: the tolerance is relative to it as well.
 
     Raises
     ------

@@ -192,6 +192,7 @@ class Problem(WithCoefficients):
         return cls(**fields)
 
 
+# Fields that a problem hands to its case.
 _OF_THE_CASE = {
     "dim", "half_width", "spacing", "order", "overlap", "exterior", "far_terms", "t_initial", "t_final",
 }  # fmt: skip

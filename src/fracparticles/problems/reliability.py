@@ -5,7 +5,7 @@ They are those of `run.reliability` and some more, at each output time:
 outside_share
     The share of int |u| beyond the lattice, if u goes on as c |x|^(-n-alpha) from the outermost particles.
 far_field_error
-    In an open exterior. The powers that continue u miss it at particles that they need not meet. The estimate is this
+    In an open exterior the powers that continue u miss it at particles that they need not meet. The estimate is this
     relative miss, times `outside_share`, times the share that travels from outside well into the lattice in the run.
 resolution
     s theta, the overlap (but at least 1.1) times the wavenumber of u in units of 1 / h.
@@ -61,12 +61,12 @@ _LEAST_SMOOTHING = 1.1  # the least overlap in `resolution`, as in `run.reliabil
 # The value of each estimate above which there is a warning.
 _LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": FADED, "space_error": SPACE_ERROR}
 _MOST = 2.0  # the greatest error of a wave over the wave
-_BARRIER = 1e-4  # share of the greatest D; a smaller D counts as zero
+_BARRIER = 1e-4  # share of the greatest D that is added to D, before 1 / D is taken
 _CONSTANT = 1e-9  # relative variation of a coefficient that is round-off
 
 
 def estimates(problem: Problem, solutions: list[np.ndarray], initial: Any = None) -> Estimates:
-    """Return each estimate by name: for each output time the worse of its value and that at t_initial; its meaning.
+    """Return each estimate by name: its meaning, and for each output time the worse of its value and that at t_initial.
 
     Parameters
     ----------

@@ -24,6 +24,8 @@ _NUMBERS, _FEWEST = 2**21, 64
 def sudden_changes(problem: Problem, u0: np.ndarray) -> list[float]:
     """Return the times before and after each sudden change, ascending, between t_initial and t_final.
 
+    The particles that are looked at are chosen by u0, the initial strengths.
+
     Values outside a bounded domain are not looked at here: `bounded.given` refuses those that jump.
 
     Raises

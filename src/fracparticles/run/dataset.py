@@ -58,6 +58,12 @@ def to_dataset(solution: Solution, estimates: Sequence[ErrorEstimate] = ()) -> x
     `mass_initial`, `mass_final`, `operator_applications` and, for a run from the fundamental solution, the
     `relative_l1_error` of Eqs. (48), (59). In a case with `times`, u, the error and `mass` have the dimension `t`. DVM
     adds its particles and their history, graded particles add their volumes.
+
+    Parameters
+    ----------
+    solution : Solution
+    estimates : sequence of ErrorEstimate
+        One for each output time, or none at all.
     """
     import xarray as xr
 

@@ -34,6 +34,7 @@ __all__ = ["WholeSpace", "evolve", "tail_exponents"]
 _NOTICED = 1e-3
 FEWEST = 8  # points along an axis: the tail meets the data at six depths
 _OUTGROWN = 0.9  # the least half-width of the lattice, over (D t)^(1/alpha)
+# Added to a peak, which may be zero.
 _TINY = float(np.finfo(float).tiny)
 _TIMES = 1e-300, 1e300  # scaled: before, nothing changes; after, all has outgrown the lattice
 _STRETCH = {1: 3.0, 2: 2.0, 3: 1.5}  # by dimension: the longer lattice over the given one
@@ -204,7 +205,7 @@ class WholeSpace:
             self._circle = Circle(length, dim, alpha, scaled_time, amplification)
 
     def __repr__(self) -> str:
-        """Return what it was made with."""
+        """Return the arguments that it was made with."""
         return f"WholeSpace({self._points}, {self._dim}, {self._alpha:.6g}, {self._tau:.6g})"
 
     def solve(self, u: np.ndarray) -> np.ndarray:
