@@ -30,7 +30,17 @@ def power_in_ball(squared: FloatArray, power: float) -> FloatArray:
 
 
 def riesz_of_power(squared: FloatArray, alpha: float, power: float, dim: int) -> FloatArray:
-    """Return (-Laplacian)^(alpha/2) (1 - r^2)_+^p for the squares r^2 of points not on the sphere, of their shape.
+    """Return (-Laplacian)^(alpha/2) (1 - r^2)_+^p at points inside or outside the unit ball.
+
+    Parameters
+    ----------
+    squared : array
+        r^2 of points not on the sphere; the result has the same shape.
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    power : float
+        The power p.
+    dim : {1, 2}
 
     Raises
     ------

@@ -92,7 +92,7 @@ class Disc(ModalDomain):
         self.x, self.y = self.points = tuple(r * one for one in self._direction)
         share = self.radius**2 * 2.0 * np.pi / self.angular * self._rings.volumes
         self.volumes = np.repeat(share[:, None], self.angular, axis=1)
-        self._rate = self.diffusivity * self.radius**-self.alpha  # of the unit disc's operator
+        self._rate = self.diffusivity * self.radius**-self.alpha  # D A over that of the unit disc
 
     def applied(self, u: FloatArray) -> FloatArray:
         """Return D A u, with u = 0 outside."""

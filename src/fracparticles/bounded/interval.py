@@ -12,10 +12,10 @@ given
 
 The integral over Omega is the exchange of `adaptive.exchange` on the map of degree p of `adaptive.maps`. With q weights
 of near neighbours, eigenvalues with absorbing ends and int |error| have the order min(2 q + 2 - alpha, p) in 1 / N. The
-first entry is by the inside, the second by the ends, like the distance d of the first particle. The greatest error is
-at the ends, like d^(alpha/2): it has the order min(2 q + 2 - alpha, p alpha/2). A lattice of equal volumes has p = 1.
-Linear finite elements of equal size have likewise h in the L2 norm, and h^(1/2) in that of the energy (Acosta &
-Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
+first is that of the inside, the second that of the ends, where errors are like the distance d of the first particle.
+The greatest error is at the ends, like d^(alpha/2): it has the order min(2 q + 2 - alpha, p alpha/2). A lattice of
+equal volumes has p = 1. Linear finite elements of equal size have likewise h in the L2 norm, and h^(1/2) in that of the
+energy (Acosta & Borthagaray, SIAM J. Numer. Anal. 55 (2017) 472).
 """
 
 from __future__ import annotations
@@ -62,10 +62,10 @@ class Interval(ModalDomain):
     particles : int
         N, from 16 to 4000; 100 give six digits of the first eigenvalue.
     ends : (float, float)
-        a and b.
+        The ends a and b.
     exterior : {"absorbing", "reflecting", "given"}
     diffusivity : float
-        D.
+        The diffusivity D.
     degree : float
         The degree p of the map; 1 for equal volumes.
     near : int

@@ -6,7 +6,7 @@ regional operator does. But
 
     u_t = -dq/dx,   q = -grad^beta u with u = 0 outside (-1, 1),   q(-1) = q(1) = 0,
 
-is another problem. At last not u but I u is a constant. This holds for (Popov, 1982)
+is another problem. It does not end in a constant u, but in a constant I u. This holds for (Popov, 1982)
 
     u = m Gamma(alpha) / (2^(alpha-1) Gamma(alpha/2)^2) (1 - x^2)^(alpha/2-1),   m = int u,
 
@@ -27,7 +27,16 @@ __all__ = ["no_flux_state"]
 
 
 def no_flux_state(x: FloatArray, alpha: float, mass: float = 1.0) -> FloatArray:
-    """Return the final u of mass m, see the module, at places inside (-1, 1); of the shape of x.
+    """Return the final u of the module text.
+
+    Parameters
+    ----------
+    x : array
+        Places inside (-1, 1); the result has the same shape.
+    alpha : float
+        Fractional order, 1 < alpha < 2.
+    mass : float
+        The mass m = int u.
 
     Raises
     ------

@@ -47,7 +47,7 @@ __all__ = [
 SPACE_ERROR = 0.03
 """The error over the greatest |u| from which there is a warning."""
 
-_HALVINGS = 2  # of the particles along each axis
+_HALVINGS = 2  # runs, each on half of the particles of the one before along each axis
 _LEAST, _UNKNOWN = 1 / 32, 1 / 3  # the factor of d_1: the least, and the one if d_2 is not known
 # The fewest particles across a domain, rings of a disc, or, on a lattice, from the middle to an end.
 _FEWEST = {"interval": 16, "square": 8, "disc": 8, None: 8}

@@ -73,7 +73,7 @@ def integrate(
     ----------
     problem : Problem
     rates : RightHandSide
-        R.
+        R(t, u).
     u0 : array, shape (N,)
         u at t_initial.
     held : callable

@@ -7,7 +7,7 @@ kink or a jump is. The cubic through four particles tells how smooth the data ar
 
 From the stride s = 2 to s = 1 this falls to a sixteenth where u is smooth, and to 2^-p at a |x|^p: to a half at a kink,
 and not at all at a jump. Beside an end 9/24 of the fourth difference takes its place, which needs four strides. Where
-r falls to no less than a fourth, u has one of these forms instead:
+r_s falls to no less than a fourth, u has one of these forms instead:
 
     About the particle with the greater r of the two beside a place, even and odd part are each a power of the distance,
 

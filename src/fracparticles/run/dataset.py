@@ -207,6 +207,13 @@ def _particle_variables(run: ParticleRun, store: str) -> Variables:
 def write(dataset: xr.Dataset, path: str | Path) -> None:
     """Write a data set under a temporary name, seal it (see `files`) and rename it when it is whole.
 
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        As `solve` returns it.
+    path : path
+        The file; one that is there is replaced.
+
     Raises
     ------
     InvalidInput

@@ -29,7 +29,7 @@ _MOST = 40  # the most vectors of a space
 _NUMBERS = 4_000_000  # the most numbers in all of them together
 _FEWEST = 12  # vectors that a space may have in any case
 _SHORTER, _LONGER = 0.2, 4.0  # the least and the greatest ratio of a step to the one before
-_SAFETY = 0.85  # of the step that would just meet the tolerance
+_SAFETY = 0.85  # a step over the one that would just meet the tolerance
 # The least share of u that a step leaves. A longer one would cost digits, and be judged by the size of u before it.
 _FADED = 1e-3
 _NOTHING = 1e-14  # the share of a vector outside a space, below which it lies in the space
@@ -41,7 +41,7 @@ class KrylovStep:
     Parameters
     ----------
     rate : callable
-        R.
+        R(u).
     size : int
         The number N of entries of u.
     rtol : float

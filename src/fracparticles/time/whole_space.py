@@ -68,7 +68,7 @@ def evolve(
     dim : {1, 2, 3}, optional
         How many of the axes are space; all of them if left out.
     diffusivity : float
-        D.
+        The diffusivity D.
     terms : int
         How many powers continue u beyond the lattice, 0 to 6; with 0 it is periodic.
     tail : sequence of float, optional
@@ -136,9 +136,9 @@ class WholeSpace:
     Parameters
     ----------
     points : int
-        N.
+        The number N of points along each axis.
     dim : int
-        n.
+        The number n of space dimensions.
     alpha : float
         Fractional order.
     scaled_time : float
@@ -181,7 +181,7 @@ class WholeSpace:
             raise InvalidInput("stretch", longer, most, "Take fewer points, or a smaller stretch.")
         length = points if longer == 1.0 else next_fast_len(int(longer * points), real=True)
         self._points, self._dim, self._length = points, dim, length
-        self._start = length // 2 - points // 2  # of the lattice in the circle
+        self._start = length // 2 - points // 2  # the place of the lattice in the circle
         self._inside: tuple[Any, ...] | None = None  # the lattice in a longer circle
         if length != points:
             self._inside = (..., *(slice(self._start, self._start + points),) * dim)
@@ -191,7 +191,7 @@ class WholeSpace:
         ]
         self._ends = np.array(middles)  # places of the middles of the faces, of N^n points in a row
         self._alpha, self._tau = alpha, scaled_time
-        self._changed = min(1.0, scaled_time * math.pi**alpha)  # of the shortest waves
+        self._changed = min(1.0, scaled_time * math.pi**alpha)  # share of the shortest waves
         self._circle: Circle | Continued
         if terms:
             fundamental = tail_exponents(alpha, terms)
