@@ -178,7 +178,7 @@ def reference() -> pd.DataFrame:
     names = [
         "particles", "steps", "operator_applications", "setup_time", "solve_time_median",
         "own_ratio", "floor_ratio", "own_pair_time", "fastest_pair_time", "single_pair_time",
-        "cosine_pair_time", "peak_memory", "stepping_time", "stepping_deviation",
+        "cosine_pair_time", "stepping_time", "stepping_deviation",
         "stepping_over_series", "stepping_measured_steps", "naive_measured_steps", "naive_time",
     ]  # fmt: skip
     data = pd.DataFrame({name: [1.0, 1.0] for name in names})

@@ -14,7 +14,7 @@ from scenes.run_times.reference_times.benchmark import transform_pairs
 def data():
     return reference(
         repeats=2, truncation=4.0, spacing=0.1, dt=5e-3, green_dt=0.05, stepped=["KPSE"],
-        timed_steps={"fft": 1000, "naive": 2}, memory=False, measured_plans=False,
+        timed_steps={"fft": 1000, "naive": 2}, measured_plans=False,
     )  # fmt: skip
 
 

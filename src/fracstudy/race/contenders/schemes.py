@@ -15,7 +15,7 @@ from fracstudy.race.contender import Contender, Grids, Ready, Trials, sweep
 from fracstudy.race.problem import Problem
 
 _SPACINGS = (0.8, 0.56, 0.4, 0.28, 0.2, 0.14, 0.1, 0.05)
-_TRUNCATIONS = {1: (4.1, 5.0, 7.0, 10.0, 20.0), 2: (2.3, 4.0, 8.0), 3: (2.3, 4.0)}
+_TRUNCATIONS = {1: (4.1, 7.0, 20.0), 2: (2.3, 4.0, 8.0), 3: (2.3, 4.0)}
 _MOST = {1: 20000, 2: 60000, 3: 100000}
 _NAIVE_STEPS = 1
 

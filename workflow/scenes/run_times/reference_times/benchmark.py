@@ -22,7 +22,7 @@ import scipy.fft
 
 from fracparticles.lattice.fourier import complex_length, complex_plans
 from fracparticles.run.case import Case
-from fracparticles.run.solver import compute, initial_strengths, prepare
+from fracparticles.run.solver import initial_strengths, prepare
 from fracstudy.errors import off
 from fracstudy.race import clock
 from fracstudy.race.contenders.schemes import few_steps
@@ -44,15 +44,14 @@ def benchmark(
     green_dt: float,
     stepped: Sequence[str],
     timed_steps: Mapping[str, int],
-    memory: bool,
     measured_plans: bool,
 ) -> clock.Measurements:
     """Time DD, FPSE and KPSE of both orders and GPSE, by steps of `green_dt`, on the reference problem, one core.
 
     The series are timed `repeats` times after a warm-up. The schemes `stepped`, order II, are also stepped through:
     `timed_steps` says how many steps are timed by summation, "fft" and "naive", and the time of all is extrapolated.
-    For the peak `memory` each run has a process of its own. FFTW may take some seconds to look for its fastest plan if
-    `measured_plans` says so. Of the data set times are nan where they were not measured.
+    FFTW may take some seconds to look for its fastest plan if `measured_plans` says so. Times that were not measured
+    are nan in the data set.
     """
     clock.one_core()
     common = {"beta": 0.5, "truncation": truncation, "spacing": spacing}
@@ -63,8 +62,6 @@ def benchmark(
     rows = []
     for case in cases:
         row = _time_series(case, repeats, pairs)
-        if memory:
-            row["peak_memory"] = clock.in_fresh_process(peak_of, case.to_json())
         if case.order == 2 and case.scheme in stepped:
             for summation, name in _SLOW.items():
                 row |= _time_steps(case, name, summation, timed_steps[summation])
@@ -73,12 +70,6 @@ def benchmark(
     title = "Run times of the reference problem"
     facts = {"repeats": repeats, "case": cases[0].to_json()}
     return clock.timings_dataset("run", rows, _LABELS, _VARIABLES, title, facts)
-
-
-def peak_of(case: str) -> float:
-    """Return the peak memory of this process, in bytes, after the run of a case given as JSON."""
-    compute(Case.from_json(case))
-    return clock.peak_so_far()
 
 
 def transform_pairs(length: int, measured_plans: bool = True) -> dict[str, Action]:
@@ -209,7 +200,6 @@ _VARIABLES = {
     "cosine_pair_time": ("two cosine transforms of half the length, minimum", "s"),
     "floor_ratio": ("solve time over operator applications times the fastest pair", "1"),
     "own_ratio": ("solve time over that of the same transforms as planned for the solve", "1"),
-    "peak_memory": ("peak resident memory of a process that runs the case", "byte"),
     "stepping_measured_steps": ("steps by FFT that were timed", "1"),
     "stepping_time": ("all steps, sums by FFT, extrapolated: mean of those timed times n", "s"),
     "stepping_applications": ("operator applications of all steps", "1"),

@@ -20,7 +20,6 @@ _COLUMNS = {
     "fastest pair": "fastest_pair",
     "single precision pair / ms": "single_pair_time",
     "cosine pair, half the length / ms": "cosine_pair_time",
-    "peak memory / MB": "peak_memory",
     "steps timed": "stepping_measured_steps",
     "stepping, extrapolated / s": "stepping_time",
     "stepping - series, relative": "stepping_deviation",
