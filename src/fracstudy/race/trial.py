@@ -26,13 +26,13 @@ _NOT_YET = Timing(())
 # A trial is timed again only if no trial that is as good is faster by these factors: of its own contender, and of all
 # contenders. Noise cannot put one ahead that is slower.
 _SLACK = 1.5
-_FAR = 4.0
+_FAR = 8.0
 # The same factor for the trials that a follower tries: their first times decide, and may have met a slow moment.
 _FOLLOWED = 3.0
 # Trials within these factors, of the front of their contender and of the front of all, are timed in so many times as
 # many rounds: a machine has slow moments.
 _LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 20
-_SPENT = 0.03  # seconds spent on a trial, after which it is not timed again
+_FEW, _SPENT = 3, 0.03  # after so many times, and so many seconds, a trial is not timed again
 _MATRIX = 600  # points up to which the whole run may be one matrix
 _MOST = 2**17  # numbers in a block
 
@@ -99,7 +99,7 @@ def run_trials(
     """Run every trial once, then time the set-ups and solves of those that matter in `rounds` rounds; one row a trial.
 
     A trial matters if it is within a factor of 1.5 of the front of its contender in error and time, is within a factor
-    of 4 of the front of all, and takes less than a quarter of a second. Each round goes through all of them, so that
+    of 8 of the front of all, and takes less than a quarter of a second. Each round goes through all of them, so that
     each is measured at several moments. The best of each contender are timed in up to twenty times as many rounds, in
     fewer if they take longer. The memory is measured for the trials on the front of all.
 
@@ -127,7 +127,7 @@ def run_trials(
             leading = _near_own(again, _LEAD)
             again = list(compress(leading, _near(leading, judged, 1, _BEHIND)))
         for record in again:
-            if k * repeats * record.times[1] > _SPENT:
+            if k >= _FEW and k * repeats * record.times[1] > _SPENT:
                 continue
             prepare = partial(record.contender.prepare, problem, **record.given)
             setup, ready = measure(prepare, repeats, seconds, before=forget_tables)
