@@ -52,9 +52,12 @@ def measured_rate(
     epsilon : float
         Scales all lengths.
 
-    Raises `InvalidInput` if a number is not positive, the mode or the steps are not whole numbers, the shape function
-    has no first derivative, or there is nothing to measure: the amplitude is lost in round-off, or the wave is zero
-    at the markers.
+    Raises
+    ------
+    InvalidInput
+        If a number is not positive, the mode or the steps are not whole numbers, the shape function has no first
+        derivative, or there is nothing to measure: the amplitude is lost in round-off, or the wave is zero at the
+        markers.
     """
     shape, epsilon = instance("shape", shape, Shape), scale("epsilon", epsilon)
     period, amplitude, dt = scale("period", period), scale("amplitude", amplitude), scale("dt", dt)
