@@ -16,6 +16,7 @@ from fracstudy.inputs import Inputs
 from scene_functions import measured
 from scenes.run_times.cost_growth.benchmark import _SHORT, _START, _case, _strengths
 from scenes.run_times.cost_growth.benchmark import benchmark as measure_growth
+from scenes.run_times.cost_growth.figure import _range as ranged
 from scenes.run_times.cost_growth.figure import figure as draw
 from scenes.run_times.cost_growth.study import exponent, extrapolate
 from scenes.run_times.cost_growth.study import study as cost_growth
@@ -258,3 +259,9 @@ def test_scattered_sums_agree_where_both_are_timed(tmp_path):
     assert data["deviation"][0] < NonuniformFourierSum.accuracy
     write(data, tmp_path / "scattered.nc")
     assert (tmp_path / "scattered.nc").stat().st_size > 0
+
+
+def test_a_range_has_no_power_of_ten():
+    assert ranged(89.9, 99.6, "GB") == "90 to 99.6 GB"
+    assert ranged(99.4, 123.4, "GB") == "99 to 123 GB"
+    assert ranged(5.41, 5.42, "min") == "5.4 min"

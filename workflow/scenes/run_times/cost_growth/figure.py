@@ -107,7 +107,7 @@ def _gigabytes(least: float, greatest: float) -> str:
 
 
 def _range(least: float, greatest: float, unit: str) -> str:
-    low, high = (f"{value:.{3 if value >= 100.0 else 2}g}" for value in (least, greatest))
+    low, high = (f"{value:.{3 if value >= 99.5 else 2}g}" for value in (least, greatest))
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
