@@ -19,6 +19,7 @@ from scipy.special import beta, betainc, betaincinv
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.disc_rings import plane_constant
+from fracparticles.special.quadrature import gauss_legendre
 
 __all__ = ["Outside", "outward_rate"]
 
@@ -39,8 +40,8 @@ class Outside:
     def __init__(self, x: FloatArray, y: FloatArray, half: float, alpha: float) -> None:
         self._x, self._y = x, y
         self.rate = outward_rate(x, y, half, alpha)
-        nodes, shares = _legendre(_DIRECTIONS)
-        stretch, self._parts = _legendre(_DISTANCES)
+        nodes, shares = gauss_legendre(_DIRECTIONS, 0.0, 1.0)
+        stretch, self._parts = gauss_legendre(_DISTANCES, 0.0, 1.0)
         self._stretch = stretch ** (-1.0 / alpha)
         whole = alpha / plane_constant(alpha) * self.rate
         # For each side: outward and along it, the distance, and the weight and slope of each direction.
@@ -63,12 +64,6 @@ class Outside:
                 values = check.sampled("outside", g, at_x, at_y)
                 total += weight * np.tensordot(self._parts, values, 1)
         return total
-
-
-def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
-    """Gauss-Legendre nodes and weights on (0, 1)."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return 0.5 * (1.0 + nodes), 0.5 * weights
 
 
 def _sides(x: FloatArray, y: FloatArray, half: float, alpha: float) -> Any:
