@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -138,7 +138,8 @@ def suggest(
     more = {"far_terms": _TERMS[dim]}
     reached = [np.inf]
     for way in _WAYS if within < _WIDE * spread else reversed(_WAYS):
-        case = _search(way | fields | more, initial, within, least, spread, error, reached)
+        wanted = _Wanted(way | fields | more, initial, within, least, spread, error)
+        case = _search(wanted, reached)
         if case is not None:
             if least == 0.0:
                 return case
@@ -160,19 +161,23 @@ def _refuse_narrow(initial: Initial, radius: float, spread: float, dim: int) -> 
         raise InvalidInput("initial", initial, allowed, remedy)
 
 
-def _search(
-    fields: dict[str, Any],
-    initial: Initial,
-    within: float,
-    least: float,
-    spread: float,
-    error: float,
-    reached: list[float],
-) -> Case | None:
+class _Wanted(NamedTuple):
+    """What a case must hold: its fields, the data and where they count, the least half-width, (D T)^(1/alpha)."""
+
+    fields: dict[str, Any]
+    initial: Initial
+    within: float
+    least: float
+    spread: float
+    error: float
+
+
+def _search(wanted: _Wanted, reached: list[float]) -> Case | None:
     """Refine and widen until the error is met, then take back what is not needed; None if it cannot be met.
 
     The errors of all trials are added to `reached`.
     """
+    fields, initial, within, least, spread, error = wanted
     half = max(1.2 * within, 1.5 * spread, least)
     h = min(within / _START, half / _FEWEST)
     lowest, in_vain = np.inf, 0
@@ -193,7 +198,7 @@ def _search(
         if in_vain > _MOST_IN_VAIN:
             return None
         if total <= _SAFE * error:
-            return _taken_back(trial, fields, initial, within, least, spread, error)
+            return _taken_back(trial, wanted)
         far = total > _FAR * error
         if domain > spacing:
             half *= _WIDER**2 if far else _WIDER
@@ -202,16 +207,9 @@ def _search(
     return None
 
 
-def _taken_back(
-    best: Case,
-    fields: dict[str, Any],
-    initial: Initial,
-    within: float,
-    least: float,
-    spread: float,
-    error: float,
-) -> Case:
+def _taken_back(best: Case, wanted: _Wanted) -> Case:
     """Return the case on a lattice as narrow, then as coarse, as the error allows."""
+    fields, initial, within, least, spread, error = wanted
     for narrower in (True, False):
         h, half = best.spacing, best.reach
         while True:
