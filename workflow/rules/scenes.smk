@@ -25,6 +25,8 @@ for job, names in JOBS.items():
             ],
         log:
             RESULTS / f"logs/make_{job}.log",
+        # After the last benchmark, two at a time: between two benchmarks, which take all cores, one core would wait.
+        priority: -1 if not STUDY.smoke and set(names) & set(FROM_TIMES) else 0
         resources:
             runtime=30,
             mem_mb=3000,

@@ -126,16 +126,24 @@ def estimate_error(
 
 
 def estimate_of(
-    solution: Solution, source: Initial, within: float | None = None, most: int = _MOST_POINTS
+    solution: Solution,
+    source: Initial,
+    within: float | None = None,
+    most: int = _MOST_POINTS,
+    enough: float = _ROUND_OFF,
 ) -> ErrorEstimate:
-    """Return the estimate for a run that is done, from these initial data; the reference has at most `most` points."""
+    """Return the estimate for a run that is done, from these initial data.
+
+    The reference has at most `most` points, and is not improved once it changes by less than `enough`, however small
+    the error.
+    """
     case, data = solution.case, _function(solution, source)
     if within is None:
         standard = case.is_graded or (isinstance(source, str) and source == FUNDAMENTAL)
         within = case.error_radius if standard else case.reach
     distance = _Distance(case, within)
     truth = _Truth(case, data, distance, most)
-    known, change = truth.beside(solution.u)
+    known, change = truth.beside(solution.u, enough)
     total = distance(solution.u, known)
     time = domain = 0.0
     exact_in_time = solution.u
@@ -211,13 +219,13 @@ class _Truth:
         self._tail = _tail(data, case)
         self._reached = lru_cache(maxsize=4)(self._at_particles)
 
-    def beside(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """Return the reference at the particles, and its last change, if possible small beside its distance from u."""
+    def beside(self, u: np.ndarray, enough: float) -> tuple[np.ndarray, float]:
+        """Return the reference at the particles, and its last change: `enough`, or small beside its distance from u."""
         best = self._combined(self._fine, self._wide)
         changes: dict[str, float] = {}
         growing = {"width", "fineness"}
         while growing:
-            clear = 0.5 * _CLEAR * min(1.0, self._distance(u, best))
+            clear = 0.5 * max(enough, _CLEAR * min(1.0, self._distance(u, best)))
             # The one that was not tried goes first, then the one that changed more.
             name = max(growing, key=lambda name: (changes.get(name, np.inf), name))
             if changes.get(name, np.inf) <= clear:

@@ -43,6 +43,7 @@ _FINER, _WIDER = 0.7, 1.4  # factors of spacing and half-width in a step of the 
 _FAR = 10.0  # error over the one asked for: from here the search takes two steps at once
 _BACK = 1.2  # the factor by which spacing and half-width are taken back at a time
 _SAFE = 0.7  # share of the error asked for that a case must meet
+_CERTAIN = 0.03  # share of the error asked for by which the estimates may be uncertain
 _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
 # A trial that leaves more than this part of the lowest error is in vain; so many of them in a row end the search.
 _LOWER, _MOST_IN_VAIN = 0.9, 5
@@ -191,7 +192,7 @@ def _search(wanted: _Wanted, reached: list[float]) -> Case | None:
             else:  # too many particles, or a kernel wider than can be summed
                 return None
             continue
-        total, spacing, domain = _errors(trial, initial, within)
+        total, spacing, domain = _errors(trial, initial, within, error)
         reached.append(total)
         in_vain = in_vain + 1 if total > _LOWER * lowest and np.isfinite(total) else 0
         lowest = min(lowest, total)
@@ -217,7 +218,7 @@ def _taken_back(best: Case, wanted: _Wanted) -> Case:
             trial = _trial(fields, h, half, spread)
             if half < max(within, least) or isinstance(trial, InvalidInput):
                 break
-            if _errors(trial, initial, within)[0] > _SAFE * error:
+            if _errors(trial, initial, within, error)[0] > _SAFE * error:
                 break
             best = trial
     return best
@@ -250,7 +251,7 @@ def _met_everywhere(
     """
     h, half = case.spacing, case.reach
     for _ in range(_MOST_WIDENINGS):
-        total, spacing, domain = _errors(case, initial, None)
+        total, spacing, domain = _errors(case, initial, None, error)
         if total <= error:
             return case
         h, half = (h, _WIDER * half) if domain > spacing else (_FINER * h, half)
@@ -284,8 +285,13 @@ def _alpha(fields: dict[str, Any]) -> float:
     return float(fields["alpha"] if "alpha" in fields else 1.0 + fields["beta"])
 
 
-def _errors(case: Case, initial: Initial, within: float | None) -> tuple[float, float, float]:
-    """Return the error and its parts by spacing and half-width, at the worse one of the first and the last time."""
+def _errors(
+    case: Case, initial: Initial, within: float | None, asked: float
+) -> tuple[float, float, float]:
+    """Return the error and its parts by spacing and half-width, at the worse one of the first and the last time.
+
+    They are as certain as the error that is `asked` for wants them.
+    """
     times = {case.t_final} if case.times is None else {case.times[0], case.times[-1]}
     found = []
     with warnings.catch_warnings():
@@ -294,7 +300,7 @@ def _errors(case: Case, initial: Initial, within: float | None) -> tuple[float, 
             try:
                 source = resolved(case, initial)
                 run = compute(case.until(time), source)
-                one = estimate_of(run, source, within, _POINTS[case.dim])
+                one = estimate_of(run, source, within, _POINTS[case.dim], _CERTAIN * asked)
             except InvalidInput as refused:
                 if refused.field != "initial":
                     raise
