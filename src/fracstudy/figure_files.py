@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, NullFormatter, NullLocator
 
 from fracparticles.files import replacing
 
@@ -28,13 +29,26 @@ def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) ->
     # The layout is found once, not once for each format.
     layout = figure.get_layout_engine()
     if layout is not None:
-        layout.execute(figure)
+        with _without_minor_ticks(figure):
+            layout.execute(figure)
         if figure.subfigs:
             _settle(figure)
         figure.set_layout_engine(None)  # the engine "none" would have the figure drawn twice
     for kind in formats:
         with replacing(stem.with_suffix(f".{kind}")) as temporary:
             figure.savefig(temporary, format=kind, **_FORMATS[kind])
+
+
+@contextmanager
+def _without_minor_ticks(figure: Figure) -> Iterator[None]:
+    """Leave out, for a while, minor ticks without labels: the major ones are longer, and one by one they take long."""
+    tickers = {axis.minor for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)}
+    bare = {one: one.locator for one in tickers if isinstance(one.formatter, NullFormatter)}
+    for ticker in bare:
+        ticker.locator = NullLocator()
+    yield
+    for ticker, locator in bare.items():
+        ticker.locator = locator
 
 
 def _settle(figure: Figure) -> None:
