@@ -1,4 +1,7 @@
-"""The scene that a test module is called after, its study and its figure on the smoke grid."""
+"""The scene that a test module is called after, its study and its figure.
+
+The grid is the smoke grid, but for the PARAMETERS of the module.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +18,16 @@ def scene(request):
 
 
 @pytest.fixture(scope="module")
-def result(scene):
-    return call(scene.function("study"), Inputs(scene.name), **scene.parameters)
+def parameters(request, scene):
+    return scene.parameters | getattr(request.module, "PARAMETERS", {})
 
 
 @pytest.fixture(scope="module")
-def panels(scene, result):
+def result(scene, parameters):
+    return call(scene.function("study"), Inputs(scene.name), **parameters)
+
+
+@pytest.fixture(scope="module")
+def panels(scene, result, parameters):
     """The axes of the figure, drawn."""
-    return call(scene.function("figure"), result.series, result.table, **scene.parameters).axes
+    return call(scene.function("figure"), result.series, result.table, **parameters).axes

@@ -1,8 +1,13 @@
-"""Problems on bounded domains: what the scene says of its numbers, on the smoke grid."""
+"""Problems on bounded domains: what the scene says of its numbers."""
 
 from __future__ import annotations
 
 from fracstudy.panels import pick
+
+PARAMETERS = {
+    "counts": {"interval": [50, 100], "disc": [16, 32], "square": [12, 24]},
+    "rtol": {"interval": 1e-8, "disc": 1e-6, "square": 1e-6},
+}
 
 
 def test_the_interval_has_five_digits_with_a_hundred_particles(result):
