@@ -25,8 +25,8 @@ class Graded(Contender):
 
     def trials(self, problem: Problem) -> Trials:
         """Yield numbers of particles, half-widths and scales of the grading."""
+        scales = list(_SCALES)
         for reach in _REACHES:
-            scales = list(_SCALES)
             for count in _COUNTS:
                 errors = []
                 for scale in scales:

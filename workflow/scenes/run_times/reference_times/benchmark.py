@@ -30,7 +30,7 @@ from fracstudy.race.contenders.schemes import few_steps
 Action = Callable[[], Any]
 
 _SLOW = {"fft": "stepping", "naive": "naive"}  # summation, and what stepping with it is called
-_PAIRS = 40  # transform pairs between two looks at the clock
+_PAIRS = 20  # transform pairs between two looks at the clock
 _OWN = "FFTW, two real numbers as a complex one"
 # What half the data would need: a pair in single precision, or of one half of an even field.
 _SINGLE, _COSINE = "single precision", "cosine transform of an even field"
