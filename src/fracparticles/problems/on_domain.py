@@ -107,7 +107,8 @@ def _in_short_waves(rates: DomainRates, t: float, u: np.ndarray) -> float:
     unresolved = domain.unresolved(v)
     if isinstance(domain, Disc) and rates.problem.transport:
         unresolved = max(unresolved, high_waves(domain, v))
-    return unresolved / max(domain.norm(u), 1e-300)
+    size = domain.norm(u)
+    return unresolved / size if size else 0.0
 
 
 def _warn(problem: Problem, found: Estimates) -> None:
