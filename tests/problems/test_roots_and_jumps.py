@@ -74,6 +74,34 @@ def test_a_root_in_an_interval(alpha, as_array):
     assert (off < 1.5 / (1.0 - 1.0 / 9.0) * run.space_error.values).all()
 
 
+@pytest.mark.parametrize(
+    "changing",
+    [
+        {"diffusivity": "0.2 + 1.8*t/{}"},
+        {"diffusivity": "(0.2 + 1.8*t/{})*(1 + 0*x)", "form": "exchange"},
+        {"exterior": "given", "exterior_data": "0.2*t/{} + 0*x"},
+    ],
+)
+def test_a_root_where_coefficients_change_in_time(changing):
+    """Of an array a third of the error was said at first, and a ninth where D begins small."""
+    alpha = 1.2
+    fields, x, _ = interval(48, alpha, (0.03, 0.3, 1.0))
+    end, at = fields["times"][-1], x[24]
+    fields |= {name: text.format(float(end)) for name, text in changing.items()}
+
+    def given(x):
+        return tip((x - at) / 0.5)
+
+    def spread(t):  # int D dt
+        return 0.2 * t + 0.9 * t**2 / end if "diffusivity" in changing else t
+
+    run, _ = solved(given(x), **fields)
+    off = of_u(run, lambda t: solution_of(given, x, spread(t), alpha))
+    assert off.min() > SAID
+    # As with steady coefficients; where they do not depend on time alone, the last time has one term, two thirds.
+    assert (off < 1.5 / (1.0 - 1.0 / 9.0) * run.space_error.values).all()
+
+
 @pytest.mark.parametrize("alpha", [1.2, 1.8])
 def test_a_jump_is_where_its_function_says(alpha):
     """In the middle third between two particles three times as many placed it as these do: a tenth of it was said."""
