@@ -163,7 +163,7 @@ def absolute(atol: Absolute, t: float, u: np.ndarray) -> float:
 def ordinary_unit(size: float) -> float:
     """Return the power of two nearest to one in which a size is ordinary: 1 for nearly all.
 
-    Steps are taken in this unit. Their tolerance is a small share of the size: for a u of 1e-300 it would have no digits.
+    Steps are taken in this unit. Their tolerance is a small share of the size: of 1e-300 it would have no digits.
     """
     exponent = int(np.frexp(size)[1])
     return float(np.ldexp(1.0, exponent - min(max(exponent, -_ORDINARY), _ORDINARY)))
