@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
+from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.interval import Interval
+from fracparticles.bounded.square import Square
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
 
@@ -89,3 +91,40 @@ def test_what_falls_to_nothing_beside_a_velocity_is_followed_to_it():
     fields |= {"velocity": "1 - x**2", "t_final": 1.0, "source": "-1e3*u - u**2", "rtol": 1e-3}
     run = solve_problem(Problem(**fields), np.cos, estimate=False)
     assert np.abs(run.u).max() < 1e-290
+
+
+# About 1e-300 and 1e300. Powers of two change no digit of the data, and of u none but by the order of sums.
+UNITS = [2.0**-998, 2.0**996]
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize(
+    "domain",
+    [Square(1.5, 16), Disc(1.5, 12, 12), Interval(alpha=1.5, particles=24)],
+    ids=lambda domain: type(domain).__name__,
+)
+def test_a_reaction_has_no_unit_of_u(domain, unit):
+    """The tolerance was below the least number: of a u of 1e-300 nothing was right, and a square refused it."""
+
+    def given(*place):
+        return np.prod([(1.0 - z * z) ** 2 for z in place], axis=0)
+
+    one, other = (
+        domain.react(lambda *at, s=s: s * given(*at), 0.1, lambda *at: -60.0 * at[-1])
+        for s in (1.0, unit)
+    )
+    assert np.abs(other / unit - one).max() <= 1e-13 * one.max()
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_implicit_steps_have_no_unit_of_u(unit):
+    """Of a u of 1e-300 an eighth was wrong with a diffusivity that changes in time."""
+    problem = Problem(
+        alpha=1.5, exterior="absorbing", half_width=1.0, t_final=0.1, particles=24,
+        diffusivity="1 + 0.5*sin(5*t)",
+    )  # fmt: skip
+    one, other = (
+        solve_problem(problem, lambda x, s=s: s * (1.0 - x * x), estimate=False).u.values
+        for s in (1.0, unit)
+    )
+    assert np.abs(other / unit - one).max() <= 1e-13 * one.max()

@@ -131,3 +131,41 @@ def test_numbers_that_overflow_are_refused():
     with pytest.raises(InvalidInput) as error:
         dvm.run(x, 1e300 * u, spacing=1e50, alpha=ALPHA, dt=1.0, steps=1)
     assert error.value.field == "u"
+
+
+@pytest.mark.parametrize(("remeshing", "overlap"), [("Lambda3", 1.0), ("Lambda6,4", 2.0)])
+def test_remeshings_that_change_the_field_are_said(remeshing, overlap, recwarn):
+    """A kernel as narrow as the spacing sees the kinks of Lambda3: the peak rose in silence, as in the plane."""
+    h, age = 0.1, 0.2**ALPHA
+    x = h * np.arange(-30, 31)
+    limit = dvm.DiffusionVelocity(ALPHA, 4, overlap * h).largest_stable_step
+    steps = round(4.0 * age / min(0.4 * limit, 0.1 * age))  # a step is a small share of the age
+    run = dvm.run(
+        x, green(x, age, ALPHA), spacing=h, alpha=ALPHA, dt=4.0 * age / steps, steps=steps,
+        start=age, order=4, overlap=overlap, remeshing=remeshing, exterior="open",
+    )  # fmt: skip
+    exact = green(x, 5.0 * age, ALPHA)
+    off = np.abs(run.field(x) - exact).max() / exact.max()
+    if overlap == 2.0:
+        assert off < 0.01
+        assert not recwarn.list
+        return
+    assert off > 0.05
+    (text,) = (str(one.message) for one in recwarn)
+    # What changes the peak early has spread by the end, and what is measured stands for as many again: twice or half.
+    assert off / 2.0 < float(text.split("changed the field by ")[1].split(" of")[0]) < 2.0 * off
+
+
+def test_gaps_before_a_remeshing_are_said():
+    """Only those of the start and the end were looked at; between, gaps of two overlaps had made waves."""
+    h, alpha, age = 0.1, 1.7, 1.0
+    x = h * np.arange(-150, 151)
+    limit = dvm.DiffusionVelocity(alpha, 2, h).largest_stable_step
+    steps = round(4.0 * age / (0.4 * limit))
+    with pytest.warns(AccuracyWarning, match="too far apart for the smoothing length"):
+        run = dvm.run(
+            x, green(x, age, alpha), spacing=h, alpha=alpha, dt=4.0 * age / steps, steps=steps,
+            start=age, overlap=1.0, exterior="open", remesh_above=2.0,
+        )  # fmt: skip
+    exact = green(x, 5.0 * age, alpha)
+    assert np.abs(run.field(x) - exact)[50:-50].max() > 0.05 * exact.max()

@@ -56,6 +56,22 @@ def test_a_wave_that_grows_where_u_is_pressed_together_is_said_or_refused(until,
             solve_problem(problem, dome)
 
 
+@pytest.mark.parametrize(("until", "said"), [(0.2, StabilityWarning), (2.0, NonFiniteSolution)])
+def test_one_on_a_square_too(until, said):
+    """Into the middle, to a width of (1/30)^20. That it is not resolved was said, but not that it grows."""
+    problem = Problem(
+        alpha=1.05, half_width=1.0, exterior="absorbing", domain="square", particles=8,
+        velocity=("-30*x", "-30*y"), t_final=until,
+    )  # fmt: skip
+    found = DomainRates(problem).growth(0.0)
+    assert found < DomainRates(problem).pressed(0.0)
+    expected = pytest.raises if said is NonFiniteSolution else pytest.warns
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        with expected(said, match=rf"grow by exp\({found * until:.3g}\) on the square"):
+            solve_problem(problem, lambda x, y: (1.0 - x * x) * (1.0 - y * y))
+
+
 def test_a_layer_that_they_resolve_is_not_said():
     with warnings.catch_warnings():
         warnings.simplefilter("error", FracparticlesWarning)

@@ -8,6 +8,7 @@ from kinks import KINKS, SAID, H, error, solution, solution_of, solved
 
 from fracparticles.problems import Problem, finer_particles
 from fracparticles.problems.interpolants import interpolants, is_rough, power
+from fracparticles.special import central_mass
 
 TAUS = (0.03, 0.3, 3.0, 30.0)  # h^alpha
 PARTS = np.array([0.25, 0.5, 0.75])
@@ -37,6 +38,25 @@ def test_a_root_that_only_the_particles_say(given, at, alpha):
     # The sample beside the tip is a half of a sixteenth of a spacing from it: a root has 0.18 there.
     assert (np.array(errors) < 1.22 * run.space_error.values + 1e-3).all()
     assert warned or max(errors) < SAID
+
+
+@pytest.mark.parametrize("alpha", [1.2, 1.8])
+@pytest.mark.parametrize("part", [0.1, 0.3])
+def test_a_jump_of_a_function_long_before_h_alpha(alpha, part):
+    """Thirty times its error was said, because a sixteenth of a spacing was wider than the solution."""
+    times = tuple(tau * H**alpha for tau in (1e-3, 1e-2, 1e-1))
+    run, _ = solved(lambda x: 1.0 * (np.abs(x - part * H) < 1.0), alpha=alpha, times=times)
+    x = run.x.values[np.abs(run.x.values) < 2.0]
+    for u, t, said in zip(run.u.values, times, run.space_error.values, strict=True):
+
+        def below(z, t=t):  # the share of the fundamental solution
+            within = [central_mass(abs(one), t, alpha, 1) for one in z]
+            return 0.5 + 0.5 * np.sign(z) * within
+
+        exact = below(x - part * H + 1.0) - below(x - part * H - 1.0)
+        off = error(u[np.abs(run.x.values) < 2.0], exact)
+        # Half a sample is at most t^(1/alpha), a fifth of the distance of the jump, and the tail falls like |x|^-alpha.
+        assert off / 1.2**alpha < said < 1.2**alpha * off
 
 
 def interval(particles, alpha, taus):
@@ -71,6 +91,34 @@ def test_a_root_in_an_interval(alpha, as_array):
     off = of_u(run, lambda t: solution_of(given, x, t, alpha))
     assert off.min() > SAID
     # Two thirds, and the sum but for its rest: 3^(-4/2) of it.
+    assert (off < 1.5 / (1.0 - 1.0 / 9.0) * run.space_error.values).all()
+
+
+@pytest.mark.parametrize(
+    "changing",
+    [
+        {"diffusivity": "0.2 + 1.8*t/{}"},
+        {"diffusivity": "(0.2 + 1.8*t/{})*(1 + 0*x)", "form": "exchange"},
+        {"exterior": "given", "exterior_data": "0.2*t/{} + 0*x"},
+    ],
+)
+def test_a_root_where_coefficients_change_in_time(changing):
+    """Of an array a third of the error was said at first, and a ninth where D begins small."""
+    alpha = 1.2
+    fields, x, _ = interval(48, alpha, (0.03, 0.3, 1.0))
+    end, at = fields["times"][-1], x[24]
+    fields |= {name: text.format(float(end)) for name, text in changing.items()}
+
+    def given(x):
+        return tip((x - at) / 0.5)
+
+    def spread(t):  # int D dt
+        return 0.2 * t + 0.9 * t**2 / end if "diffusivity" in changing else t
+
+    run, _ = solved(given(x), **fields)
+    off = of_u(run, lambda t: solution_of(given, x, spread(t), alpha))
+    assert off.min() > SAID
+    # As with steady coefficients; where they do not depend on time alone, the last time has one term, two thirds.
     assert (off < 1.5 / (1.0 - 1.0 / 9.0) * run.space_error.values).all()
 
 

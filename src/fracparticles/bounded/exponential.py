@@ -19,13 +19,14 @@ from scipy.special import factorial
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.modes import ModalSteps, size_of
 from fracparticles.errors import NonFiniteSolution
+from fracparticles.time.steps import ordinary_unit
 
 __all__ = ["ExponentialSteps", "moments_of_decay"]
 
 _FIRST = 1e-3  # the first step over the time span
 _SHORTEST = 1e-10  # the shortest step over the time span
 _MOST = 20_000  # steps
-_NOTHING = 1e-300  # the least size of u by which an error is divided
+_NOTHING = 1e-300  # the least size of u by which an error is divided, in its ordinary unit
 # The share of the step that would just meet the tolerance, and the least and the greatest ratio of two steps.
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 3.0
 _ORDER = 3.0  # the order of the difference in the step, where N does not vanish at the edge
@@ -46,17 +47,24 @@ class ExponentialSteps(ModalSteps):
             If u becomes infinite, or the steps too short or too many; says when.
         """
         with np.errstate(over="ignore", invalid="ignore"):
-            return self._modes.back(self._advanced(self._modes.into(u), span, start))
+            y = self._modes.into(u)
+            unit = ordinary_unit(self._size(start, y))
+            return self._modes.back(unit * self._advanced(y / unit, span, start, unit))
 
-    def _advanced(self, y: Any, span: float, start: float) -> Any:
+    def _advanced(self, y: Any, span: float, start: float, unit: float) -> Any:
+        """Return the amplitudes after the time `span`; both are in the unit of `ordinary_unit`."""
         t, h = 0.0, self._h or _FIRST * span
+
+        def slope(y: Any, t: float) -> Any:
+            return self._slope(unit * y, t) / unit
+
         for _ in range(_MOST):
             h = min(h, span - t)
-            whole = _Step(self._modes.rates, h).advance(y, start + t, self._slope)
+            whole = _Step(self._modes.rates, h).advance(y, start + t, slope)
             half = _Step(self._modes.rates, 0.5 * h)
-            middle = half.advance(y, start + t, self._slope)
-            halves = half.advance(middle, start + t + 0.5 * h, self._slope)
-            size = self._size(start + t + h, halves)
+            middle = half.advance(y, start + t, slope)
+            halves = half.advance(middle, start + t + 0.5 * h, slope)
+            size = self._size(start + t + h, unit * halves) / unit
             off = size_of(halves - whole) / max(size, _NOTHING)
             if off <= self._tolerance:
                 t, y = t + h, halves

@@ -15,7 +15,7 @@ from scipy.integrate import Radau
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.modes import Held, ModalSteps, Modes, Rest, size_of
 from fracparticles.errors import NonFiniteSolution
-from fracparticles.time.steps import blown_up
+from fracparticles.time.steps import blown_up, ordinary_unit
 
 __all__ = ["ImplicitSteps"]
 
@@ -23,7 +23,8 @@ Beside = Callable[[float, FloatArray], FloatArray]
 
 _FINEST = 1e-12  # the least relative tolerance
 _MOST = 20_000  # steps
-_NOTHING = 1e-290  # the least size of u to which steps are accurate: smaller numbers underflow
+# The least size of u to which steps are accurate, in its ordinary unit: smaller numbers underflow.
+_NOTHING = 1e-290
 
 
 class ImplicitSteps(ModalSteps):
@@ -53,31 +54,33 @@ class ImplicitSteps(ModalSteps):
         """
         modes = self._modes
         y, diagonal = modes.into(u), np.diag(modes.rates)
-
-        def rate(t: float, y: FloatArray) -> FloatArray:
-            return np.asarray(-modes.rates * y + modes.into(self._rest(t, modes.back(y))))
-
         with np.errstate(over="ignore", invalid="ignore"):
             first = size_of(modes.into(self._rest(start, u))) * span
+            unit = ordinary_unit(self._size(start, y) or first)
+            y = y / unit
+
+            def rate(t: float, y: FloatArray) -> FloatArray:
+                beside = modes.into(self._rest(t, modes.back(unit * y))) / unit
+                return np.asarray(-modes.rates * y + beside)
 
             def atol(t: float, y: FloatArray) -> float:
-                size = max(self._size(t, y) or first or 1.0, _NOTHING)
+                size = max((self._size(t, unit * y) or first or 1.0) / unit, _NOTHING)
                 return self._tolerance * size / np.sqrt(y.size)
 
             solver = Radau(
                 rate, start, y, start + span, rtol=self._tolerance, atol=atol(start, y),
-                jac=lambda t, y: self._beside(t, modes.back(y)) - diagonal,
+                jac=lambda t, y: self._beside(t, modes.back(unit * y)) - diagonal,
                 first_step=None if self._h is None else min(self._h, span),
             )  # fmt: skip
             for _ in range(_MOST):
                 solver.atol = atol(solver.t, solver.y)
                 solver.step()
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
-                    raise blown_up(solver.t, modes.back(solver.y))
+                    raise blown_up(solver.t, modes.back(unit * solver.y))
                 self.accepted += 1
                 if solver.status == "finished":
                     self._h = float(solver.h_abs)
-                    return modes.back(solver.y)
+                    return modes.back(unit * solver.y)
         raise NonFiniteSolution(
             f"the solution stops at t = {solver.t:g} after {_MOST} steps. End before, or mend the source "
             "or the velocity."

@@ -14,8 +14,8 @@ D dt / h^alpha <= a with DD's a, although the strengths never change. At the end
 particles run outward unchecked, the step is limited further, by the effect of remeshing wide gaps on the field.
 
 A run warns of what it can detect: a step beyond that limit, particles too far apart for the smoothing length
-(`moving.reliability`), strength lost to a threshold or at the ends of the lattice, and tails that do not continue the
-field inside.
+(`moving.reliability`), remeshings that change the field, strength lost to a threshold or at the ends of the lattice,
+and tails that do not continue the field inside.
 
 An open exterior continues the set by its far field (`moving.tail`). The end particles then follow the paths of the
 solution, and remeshing is needed only because all spacings grow.
@@ -50,8 +50,12 @@ from fracparticles.moving.lagrangian import (
     strengths_of,
 )
 from fracparticles.moving.reliability import (
+    END,
+    Changes,
+    Particles,
     ripple,
     warn_of_misfit,
+    warn_of_remeshing,
     warn_of_ripple,
     warn_of_round_off,
     warn_of_smoothing,
@@ -187,8 +191,9 @@ def run_to_outputs(
     StabilityWarning
         If the step is larger than `DiffusionVelocity.largest_stable_step`.
     AccuracyWarning
-        If the particles are not `spacing` apart, or too far apart for the smoothing length; if much of the strength has
-        been left out; or if the far field of an open exterior does not fit the field inside.
+        If the particles are not `spacing` apart, or too far apart for the smoothing length; if remeshings change the
+        field; if much of the strength has been left out; or if the far field of an open exterior does not fit the field
+        inside.
     """
     spacing, overlap = scale("spacing", spacing), positive_real("overlap", overlap)
     x = real_array("x", x)
@@ -196,13 +201,25 @@ def run_to_outputs(
     if exterior == "open" and lattice != "initial":
         raise InvalidInput("lattice", lattice, "'initial' for exterior='open'", "Leave it out.")
     velocity = DiffusionVelocity(alpha, order, overlap * spacing, diffusivity, summation, exterior)
+    inner = np.abs(x - 0.5 * (x.min() + x.max())) <= 0.5 * float(np.ptp(x)) - END * velocity.epsilon
+    at = x[inner] if inner.any() else x
+    changes = Changes(lambda particles: velocity.field(particles[0], particles[1], at))
+    ripples: list[float] = []
+
+    def rippled(particles: Particles) -> None:
+        ripples.append(ripple(particles[0], particles[1], velocity.epsilon, velocity.transform))
+
+    def noticed(before: Particles, after: Particles) -> None:
+        rippled(before)  # they are farthest apart
+        changes.add(before, after)
+
     if remeshing == "none":
         redistribution = None
     else:
         ends = (float(x.min()), float(x.max())) if lattice == "initial" else None
         continued = None if velocity.tail is None else velocity.tail.continued
         above = largest_gap(exterior) if remesh_above is None else remesh_above
-        redistribution = Remeshing(remeshing, spacing, above, ends, continued)
+        redistribution = Remeshing(remeshing, spacing, above, ends, continued, noticed)
     given = strengths_of(finite_array("u", u), spacing)
     longest = max(positive_real("dt", dt) for dt, _ in legs)
     warn_of_step(longest, velocity.largest_stable_step, stacklevel=3)
@@ -224,11 +241,12 @@ def run_to_outputs(
         runs.append(ParticleRun(x, strength, history, velocity))
         start += dt * steps
     warn_of_volumes(initial, given, spacing, stacklevel=3)
-    states = ((initial, given), (x, strength))
-    found = max(ripple(p, q, velocity.epsilon, velocity.transform) for p, q in states)
+    rippled((initial, given))
+    rippled((x, strength))
     warn_of_ripple(
-        found, velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=3
+        max(ripples), velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=3
     )
+    warn_of_remeshing(changes.largest, stacklevel=3)
     _warn_of_loss(runs[-1].history, exterior)
     if velocity.tail is not None:
         warn_of_misfit(velocity.tail.misfit(x, strength), _MISFIT, stacklevel=3)

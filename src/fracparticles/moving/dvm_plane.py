@@ -38,6 +38,8 @@ from fracparticles.moving.plane_remeshing import Particles, on_square, remesh_pl
 from fracparticles.moving.plane_sums import PlaneSums
 from fracparticles.moving.plane_tail import REACH, PlaneTail
 from fracparticles.moving.reliability import (
+    END,
+    Changes,
     ripple,
     warn_of_misfit,
     warn_of_remeshing,
@@ -49,8 +51,6 @@ from fracparticles.moving.remeshing import REMESHINGS
 
 __all__ = ["PlaneRun", "PlaneVelocity", "run_in_plane"]
 
-# Smoothing lengths from the ends of the lattice, within which what is left out changes the field.
-_END = 3.0
 _MISFIT = 0.05  # of the total strength: what the far field may hold wrongly
 
 
@@ -241,9 +241,9 @@ def run_in_plane(
     warn_of_smoothing(velocity.field(x, y, strength, (x.ravel(), y.ravel())), u.ravel())
     coarse = velocity.ripple(lattice, strength)
     total, lost, times = float(strength.sum()), 0.0, []
-    inner = slice(margin := min(ceil(_END * overlap), n // 2), 2 * n + 1 - margin)
+    inner = slice(margin := min(ceil(END * overlap), n // 2), 2 * n + 1 - margin)
     at = x[inner, inner].ravel(), y[inner, inner].ravel()
-    changes = _Changes(velocity, at)
+    changes = Changes(lambda p: velocity.field(p[0], p[1], p[2], at))
     for step in range(1, steps + 1):
         time = start + step * dt
         try:
@@ -254,6 +254,7 @@ def run_in_plane(
                 strength = on_square(*remesh_plane(*wide, h, remeshing), h, n)
                 x, y = np.meshgrid(lattice, lattice, indexing="ij")
                 lost += float(before[2].sum()) - float(strength.sum())
+                coarse = max(coarse, velocity.ripple(before[0][:, n], before[2]))
                 changes.add(before, (x, y, strength))
                 times.append(time)
         except FracparticlesError as error:
@@ -263,27 +264,6 @@ def run_in_plane(
     warn_of_remeshing(changes.largest, stacklevel=2)
     _warn(velocity, x, y, strength, lost / total)
     return PlaneRun(x, y, strength, velocity, total, lost, times)
-
-
-class _Changes:
-    """What the remeshings change of the field, over its peak, at places of the lattice: see `reliability`."""
-
-    def __init__(self, velocity: PlaneVelocity, at: tuple[np.ndarray, np.ndarray]) -> None:
-        self._velocity, self._at, self._count = velocity, at, 0
-        self._sum = self._last = np.zeros(at[0].size)
-
-    def add(self, before: Particles, after: Particles) -> None:
-        """Add those of a remeshing: measured if its number is a power of two, else those of the last that was."""
-        self._count += 1
-        if self._count & (self._count - 1) == 0:
-            held, found = (self._velocity.field(*one, self._at) for one in (before, after))
-            self._last = (found - held) / np.abs(held).max()
-        self._sum = self._sum + self._last
-
-    @property
-    def largest(self) -> float:
-        """That of the place where they are largest."""
-        return float(np.abs(self._sum).max())
 
 
 def _warn(

@@ -50,6 +50,7 @@ REMESHING, REMESH_ABOVE, THRESHOLD = "M4'", 1.5, 0.0
 
 Velocity = Callable[[np.ndarray, np.ndarray], np.ndarray]
 Continued = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+Noticed = Callable[[tuple[np.ndarray, ...], tuple[np.ndarray, ...]], None]
 Observer = Callable[[float, np.ndarray, np.ndarray], None]
 
 # The greatest strength must be this large, so that strengths of 1e-16 of it still have all their digits.
@@ -76,6 +77,8 @@ class Remeshing:
         The first and last lattice point kept; None: the lattice goes on as far as the particles need.
     continued : callable or None
         continued(x, strength) returns these particles and those of the far field beyond them. All are redistributed.
+    noticed : callable or None
+        noticed(before, after) is called with the positions and the strengths before and after each remeshing.
     """
 
     name: str
@@ -83,6 +86,7 @@ class Remeshing:
     above: float = REMESH_ABOVE
     ends: tuple[float, float] | None = None
     continued: Continued | None = None
+    noticed: Noticed | None = None
 
     def __post_init__(self) -> None:
         check.choice("remeshing", self.name, REMESHINGS)
@@ -91,6 +95,8 @@ class Remeshing:
             check.fields(self, ends=partial(check.pair, rising=True))
         if self.continued is not None:
             check.function("continued", self.continued)
+        if self.noticed is not None:
+            check.function("noticed", self.noticed)
 
 
 def _above_one(_: str, value: Any) -> float:
@@ -221,7 +227,10 @@ def advance(
                 history.remeshing_times.append(time)
                 history.spacings_before.append(spacing)
                 history.spacings_where.append(where)
-                moved, strength = _redistribute(moved, strength, remeshing, history)
+                before = moved, strength
+                moved, strength = _redistribute(*before, remeshing, history)
+                if remeshing.noticed is not None:
+                    remeshing.noticed(before, (moved, strength))
                 moved, strength = _keep(moved, strength, threshold, history)
                 history.particles.append(moved.size)
                 order = None

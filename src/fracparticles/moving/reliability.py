@@ -25,13 +25,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from fracparticles.errors import AccuracyWarning, StabilityWarning
 
 __all__ = [
+    "END",
     "RIPPLE",
+    "Changes",
+    "Particles",
     "cells",
     "ripple",
     "warn_of_misfit",
@@ -43,6 +47,9 @@ __all__ = [
     "warn_of_volumes",
 ]
 
+END = 3.0
+"""Smoothing lengths from the ends of the lattice, within which what is left out changes the field."""
+
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
 _OTHER = 0.05  # of the integral of |u|: the error of a run is this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
@@ -52,6 +59,36 @@ _ROUNDED = 0.02  # epsilon: of the places, by all steps together
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 
 Transform = Callable[[np.ndarray], np.ndarray]
+Particles = tuple[np.ndarray, ...]
+"""Coordinates and strengths of particles."""
+
+
+class Changes:
+    """What the remeshings of a run change of the field, over its peak, at some places.
+
+    Parameters
+    ----------
+    field : callable
+        From particles to the field at the places, shape (M,).
+    """
+
+    def __init__(self, field: Callable[[Particles], np.ndarray]) -> None:
+        self._field, self._count = field, 0
+        self._sum: Any = 0.0
+        self._last: Any = 0.0
+
+    def add(self, before: Particles, after: Particles) -> None:
+        """Add those of a remeshing: measured if its number is a power of two, else those of the last that was."""
+        self._count += 1
+        if self._count & (self._count - 1) == 0:
+            held, found = self._field(before), self._field(after)
+            self._last = (found - held) / (float(np.abs(held).max(initial=0.0)) or 1.0)
+        self._sum = self._sum + self._last
+
+    @property
+    def largest(self) -> float:
+        """That of the place where they are largest."""
+        return float(np.abs(self._sum).max(initial=0.0))
 
 
 def cells(x: np.ndarray) -> np.ndarray:

@@ -23,6 +23,7 @@ from fracparticles.bounded.given import Outside
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Modes
+from fracparticles.bounded.square import Square
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import over_time, reaction_of
 from fracparticles.time.fading import slope_of
@@ -173,8 +174,8 @@ class DomainRates:
         return float(np.linalg.eigvals(np.stack([c.reshape(-1) for c in columns])).real.max())
 
     def pressed(self, t: float) -> float:
-        """Return max(-div a) / 2 on a disc, which `growth` and the slowest rate of the diffusion do not exceed."""
-        assert isinstance(self.domain, Disc)
+        """Return max(-div a) / 2 in the plane, which `growth` and the slowest rate of the diffusion do not exceed."""
+        assert isinstance(self.domain, Disc | Square)
         return -0.5 * float(self.domain.divergence(self._now(t)[2]).min())
 
     def slowest(self) -> float:

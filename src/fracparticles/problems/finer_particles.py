@@ -13,21 +13,26 @@ wide spreads in 3^-alpha of the time. So with d(t) the distance from the run on 
 
     sum_k 3^(-k p) d(3^(k alpha) t),
 
-over times up to h^alpha / D; the terms beyond fall by thirds. Before h^alpha the first term is too small, because three
-times as many particles still leave out most of the tip of a root: it was a seventh of the error.
+over times up to h^alpha / D; the terms beyond fall by thirds. Of these the last twelve count. Before h^alpha the first
+term is too small, because three times as many particles still leave out most of the tip of a root: it was a seventh of
+the error.
 
 If a run on three times as many takes more than a second, and the data are rough, n' < n particles are given the same
 data. At the same t / h^alpha the error of n particles is (n' / n)^p times theirs. If that time is too long for the
 domain, their error is taken at an earlier time, t l^alpha, and falls with the spacing for the rest: as
 (n' / n)^(1 + p) l. A jump lies differently between n' particles than between n. So it may lie anywhere there, as in an
 array: see `interpolants`. If the data are not rough, nothing is known then: fewer particles may not see how smooth they
-are. If D or values outside change in time, the time is not scaled, l = 1, and the sum has one term.
+are.
+
+A D that depends only on time is 1 in its own time. If D depends on place and time, or values outside on time, the sum
+is that of the frozen problem, see `steady_diffusion`, up to the time h^alpha / D. So long the solution depends on the
+mean of D about a kink or a jump. Later the time is not scaled, l = 1, and the sum has one term.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -37,7 +42,13 @@ from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems.fewer_particles import Solve, among, axes_of
 from fracparticles.problems.interpolants import interpolants, power
 from fracparticles.problems.problem import Problem
-from fracparticles.problems.steady_diffusion import diffused
+from fracparticles.problems.steady_diffusion import (
+    diffused,
+    doubling,
+    frozen,
+    in_own_time,
+    is_steady,
+)
 
 __all__ = ["errors_of_diffusion", "values_of"]
 
@@ -48,7 +59,10 @@ _MOST_IN_ONE = 16
 _WRAPPED = 12  # particles by which an angle is continued beyond a turn
 _PARTS = 8  # parts of a cell along each axis, in whose middles a function is evaluated
 _JUMP = 0.25  # a smaller power p is that of a jump
-_TERMS = 4  # terms of the sum; at a jump those that are left out are a ninth of the last
+_TERMS = 12  # terms of the sum: towards h^alpha they grow, at first by 3^(alpha - p) each
+
+Terms = list[tuple[float, float]]
+"""Times at which a distance is taken, and the factor of each."""
 
 
 def errors_of_diffusion(
@@ -70,8 +84,10 @@ def errors_of_diffusion(
     nothing: list[list[np.ndarray]] = [[] for _ in fields]
     count = fields[0].shape[0]
     few = count // -(-count // _most(problem))
+    errors = list(nothing)
     try:
-        some, many = (problem.model_copy(update={"particles": n}) for n in (few, 3 * few))
+        alone = in_own_time(problem)
+        some, many = (alone.model_copy(update={"particles": n}) for n in (few, 3 * few))
         p = power(values_of(problem, initial))
         if few < count and p is None:
             return nothing
@@ -80,47 +96,75 @@ def errors_of_diffusion(
         if few < count or not callable(initial):
             given += _interpolated(some, many, values)
         placed = callable(initial) and p is not None and p < _JUMP
-        terms = _terms(some, few / count, p, 1 if placed else _TERMS)
-        times = tuple(sorted({t for every in terms for t, _ in every}))
-        update = {"times": times, "t_final": times[-1]}
-        some, many = some.model_copy(update=update), many.model_copy(update=update)
-        made = diffused(some, values, solve)
-        finer = [[among(many, some, w) for w in diffused(many, one, solve)] for one in given]
+        for run in _runs(some, few / count, p, placed):
+            times = tuple(sorted({t for every in run.terms for t, _ in every}))
+            update = {"times": times, "t_final": times[-1]}
+            finest = run.problem.model_copy(update=update | {"particles": many.particles})
+            made = diffused(run.problem.model_copy(update=update), values, solve)
+            finer = [[among(many, some, w) for w in diffused(finest, one, solve)] for one in given]
+            sizes = [1.0 if problem.adds else 1.0 / (_greatest(v) or 1.0) for v in made]
+            for output, every in zip(run.outputs, run.terms, strict=True):
+                terms = [(times.index(t), share) for t, share in every]
+                size = 1.0 if problem.adds else _greatest(fields[output])
+                errors[output] = [
+                    size
+                    * _placed(
+                        some,
+                        problem,
+                        sum(share * sizes[n] * (made[n] - w[n]) for n, share in terms),
+                    )
+                    for w in finer
+                ]
     except (InvalidInput, NonFiniteSolution):  # a function that is valid only at its own particles
         return nothing
-    sizes = [1.0 if problem.adds else 1.0 / (_greatest(v) or 1.0) for v in made]
+    return errors
+
+
+class _Run(NamedTuple):
+    """A problem, the output times for which it is solved, and for each of them the terms of the sum."""
+
+    problem: Problem
+    outputs: list[int]
+    terms: list[Terms]
+
+
+def _runs(some: Problem, ratio: float, p: float | None, placed: bool) -> Iterator[_Run]:
+    """Yield the runs that tell the error at all output times, see the module."""
+    start, times = some.t_initial, some.output_times
+    if p is None or is_steady(some):
+        terms = [_terms(some, t, ratio, p, placed) for t in times]
+        yield _Run(some, list(range(len(times))), terms)
+        return
+    early = 0
+    while early < len(times) and times[early] - start < _longest(frozen(some, times[early])):
+        early += 1
+    for _, *piece in doubling((start, *times[:early])) if early else ():
+        outputs, still = [times.index(t) for t in piece], frozen(some, piece[-1])
+        yield _Run(still, outputs, [_terms(still, t, ratio, p, placed) for t in piece])
+    if early < len(times):
+        yield _Run(some, list(range(early, len(times))), [[(t, ratio)] for t in times[early:]])
+
+
+def _longest(some: Problem) -> float:
+    """Return h^alpha / D of a D that does not depend on time."""
+    h = float(some.bounded_domain.volumes.max()) ** (1.0 / some.dim)
+    greatest = float(np.max(some.diffusion(some.places | {"t": np.array(some.t_initial)})))
+    return h**some.alpha / greatest
+
+
+def _terms(some: Problem, t: float, ratio: float, p: float | None, placed: bool) -> Terms:
+    """Return the times at which the distance is taken for an output time, and the factor of each, see the module."""
+    if p is None:
+        return [(t, ratio)]
+    alpha, start = some.alpha, some.t_initial
+    most = (_longest(some) / (t - start)) ** (1.0 / alpha)
+    wider = float(np.clip(most, 1.0, 1.0 / ratio))
+    first = ratio ** (1.0 + p) * wider
+    last = 0 if placed or most < wider else int(np.log(most / wider) / np.log(3.0))
     return [
-        [
-            (1.0 if problem.adds else _greatest(u))
-            * _placed(some, problem, sum(share * sizes[n] * (made[n] - w[n]) for n, share in every))
-            for w in finer
-        ]
-        for u, every in zip(
-            fields, ([(times.index(t), c) for t, c in each] for each in terms), strict=True
-        )
+        (start + (t - start) * (wider * 3.0**k) ** alpha, first * 3.0 ** (-k * p))
+        for k in range(max(0, last + 1 - _TERMS), last + 1)
     ]
-
-
-def _terms(
-    some: Problem, ratio: float, p: float | None, most_terms: int
-) -> list[list[tuple[float, float]]]:
-    """Return for each output time the times at which the distance is taken, and the factor of each, see the module."""
-    start, d, outside = some.t_initial, some.diffusion, some.outside
-    steady = "t" not in d.depends_on and (outside is None or "t" not in outside.depends_on)
-    if p is None or not steady:
-        return [[(t, ratio)] for t in some.output_times]
-    alpha, h = some.alpha, float(some.bounded_domain.volumes.max()) ** (1.0 / some.dim)
-    longest = h**alpha / float(np.max(d(some.places | {"t": np.array(start)})))
-    terms = []
-    for t in some.output_times:
-        most = (longest / (t - start)) ** (1.0 / alpha)
-        wider = float(np.clip(most, 1.0, 1.0 / ratio))
-        first = ratio ** (1.0 + p) * wider
-        terms.append([
-            (start + (t - start) * (wider * 3.0**k) ** alpha, first * 3.0 ** (-k * p))
-            for k in range(most_terms) if k == 0 or wider * 3.0**k <= most
-        ])  # fmt: skip
-    return terms
 
 
 def _with_means(problem: Problem, initial: Any) -> np.ndarray:

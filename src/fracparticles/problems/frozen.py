@@ -7,7 +7,8 @@ If D and a are the same everywhere, both solutions are known wave by wave. In a 
 A^ and T^ are the symbols of the diffusion and the transport. The equation starts from the data on a finer lattice
 between the particles, so that a kink or a jump has its error from the first moment on. Half of the particles cannot
 tell that error: for a time of about h^alpha they miss as much of the kink as all of them do, and the difference is
-small.
+small. Before a jump has spread over a sample of this lattice, a particle beside it seems to feel it. So a function of x
+with a kink or a jump has as many samples as the first output time needs.
 
 Each place has the error for the nearest of five values of D. The velocity a is its mean weighted by |u|, and alpha is
 the greatest order. The data are continued beyond the ends as in a mirror.
@@ -29,7 +30,8 @@ from fracparticles.schemes import SCHEMES
 
 __all__ = ["frozen_errors"]
 
-_FINER = {1: 16, 2: 2}  # samples between two particles
+_FINER = {1: 16, 2: 2}  # samples between two particles, the least number
+_SAMPLES = 2**18  # on the line, the most of all
 _LEVELS = 5  # values of D, from its least to its greatest
 _LOOKS = 9  # times over which a coefficient that changes is averaged
 _LEAST = 1e-3  # the least value of D over the greatest
@@ -69,13 +71,16 @@ def frozen_errors(
         u at each output time; the errors are scaled to its size.
     """
     size = float(np.abs(u0).max())
-    places = (2 * _FINER[problem.dim] * u0.shape[0]) ** problem.dim
+    m = _FINER[problem.dim]
+    places = (2 * m * u0.shape[0]) ** problem.dim
     if not 0.0 < size < np.inf:
         return [[]] * len(fields)
     if places > _MOST:
         return _by_half(problem, initial, u0, fields)
+    if problem.dim == 1 and callable(initial) and is_rough(u0):
+        m = max(m, _samples(problem))
     scheme = _of_the_scheme(problem, u0 / size)
-    equations = [_of_the_equation(problem, u / size) for u in _between(problem, initial, u0)]
+    equations = [_of_the_equation(problem, u / size, m) for u in _between(problem, initial, u0, m)]
     errors: list[list[np.ndarray]] = []
     for t, u in zip(problem.output_times, fields, strict=True):
         found = [_error(problem, t, u0, scheme, one) for one in equations]
@@ -83,6 +88,14 @@ def frozen_errors(
         now = float(np.abs(u).max())
         errors.append([(size if problem.adds else now / greatest) * off for off, greatest in found])
     return errors
+
+
+def _samples(problem: Problem) -> int:
+    """Return 2^k samples between two particles of a line, one for (D t)^(1/alpha) at the first output time."""
+    t, h = problem.output_times[0], problem.case.particle_spacing
+    spread = float(np.max(_mean(problem, problem.diffusion, t))) * (t - problem.t_initial)
+    wanted = min(h * spread ** (-1.0 / problem.case.alpha), _SAMPLES / problem.case.x.size)
+    return 2 ** int(np.log2(max(1.0, wanted)))
 
 
 def _by_half(
@@ -133,8 +146,7 @@ def _of_the_scheme(problem: Problem, u: np.ndarray) -> _Waves:
     return _Waves(data, -symbol, carried)
 
 
-def _of_the_equation(problem: Problem, u: np.ndarray) -> _Waves:
-    m = _FINER[problem.dim]
+def _of_the_equation(problem: Problem, u: np.ndarray, m: int) -> _Waves:
     data = np.fft.fftn(np.pad(u, [(0, n) for n in u.shape], "symmetric"))
     waves = _wavenumbers(data.shape, m)
     for k in waves:  # the first place lies half of a finer spacing behind the first particle
@@ -161,9 +173,9 @@ def _mean(problem: Problem, one: Coefficient, t: float) -> Any:
     return sum(one(problem.places | {"t": np.array(time)}) for time in times) / len(times)
 
 
-def _between(problem: Problem, initial: Any, u0: np.ndarray) -> list[np.ndarray]:
+def _between(problem: Problem, initial: Any, u0: np.ndarray, m: int) -> list[np.ndarray]:
     """Return each form of the data at m equally spaced places between two particles, none of them at a particle."""
-    m, dim = _FINER[problem.dim], problem.dim
+    dim = problem.dim
     part = (np.arange((u0.shape[0] - 1) * m) + 0.5) / m
     x = problem.case.x[0] + part * problem.case.particle_spacing
     if callable(initial):

@@ -22,7 +22,6 @@ from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Held
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
-from fracparticles.problems.disc_waves import high_waves, warn_of_growth
 from fracparticles.problems.domain_rates import DomainRates
 from fracparticles.problems.fewer_particles import SPACE_ERROR, Estimates, with_space_error
 from fracparticles.problems.finer_particles import errors_of_diffusion, values_of
@@ -33,6 +32,7 @@ from fracparticles.problems.integrate import (
     size_of_start,
     size_to_come,
 )
+from fracparticles.problems.plane_waves import high_waves, warn_of_growth
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import probe_source
 from fracparticles.problems.sudden import sudden_changes
@@ -107,7 +107,8 @@ def _in_short_waves(rates: DomainRates, t: float, u: np.ndarray) -> float:
     unresolved = domain.unresolved(v)
     if isinstance(domain, Disc) and rates.problem.transport:
         unresolved = max(unresolved, high_waves(domain, v))
-    return unresolved / max(domain.norm(u), 1e-300)
+    size = domain.norm(u)
+    return unresolved / size if size else 0.0
 
 
 def _warn(problem: Problem, found: Estimates) -> None:

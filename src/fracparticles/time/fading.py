@@ -62,7 +62,7 @@ def early_errors(
         found = []
         for n in range(1, t.size):
             left = float((early[: n + 1] * np.exp(-rate * (t[n] - t[: n + 1]))).max())
-            found.append(tolerance * left / max(float(sizes[n]), 1e-300) if left else 0.0)
+            found.append(tolerance * (left / sizes[n]) if left else 0.0)
         return found
 
     with np.errstate(all="ignore"):

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from fracparticles.special.images import outside_integrals
-from fracparticles.time.multipoles import HARMONICS, Terms, values_of
+from fracparticles.time.multipoles import HARMONICS, Harmonic, Terms, values_of
 
 __all__ = ["Meeting"]
 
@@ -71,24 +71,28 @@ class Meeting:
         fewer = np.array([gamma < last for _, gamma in self._terms])
         change[fewer] -= _least_squares(self._columns[:, fewer], self._weight) @ found
         most = [0.0, 0.0]
-        # Terms of another H are left out: beyond a cube their moments vanish, but for l = 3 and 4 in the plane.
         for harmonic in HARMONICS[self._dim]:
-            own = [row for row, (other, _) in enumerate(self._terms) if other is harmonic]
-            if harmonic.degree < len(most) and own:
-                lacking = abs(float(self._beyond(own) @ change[own]))
+            if harmonic.degree < len(most):
+                lacking = abs(float(self._beyond(harmonic) @ change))
                 most[harmonic.degree] = max(most[harmonic.degree], lacking)
         return most[0], most[1]
 
-    def _beyond(self, rows: list[int]) -> np.ndarray:
-        """Return int H u beyond the lattice for each of some terms of one H."""
-        terms = [self._terms[row] for row in rows]
-        harmonic, gamma = terms[0][0], np.array([gamma for _, gamma in terms])
-        beyond = outside_integrals(
-            lambda x: harmonic.moment_at(0, x) * values_of(terms, x, x),
-            -self._dim - gamma,
-            self._dim,
-        )
-        return np.asarray(beyond * (2.0 * self._nearest) ** -gamma)
+    def _beyond(self, moment: Harmonic) -> np.ndarray:
+        """Return int H u beyond the lattice for each term, with the H of a moment.
+
+        Beyond a sphere only the terms of the same H have one. Beyond a square the others of its parity have one, too:
+        those of l = 4 an integral, those of l = 3 a first moment.
+        """
+        found = np.zeros(len(self._terms))
+        own = [row for row, (h, _) in enumerate(self._terms) if h.parity == moment.parity]
+        terms = [self._terms[row] for row in own]
+        if terms:
+            degrees = moment.degree - self._dim - np.array([h.degree + g for h, g in terms])
+            found[own] = outside_integrals(
+                lambda x: moment.moment_at(0, x) * values_of(terms, x, x), degrees, self._dim
+            )
+            found[own] *= (2.0 * self._nearest) ** (self._dim + degrees)
+        return found
 
 
 def _least_squares(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:

@@ -20,6 +20,7 @@ __all__ = [
     "absolute",
     "blown_up",
     "norm",
+    "ordinary_unit",
 ]
 
 Rate = Callable[[float, np.ndarray], np.ndarray]
@@ -31,6 +32,10 @@ Absolute = float | Callable[[float, np.ndarray], float]
 STAGES = 12  # evaluations that a step of order 8 takes
 _LOOK = 2000  # steps between two looks at the pace
 _MOST = 1e6  # steps to go, beyond which the end is out of reach
+_LEAST = float(np.finfo(float).tiny)  # the least absolute tolerance, in the ordinary unit of u
+_ORDINARY = (
+    500  # sizes from 2^-500 to 2^500 are ordinary: their tolerances and their squares are numbers
+)
 
 
 class Steps(Protocol):
@@ -87,24 +92,31 @@ class EighthOrderStep:
             nothing, or would never reach the end; says when.
         """
         first = None if self._dt is None else min(self._dt, span)
-        tolerances = {"rtol": self._rtol, "atol": absolute(self._atol, start, u)}
+        unit = ordinary_unit(
+            max(float(np.abs(u).max()), absolute(self._atol, start, u) / self._rtol)
+        )
+
+        def atol(t: float, u: np.ndarray) -> float:
+            return max(absolute(self._atol, t, u) / unit, _LEAST)  # u may have faded to nothing
+
         with np.errstate(over="ignore", invalid="ignore"):
             solver = DOP853(
-                lambda t, y: self._rate(t, y.reshape(u.shape)).reshape(-1),
-                start, u.reshape(-1), start + span, first_step=first, **tolerances,
+                lambda t, y: self._rate(t, unit * y.reshape(u.shape)).reshape(-1) / unit,
+                start, u.reshape(-1) / unit, start + span,
+                first_step=first, rtol=self._rtol, atol=atol(start, u),
             )  # fmt: skip
             began, taken, pace = solver.nfev, 0, Pace(start, span)
             while solver.status == "running":
-                solver.atol = absolute(self._atol, solver.t, solver.y)
+                solver.atol = atol(solver.t, unit * solver.y)
                 solver.step()
                 taken += 1
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
-                    raise blown_up(solver.t, solver.y)
+                    raise blown_up(solver.t, unit * solver.y)
                 pace.stepped(solver.t)
         self.accepted += taken
         self.rejected += round((solver.nfev - began) / STAGES) - taken
         self._dt = solver.h_abs
-        return np.asarray(solver.y).reshape(u.shape)
+        return np.asarray(unit * solver.y).reshape(u.shape)
 
     def forget(self) -> None:
         """Let the next step find its length anew."""
@@ -146,6 +158,15 @@ class Pace:
 def absolute(atol: Absolute, t: float, u: np.ndarray) -> float:
     """Return the absolute tolerance at a time when the solution is u."""
     return atol(t, u) if callable(atol) else atol
+
+
+def ordinary_unit(size: float) -> float:
+    """Return the power of two nearest to one in which a size is ordinary: 1 for nearly all.
+
+    Steps are taken in this unit. Their tolerance is a small share of the size: of 1e-300 it would have no digits.
+    """
+    exponent = int(np.frexp(size)[1])
+    return float(np.ldexp(1.0, exponent - min(max(exponent, -_ORDINARY), _ORDINARY)))
 
 
 def blown_up(t: float, u: np.ndarray) -> NonFiniteSolution:

@@ -1,12 +1,13 @@
-"""Waves that a velocity makes on a disc of few particles.
+"""Waves that a velocity makes on a disc or a square of few particles.
 
 Some waves may grow, at most at the rate max(-div a) / 2 less the lowest rate of the diffusion, see
-`bounded.disc_transport`. Where div a = 0 no wave grows. No mode of the equation u_t = D A u - div(a u) grows either:
-int |u| falls or stays, even while int u^2 grows. So an eigenvalue with a positive real part belongs to the particles.
-Its wave is a layer that the velocity presses together to less than the distance of rings.
+`bounded.disc_transport` and `bounded.square_transport`. Where div a = 0 no wave grows. No mode of the equation
+u_t = D A u - div(a u) grows either: int |u| falls or stays, even while int u^2 grows. So an eigenvalue with a positive
+real part belongs to the particles. Its wave is a layer that the velocity presses together to less than the distance of
+particles. On an interval there is no such bound; `unresolved_share` and `space_error` tell of such layers there.
 
-Other waves are too short for the angles. A velocity couples each wave along the rings to its neighbours, and takes
-those beyond the shortest for longer ones. In the modes a high wave may be slow, so that its rate does not tell.
+On a disc other waves are too short for the angles. A velocity couples each wave along the rings to its neighbours, and
+takes those beyond the shortest for longer ones. In the modes a high wave may be slow, so that its rate does not tell.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ _ROUND_OFF = -np.log(np.finfo(float).eps)  # log of the growth that makes the la
 
 
 def warn_of_growth(problem: Problem, rates: DomainRates) -> None:
-    """Look for waves that grow on a disc of few particles, with the velocity at three times.
+    """Look for waves that grow on a disc or a square of few particles, with the velocity at three times.
 
     Raises
     ------
@@ -42,7 +43,8 @@ def warn_of_growth(problem: Problem, rates: DomainRates) -> None:
     StabilityWarning
         If they grow tenfold.
     """
-    if problem.domain != "disc" or not problem.transport or rates.domain.volumes.size > _MOST:
+    few = rates.domain.volumes.size <= _MOST
+    if problem.domain not in ("disc", "square") or not problem.transport or not few:
         return
     varies = any("t" in one.depends_on for one in (problem.diffusion, *problem.transport))
     shares = (0.0, 0.5, 1.0) if varies else (0.0,)
@@ -55,9 +57,9 @@ def warn_of_growth(problem: Problem, rates: DomainRates) -> None:
     if found * problem.span <= _GROWTH:
         return
     text = (
-        f"waves that the particles do not resolve grow by exp({found * problem.span:.3g}) on the disc, because the "
-        "velocity presses u together faster than it spreads. Take more rings, a smaller velocity, a larger diffusivity "
-        "or alpha, or an earlier end."
+        f"waves that the particles do not resolve grow by exp({found * problem.span:.3g}) on the {problem.domain}, "
+        "because the velocity presses u together faster than it spreads. Take more particles, a smaller velocity, a "
+        "larger diffusivity or alpha, or an earlier end."
     )
     if found * problem.span > _ROUND_OFF:
         raise NonFiniteSolution(text)
