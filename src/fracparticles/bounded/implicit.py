@@ -14,7 +14,7 @@ from scipy.integrate import Radau
 
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.modes import Held, ModalSteps, Modes, Rest, size_of
-from fracparticles.errors import NonFiniteSolution
+from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.time.steps import blown_up
 
 __all__ = ["ImplicitSteps"]
@@ -23,6 +23,7 @@ Beside = Callable[[float, FloatArray], FloatArray]
 
 _FINEST = 1e-12  # the least relative tolerance
 _MOST = 20_000  # steps
+_FIRST = 1e-3  # share of the time: what N makes in it from u = 0 is the size for the first step
 _NOTHING = 1e-290  # the least size of u to which steps are accurate: smaller numbers underflow
 
 
@@ -58,7 +59,7 @@ class ImplicitSteps(ModalSteps):
             return np.asarray(-modes.rates * y + modes.into(self._rest(t, modes.back(y))))
 
         with np.errstate(over="ignore", invalid="ignore"):
-            first = size_of(modes.into(self._rest(start, u))) * span
+            first = size_of(modes.into(self._rest(start, u))) * _FIRST * span
 
             def atol(t: float, y: FloatArray) -> float:
                 size = max(self._size(t, y) or first or 1.0, _NOTHING)
@@ -71,7 +72,14 @@ class ImplicitSteps(ModalSteps):
             )  # fmt: skip
             for _ in range(_MOST):
                 solver.atol = atol(solver.t, solver.y)
-                solver.step()
+                try:
+                    solver.step()
+                except InvalidInput:
+                    raise
+                except (
+                    ValueError
+                ) as error:  # scipy's solver of linear equations refuses infinite numbers
+                    raise blown_up(solver.t, modes.back(solver.y)) from error
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
                     raise blown_up(solver.t, modes.back(solver.y))
                 self.accepted += 1

@@ -52,7 +52,11 @@ def _changes(
         return one.checked(_of(one, some, np.asarray(t)))
 
     if isinstance(one.given, str) or _takes_many_times(one, some, start, span):
-        return sudden_times(at_once, start, span, at_once=at_once)
+        places = {name: x[_few_of(x.size)] for name, x in some.items()}
+        return sudden_times(
+            at_once, start, span, at_once=at_once,
+            few=lambda t: one.checked(_of(one, places, t)),
+        )  # fmt: skip
     if _takes_any_points(one, some, lattice, chosen, np.array(start)):
         return sudden_times(at_once, start, span)
     looks = max(_FEWEST, min(LOOKS, _NUMBERS // lattice["u"].size))
@@ -92,6 +96,11 @@ def _places(u0: np.ndarray) -> Index:
     middle = np.ravel_multi_index(tuple(n // 2 for n in u0.shape), u0.shape)
     some = np.unique(np.concatenate([equally, np.minimum(by_mass, u.size - 1), [middle]]))
     return np.unravel_index(some, u0.shape)
+
+
+def _few_of(count: int) -> list[int]:
+    """Return a few of some places: near the middle and on either side of it, at unequal distances."""
+    return [int(share * count) for share in (0.21, 0.5, 0.68)]
 
 
 def _of(one: Coefficient, at: Places, t: np.ndarray) -> Places:

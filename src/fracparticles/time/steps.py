@@ -46,12 +46,17 @@ class Steps(Protocol):
         The largest |lambda| that was estimated; 0 if none was.
     """
 
-    accepted: int
-    largest: float
+    @property
+    def accepted(self) -> int:
+        """A property, so that a class may have it as an attribute or compute it."""
+
+    @property
+    def largest(self) -> float:
+        """Likewise."""
 
     @property
     def rejected(self) -> int | None:
-        """A property, so that the attribute of a class may be an int that is never None."""
+        """Likewise; the attribute of a class may be an int that is never None."""
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u, shape (N,), at the time `start + span`; raises `NonFiniteSolution` if it blows up."""
