@@ -10,11 +10,11 @@ a pulse of any width has a spacing at which it is sudden, and which it fills. Sh
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import numpy as np
 
-__all__ = ["LOOKS", "instant", "irregular_times", "sudden_times"]
+__all__ = ["LOOKS", "instant", "irregular_times", "pulses", "sudden_times"]
 
 Look = Callable[[float], np.ndarray]
 
@@ -36,7 +36,7 @@ def sudden_times(
     span: float,
     *,
     at_once: Callable[[np.ndarray], np.ndarray] | None = None,
-    few: Callable[[np.ndarray], np.ndarray] | None = None,
+    known: Collection[float] = (),
     looks: int = LOOKS,
 ) -> list[float]:
     """Return the times before and after each sudden change, ascending, after `start` and before `start + span`.
@@ -49,12 +49,12 @@ def sudden_times(
         The first time and the duration.
     at_once : callable, optional
         The values, shape (T, P), at times of shape (T, 1); it replaces T calls of `look`.
-    few : callable, optional
-        As `at_once`, at a few places; it is called for the fine looks.
+    known : collection of float
+        Times of `pulses`, which are returned too.
     looks : int
         The number of intervals between two looks.
     """
-    found = set() if few is None else _pulses(few, start, span)
+    found = set(known)
     times = irregular_times(start, span, looks)
     values = np.array([look(t) for t in times]) if at_once is None else at_once(times[:, None])
     scale = np.ptp(values, axis=0)
@@ -72,26 +72,39 @@ def sudden_times(
     return sorted(t for t in found if start < t < start + span)
 
 
-def _pulses(few: Callable[[np.ndarray], np.ndarray], start: float, span: float) -> set[float]:
-    """Return the times before and after each sudden change that the fine looks see, at the finest spacing that does."""
+def pulses(few: Callable[[np.ndarray], np.ndarray], start: float, span: float) -> set[float]:
+    """Return the times before and after each sudden change that the fine looks see, at the finest spacing that does.
+
+    Parameters
+    ----------
+    few : callable
+        The values at a few places, shape (T, P), at times of shape (T, 1).
+    start, span : float
+        The first time and the duration.
+    """
     times = start + span * np.arange(_FINE + 1.0) / _FINE
     parts = [times[n : n + _AT_ONCE, None] for n in range(0, times.size, _AT_ONCE)]
-    values = np.concatenate([np.asarray(few(part)) for part in parts])
-    scale = np.ptp(values, axis=0)
-    seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max(initial=0.0))
+    values = np.concatenate([np.asarray(few(part)).T for part in parts], axis=1)
+    low, high = values.min(axis=1, initial=np.inf), values.max(axis=1, initial=-np.inf)
+    seen = np.flatnonzero(high - low > _NOTICED * max(np.abs(low).max(), np.abs(high).max()))
+    values, scale = values[seen], (high - low)[seen, None]
+
+    def look(t: float) -> np.ndarray:
+        return np.asarray(few(np.array([[t]]))[0])
+
     found: set[float] = set()
     width = instant(start, span)
     for stride in _STRIDES:
-        some, at = values[::stride, seen], times[::stride]
-        change = np.abs(np.diff(some, axis=0)) / scale[seen]
-        sudden = np.flatnonzero(change.max(axis=1, initial=0.0) > _SUDDEN)
+        at = times[::stride]
+        change = np.abs(np.diff(values[:, ::stride], axis=1))
+        sudden = np.flatnonzero((change > _SUDDEN * scale).any(axis=0))
         if sudden.size > _MOST:  # the function changes as quickly everywhere
             break
         for interval in sudden:
-            low, high = at[interval : interval + 2]
-            if not any(low <= t <= high for t in found):
-                one = int(seen[change[interval].argmax()])
-                found |= set(_narrowed(lambda t: few(np.array([[t]]))[0], one, low, high, width))
+            before, after = at[interval : interval + 2]
+            if not any(before <= t <= after for t in found):
+                one = int(seen[(change[:, interval] / scale[:, 0]).argmax()])
+                found |= set(_narrowed(look, one, before, after, width))
     return found
 
 
