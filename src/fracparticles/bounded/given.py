@@ -22,12 +22,23 @@ from scipy.fft import dct
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput, NonFiniteSolution
+from fracparticles.time.sudden import irregular_times, pulses
 
-__all__ = ["Lift", "Outside", "given_outside", "lifted_in_time", "takes"]
+__all__ = [
+    "RESOLVED",
+    "Lift",
+    "Outside",
+    "given_outside",
+    "lifted_in_time",
+    "pulses_outside",
+    "takes",
+]
 
 _FIRST, _LAST = 8, 512  # the first and the last degree that is tried
 _MISSED = 1e-6  # the greatest miss at a sudden change over the greatest coefficient
-_RESOLVED = 1e-11  # the last coefficients over the greatest, of polynomials that resolve g
+
+RESOLVED = 1e-11
+"""The last coefficients over the greatest, of polynomials that resolve g in time."""
 
 
 def takes(f: Callable[..., Any], count: int) -> bool:
@@ -69,6 +80,22 @@ def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
         return Outside(lambda *place: outside(*place[:dim]), False)
     value = check.finite_real("outside", outside)
     return Outside(lambda *place: np.full(np.shape(place[0]), value), False)
+
+
+def pulses_outside(
+    at: Callable[..., Any], place: Sequence[FloatArray], start: float, span: float
+) -> set[float]:
+    """Return the pulses of g at one place, see `time.sudden`; none if g does not take many times at once."""
+
+    def few(t: FloatArray) -> FloatArray:
+        return np.broadcast_to(np.asarray(at(*place, t), dtype=float), t.shape)
+
+    times = irregular_times(start, span, 4)
+    try:
+        together, alone = few(times[:, None]), [few(np.array([[t]]))[0] for t in times]
+    except Exception:  # a function that takes one time may raise anything
+        return set()
+    return pulses(few, start, span) if np.array_equal(together, alone) else set()
 
 
 class Lift(NamedTuple):
@@ -123,7 +150,7 @@ def lifted_in_time(
         c[[0, -1]] *= 0.5
         # The size of w and D A w: D A w, and the flux at the ends, may be round-off of w.
         size = np.abs(c[:, :2]).max(axis=(0, 2, *range(3, c.ndim)), keepdims=True)
-        if (np.abs(c[-2:, :2]) <= _RESOLVED * np.maximum(size, size[:, :1])).all():
+        if (np.abs(c[-2:, :2]) <= RESOLVED * np.maximum(size, size[:, :1])).all():
             found = _Interpolated(c, start, span)
             most = _MISSED * float(size.max())
             if all(np.abs(found(t).base - lifted(t).base).max() <= most for t in sudden):

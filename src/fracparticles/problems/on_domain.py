@@ -17,6 +17,7 @@ import numpy as np
 
 from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.exponential import ExponentialSteps
+from fracparticles.bounded.given import RESOLVED
 from fracparticles.bounded.implicit import ImplicitSteps
 from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Held
@@ -48,6 +49,7 @@ __all__ = ["solve_on_domain"]
 # The rate of a source times the time of the run: from the first the interval takes implicit steps, and above the second
 # the disc refuses the source.
 _FAST, _FASTEST = 100.0, 2e4
+_LOOKS = 129  # times at which the values outside are looked at
 # The value of each estimate above which there is a warning.
 _LIMITS = {
     "atol_share": FADED, "space_error": SPACE_ERROR, "time_error": TIME_ERROR, "unresolved_share": 0.02,
@@ -137,12 +139,19 @@ def _warn(problem: Problem, found: Estimates) -> None:
 
 
 def _held(problem: Problem, rates: DomainRates, u0: np.ndarray) -> Held:
-    """Return the size of the values outside, or that of `atol`; without `atol`, what is little beside what f makes."""
+    """Return the size of the values outside, or that of `atol`; without `atol`, what is little beside all that comes.
+
+    The values outside are interpolated up to a share of the greatest: where they are less, this error is not followed.
+    """
     if problem.atol:
         least = problem.atol / problem.rtol
     else:
         v0 = u0 - rates.lift(problem.t_initial).base
+        swings = problem.outside is not None and "t" in problem.outside.depends_on
+        times = np.linspace(problem.t_initial, problem.t_final, _LOOKS if swings else 0)
+        outside = max((float(np.abs(rates.lift(t).base).max()) for t in times), default=0.0)
         least = size_to_come(problem, rates, v0.reshape(-1))
+        least = max(least, RESOLVED / problem.rtol * outside)
     return lambda t: np.maximum(least, np.abs(rates.lift(t).base))
 
 
