@@ -64,8 +64,9 @@ def solve_problem(
     Notes
     -----
     Before the run, coefficients that depend on t are evaluated at 1025 times, or at 65 and more if a function is valid
-    only at all particles. The steps end where they jump. A pulse that is on between two of these times is not seen: let
-    one of `times` be in it.
+    only at all particles; a text, or a function that takes many times at once, also at a million times at two places.
+    The steps end where they jump. A pulse that is on between two of these times is not seen: let one of `times` be in
+    it.
 
     Examples
     --------
