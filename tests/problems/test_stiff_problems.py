@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from fracparticles.adaptive.follow import follow
 from fracparticles.bounded import switching
 from fracparticles.bounded.exponential import ExponentialSteps
 from fracparticles.bounded.interval import Interval
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.problems.tighter_steps import TIME_ERROR
+from fracparticles.special.stable import green
 from fracparticles.time.sudden import pulses
 from sweeps import covering
 
@@ -148,3 +150,20 @@ def test_steps_over_a_source_that_jumps_with_u_do_not_agree_by_chance():
 def test_what_overflows_beside_implicit_steps_says_so():
     with pytest.raises(NonFiniteSolution, match="grows without bound"):
         level("1e5*(0.5 - t)*u", 1.0, rtol=0.1)
+
+
+@pytest.mark.usefixtures("silent")
+def test_particles_that_follow_do_not_step_over_a_pulse():
+    """It was, and u was 0.68 of its greatest value too small. The source has the shape of the data."""
+    at, width = 0.512345, 1e-3
+
+    def source(x, t, u):
+        return green(x, 1.0, 1.5) * np.exp(-(((t - at) / width) ** 2)) / width
+
+    (run,) = follow(
+        lambda x: green(x, 1.0, 1.5), 1.0, alpha=1.5, window=(-20.0, 20.0), source=source
+    )
+    x = run.particles.x
+    exact = green(x, 2.0, 1.5) + TOTAL * green(x, 2.0 - at, 1.5)
+    # The tolerance of the splitting and that of the placements are about 1e-5.
+    assert np.abs(run.u - exact).max() < 1e-4 * exact.max()

@@ -22,7 +22,6 @@ from scipy.fft import dct
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput, NonFiniteSolution
-from fracparticles.time.sudden import irregular_times, pulses
 
 __all__ = [
     "RESOLVED",
@@ -30,7 +29,6 @@ __all__ = [
     "Outside",
     "given_outside",
     "lifted_in_time",
-    "pulses_outside",
     "takes",
 ]
 
@@ -80,22 +78,6 @@ def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
         return Outside(lambda *place: outside(*place[:dim]), False)
     value = check.finite_real("outside", outside)
     return Outside(lambda *place: np.full(np.shape(place[0]), value), False)
-
-
-def pulses_outside(
-    at: Callable[..., Any], place: Sequence[FloatArray], start: float, span: float
-) -> set[float]:
-    """Return the pulses of g at one place, see `time.sudden`; none if g does not take many times at once."""
-
-    def few(t: FloatArray) -> FloatArray:
-        return np.broadcast_to(np.asarray(at(*place, t), dtype=float), t.shape)
-
-    times = irregular_times(start, span, 4)
-    try:
-        together, alone = few(times[:, None]), [few(np.array([[t]]))[0] for t in times]
-    except Exception:  # a function that takes one time may raise anything
-        return set()
-    return pulses(few, start, span) if np.array_equal(together, alone) else set()
 
 
 class Lift(NamedTuple):

@@ -19,11 +19,10 @@ from fracparticles.bounded.given import (
     Outside,
     given_outside,
     lifted_in_time,
-    pulses_outside,
 )
 from fracparticles.bounded.modes import Held, Rest
 from fracparticles.time.steps import Steps, norm
-from fracparticles.time.sudden import sudden_times
+from fracparticles.time.sudden import pulses_at, sudden_times
 
 __all__ = ["LOOKS", "DomainOperator"]
 
@@ -136,7 +135,7 @@ class DomainOperator(ABC):
         varies, sudden = g is not None and g.varies and span > 0.0, list[float]()
         if g is not None and varies:
             beyond, at = self._beyond(), g.at
-            known = pulses_outside(at, tuple(x[:1] for x in beyond), start, span)
+            known = pulses_at(at, tuple(x[:1] for x in beyond), start, span)
             sudden = sudden_times(lambda t: at(*beyond, t), start, span, known=known, looks=LOOKS)
         return lifted_in_time(lambda t: self._lift_at(g, t), varies, start, span, sudden)
 

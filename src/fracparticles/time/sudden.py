@@ -10,11 +10,12 @@ a pulse of any width has a spacing at which it is sudden, and which it fills. Sh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
+from typing import Any
 
 import numpy as np
 
-__all__ = ["LOOKS", "instant", "irregular_times", "pulses", "sudden_times"]
+__all__ = ["LOOKS", "instant", "irregular_times", "pulses", "pulses_at", "sudden_times"]
 
 Look = Callable[[float], np.ndarray]
 
@@ -106,6 +107,22 @@ def pulses(few: Callable[[np.ndarray], np.ndarray], start: float, span: float) -
                 one = int(seen[(change[:, interval] / scale[:, 0]).argmax()])
                 found |= set(_narrowed(look, one, before, after, width))
     return found
+
+
+def pulses_at(
+    function: Callable[..., Any], place: Sequence[np.ndarray], start: float, span: float
+) -> set[float]:
+    """Return the pulses of a function of a place, arrays of shape (1,), and of time; none if it takes one time only."""
+
+    def few(t: np.ndarray) -> np.ndarray:
+        return np.broadcast_to(np.asarray(function(*place, t), dtype=float), t.shape)
+
+    times = irregular_times(start, span, 4)
+    try:
+        together, alone = few(times[:, None]), [few(np.array([[t]]))[0] for t in times]
+    except Exception:  # a function that takes one time may raise anything
+        return set()
+    return pulses(few, start, span) if np.array_equal(together, alone) else set()
 
 
 def instant(start: float, span: float) -> float:
