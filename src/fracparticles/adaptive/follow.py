@@ -29,6 +29,7 @@ from fracparticles.adaptive.transfer import among, between, conserving, uncertai
 from fracparticles.adaptive.weights import MOST_NEAR, order_of
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
+from fracparticles.time.sudden import pulses_at, sudden_times
 
 __all__ = ["Followed", "follow"]
 
@@ -171,7 +172,8 @@ def follow(
     _warn(_EXCHANGE * step ** order_of(physics.alpha, physics.near), "the exchange is off by some")
     start, unheld = Followed(0.0, particles, u, 1, 0.0), _Unheld()
     advance = Splitting(physics, tolerance)
-    results = list(_onward(start, outputs.tolist(), place, advance, again, unheld))
+    cuts = _sudden(physics, particles.x, u, float(outputs[-1]))
+    results = list(_onward(start, outputs.tolist(), place, advance, again, unheld, cuts))
     for name, share in unheld.of_coefficients.items():
         _warn(share, f"of the {name} the particles miss", what="it")
     _warn(unheld.of_u, "later, between the particles is")
@@ -207,6 +209,7 @@ def _onward(
     advance: Splitting,
     again: bool,
     unheld: _Unheld,
+    cuts: list[float],
 ) -> Iterator[Followed]:
     """The particles at each output time: advanced as long as their places are valid, then placed again."""
     until = place.valid_until(state.particles, state.u, state.time) if again else np.inf
@@ -222,11 +225,25 @@ def _onward(
                         f"u, its source or the velocity change so fast at t = {state.time:.6g} that particles would be "
                         f"placed again every {until - state.time:.2g}. Smooth them, or take a shorter time."
                     )
-            time = min(until, output)
+            time = min(until, output, *(t for t in cuts if t > state.time))
             moved, u = advance(state.particles, state.u, state.time, time)
             state = replace(state, time=time, particles=moved, u=u)
             unheld.of_u = max(unheld.of_u, uncertain(moved.x, u))
         yield state
+
+
+def _sudden(physics: Physics, x: FloatArray, u: FloatArray, end: float) -> list[float]:
+    """Return the times before and after each sudden change of the source, for u as it is at first."""
+    source = physics.source
+    if source is None or end == 0.0:
+        return []
+    most = [int(np.abs(u).argmax())]
+    with np.errstate(all="ignore"):
+        known = pulses_at(lambda x, u, t: source(x, t, u), (x[most], u[most]), 0.0, end)
+        try:
+            return sudden_times(lambda t: physics.source_at(x, t, u), 0.0, end, known=known)
+        except InvalidInput:  # later u may be where the source is finite
+            return sorted(t for t in known if 0.0 < t < end)
 
 
 def _placed_again(state: Followed, place: Place) -> Followed:

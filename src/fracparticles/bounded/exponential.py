@@ -5,7 +5,8 @@ Krogstad's scheme of order 4 (J. Comput. Phys. 203 (2005) 72) has the coefficien
     phi_k(-z) = int_0^1 e^(-z r) (1 - r)^(k-1) / (k-1)! dr,   k = 1, 2, 3,   z = lambda h.
 
 Stiff rates cost nothing, and without N the steps are exact. Each step is compared with two of half its length; these
-two are kept.
+two are kept. Where N jumps with u, the three may agree by chance, because N takes few values. So the two slopes in the
+middle of the step, N_2 and N_3, must be close as well: h phi_2 (N_2 - N_3) is of third order in h where N is smooth.
 """
 
 from __future__ import annotations
@@ -21,22 +22,36 @@ from fracparticles.bounded.modes import ModalSteps, size_of
 from fracparticles.errors import NonFiniteSolution
 from fracparticles.time.steps import ordinary_unit
 
-__all__ = ["ExponentialSteps", "moments_of_decay"]
+__all__ = ["ExponentialSteps", "TooManySteps", "moments_of_decay"]
 
 _FIRST = 1e-3  # the first step over the time span
 _SHORTEST = 1e-10  # the shortest step over the time span
-_MOST = 20_000  # steps
 _NOTHING = 1e-300  # the least size of u by which an error is divided, in its ordinary unit
 # The share of the step that would just meet the tolerance, and the least and the greatest ratio of two steps.
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 3.0
 _ORDER = 3.0  # the order of the difference in the step, where N does not vanish at the edge
+_APART = 0.25  # power of the tolerance that the slopes in the middle may be apart: 3/5 is usual in a smooth step
 _TERMS = 24  # terms of the series for z <= 1
 
 
+class TooManySteps(NonFiniteSolution):
+    """Steps that go on, but not to the end; `time` and `amplitudes` say where they have come to."""
+
+    time: float
+    amplitudes: Any
+
+
 class ExponentialSteps(ModalSteps):
-    """Steps of u' = A u + N(t, u), with A in its modes; no eigenvalue limits them."""
+    """Steps of u' = A u + N(t, u), with A in its modes; no eigenvalue limits them, but the rates of N do.
+
+    Attributes
+    ----------
+    most : int
+        The most steps to one time.
+    """
 
     rejected: int = 0
+    most: int = 20_000
 
     def advance(self, u: FloatArray, span: float, start: float = 0.0) -> FloatArray:
         """Return u after the time `span`.
@@ -44,7 +59,7 @@ class ExponentialSteps(ModalSteps):
         Raises
         ------
         NonFiniteSolution
-            If u becomes infinite, or the steps too short or too many; says when.
+            If u becomes infinite, or the steps too short, or too many, `TooManySteps`; says when.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             y = self._modes.into(u)
@@ -58,14 +73,16 @@ class ExponentialSteps(ModalSteps):
         def slope(y: Any, t: float) -> Any:
             return self._slope(unit * y, t) / unit
 
-        for _ in range(_MOST):
+        for _ in range(self.most):
             h = min(h, span - t)
-            whole = _Step(self._modes.rates, h).advance(y, start + t, slope)
+            whole, jump = _Step(self._modes.rates, h).advance(y, start + t, slope)
             half = _Step(self._modes.rates, 0.5 * h)
-            middle = half.advance(y, start + t, slope)
-            halves = half.advance(middle, start + t + 0.5 * h, slope)
-            size = self._size(start + t + h, unit * halves) / unit
-            off = size_of(halves - whole) / max(size, _NOTHING)
+            middle, _ = half.advance(y, start + t, slope)
+            halves, _ = half.advance(middle, start + t + 0.5 * h, slope)
+            size = max(self._size(start + t + h, unit * halves) / unit, _NOTHING)
+            off = size_of(halves - whole) / size
+            if size_of(jump) > self._tolerance**_APART * size:
+                off = max(off, self._tolerance / _SHRINK)
             if off <= self._tolerance:
                 t, y = t + h, halves
                 self.accepted += 1
@@ -79,18 +96,24 @@ class ExponentialSteps(ModalSteps):
             grown = float(np.clip(_SAFETY * ratio ** (1.0 / _ORDER), _SHRINK, _GROW))
             h *= grown if np.isfinite(off) else _SHRINK
             if h < _SHORTEST * span:
-                break
-        raise NonFiniteSolution(
-            f"the solution stops at t = {start + t:g}: its steps became too short or too many, as they do where it "
-            "becomes infinite, or where it is carried much faster than it spreads. End before, or mend the source "
-            "or the velocity."
-        )
+                raise NonFiniteSolution(_stopped(start + t))
+        stopped = TooManySteps(_stopped(start + t))
+        stopped.time, stopped.amplitudes = start + t, unit * y
+        raise stopped
 
     def _slope(self, y: Any, t: float) -> Any:
         u = self._modes.back(y)
         if not np.isfinite(u).all():
             return np.full(y.shape, np.nan)
         return self._modes.into(self._rest(t, u))
+
+
+def _stopped(t: float) -> str:
+    return (
+        f"the solution stops at t = {t:g}: its steps became too short or too many, as they do where it "
+        "becomes infinite, or where it is carried much faster than it spreads. End before, or mend the source "
+        "or the velocity."
+    )
 
 
 class _Step:
@@ -102,8 +125,8 @@ class _Step:
         self._half = _phi(0.5 * h * rates)
         self._whole = _phi(h * rates)
 
-    def advance(self, y: Any, t: float, slope: Callable[[Any, float], Any]) -> Any:
-        """Return y a step later."""
+    def advance(self, y: Any, t: float, slope: Callable[[Any, float], Any]) -> tuple[Any, Any]:
+        """Return y a step later, and h phi_2 (N_2 - N_3)."""
         h, (half1, half2, _), (phi1, phi2, phi3) = self._h, self._half, self._whole
         n1 = slope(y, t)
         first = self._half_decay * y + 0.5 * h * half1 * n1
@@ -112,7 +135,7 @@ class _Step:
         n4 = slope(self._decay * y + h * (phi1 * n1 + 2.0 * phi2 * (n3 - n1)), t + h)
         middle = n2 + n3
         change = phi1 * n1 + phi2 * (2.0 * middle - 3.0 * n1 - n4) + 4.0 * phi3 * (n1 - middle + n4)
-        return self._decay * y + h * change
+        return self._decay * y + h * change, h * phi2 * (n2 - n3)
 
 
 def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

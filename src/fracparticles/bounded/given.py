@@ -23,11 +23,20 @@ from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 
-__all__ = ["Lift", "Outside", "given_outside", "lifted_in_time", "takes"]
+__all__ = [
+    "RESOLVED",
+    "Lift",
+    "Outside",
+    "given_outside",
+    "lifted_in_time",
+    "takes",
+]
 
 _FIRST, _LAST = 8, 512  # the first and the last degree that is tried
 _MISSED = 1e-6  # the greatest miss at a sudden change over the greatest coefficient
-_RESOLVED = 1e-11  # the last coefficients over the greatest, of polynomials that resolve g
+
+RESOLVED = 1e-11
+"""The last coefficients over the greatest, of polynomials that resolve g in time."""
 
 
 def takes(f: Callable[..., Any], count: int) -> bool:
@@ -123,7 +132,7 @@ def lifted_in_time(
         c[[0, -1]] *= 0.5
         # The size of w and D A w: D A w, and the flux at the ends, may be round-off of w.
         size = np.abs(c[:, :2]).max(axis=(0, 2, *range(3, c.ndim)), keepdims=True)
-        if (np.abs(c[-2:, :2]) <= _RESOLVED * np.maximum(size, size[:, :1])).all():
+        if (np.abs(c[-2:, :2]) <= RESOLVED * np.maximum(size, size[:, :1])).all():
             found = _Interpolated(c, start, span)
             most = _MISSED * float(size.max())
             if all(np.abs(found(t).base - lifted(t).base).max() <= most for t in sudden):

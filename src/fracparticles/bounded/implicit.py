@@ -14,7 +14,7 @@ from scipy.integrate import Radau
 
 from fracparticles.arguments import FloatArray
 from fracparticles.bounded.modes import Held, ModalSteps, Modes, Rest, size_of
-from fracparticles.errors import NonFiniteSolution
+from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.time.steps import blown_up, ordinary_unit
 
 __all__ = ["ImplicitSteps"]
@@ -23,6 +23,7 @@ Beside = Callable[[float, FloatArray], FloatArray]
 
 _FINEST = 1e-12  # the least relative tolerance
 _MOST = 20_000  # steps
+_FIRST = 1e-3  # share of the time: what N makes in it from u = 0 is the size for the first step
 # The least size of u to which steps are accurate, in its ordinary unit: smaller numbers underflow.
 _NOTHING = 1e-290
 
@@ -55,7 +56,7 @@ class ImplicitSteps(ModalSteps):
         modes = self._modes
         y, diagonal = modes.into(u), np.diag(modes.rates)
         with np.errstate(over="ignore", invalid="ignore"):
-            first = size_of(modes.into(self._rest(start, u))) * span
+            first = size_of(modes.into(self._rest(start, u))) * _FIRST * span
             unit = ordinary_unit(self._size(start, y) or first)
             y = y / unit
 
@@ -74,7 +75,13 @@ class ImplicitSteps(ModalSteps):
             )  # fmt: skip
             for _ in range(_MOST):
                 solver.atol = atol(solver.t, solver.y)
-                solver.step()
+                try:
+                    solver.step()
+                except InvalidInput:
+                    raise
+                # Of scipy's solver of linear equations, which refuses infinite numbers.
+                except ValueError as error:
+                    raise blown_up(solver.t, modes.back(unit * solver.y)) from error
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
                     raise blown_up(solver.t, modes.back(unit * solver.y))
                 self.accepted += 1

@@ -70,6 +70,10 @@ class ModalSteps:
         held = 0.0 if self._held is None else size_of(self._modes.into(self._held(t)))
         return max(size_of(y), held)
 
+    def field(self, amplitudes: Any) -> FloatArray:
+        """Return the field of some amplitudes."""
+        return self._modes.back(amplitudes)
+
     def forget(self) -> None:
         """Let the next step find its length anew."""
         self._h = None

@@ -14,10 +14,15 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.given import Lift, Outside, given_outside, lifted_in_time
+from fracparticles.bounded.given import (
+    Lift,
+    Outside,
+    given_outside,
+    lifted_in_time,
+)
 from fracparticles.bounded.modes import Held, Rest
 from fracparticles.time.steps import Steps, norm
-from fracparticles.time.sudden import sudden_times
+from fracparticles.time.sudden import pulses_at, sudden_times
 
 __all__ = ["LOOKS", "DomainOperator"]
 
@@ -130,7 +135,8 @@ class DomainOperator(ABC):
         varies, sudden = g is not None and g.varies and span > 0.0, list[float]()
         if g is not None and varies:
             beyond, at = self._beyond(), g.at
-            sudden = sudden_times(lambda t: at(*beyond, t), start, span, looks=LOOKS)
+            known = pulses_at(at, tuple(x[:1] for x in beyond), start, span)
+            sudden = sudden_times(lambda t: at(*beyond, t), start, span, known=known, looks=LOOKS)
         return lifted_in_time(lambda t: self._lift_at(g, t), varies, start, span, sudden)
 
     def _beyond(self) -> tuple[FloatArray, ...]:

@@ -39,7 +39,9 @@ __all__ = [
     "Solve",
     "among",
     "axes_of",
+    "distance",
     "halved",
+    "quietly",
     "space_errors",
     "with_space_error",
 ]
@@ -87,9 +89,9 @@ def space_errors(
         Returns the known errors at the particles for a problem, its initial data and such a list, see `frozen`.
     """
     apart: list[np.ndarray] = []
-    errors = _quietly(known, problem, initial, fields)
+    errors = quietly(known, problem, initial, fields)
     least = np.array([
-        max((_distance(problem, u, u - e) for e in each), default=0.0)
+        max((distance(problem, u, u - e) for e in each), default=0.0)
         for u, each in zip(fields, errors, strict=True)
     ])  # fmt: skip
     carried = problem.domain == "disc" and bool(problem.transport)
@@ -98,15 +100,15 @@ def space_errors(
             fewer = halved(problem)
             if not (initial is None or callable(initial)):
                 initial = among(problem, fewer, initial)
-            coarse = _quietly(solve, fewer, initial)
+            coarse = quietly(solve, fewer, initial)
         except InvalidInput:  # too few particles, or a function that is valid only at its own
             break
         except NonFiniteSolution:
             apart.append(np.full(len(fields), np.inf))
             break
-        coarse_errors = _quietly(known, fewer, initial, coarse)
+        coarse_errors = quietly(known, fewer, initial, coarse)
         apart.append(np.array([
-            min(_distance(fewer, among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
+            min(distance(fewer, among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
             for u, e, v, f in zip(
                 fields, _smoothest(errors), coarse, _smoothest(coarse_errors), strict=True
             )
@@ -126,7 +128,7 @@ def _smoothest(errors: list[list[np.ndarray]]) -> list[Any]:
     return [each[0] if each else 0.0 for each in errors]
 
 
-def _quietly(call: Callable[..., list[Any]], *given: Any) -> list[Any]:
+def quietly(call: Callable[..., list[Any]], *given: Any) -> list[Any]:
     """Call without warnings: the run itself has given them, and some concern places without a particle."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
@@ -149,7 +151,8 @@ def with_space_error(found: Estimates, *given: Any) -> Estimates:
     return found | {"space_error": (errors, meaning)}
 
 
-def _distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:
+def distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:
+    """Return the distance of two fields, see the module, relative to the first."""
     volumes = problem.bounded_domain.volumes if problem.is_bounded else 1.0
     off, size = np.abs(u - v), np.abs(u)
     greatest = float(size.max()) or 1.0

@@ -17,9 +17,11 @@ import numpy as np
 
 from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.exponential import ExponentialSteps
+from fracparticles.bounded.given import RESOLVED
 from fracparticles.bounded.implicit import ImplicitSteps
 from fracparticles.bounded.modal import ModalDomain
 from fracparticles.bounded.modes import Held
+from fracparticles.bounded.switching import SwitchingSteps
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.problems.dataset import domain_layout, to_dataset
 from fracparticles.problems.domain_rates import DomainRates
@@ -29,13 +31,13 @@ from fracparticles.problems.integrate import (
     Integration,
     advanced,
     integrate,
-    size_of_start,
     size_to_come,
 )
 from fracparticles.problems.plane_waves import high_waves, warn_of_growth
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import probe_source
 from fracparticles.problems.sudden import sudden_changes
+from fracparticles.problems.tighter_steps import TIME_ERROR, with_time_error
 from fracparticles.time.fading import FADED, early_errors
 from fracparticles.time.steps import Steps
 
@@ -47,8 +49,11 @@ __all__ = ["solve_on_domain"]
 # The rate of a source times the time of the run: from the first the interval takes implicit steps, and above the second
 # the disc refuses the source.
 _FAST, _FASTEST = 100.0, 2e4
+_LOOKS = 129  # times at which the values outside are looked at
 # The value of each estimate above which there is a warning.
-_LIMITS = {"atol_share": FADED, "space_error": SPACE_ERROR, "unresolved_share": 0.02}
+_LIMITS = {
+    "atol_share": FADED, "space_error": SPACE_ERROR, "time_error": TIME_ERROR, "unresolved_share": 0.02,
+}  # fmt: skip
 
 
 def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Dataset:
@@ -77,6 +82,7 @@ def solve_on_domain(problem: Problem, initial: Any, estimate: bool) -> xr.Datase
     if estimate:
         sampled = initial if callable(initial) else u0
         found = with_space_error(found, problem, sampled, fields, _fields_of, _known)
+        found = with_time_error(found, problem, sampled, _fields_of)
     _warn(problem, found)
     return to_dataset(problem, domain_layout(problem), u0, result, found, origin)
 
@@ -118,11 +124,15 @@ def _warn(problem: Problem, found: Estimates) -> None:
         "smaller rtol, or atol, or an earlier end.",
         "space_error": "the particles leave an error of about {:.1g} of u, as diffusion of the data on more of "
         "them and runs on half and a quarter say. Take more, or smoother data and coefficients.",
+        "time_error": "the steps in time leave an error of about {:.1g} of u, as runs with a tenth of the tolerance "
+        "say. Take a smaller rtol, or an earlier end.",
         "unresolved_share": "the particles do not resolve the solution: {:.2g} of it is in waves that they do not tell "
         "apart. Take more.",
     }
     del says["unresolved_share" if "space_error" in found else "space_error"]
     for name, text in says.items():
+        if name not in found:
+            continue
         for t, value in zip(problem.output_times, found[name][0], strict=True):
             if value > _LIMITS[name]:
                 warnings.warn(f"by t = {t:.4g} {text.format(value)}", AccuracyWarning, stacklevel=4)
@@ -130,13 +140,19 @@ def _warn(problem: Problem, found: Estimates) -> None:
 
 
 def _held(problem: Problem, rates: DomainRates, u0: np.ndarray) -> Held:
-    """Return the size of the values outside, or that of `atol`; without both, and for u = 0, that which f may make."""
-    least = problem.atol / problem.rtol if problem.atol else 0.0
-    v0 = u0 - rates.lift(problem.t_initial).base
-    if not (least or v0.any() or rates.lift(problem.t_initial).base.any()):
-        least = size_of_start(problem, rates, v0.reshape(-1))
-    if not problem.atol:
-        least = max(least, size_to_come(problem, rates, v0.reshape(-1)))
+    """Return the size of the values outside, or that of `atol`; without `atol`, what is little beside all that comes.
+
+    The values outside are interpolated up to a share of the greatest: where they are less, this error is not followed.
+    """
+    if problem.atol:
+        least = problem.atol / problem.rtol
+    else:
+        v0 = u0 - rates.lift(problem.t_initial).base
+        swings = problem.outside is not None and "t" in problem.outside.depends_on
+        times = np.linspace(problem.t_initial, problem.t_final, _LOOKS if swings else 0)
+        outside = max((float(np.abs(rates.lift(t).base).max()) for t in times), default=0.0)
+        least = size_to_come(problem, rates, v0.reshape(-1))
+        least = max(least, RESOLVED / problem.rtol * outside)
     return lambda t: np.maximum(least, np.abs(rates.lift(t).base))
 
 
@@ -149,27 +165,29 @@ def _in_modes(
         return rates.beside_modes(t, v) + decay * v
 
     decaying = modes._replace(rates=modes.rates + decay)
-    steps: Steps = ExponentialSteps(decaying, beside, problem.rtol, held)
-    method = "exponential"
+    explicit = ExponentialSteps(decaying, beside, problem.rtol, held)
     slope = rates.source_slope(problem.t_initial, v0) + decay
     fastest = problem.span * float(np.abs(slope).max())
     if fastest > _FASTEST and problem.domain == "disc":
         shown = f"a rate of {fastest / problem.span:.3g}"
         what = f"a source whose rates times the time of the run are below {_FASTEST:g} on the disc"
         raise InvalidInput("source", shown, what, "End before, or take the square.")
-    last = 0.0  # the rate at which u decays beside the steps
-    moves = problem.transport or "t" in problem.diffusion.depends_on or fastest > _FAST
-    if moves and problem.domain == "interval":
-        # A decay -c u alone is a factor exp(-c t): steps would follow u until it underflows.
-        last = decay if rates.only_decays else 0.0
+    moves = bool(problem.transport or "t" in problem.diffusion.depends_on or fastest > _FAST)
+    # A decay -c u alone is a factor exp(-c t): implicit steps would follow u until it underflows.
+    last = decay if problem.domain == "interval" and moves and rates.only_decays else 0.0
 
-        def derivative(t: float, v: np.ndarray) -> np.ndarray:
-            return rates.derivative_in_modes(t, v) + last * np.eye(v.size)
-
-        steps = ImplicitSteps(
-            modes, lambda t, v: rates.beside_modes(t, v) + last * v, derivative, problem.rtol, held
+    def implicit() -> ImplicitSteps:
+        return ImplicitSteps(
+            modes,
+            lambda t, v: rates.beside_modes(t, v) + last * v,
+            lambda t, v: rates.derivative_in_modes(t, v) + last * np.eye(v.size),
+            problem.rtol,
+            held,
         )
-        method = "radau"
+
+    steps: Steps = explicit
+    if problem.domain == "interval":
+        steps = implicit() if moves else SwitchingSteps(explicit, implicit)
     outputs = [
         np.exp(-last * (t - problem.t_initial)) * v
         for t, v in zip(
@@ -178,6 +196,7 @@ def _in_modes(
             strict=True,
         )
     ]
+    method = "radau" if steps.largest else "exponential"
     return Integration(
         outputs, method, steps.accepted, steps.rejected, rates.evaluations,
         problem.span * float(modes.rates.max()),

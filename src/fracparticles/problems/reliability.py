@@ -22,6 +22,8 @@ coefficient_misfit
 space_error
     The relative error that the particles leave, from the initial data, see `frozen`, and from runs on half and a
     quarter of the particles, see `fewer_particles`.
+time_error
+    The relative error that the steps in time leave, from runs with a tenth of the tolerance, see `tighter_steps`.
 atol_share
     The errors of early steps over the greatest |u|, see `time.fading`; or the absolute tolerance, if one was asked for.
 """
@@ -38,6 +40,7 @@ from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.fewer_particles import SPACE_ERROR
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import reaction_of
+from fracparticles.problems.tighter_steps import TIME_ERROR
 from fracparticles.problems.transport import Transport
 from fracparticles.run.reliability import (
     LIMITS,
@@ -59,7 +62,9 @@ Estimates = dict[str, tuple[list[float], str]]
 
 _LEAST_SMOOTHING = 1.1  # the least overlap in `resolution`, as in `run.reliability`
 # The value of each estimate above which there is a warning.
-_LIMITS = LIMITS | {"coefficient_misfit": 0.1, "atol_share": FADED, "space_error": SPACE_ERROR}
+_LIMITS = LIMITS | {
+    "coefficient_misfit": 0.1, "atol_share": FADED, "space_error": SPACE_ERROR, "time_error": TIME_ERROR,
+}  # fmt: skip
 _MOST = 2.0  # the greatest error of a wave over the wave
 _BARRIER = 1e-4  # share of the greatest D that is added to D, before 1 / D is taken
 _CONSTANT = 1e-9  # relative variation of a coefficient that is round-off
@@ -227,6 +232,8 @@ def warn_if_doubtful(problem: Problem, found: Estimates) -> None:
         "of its greatest value. Take a smaller rtol, or atol",
         "space_error": "the particles leave an error of about {:.1g} of u, as the waves of the data and runs on "
         "half and a quarter of them say. Take a smaller spacing, or smoother data and coefficients",
+        "time_error": "the steps in time leave an error of about {:.1g} of u, as runs with a tenth of the tolerance "
+        "say. Take a smaller rtol, or an earlier end",
         "far_field_error": "the far field leaves a relative error of about {:.1g}: the powers that continue u beyond "
         f"{reach} miss it inside. Take a wider lattice",
     }

@@ -16,6 +16,7 @@ from fracparticles.problems.on_domain import solve_on_domain
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates, probe_source
 from fracparticles.problems.reliability import estimates, warn_if_doubtful
+from fracparticles.problems.tighter_steps import with_time_error
 from fracparticles.run.initial import Initial, initial_strengths
 
 if TYPE_CHECKING:
@@ -38,8 +39,9 @@ def solve_problem(
         the fundamental solution at `t_initial`, for a problem with a constant order and diffusivity.
     estimate : bool
         Whether to solve on fewer particles as well, for `space_error`, the error that the particles leave: see
-        `fewer_particles`. It takes about half as long again, and on an interval up to a second more. On a bounded
-        domain with a D that depends on place and time it takes up to three times as long.
+        `fewer_particles`, and with smaller steps, for `time_error`, see `tighter_steps`. It takes about half as long
+        again, and on an interval up to a second more. On a bounded domain with a D that depends on place and time it
+        takes up to three times as long.
 
     Returns
     -------
@@ -57,13 +59,14 @@ def solve_problem(
     -----
     AccuracyWarning
         If the solution has reached the ends of the lattice; if the lattice does not resolve the solution, the initial
-        data or a coefficient; or if the solution is of the size of `atol`.
+        data or a coefficient; if the steps in time leave an error; or if the solution is of the size of `atol`.
 
     Notes
     -----
     Before the run, coefficients that depend on t are evaluated at 1025 times, or at 65 and more if a function is valid
-    only at all particles. The steps end where they jump. A pulse that is on between two of these times is not seen: let
-    one of `times` be in it.
+    only at all particles; a text, or a function that takes many times at once, also at a million times at two places.
+    The steps end where they jump. A pulse that is on between two of these times is not seen: let one of `times` be in
+    it.
 
     Examples
     --------
@@ -91,6 +94,7 @@ def solve_problem(
         found = with_space_error(
             found, problem, initial if sampled else u0, fields, _fields_of, _known
         )
+        found = with_time_error(found, problem, initial if sampled else u0, _fields_of)
     warn_if_doubtful(problem, found)
     return to_dataset(problem, lattice_layout(problem), u0, result, found, origin)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
-from fracparticles.time.sudden import LOOKS, irregular_times, sudden_times
+from fracparticles.time.sudden import LOOKS, irregular_times, pulses, sudden_times
 
 __all__ = ["sudden_changes"]
 
@@ -19,6 +20,7 @@ Places = dict[str, np.ndarray]
 _PLACES = 33  # particles that are looked at, equally spaced, and as many by the mass of the data
 # If a function has to be evaluated at all particles: the most values in all, and the fewest times.
 _NUMBERS, _FEWEST = 2**21, 64
+_FEW = 0.05, -0.32  # coordinates of the places of the fine looks, in half-widths
 
 
 def sudden_changes(problem: Problem, u0: np.ndarray) -> list[float]:
@@ -52,7 +54,13 @@ def _changes(
         return one.checked(_of(one, some, np.asarray(t)))
 
     if isinstance(one.given, str) or _takes_many_times(one, some, start, span):
-        return sudden_times(at_once, start, span, at_once=at_once)
+        if isinstance(one.given, str) and "u" not in one.depends_on:
+            given = one.field, one.given, one.variables
+            known = _of_a_text(*given, problem.half_width, start, span)
+        else:
+            places = {name: x[_few_of(x.size)] for name, x in some.items()}
+            known = frozenset(pulses(lambda t: one.checked(_of(one, places, t)), start, span))
+        return sudden_times(at_once, start, span, at_once=at_once, known=known)
     if _takes_any_points(one, some, lattice, chosen, np.array(start)):
         return sudden_times(at_once, start, span)
     looks = max(_FEWEST, min(LOOKS, _NUMBERS // lattice["u"].size))
@@ -92,6 +100,21 @@ def _places(u0: np.ndarray) -> Index:
     middle = np.ravel_multi_index(tuple(n // 2 for n in u0.shape), u0.shape)
     some = np.unique(np.concatenate([equally, np.minimum(by_mass, u.size - 1), [middle]]))
     return np.unravel_index(some, u0.shape)
+
+
+@lru_cache(maxsize=32)
+def _of_a_text(
+    field: str, text: str, variables: tuple[str, ...], half_width: float, start: float, span: float
+) -> frozenset[float]:
+    """Return the pulses of a text without u; runs on fewer particles ask for them again."""
+    one = Coefficient(field, text, variables)
+    places = {name: half_width * np.array(_FEW) for name in variables}
+    return frozenset(pulses(lambda t: one.checked(_of(one, places, t)), start, span))
+
+
+def _few_of(count: int) -> list[int]:
+    """Return two of some places: the middle, and one beside it."""
+    return [int(share * count) for share in (0.5, 0.68)]
 
 
 def _of(one: Coefficient, at: Places, t: np.ndarray) -> Places:

@@ -33,9 +33,8 @@ STAGES = 12  # evaluations that a step of order 8 takes
 _LOOK = 2000  # steps between two looks at the pace
 _MOST = 1e6  # steps to go, beyond which the end is out of reach
 _LEAST = float(np.finfo(float).tiny)  # the least absolute tolerance, in the ordinary unit of u
-_ORDINARY = (
-    500  # sizes from 2^-500 to 2^500 are ordinary: their tolerances and their squares are numbers
-)
+# Sizes from 2^-500 to 2^500 are ordinary: their tolerances and their squares are numbers.
+_ORDINARY = 500
 
 
 class Steps(Protocol):
@@ -51,12 +50,17 @@ class Steps(Protocol):
         The largest |lambda| that was estimated; 0 if none was.
     """
 
-    accepted: int
-    largest: float
+    @property
+    def accepted(self) -> int:
+        """A property, so that a class may have it as an attribute or compute it."""
+
+    @property
+    def largest(self) -> float:
+        """Likewise."""
 
     @property
     def rejected(self) -> int | None:
-        """A property, so that the attribute of a class may be an int that is never None."""
+        """Likewise; the attribute of a class may be an int that is never None."""
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u, shape (N,), at the time `start + span`; raises `NonFiniteSolution` if it blows up."""

@@ -3,16 +3,19 @@
 An error-controlled step evaluates the function at a few times only, and does not see a pulse between them. The function
 is therefore evaluated before the run, at 1025 times that are not equally spaced. Where one of its values changes by a
 tenth of its range from one of these times to the next, bisection finds the jump, or the steepest place. A pulse shorter
-than a thousandth of the run may not be found.
+than a thousandth of the run may lie between them. So a function that takes many times at once is evaluated at a million
+equally spaced times too, at a few places. They are compared at the finest spacing, and at 4, 16, 64 and 256 times that:
+a pulse of any width has a spacing at which it is sudden, and which it fills. Shorter pulses may not be found.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
+from typing import Any
 
 import numpy as np
 
-__all__ = ["LOOKS", "instant", "irregular_times", "sudden_times"]
+__all__ = ["LOOKS", "instant", "irregular_times", "pulses", "pulses_at", "sudden_times"]
 
 Look = Callable[[float], np.ndarray]
 
@@ -20,8 +23,11 @@ LOOKS = 1024  # intervals between two looks at the function
 _GOLDEN = 0.6180339887498949  # golden ratio - 1: the fractions of its multiples spread the times irregularly
 _SUDDEN = 0.1  # share of the range of a value: a larger change between two looks is sudden
 _NOTICED = 1e-6  # share of the greatest value: a smaller range does not count
-_FINEST = 2.0**-36  # share of the run: how closely a sudden change is found
+_FINEST = 2.0**-44  # share of the run: how closely a sudden change is found
 _MOST = 32  # sudden changes that are found exactly
+_FINE = 2**20  # intervals of the fine looks
+_STRIDES = (1, 4, 16, 64, 256)  # looks from one to the next with which it is compared
+_AT_ONCE = 2**17  # times that are handed to a function at once
 _MOST_CUTS = 256  # cuts at evenly chosen looks, if there are more sudden changes
 
 
@@ -31,6 +37,7 @@ def sudden_times(
     span: float,
     *,
     at_once: Callable[[np.ndarray], np.ndarray] | None = None,
+    known: Collection[float] = (),
     looks: int = LOOKS,
 ) -> list[float]:
     """Return the times before and after each sudden change, ascending, after `start` and before `start + span`.
@@ -43,26 +50,79 @@ def sudden_times(
         The first time and the duration.
     at_once : callable, optional
         The values, shape (T, P), at times of shape (T, 1); it replaces T calls of `look`.
+    known : collection of float
+        Times of `pulses`, which are returned too.
     looks : int
         The number of intervals between two looks.
     """
+    found = set(known)
     times = irregular_times(start, span, looks)
     values = np.array([look(t) for t in times]) if at_once is None else at_once(times[:, None])
     scale = np.ptp(values, axis=0)
     seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max(initial=0.0))
-    if not seen.size:
-        return []
     change = np.abs(np.diff(values[:, seen], axis=0)) / scale[seen]
-    sudden = np.flatnonzero(change.max(axis=1) > _SUDDEN)
-    found: set[float] = set()
+    sudden = np.flatnonzero(change.max(axis=1, initial=0.0) > _SUDDEN)
     if sudden.size > _MOST:  # the function changes quickly everywhere
-        found = set(times[sudden[:: -(-sudden.size // _MOST_CUTS)]].tolist())
+        found |= set(times[sudden[:: -(-sudden.size // _MOST_CUTS)]].tolist())
         sudden = sudden[:0]
     width = instant(start, span)
     for interval in sudden:
         low, high = times[interval : interval + 2]
-        found |= set(_narrowed(look, int(seen[change[interval].argmax()]), low, high, width))
+        if not any(low <= t <= high for t in found):
+            found |= set(_narrowed(look, int(seen[change[interval].argmax()]), low, high, width))
     return sorted(t for t in found if start < t < start + span)
+
+
+def pulses(few: Callable[[np.ndarray], np.ndarray], start: float, span: float) -> set[float]:
+    """Return the times before and after each sudden change that the fine looks see, at the finest spacing that does.
+
+    Parameters
+    ----------
+    few : callable
+        The values at a few places, shape (T, P), at times of shape (T, 1).
+    start, span : float
+        The first time and the duration.
+    """
+    times = start + span * np.arange(_FINE + 1.0) / _FINE
+    parts = [times[n : n + _AT_ONCE, None] for n in range(0, times.size, _AT_ONCE)]
+    values = np.concatenate([np.asarray(few(part)).T for part in parts], axis=1)
+    low, high = values.min(axis=1, initial=np.inf), values.max(axis=1, initial=-np.inf)
+    seen = np.flatnonzero(high - low > _NOTICED * max(np.abs(low).max(), np.abs(high).max()))
+    values, scale = values[seen], (high - low)[seen, None]
+
+    def look(t: float) -> np.ndarray:
+        return np.asarray(few(np.array([[t]]))[0])
+
+    found: set[float] = set()
+    width = instant(start, span)
+    for stride in _STRIDES:
+        at = times[::stride]
+        change = np.abs(np.diff(values[:, ::stride], axis=1))
+        sudden = np.flatnonzero((change > _SUDDEN * scale).any(axis=0))
+        if sudden.size > _MOST:  # the function changes as quickly everywhere
+            break
+        for interval in sudden:
+            before, after = at[interval : interval + 2]
+            if not any(before <= t <= after for t in found):
+                one = int(seen[(change[:, interval] / scale[:, 0]).argmax()])
+                found |= set(_narrowed(look, one, before, after, width))
+    return found
+
+
+def pulses_at(
+    function: Callable[..., Any], place: Sequence[np.ndarray], start: float, span: float
+) -> set[float]:
+    """Return the pulses of a function of a place, arrays of shape (1,), and of time; none if it takes one time only."""
+
+    def few(t: np.ndarray) -> np.ndarray:
+        return np.broadcast_to(np.asarray(function(*place, t), dtype=float), t.shape)
+
+    times = irregular_times(start, span, 4)
+    try:
+        together, alone = few(times[:, None]), [few(np.array([[t]]))[0] for t in times]
+    except Exception:  # a function that takes one time may raise anything
+        return set()
+    return pulses(few, start, span) if np.array_equal(together, alone) else set()
 
 
 def instant(start: float, span: float) -> float:
