@@ -48,7 +48,8 @@ def _without_minor_ticks(figure: Figure) -> Iterator[None]:
         ticker.locator = NullLocator()
     yield
     for ticker, locator in bare.items():
-        ticker.locator = locator
+        if locator is not None:
+            ticker.locator = locator
 
 
 def _settle(figure: Figure) -> None:

@@ -52,6 +52,7 @@ from fracparticles.moving.remeshing import REMESHINGS
 __all__ = ["PlaneRun", "PlaneVelocity", "run_in_plane"]
 
 _MISFIT = 0.05  # of the total strength: what the far field may hold wrongly
+_REMESHED = 0.07  # of the peak: what remeshings may change. The error of a run is about two thirds of it.
 
 
 class PlaneVelocity:
@@ -261,7 +262,7 @@ def run_in_plane(
             raise stopped(error, step, steps, time, dt) from error
     coarse = max(coarse, velocity.ripple(x[:, n], strength))
     warn_of_ripple(coarse, overlap * h, "Take a larger overlap, or remesh sooner.", stacklevel=2)
-    warn_of_remeshing(changes.largest, stacklevel=2)
+    warn_of_remeshing(changes.largest, _REMESHED, stacklevel=2)
     _warn(velocity, x, y, strength, lost / total)
     return PlaneRun(x, y, strength, velocity, total, lost, times)
 

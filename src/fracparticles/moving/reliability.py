@@ -53,8 +53,6 @@ END = 3.0
 RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or twice this
 _OTHER = 0.05  # of the integral of |u|: the error of a run is this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
-# Of the peak: a larger change is warned of. The error of a run is about two thirds of it.
-_REMESHED = 0.07
 _ROUNDED = 0.02  # epsilon: of the places, by all steps together
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 
@@ -200,14 +198,14 @@ def warn_of_smoothing(held: np.ndarray, u: np.ndarray) -> None:
         )
 
 
-def warn_of_remeshing(changed: float, stacklevel: int) -> None:
-    """Warn if the remeshings of a run have changed the field by more than this part of its peak.
+def warn_of_remeshing(changed: float, limit: float, stacklevel: int) -> None:
+    """Warn if the remeshings of a run have changed the field by more than a limit, both parts of its peak.
 
     Warns
     -----
     AccuracyWarning
     """
-    if changed > _REMESHED:
+    if changed > limit:
         warnings.warn(
             f"the remeshings have changed the field by {changed:.2g} of its peak. Take remeshing='Lambda6,4', a larger "
             "overlap, or a smaller spacing.",
