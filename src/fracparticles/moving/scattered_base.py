@@ -12,7 +12,8 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels.families import KERNELS, gaussian_reach, kernel
+from fracparticles.kernels.families import KERNELS, PAPER_ORDERS, gaussian_reach, kernel
+from fracparticles.kernels.high_order import wavenumber_reach
 
 __all__ = [
     "EDGE",
@@ -25,7 +26,8 @@ __all__ = [
     "smooth_kernel",
 ]
 
-# exp(-k^2/4), in the transform of every kernel with a Gaussian in it, is 2e-16 at k = 12.
+# exp(-k^2/4), in the transform of every kernel with a Gaussian in it, is 2e-16 at k = 12. From order 6 on a polynomial
+# multiplies it: see `wavenumber_reach`.
 GAUSSIAN_BAND = 12.0
 EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: a cut-off is 1 on one side of this, 0 on the other
 MARGIN = 1.125  # the box of a set that grew is made so much wider than the set, so that not every step makes it anew
@@ -74,7 +76,8 @@ def smooth_kernel(name: str, alpha: float, order: int = 2) -> ScatteredKernel:
 
     profile(np.zeros(1))
     reach = gaussian_reach(order) if math.isinf(KERNELS[name].decay(alpha)) else math.inf
-    return ScatteredKernel(profile, GAUSSIAN_BAND, reach)
+    band = GAUSSIAN_BAND if order in PAPER_ORDERS else wavenumber_reach(order)
+    return ScatteredKernel(profile, band, reach)
 
 
 class ScatteredSum(ABC):
