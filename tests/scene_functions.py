@@ -45,4 +45,4 @@ def study(name: str) -> Callable[..., Result]:
 
 def figure(name: str) -> Callable[..., Any]:
     function = scenes()[name].function("figure")
-    return lambda series, table, parameters: call(function, series, table, **parameters)
+    return lambda series, table, parameters: call(function, series, table=table, **parameters)

@@ -66,7 +66,8 @@ def make(
     if figures:
         from fracstudy.figure_files import save
 
-        drawn = call(scene.function("figure"), _read(series), _read(csv), **scene.parameters)
+        given = {"table": _read(csv), **scene.parameters}
+        drawn = call(scene.function("figure"), _read(series), **given)
         save(drawn, figures[0].with_suffix(""), figure_formats)
 
 

@@ -5,7 +5,8 @@ Its files:
     scene.yaml     title, runs, and what else the fields of `Scene` say
     study.py       study(inputs, **parameters) -> Result, and NEEDS, the values that fields of its runs must have;
                    without it the table of the runs
-    figure.py      figure(series, table, **parameters) -> Figure; without it there is no figure
+    figure.py      figure(series, **parameters) -> Figure, of the parameters and the scene's `table`; without it there
+                   is no figure
     benchmark.py   benchmark(**parameters) -> data set of run times, if the scene measures any
     caption.md     what is shown, how to read it, what follows
 """

@@ -14,13 +14,9 @@ from fracparticles.adaptive.samples import adapted_samples
 from fracparticles.adaptive.splitting import Physics
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special import green, tail_constant
+from known import blobs
 
 TIMES = (1e-3, 0.1, 1.0, 10.0)
-
-
-def blobs(x, t, alpha):
-    """Two fundamental solutions, of widths 0.01 and 1 at the time zero, 50 apart."""
-    return 0.5 * green(x, 0.01**alpha + t, alpha) + 0.5 * green(x - 50.0, 1.0 + t, alpha)
 
 
 def followed(alpha, times=TIMES, **how):

@@ -15,15 +15,11 @@ from fracparticles.adaptive.splitting import Physics, Splitting
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import exchange_limit
+from known import blobs
 from sweeps import few
 
 WINDOW = (-20.0, 80.0)
 TIMES = (1e-3, 0.1, 1.0)
-
-
-def blobs(x, t, alpha):
-    """Two fundamental solutions, of widths 0.01 and 1 at the time zero, 50 apart."""
-    return 0.5 * green(x, 0.01**alpha + t, alpha) + 0.5 * green(x - 50.0, 1.0 + t, alpha)
 
 
 def error(state, exact):

@@ -11,12 +11,9 @@ from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.interval_differences import differences
 from fracparticles.bounded.plane_differences import one_sided_differences
 from fracparticles.bounded.square import Square
+from known import orders
 
 ALPHAS = (1.1, 1.5, 1.9)
-
-
-def orders(errors):
-    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
 
 
 def eigenvalue(n, alpha):

@@ -22,6 +22,7 @@ from fracparticles.bounded.disc_rings import (
 )
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.special.tails import tail_constant
+from known import in_the_whole_plane, orders
 from sweeps import covering
 
 ALPHAS = (1.2, 1.5, 1.8)
@@ -47,10 +48,6 @@ def applied(r2, power, alpha):
 
 def mean(one, u):
     return one.total(u) / one.volumes.sum()
-
-
-def orders(errors):
-    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
 
 
 # --- the kernels ----------------------------------------------------------------------------------
@@ -159,17 +156,7 @@ def test_the_reflecting_disc_keeps_a_manufactured_solution(alpha):
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_a_field_given_outside_is_continued_inside(alpha):
-    # (1 + |x|^2)^-p: its Laplacian is 2^alpha Gamma(p+s) Gamma(1+s) / Gamma(p) 2F1(p+s, 1+s; 1; -|x|^2).
-    s, p = 0.5 * alpha, 2.3
-
-    def u(x, y):
-        return (1.0 + (x - 0.3) ** 2 + y**2) ** -p
-
-    def source(x, y):
-        size = 2.0**alpha * gamma(p + s) * gamma(1.0 + s) / gamma(p)
-        return size * hyp2f1(p + s, 1.0 + s, 1.0, -((x - 0.3) ** 2) - y**2)
-
-    errors = []
+    (u, source), errors = in_the_whole_plane(alpha), []
     for radial in (32, 64):
         one = Disc(alpha, radial, 24, "given")
         exact = u(one.x, one.y)

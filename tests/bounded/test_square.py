@@ -26,6 +26,7 @@ from fracparticles.bounded.square_lattice import (
 )
 from fracparticles.bounded.square_outside import Outside, outward_rate
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from known import in_the_whole_plane, orders
 from sweeps import few
 
 ALPHAS = (1.2, 1.5, 1.8)
@@ -49,10 +50,6 @@ def applied(one, alpha, power=4):
     far = np.maximum(r2, 1.0)
     outside = -plane_constant(alpha) * pi / (power + 1.0) * far ** (-1.0 - s)
     return np.where(r2 < 1.0, inside, outside * hyp2f1(1.0 + s, 1.0 + s, power + 2.0, 1.0 / far))
-
-
-def orders(errors):
-    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
 
 
 # --- the lattice ----------------------------------------------------------------------------------
@@ -226,16 +223,7 @@ def test_a_manufactured_solution(alpha, exterior):
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_a_field_given_outside_is_continued_inside(alpha):
-    s, p = 0.5 * alpha, 2.3
-
-    def u(x, y):
-        return (1.0 + (x - 0.3) ** 2 + y**2) ** -p
-
-    def source(x, y):
-        size = 2.0**alpha * gamma(p + s) * gamma(1.0 + s) / gamma(p)
-        return size * hyp2f1(p + s, 1.0 + s, 1.0, -((x - 0.3) ** 2) - y**2)
-
-    errors = []
+    (u, source), errors = in_the_whole_plane(alpha), []
     for side in (16, 32):
         one = Square(alpha, side, "given")
         errors.append(np.abs(one.stationary(source, u) - u(one.x, one.y)).max())

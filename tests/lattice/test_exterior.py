@@ -17,6 +17,17 @@ from fracparticles.schemes.stability import symbol_range
 LONG = 200_000
 
 
+def weights_of(alpha: float, parity: int):
+    """The power by which even or odd weights fall, and the weights."""
+    decay = 1.0 + alpha if parity > 0 else alpha
+
+    def weight(m):
+        even = (1.0 + np.square(m)) ** (-0.5 * decay)
+        return even if parity > 0 else np.sign(m) * even
+
+    return decay, weight
+
+
 def brute_force(weight, alpha: float, n: int, i: int) -> float:
     """sum_{j = n+1}^{LONG} (n / j)^(1+alpha) w_{i-j}, from the small terms to the large."""
     j = np.arange(LONG, n, -1.0)
@@ -28,12 +39,7 @@ def brute_force(weight, alpha: float, n: int, i: int) -> float:
 @pytest.mark.parametrize("pad", [0, 7])
 def test_exterior_sums(alpha, parity, pad):
     n = 40
-    decay = 1.0 + alpha if parity > 0 else alpha
-
-    def weight(m):
-        even = (1.0 + np.square(m)) ** (-0.5 * decay)
-        return even if parity > 0 else np.sign(m) * even
-
+    decay, weight = weights_of(alpha, parity)
     far = far_field(weight, decay, alpha, n, parity, pad)
     points = np.array([-n - pad, -n, -3, 0, 5, n - 1, n, n + pad])
     exact = np.array([brute_force(weight, alpha, n, i) for i in points])
@@ -114,12 +120,7 @@ def expansion(x, alpha, terms):
 @pytest.mark.parametrize("parity", [1, -1])
 def test_a_field_that_is_the_expansion_is_continued_exactly(alpha, terms, parity):
     n = 40
-    decay = 1.0 + alpha if parity > 0 else alpha
-
-    def weight(m):
-        even = (1.0 + np.square(m)) ** (-0.5 * decay)
-        return even if parity > 0 else np.sign(m) * even
-
+    decay, weight = weights_of(alpha, parity)
     far = far_field(weight, decay, alpha, n, parity, terms=terms)
     u = expansion(np.where(np.arange(-n, n + 1) == 0, 1.0, np.arange(-n, n + 1)), alpha, terms)
     points = np.array([-n, -7, 0, 11, n])

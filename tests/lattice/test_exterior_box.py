@@ -11,11 +11,7 @@ import pytest
 
 import fracparticles as fp
 from fracparticles.errors import InvalidInput
-from fracparticles.lattice.exterior_box import (
-    BoxFarField,
-    box_continuation,
-    box_far_field,
-)
+from fracparticles.lattice.exterior_box import BoxFarField, box_continuation, box_far_field
 from fracparticles.lattice.smooth_modes import _next_integral, transforms
 from fracparticles.schemes import SCHEMES, Setting
 

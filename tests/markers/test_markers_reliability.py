@@ -12,14 +12,7 @@ from fracparticles.markers import SHAPES, Gaussian, MarkerVelocity, random, run,
 from fracparticles.markers.burgers import burgers
 from fracparticles.markers.kdv import Soliton, kdv
 from fracparticles.markers.nonlinear import NonlinearDiffusion
-from fracparticles.markers.reliability import (
-    Steps,
-    coefficients,
-    kept,
-    midpoint,
-    rates,
-    wave_error,
-)
+from fracparticles.markers.reliability import Steps, coefficients, kept, midpoint, rates, wave_error
 from fracparticles.markers.resolution import noise, smoothing
 from fracparticles.markers.source import GaussianSource, advance_weights
 from fracparticles.markers.stability import extremes

@@ -10,12 +10,7 @@ import pytest
 from scipy.integrate import dblquad
 
 import fracparticles as fp
-from fracparticles.errors import (
-    AccuracyWarning,
-    InvalidInput,
-    NonFiniteSolution,
-    StabilityWarning,
-)
+from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution, StabilityWarning
 from fracparticles.moving.dvm_plane import PlaneVelocity, run_in_plane
 from fracparticles.moving.lagrangian import FieldNotPositive
 from fracparticles.moving.plane_remeshing import remesh_plane

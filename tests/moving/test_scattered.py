@@ -66,10 +66,13 @@ def test_the_transform_is_the_naive_sum(alpha, order):
     assert closeness(fast(x, q, z), slow(x, q, z)) < CLOSE
 
 
-@pytest.mark.parametrize("name", ["eta1", "Phi", "G", "K", "kappa"])
-def test_other_kernels_by_the_transform(name):
+@pytest.mark.parametrize(
+    ("name", "order"),
+    [*((name, 4) for name in ("eta1", "Phi", "G", "K", "kappa")), ("G", 12), ("eta", 12)],
+)
+def test_other_kernels_by_the_transform(name, order):
     x, q = scattered(300)
-    kernels = [smooth_kernel(name, 1.5, 4)]
+    kernels = [smooth_kernel(name, 1.5, order)]
     exact = NaiveScatteredSum(kernels, EPSILON)(x, q)
     assert closeness(NonuniformFourierSum(kernels, EPSILON)(x, q), exact) < CLOSE
 

@@ -11,6 +11,7 @@ from spectral import Jacobi, Zernike, circle
 
 from fracparticles.errors import AccuracyWarning
 from fracparticles.problems import Problem, solve_problem
+from known import error_of
 from sweeps import covering
 
 IN_TIME = 1e-4  # of the greatest |u|: some hundred steps of the default tolerance, 1e-6
@@ -38,10 +39,6 @@ def bell(*place, width=1.0, at=0.5):
     return np.exp(-(((place[0] - at) / width) ** 2) - sum((y / width) ** 2 for y in place[1:]))
 
 
-def error(run, exact) -> float:
-    return float(np.abs(run.u.values - exact).max() / np.abs(exact).max())
-
-
 @pytest.mark.parametrize(("kind", "alpha"), covering(LINES, [1.1, 1.8]))
 def test_the_line(kind, alpha):
     d, a, f = LINES[kind]
@@ -50,7 +47,7 @@ def test_the_line(kind, alpha):
         warnings.simplefilter("error", AccuracyWarning)
         run = solve_problem(Problem(**fields, **d, **a, **f), bell)
     exact = circle(alpha, bell, 0.3, d["diffusivity"], a["velocity"], f["source"])(run.x.values)
-    assert error(run, exact) < 2.0 * float(run.space_error) + IN_TIME
+    assert error_of(run, exact) < 2.0 * float(run.space_error) + IN_TIME
 
 
 def test_a_barrier_between_the_particles_warns():
@@ -76,7 +73,7 @@ def test_the_exchange_across_a_layer_that_two_particles_span(alpha):
         warnings.simplefilter("error", AccuracyWarning)
         run = solve_problem(Problem(**fields, diffusivity=d, form="exchange"), bell)
     exact = circle(alpha, bell, 0.2, d, lambda x, t: 0.0 * x, lambda x, t, u: 0.0 * x, pairs=True)
-    assert error(run, exact(run.x.values)) < 2.0 * float(run.space_error)
+    assert error_of(run, exact(run.x.values)) < 2.0 * float(run.space_error)
 
 
 @pytest.mark.parametrize(("rate", "alpha"), covering([1.0, 10.0], [1.4, 1.8]))
@@ -120,7 +117,7 @@ def test_the_disc(motion, alpha):
     )
     run = solve_problem(problem, initial)
     exact = Zernike(alpha, velocity).solve(initial, 0.05, lambda x, y, t, u: -u * u)
-    off = error(run, exact(run.x.values, run.y.values))
+    off = error_of(run, exact(run.x.values, run.y.values))
     assert off < 2.0 * float(run.space_error) + 10.0 * IN_TIME
 
 

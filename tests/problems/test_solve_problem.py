@@ -16,6 +16,7 @@ from fracparticles.problems import Problem, solve_problem
 from fracparticles.run.dataset import write
 from fracparticles.special import green
 from fracparticles.variable.closed_forms import Gaussian
+from known import error_of
 from sweeps import covering, few
 
 # The error is measured: to estimate it, too, takes as long again.
@@ -25,11 +26,6 @@ LINE = {
     "alpha": 1.5, "half_width": 50.0, "spacing": 0.1, "order": 12, "far_terms": 3, "t_initial": 1.0, "t_final": 2.0,
     "rtol": 1e-8,
 }  # fmt: skip
-
-
-def error(run, exact) -> float:
-    """The greatest, over the greatest of the solution."""
-    return float(np.abs(run.u.values - exact).max() / np.abs(exact).max())
 
 
 def laplacian_of_gaussian(x: np.ndarray, alpha: float, dim: int = 1) -> np.ndarray:
@@ -42,7 +38,7 @@ def laplacian_of_gaussian(x: np.ndarray, alpha: float, dim: int = 1) -> np.ndarr
 @pytest.mark.parametrize("form", ["FPSE", "DD", "exchange"])
 def test_a_uniform_field_shifts_the_solution(alpha, form):
     run = solved(Problem(**{**LINE, "alpha": alpha}, form=form, velocity=1.0))
-    assert error(run, green(run.x.values - 1.0, 2.0, alpha)) < 1e-6
+    assert error_of(run, green(run.x.values - 1.0, 2.0, alpha)) < 1e-6
     assert run.integrator == "exponential"
 
 
@@ -60,7 +56,7 @@ def test_a_linear_field_keeps_the_stable_law(integrator):
     for time in (0.3, 1.0):
         falls = np.exp(-alpha * theta * time)
         exact = green(run.x.values, falls + d * (1.0 - falls) / (alpha * theta), alpha)
-        assert error(run.sel(t=1.0 + time, method="nearest"), exact) < 1e-6
+        assert error_of(run.sel(t=1.0 + time, method="nearest"), exact) < 1e-6
 
 
 def test_the_order_in_the_spacing_is_that_of_the_kernel():
@@ -69,20 +65,20 @@ def test_the_order_in_the_spacing_is_that_of_the_kernel():
         for h in (0.2, 0.1):
             one = {**LINE, "order": order, "spacing": h, "half_width": 30.0}
             run = solved(Problem(**one, velocity=1.0))
-            errors.append(error(run, green(run.x.values - 1.0, 2.0, 1.5)))
+            errors.append(error_of(run, green(run.x.values - 1.0, 2.0, 1.5)))
         assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.2)
 
 
 def test_a_shear_in_time_is_the_integral_of_its_speed():
     run = solved(Problem(**LINE, velocity="cos(3*t)"))
     moved = (np.sin(6.0) - np.sin(3.0)) / 3.0
-    assert error(run, green(run.x.values - moved, 2.0, 1.5)) < 1e-6
+    assert error_of(run, green(run.x.values - moved, 2.0, 1.5)) < 1e-6
     assert run.integrator == "dop853"
 
 
 def test_diffusion_in_time_is_its_integral():
     run = solved(Problem(**LINE, diffusivity="t"), lambda x: green(x, 1.0, 1.5))
-    assert error(run, green(run.x.values, 2.5, 1.5)) < 1e-6
+    assert error_of(run, green(run.x.values, 2.5, 1.5)) < 1e-6
 
 
 @pytest.mark.parametrize("form", ["FPSE", "exchange"])
@@ -96,7 +92,7 @@ def test_on_a_truncated_lattice_mass_is_conserved_to_round_off(form):
 
 def test_what_decays_at_a_rate_has_the_exact_factor():
     run = solved(Problem(**LINE, source="-0.7*u"))
-    assert error(run, np.exp(-0.7) * green(run.x.values, 2.0, 1.5)) < 1e-6
+    assert error_of(run, np.exp(-0.7) * green(run.x.values, 2.0, 1.5)) < 1e-6
 
 
 def test_a_source_alone_is_an_ordinary_equation_at_each_particle():
@@ -116,7 +112,7 @@ def test_a_manufactured_source_in_text_with_a_tail_of_another_power():
     source = "exp(-t)*(gamma(2.5)*(1 + x**2)**(-1.25)*cos(2.5*arctan(x)) - 1/(1 + x**2))"
     fields = {"half_width": 100.0, "spacing": 0.05, "t_initial": 0.0, "t_final": 1.0}
     run = solved(Problem(**{**LINE, **fields}, source=source), lambda x: 1.0 / (1.0 + x * x))
-    assert error(run, np.exp(-1.0) / (1.0 + run.x.values**2)) < 1e-6
+    assert error_of(run, np.exp(-1.0) / (1.0 + run.x.values**2)) < 1e-6
     assert run.attrs["reproducible"] == "yes"
 
 
@@ -142,7 +138,7 @@ def test_a_manufactured_source_by_a_function(dim, form, order, bound):
         source=(lambda x, t: source(x, t)) if dim == 1 else (lambda x, y, t: source(x, y, t)),
     )  # fmt: skip
     run = solved(problem, bell)
-    assert error(run, np.cos(1.0) * bell) < bound
+    assert error_of(run, np.cos(1.0) * bell) < bound
     assert run.attrs["reproducible"].startswith("no")
 
 
@@ -154,7 +150,7 @@ def test_a_rotation_carries_a_blob_about_the_origin():
     run = solved(problem, lambda x, y: green(np.hypot(x - 1.5, y), 1.0, 1.5, 2))
     x, y = run.x.values[:, None], run.y.values
     exact = green(np.hypot(x, y - 1.5), 1.0 + 0.1 * np.pi, 1.5, 2)
-    assert error(run, exact) < 1e-4
+    assert error_of(run, exact) < 1e-4
 
 
 @pytest.mark.parametrize("fields", [{"velocity": "-x"}, {"source": "sin(x)*exp(-x*x)"}])
@@ -288,8 +284,8 @@ def test_a_linear_field_ends_in_the_stationary_law():
         Problem(**{**LINE, "spacing": 0.2, "times": (11.0, 21.0), "t_final": 21.0}, velocity="-x")
     )
     exact = green(run.x.values, 1.0 / 1.5, 1.5)
-    assert error(run.isel(t=0), exact) < 1e-6
-    assert error(run.isel(t=1), exact) < 1e-6
+    assert error_of(run.isel(t=0), exact) < 1e-6
+    assert error_of(run.isel(t=1), exact) < 1e-6
 
 
 @pytest.mark.parametrize(("form", "source_of_time"), covering(["FPSE", "DD"], [False, True]))
@@ -309,7 +305,7 @@ def test_a_diffusivity_that_varies_in_space_and_time(form, source_of_time):
     }
     problem = Problem(**{**LINE, **fields}, form=form, diffusivity=d, source=source)
     run = solved(problem, lambda x: 1.0 / (1.0 + x * x))
-    assert error(run, np.exp(-1.0) / (1.0 + run.x.values**2)) < 1e-6
+    assert error_of(run, np.exp(-1.0) / (1.0 + run.x.values**2)) < 1e-6
 
 
 def test_mass_is_conserved_with_all_that_varies():

@@ -23,6 +23,7 @@ from fracparticles.special import (
     reduced_green,
     tail_mass,
 )
+from known import pieces_of_the_line
 from sweeps import covering
 
 # As in test_stable: a few hundred roundings of 1.1e-16 in a sum of positive terms; 20 times the
@@ -152,16 +153,13 @@ def test_limits_in_alpha():
 @pytest.mark.parametrize("dim", [1, 2, 3])
 @pytest.mark.parametrize("alpha", [1.05, 1.5, 1.95])
 def test_mass_is_the_integral_of_the_density(alpha, dim):
-    nodes, weights = np.polynomial.legendre.leggauss(30)
-    edges = np.concatenate([np.arange(0.0, 24.0, 0.5), 24.0 * 1.5 ** np.arange(0, 40)])
-    low, high = edges[:-1], edges[1:]
-    r = low[:, None] + 0.5 * (high - low)[:, None] * (1.0 + nodes)
+    low, high, r, weights = pieces_of_the_line()
     shell = SURFACE[dim] * r ** (dim - 1) * reduced_green(r, alpha, dim)
     pieces = (shell @ weights) * 0.5 * (high - low)
     # All terms positive: the relative error of the sum is that of its terms.
     inside = np.cumsum(pieces)
     np.testing.assert_allclose(inside, central_mass(high, 1.0, alpha, dim), rtol=TOLERANCE)
-    rest = tail_mass(edges[-1], 1.0, alpha, dim)
+    rest = tail_mass(high[-1], 1.0, alpha, dim)
     outside = np.cumsum(pieces[::-1])[::-1] + rest
     np.testing.assert_allclose(outside, tail_mass(low, 1.0, alpha, dim), rtol=TOLERANCE)
     assert inside[-1] + rest == pytest.approx(1.0, rel=TOLERANCE)

@@ -26,6 +26,7 @@ from fracparticles.special import (
     reduced_green,
     tail_mass,
 )
+from known import pieces_of_the_line
 from sweeps import at_once, few
 
 # The worst path is a quadrature: a sum of about 180 positive terms, each with an exponential of an
@@ -149,15 +150,12 @@ def test_no_jump_between_pieces(alpha, border):
 
 @pytest.mark.parametrize("alpha", [1.05, 1.5, 1.95])
 def test_mass_is_the_integral_of_the_density(alpha):
-    nodes, weights = np.polynomial.legendre.leggauss(30)
-    edges = np.concatenate([np.arange(0.0, 24.0, 0.5), 24.0 * 1.5 ** np.arange(0, 40)])
-    low, high = edges[:-1], edges[1:]
-    x = low[:, None] + 0.5 * (high - low)[:, None] * (1.0 + nodes)
+    low, high, x, weights = pieces_of_the_line()
     pieces = (reduced_green(x, alpha) @ weights) * (high - low)  # both sides: twice a half
     # All terms positive: the relative error of the sum is that of its terms.
     inside = np.cumsum(pieces)
     np.testing.assert_allclose(inside, central_mass(high, 1.0, alpha), rtol=2 * TOLERANCE)
-    rest = tail_mass(edges[-1], 1.0, alpha)
+    rest = tail_mass(high[-1], 1.0, alpha)
     outside = np.cumsum(pieces[::-1])[::-1] + rest
     np.testing.assert_allclose(outside, tail_mass(low, 1.0, alpha), rtol=2 * TOLERANCE)
 

@@ -171,6 +171,21 @@ def test_the_data_stay_as_they_are():
         ({"tail": (3.0,)}, "tail"),
         ({"u": np.ones((9, 10)), "dim": 2}, "u"),
         ({"u": [1.0] * 9 + [float("nan")]}, "u"),
+        ({"spacing": 1e-300}, "spacing"),
+        ({"time": 1e300}, "time"),
+        ({"diffusivity": 1e100, "time": 1e100}, "lattice"),
+        ({"u": np.full(16, 1e308)}, "u"),
+        ({"u": np.full(16, np.inf)}, "u"),
+        ({"terms": 2.0}, "terms"),
+        ({"terms": True}, "terms"),
+        ({"stretch": np.inf}, "stretch"),
+        ({"stretch": 1e12}, "stretch"),
+        ({"stretch": "3"}, "stretch"),
+        ({"tail": 5.0}, "tail"),
+        ({"tail": (1e300,)}, "tail"),
+        ({"tail": (2.0,) * 7}, "tail"),
+        ({"dim": 1.0}, "dim"),
+        ({"dim": True}, "dim"),
     ],
 )
 def test_bad_arguments_are_named(change, field):
@@ -300,33 +315,6 @@ def test_data_that_it_resolves_are_not():
         evolve(fp.green(x, 0.5, 1.5), h, 1.5, 1.0)
         evolve(np.exp(-x * x), h, 1.5, 1.0, tail=())
         evolve(np.zeros(256), h, 1.5, 1.0)
-
-
-@pytest.mark.parametrize(
-    ("change", "field"),
-    [
-        ({"spacing": 1e-300}, "spacing"),
-        ({"time": 1e300}, "time"),
-        ({"diffusivity": 1e100, "time": 1e100}, "lattice"),
-        ({"u": np.full(16, 1e308)}, "u"),
-        ({"u": np.full(16, np.inf)}, "u"),
-        ({"terms": 2.0}, "terms"),
-        ({"terms": True}, "terms"),
-        ({"stretch": np.inf}, "stretch"),
-        ({"stretch": 1e12}, "stretch"),
-        ({"stretch": "3"}, "stretch"),
-        ({"tail": 5.0}, "tail"),
-        ({"tail": (1e300,)}, "tail"),
-        ({"tail": (2.0,) * 7}, "tail"),
-        ({"dim": 1.0}, "dim"),
-        ({"dim": True}, "dim"),
-    ],
-)
-def test_other_bad_arguments_are_named(change, field):
-    given = {"u": np.ones(16), "spacing": 1.0, "alpha": 1.5, "time": 1.0} | change
-    with pytest.raises(InvalidInput) as error:
-        evolve(**given)
-    assert error.value.field == field
 
 
 def test_a_time_that_is_no_time_at_all_leaves_the_data():

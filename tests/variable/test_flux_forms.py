@@ -24,11 +24,6 @@ def lattice(h, half_width, **more):
     return Setting(alpha=ALPHA, n=round(half_width / h), spacing=h, **more)
 
 
-def particles(setting):
-    x = setting.spacing * np.arange(-setting.n, setting.n + 1.0)
-    return np.meshgrid(*(x,) * setting.dim, indexing="ij", sparse=True)
-
-
 def bell(points):
     """D = 1 + exp(-|x|^2) / 2 and its gradient."""
     d = 0.5 * np.exp(-sum(part**2 for part in points))
@@ -39,7 +34,7 @@ def error(form, setting, scale=1.0, field=Cauchy):
     """The greatest error of the manufactured solution u = field(x / scale), D = bell(x / scale)."""
     tail = setting.dim + 1.0 if field is Cauchy else None
     operator = VariableDiffusivity(form, setting, tail=tail)
-    at = [part / scale for part in particles(setting)]
+    at = [part / scale for part in setting.positions]
     d, _ = bell([part / scale for part in operator.points])
     exact = field.flux_divergence(at, ALPHA, *bell(at)) * scale**-ALPHA
     return np.abs(operator.apply(field.value(at), d) - exact).max()
@@ -96,7 +91,7 @@ def test_converges_on_the_line_with_the_order_of_the_kernels(form, order):
     for size in (1.2 * h, h):
         setting = lattice(size, 72.0, order=order, overlap=3.0, exterior="open")
         operator = VariableDiffusivity(form, setting)
-        (at,) = particles(setting)
+        (at,) = setting.positions
         d = 1.0 + 0.5 * np.cos(operator.points[0])
         exact = Packet.flux_divergence([at], ALPHA, 1.0 + 0.5 * np.cos(at), [-0.5 * np.sin(at)])
         errors.append(np.abs(operator.apply(Packet.value([at]), d) - exact).max())
@@ -126,7 +121,7 @@ def test_converges_in_the_plane_with_the_order_of_the_kernels(form, order):
 @pytest.mark.parametrize("order", [2, 8])
 def test_a_constant_diffusivity_gives_the_constant_scheme(form, exterior, order, rng):
     setting = lattice(0.3, 30.0, order=order, exterior=exterior, far_terms=2)
-    u = rng.normal(size=setting.shape) / (1.0 + particles(setting)[0] ** 2)
+    u = rng.normal(size=setting.shape) / (1.0 + setting.positions[0] ** 2)
     scheme = SCHEMES[FORMS[form]]
     expected = scheme.operator(replace(setting, diffusivity=3.0)).apply(u)
     found = VariableDiffusivity(form, setting).apply(u, 3.0)
@@ -147,7 +142,7 @@ def test_a_constant_diffusivity_gives_the_constant_scheme_in_the_plane(form, dim
 def test_the_flux_from_outside_of_the_plane_is_that_of_the_constant_scheme():
     # Beyond four half-widths nothing is added: 4^(-2 p), p = 3.5, of what the exterior adds, below 1e-2.
     setting = lattice(0.5, 10.0, order=4, exterior="open", dim=2)
-    u = (1.0 + sum(part**2 for part in particles(setting))) ** -1.75
+    u = (1.0 + sum(part**2 for part in setting.positions)) ** -1.75
     expected = SCHEMES["FPSE"].operator(setting).apply(u.reshape(-1)).reshape(u.shape)
     found = VariableDiffusivity("FPSE", setting).apply(u, 1.0)
     assert np.abs(found - expected).max() < 1e-6 * np.abs(expected).max()
@@ -180,7 +175,7 @@ def test_the_total_strength_is_invariant(form, dim, rng):
 def test_with_an_open_exterior_the_total_changes_by_the_flux_through_the_ends():
     setting = lattice(0.05, 20.0, order=12, exterior="open", far_terms=3)
     operator = VariableDiffusivity("FPSE", setting, tail=2.0)
-    (x,) = particles(setting)
+    (x,) = setting.positions
     rate = operator.apply(Cauchy.value([x]), bell(operator.points)[0]).sum() * setting.spacing
     end = 20.0 + 0.5 * setting.spacing
     through = 2.0 * Cauchy.gradient([np.array([end])], ALPHA)[0][0]  # D = 1 there
@@ -193,7 +188,7 @@ def test_with_an_open_exterior_the_total_changes_by_the_flux_through_the_ends():
 def test_the_exchange_is_symmetric_and_converges_to_another_equation():
     setting = lattice(0.05, 40.0, order=8, exterior="open", far_terms=3)
     operator = VariableDiffusivity("exchange", setting, tail=2.0)
-    (x,) = particles(setting)
+    (x,) = setting.positions
     found = operator.apply(Cauchy.value([x]), 1.0 + 0.5 * Cauchy.value([x]))
     # What is left is D beyond the ends, 1 + 3e-4, and what this adds is 1e-5 there: look at the middle.
     middle = np.abs(x) < 10.0

@@ -22,11 +22,6 @@ def lattice(h, half_width, **more):
     return Setting(alpha=1.5, n=round(half_width / h), spacing=h, **more)
 
 
-def particles(setting):
-    x = setting.spacing * np.arange(-setting.n, setting.n + 1.0)
-    return np.meshgrid(*(x,) * setting.dim, indexing="ij", sparse=True)
-
-
 def order_at(points):
     """alpha(x) = 1.5 + 0.3 tanh x, in the plane 1.5 + 0.3 exp(-|x|^2 / 4)."""
     if len(points) == 1:
@@ -59,7 +54,7 @@ def test_rows_are_those_of_a_dense_sum_with_one_kernel_each(dim, least, greatest
     alpha = rng.uniform(least, greatest, size=setting.shape)
     u = rng.normal(size=setting.shape)
     epsilon, volume = setting.overlap * setting.spacing, setting.spacing**dim
-    at = np.stack([part.reshape(-1) for part in np.broadcast_arrays(*particles(setting))])
+    at = np.stack([part.reshape(-1) for part in np.broadcast_arrays(*setting.positions)])
     expected = []
     for x, a in zip(at.T, alpha.reshape(-1), strict=True):
         r = np.sqrt(np.square(at - x[:, None]).sum(axis=0)) / epsilon
@@ -91,7 +86,7 @@ def test_converges_with_the_order_of_the_kernels(order):
     errors = []
     for size in (1.2 * h, h):
         setting = lattice(size, 72.0, order=order, overlap=3.0, exterior="open")
-        (x,) = particles(setting)
+        (x,) = setting.positions
         alpha = 1.5 + 0.3 * np.sin(x) * np.exp(-((x / 20.0) ** 2))
         found = VariableOrder(setting, alpha).apply(Packet.value([x]))
         errors.append(np.abs(found - Packet.laplacian([x], alpha)).max())
@@ -103,7 +98,7 @@ def test_a_millionth_on_the_line_and_a_ten_thousandth_in_the_plane():
         (lattice(0.05, 40.0, order=12, exterior="open", far_terms=3), 1.0, 1e-6),
         (lattice(0.3, 15.0, order=12, exterior="open", dim=2), 3.0, 1e-4),
     ):
-        at = [part / scale for part in particles(setting)]
+        at = [part / scale for part in setting.positions]
         alpha = order_at(at)
         operator = VariableOrder(setting, alpha, tail=setting.dim + 1.0)
         exact = Cauchy.laplacian(at, alpha) * scale**-alpha
@@ -114,7 +109,7 @@ def test_either_end_has_its_own_tail():
     # The sum over a lattice four times as wide, of the solution that is continued with the orders at the ends.
     setting = lattice(0.5, 15.0, order=4, exterior="open")
     wide = replace(setting, n=40 * setting.n)
-    (x,) = particles(wide)
+    (x,) = wide.positions
     alpha = order_at([x])
     u = (1.0 + x * x) ** -0.5
     inside = np.abs(x) <= 15.0 + 1e-9
@@ -134,7 +129,7 @@ def test_either_end_has_its_own_tail():
 @pytest.mark.parametrize(("dim", "order"), [(1, 2), (1, 4), (1, 12), (2, 4)])
 def test_the_spectral_radius_is_an_upper_bound_and_not_far_off(dim, order, exterior):
     setting = lattice(0.3 if dim == 1 else 0.5, 12.0 if dim == 1 else 4.0, dim=dim, order=order)
-    operator = VariableOrder(replace(setting, exterior=exterior), order_at(particles(setting)))
+    operator = VariableOrder(replace(setting, exterior=exterior), order_at(setting.positions))
     greatest = np.abs(np.linalg.eigvals(dense(operator))).max()
     assert greatest <= operator.spectral_radius() <= 4.0 * greatest
 
@@ -164,13 +159,13 @@ def test_what_there_is_not_is_refused(setting, more, field):
 
 def test_an_order_that_varies_at_the_ends_warns():
     setting = lattice(0.5, 20.0, exterior="open")
-    (x,) = particles(setting)
+    (x,) = setting.positions
     with pytest.warns(AccuracyWarning, match="alpha - 1 varies"):
         VariableOrder(setting, 1.5 + 0.3 * np.sin(x))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         VariableOrder(setting, order_at([x]))
     setting = lattice(0.5, 5.0, exterior="open", dim=2)
-    x, y = particles(setting)
+    x, y = setting.positions
     with pytest.warns(AccuracyWarning, match="along the faces"):
         VariableOrder(setting, 1.5 + 0.2 * np.tanh(4.0 * x) + 0.0 * y)

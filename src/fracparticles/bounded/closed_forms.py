@@ -18,8 +18,7 @@ from scipy.special import hyp2f1
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.disc_rings import plane_constant
-from fracparticles.special.tails import tail_constant
+from fracparticles.special.tails import plane_constant, tail_constant
 
 __all__ = ["power_in_ball", "riesz_of_power"]
 

@@ -35,7 +35,7 @@ import numpy as np
 from scipy.special import betainc, gammaln, hyp2f1, kv, rgamma, zeta, zetac
 
 from fracparticles.arguments import FloatArray
-from fracparticles.special.tails import tail_constant
+from fracparticles.special.tails import plane_constant, tail_constant
 
 __all__ = ["Rings", "exterior_rate", "loss_along_a_line", "plane_constant", "ring_kernel"]
 
@@ -44,11 +44,6 @@ _AT_CENTRE, _AT_EDGE = 2.0, 3.0  # r ~ xi^2 at the centre, 1 - r ~ (1 - xi)^3 at
 _BETA = gamma(_AT_CENTRE) * gamma(_AT_EDGE) / gamma(_AT_CENTRE + _AT_EDGE)
 _RESOLVED = 0.3  # q below which the series is accurate to 1e-5 of the loss
 _LINES = 150  # lines that are summed: K_nu(0.3 150) is 1e-20
-
-
-def plane_constant(alpha: float) -> float:
-    """Return c of (-Laplacian)^(alpha/2) u(x) = c int (u(x) - u(y)) |x - y|^(-2-alpha) dy, Eq. (4) for n = 2."""
-    return alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + 0.5 * alpha) / (pi * gamma(1.0 - 0.5 * alpha))
 
 
 @dataclass(frozen=True)

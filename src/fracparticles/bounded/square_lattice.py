@@ -42,8 +42,7 @@ import numpy as np
 from scipy.special import gammaincc, hyp2f1, kv, zeta, zetac
 
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.disc_rings import plane_constant
-from fracparticles.special.tails import tail_constant
+from fracparticles.special.tails import plane_constant, tail_constant
 
 __all__ = [
     "edge_exchange",

@@ -18,8 +18,8 @@ from scipy.special import beta, betainc, betaincinv
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.disc_rings import plane_constant
 from fracparticles.special.quadrature import gauss_legendre
+from fracparticles.special.tails import plane_constant
 
 __all__ = ["Outside", "outward_rate"]
 

@@ -43,22 +43,7 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     InvalidInput
         If there is no readable table of numbers with one name for each column.
     """
-    try:
-        text = path.read_text("utf-8-sig")
-    except FileNotFoundError:
-        raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
-    except (OSError, UnicodeDecodeError) as error:
-        allowed, remedy = f"a readable table ({error})", "Write it as UTF-8."
-        raise InvalidInput("file", str(path), allowed, remedy) from None
-    lines: list[str] = []
-    remark = ""  # the last one before the numbers
-    for line in map(str.strip, text.splitlines()):
-        if line.startswith("#"):
-            remark = remark if lines else line.lstrip("# ")
-        elif line:
-            lines.append(line)
-    if not lines:
-        raise InvalidInput("file", str(path), "a table with numbers", "It is empty.")
+    lines, remark = _lines_of(path)
     separator = next((mark for mark in ";\t," if mark in lines[-1]), None)
     # The decimal mark is looked for in the rows of numbers: the first line may be names.
     comma = separator in (";", "\t") and any("," in line for line in lines[1:] or lines)
@@ -79,17 +64,7 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     elif len(headings) != count:
         one = f"a name for each of the {count} columns, and the first line is {lines[0].strip()!r}"
         raise InvalidInput("file", str(path), one, "Mend that line, or begin it with #.")
-    numbers = np.empty((len(rows), count))
-    for number, row in enumerate(rows):
-        if len(row) != count or not all(_is_number(cell, comma) for cell in row):
-            shown = f"row {number + 1} of the numbers, {' '.join(row)!r}"
-            allowed = f"a table of {count} numbers a row, and this is {shown}"
-            raise InvalidInput("file", str(path), allowed, "Mend or remove the row.")
-        numbers[number] = [float(cell.replace(",", ".") if comma else cell) for cell in row]
-    cells = [cell for row in rows for cell in row]
-    if comma and any("." in cell for cell in cells):
-        one = "one decimal mark, and it has commas and points in its numbers"
-        raise InvalidInput("file", str(path), one, "Write thousands without a mark.")
+    numbers = _numbers_in(rows, comma, path)
     split = [name_and_unit(heading) for heading in headings]
     names = [name for name, _ in split]
     if len(set(names)) < len(names):
@@ -97,6 +72,43 @@ def read_table(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
             "file", str(path), "columns of different names", f"It has {spelled(names, ' and ')}."
         )
     return dict(zip(names, numbers.T, strict=True)), dict(split)
+
+
+def _lines_of(path: Path) -> tuple[list[str], str]:
+    """Return the lines of a text without blank ones and remarks, and the last remark before the first of them."""
+    try:
+        text = path.read_text("utf-8-sig")
+    except FileNotFoundError:
+        raise InvalidInput("file", str(path), "an existing file", "Check the path.") from None
+    except (OSError, UnicodeDecodeError) as error:
+        allowed, remedy = f"a readable table ({error})", "Write it as UTF-8."
+        raise InvalidInput("file", str(path), allowed, remedy) from None
+    lines: list[str] = []
+    remark = ""
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith("#"):
+            remark = remark if lines else line.lstrip("# ")
+        elif line:
+            lines.append(line)
+    if not lines:
+        raise InvalidInput("file", str(path), "a table with numbers", "It is empty.")
+    return lines, remark
+
+
+def _numbers_in(rows: list[list[str]], comma: bool, path: Path) -> np.ndarray:
+    """Return the numbers of the cells, shape (rows, columns); `comma`: that is the decimal mark."""
+    count = len(rows[0])
+    numbers = np.empty((len(rows), count))
+    for number, row in enumerate(rows):
+        if len(row) != count or not all(_is_number(cell, comma) for cell in row):
+            shown = f"row {number + 1} of the numbers, {' '.join(row)!r}"
+            allowed = f"a table of {count} numbers a row, and this is {shown}"
+            raise InvalidInput("file", str(path), allowed, "Mend or remove the row.")
+        numbers[number] = [float(cell.replace(",", ".") if comma else cell) for cell in row]
+    if comma and any("." in cell for row in rows for cell in row):
+        one = "one decimal mark, and it has commas and points in its numbers"
+        raise InvalidInput("file", str(path), one, "Write thousands without a mark.")
+    return numbers
 
 
 def _names_between_blanks(line: str) -> list[str]:

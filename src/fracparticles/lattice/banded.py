@@ -5,18 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fracparticles._compiled import njit
-from fracparticles.kernels.families import family_of
+from fracparticles.kernels.families import gaussian_reach
 
 __all__ = ["BandedConvolution"]
 
-# By kernel family and order, the distance in epsilon beyond which a Gaussian kernel counts as zero. exp(-r^2) falls
-# below the round-off of a unit sum, 1e-18, at r = 6.44. Printed kernels of order IV may hold exp(-r^2 / 2), which falls
-# below it at r = 9.1. In the gamma family exp(-r^2) is multiplied by a polynomial: the distances were measured, where
-# eta1 falls below _NEGLIGIBLE of its greatest value.
-_REACH = {
-    "printed": {2: 6.5, 4: 9.2},
-    "gamma": {2: 6.5, 4: 6.7, 6: 6.9, 8: 7.1, 10: 7.3, 12: 7.4},
-}
 _NEGLIGIBLE = 2.0**-56  # share of the largest weight: an eighth of a rounding error
 _BLOCK = 512  # rows that are summed at a time: the sums stay in the first-level cache
 
@@ -43,7 +35,7 @@ class BandedConvolution:
     @staticmethod
     def reach(overlap: float, order: int, family: str | None = None) -> int:
         """Return the half band M beyond which a Gaussian kernel of this order and overlap is zero."""
-        return int(np.ceil(_REACH[family_of(order, family)][order] * overlap))
+        return int(np.ceil(gaussian_reach(order, family) * overlap))
 
     def __call__(self, v: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Write y for the points in the middle of v, as many as `out` has, into `out`; return it."""

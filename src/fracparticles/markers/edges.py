@@ -28,13 +28,7 @@ import numpy as np
 from scipy.special import erfc
 
 from fracparticles.errors import AccuracyWarning, FracparticlesError
-from fracparticles.markers.reliability import (
-    CORE,
-    WAVENUMBERS,
-    Steps,
-    Velocity,
-    all_coefficients,
-)
+from fracparticles.markers.reliability import CORE, WAVENUMBERS, Steps, Velocity, all_coefficients
 from fracparticles.markers.shapes import Shape
 from fracparticles.markers.stability import extremes
 from fracparticles.moving.lagrangian import advance, quotient_velocity

@@ -30,13 +30,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import (
-    choice,
-    finite_array,
-    positive_real,
-    real_array,
-    scale,
-)
+from fracparticles.arguments import choice, finite_array, positive_real, real_array, scale
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.moving.diffusion_velocity import EXTERIORS, DiffusionVelocity
 from fracparticles.moving.lagrangian import (

@@ -21,19 +21,10 @@ from math import ceil
 import numpy as np
 
 from fracparticles import arguments as check
-from fracparticles.errors import (
-    AccuracyWarning,
-    FracparticlesError,
-    NonFiniteSolution,
-)
+from fracparticles.errors import AccuracyWarning, FracparticlesError, NonFiniteSolution
 from fracparticles.moving.diffusion_velocity import EXTERIORS, DiffusionVelocity
 from fracparticles.moving.dvm import GONE, largest_gap
-from fracparticles.moving.lagrangian import (
-    REMESHING,
-    quotient_velocity,
-    stopped,
-    strengths_of,
-)
+from fracparticles.moving.lagrangian import REMESHING, quotient_velocity, stopped, strengths_of
 from fracparticles.moving.plane_remeshing import Particles, on_square, remesh_plane
 from fracparticles.moving.plane_sums import PlaneSums
 from fracparticles.moving.plane_tail import REACH, PlaneTail
@@ -197,15 +188,8 @@ def run_in_plane(
         The field at the places (p h, q h), |p|, |q| <= n: the strengths are h^2 u.
     spacing : float
         h.
-    alpha, dt, steps, order, diffusivity, start
-        As on the line.
-    overlap : float
-        epsilon / h.
-    remeshing : {"M4'", "Lambda3", "Lambda6,4", "none"}
-        The paper's M4', and Lambda3, leave an error of some 1e-3 however small h is. Lambda6,4 leaves that of the
-        kernels.
-    remesh_above : float, optional
-        Distance of neighbours above which to remesh, in h; 1.5 if left out, 1.05 for an open exterior.
+    alpha, dt, steps, order, overlap, diffusivity, start, remeshing, remesh_above
+        As on the line, see `dvm.run_to_outputs`.
     exterior : {"truncated", "open"}
         Nothing beyond the particles, or their far field, see `plane_tail`: for data about the origin.
 

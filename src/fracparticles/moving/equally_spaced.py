@@ -8,7 +8,7 @@ import numpy as np
 from pyfftw import FFTW, empty_aligned, zeros_aligned
 from scipy.fft import next_fast_len, rfft
 
-__all__ = ["PLAN", "EquallySpacedSum", "equal_spacing", "transforms"]
+__all__ = ["PLAN", "EquallySpacedSum", "RowTransforms", "equal_spacing"]
 
 PLAN = ("FFTW_ESTIMATE",)  # the same plan, and so the same bytes, every time
 _FEWEST = 32  # particles
@@ -32,28 +32,31 @@ def equal_spacing(x: np.ndarray, slack: float = np.inf) -> float | None:
     return gap if np.abs(x - first - gap * np.arange(n)).max() <= off else None
 
 
-def transforms(
-    values: np.ndarray, coefficients: np.ndarray
-) -> tuple[np.ndarray, FFTW, np.ndarray, FFTW, np.ndarray]:
-    """Return buffers and plans for one real transform there and one back for each row of `coefficients`.
+class RowTransforms:
+    """One real transform there, a product with each row of `coefficients`, and the transform of each back.
 
     Parameters
     ----------
     values : array, shape (L,)
         The buffer that is transformed.
     coefficients : array, shape (K, L/2 + 1)
-
-    Returns
-    -------
-    modes, forward, products, backward, fields
-        The transform of `values`; from `products`, shape (K, L/2 + 1), the `fields`, shape (K, L).
     """
-    modes = empty_aligned(coefficients.shape[1], complex)
-    products = empty_aligned(coefficients.shape, complex)
-    fields = empty_aligned((len(coefficients), values.size))
-    forward = FFTW(values, modes, flags=PLAN)
-    back = {"direction": "FFTW_BACKWARD", "flags": (*PLAN, "FFTW_DESTROY_INPUT")}
-    return modes, forward, products, FFTW(products, fields, **back), fields
+
+    def __init__(self, values: np.ndarray, coefficients: np.ndarray) -> None:
+        self._coefficients = coefficients
+        self._modes = empty_aligned(coefficients.shape[1], complex)
+        self._products = empty_aligned(coefficients.shape, complex)
+        self._fields = empty_aligned((len(coefficients), values.size))
+        back = {"direction": "FFTW_BACKWARD", "flags": (*PLAN, "FFTW_DESTROY_INPUT")}
+        self._forward = FFTW(values, self._modes, flags=PLAN)
+        self._backward = FFTW(self._products, self._fields, **back)
+
+    def fields(self) -> np.ndarray:
+        """Return the K results for what `values` holds now, shape (K, L): a buffer that the next call overwrites."""
+        self._forward.execute()
+        np.multiply(self._coefficients, self._modes, out=self._products)
+        self._backward.execute()
+        return self._fields
 
 
 class EquallySpacedSum:
@@ -78,11 +81,9 @@ class EquallySpacedSum:
         self.spacing, self.most = spacing, most
         length = 2 * next_fast_len(most, real=True)
         r = np.fft.fftfreq(length, 1.0 / length) * (spacing / epsilon)
-        self._coefficients = rfft(np.array([k(r) for k in profiles])) / (length * epsilon)
+        coefficients = rfft(np.array([k(r) for k in profiles])) / (length * epsilon)
         self._values = zeros_aligned(length)
-        self._modes, self._forward, self._products, self._backward, self._fields = transforms(
-            self._values, self._coefficients
-        )
+        self._transforms = RowTransforms(self._values, coefficients)
 
     def holds(self, spacing: float, size: int) -> bool:
         """Return whether so many particles with this spacing, to round-off, can be summed."""
@@ -92,7 +93,4 @@ class EquallySpacedSum:
         """Write the sums into `out`, shape (K, N)."""
         self._values[: q.size] = q
         self._values[q.size :] = 0.0
-        self._forward.execute()
-        np.multiply(self._coefficients, self._modes, out=self._products)
-        self._backward.execute()
-        out[:] = self._fields[:, : q.size]
+        out[:] = self._transforms.fields()[:, : q.size]

@@ -35,7 +35,7 @@ from scipy.special import erfc
 
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
-from fracparticles.moving.equally_spaced import EquallySpacedSum, equal_spacing, transforms
+from fracparticles.moving.equally_spaced import EquallySpacedSum, RowTransforms, equal_spacing
 from fracparticles.moving.gridding import (
     WIDTH,
     interpolate,
@@ -135,12 +135,10 @@ class NonuniformFourierSum(ScatteredSum):
             self._make_box(min(low, self._low), max(high, self._high), margin)
         at = self._places(x)
         spread(*at, q, self._particles)
-        self._forward.execute()
-        np.multiply(self._coefficients, self._modes, out=self._products)
-        self._backward.execute()
+        fields = self._transforms.fields()
         if z is not None:
             at = self._places(z)
-        interpolate(*at, self._fields, out)
+        interpolate(*at, fields, out)
 
     def _places(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return window_weights((z - self._low) / self._step + WIDTH)
@@ -166,8 +164,6 @@ class NonuniformFourierSum(ScatteredSum):
         cut_off = 0.5 * erfc((np.abs(r) - (0.5 * period - EDGE * scale)) / scale)
         kernels = np.array([cut_off * k.profile(r / self._epsilon) for k in self._kernels])
         window = window_transform(2.0 * math.pi / size * np.arange(size // 2 + 1))
-        self._coefficients = rfft(kernels) / (size * self._epsilon * window**2)
         self._particles = empty_aligned(size)
-        self._modes, self._forward, self._products, self._backward, self._fields = transforms(
-            self._particles, self._coefficients
-        )
+        coefficients = rfft(kernels) / (size * self._epsilon * window**2)
+        self._transforms = RowTransforms(self._particles, coefficients)

@@ -12,7 +12,8 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput
-from fracparticles.kernels.families import KERNELS, kernel
+from fracparticles.kernels.families import KERNELS, PAPER_ORDERS, gaussian_reach, kernel
+from fracparticles.kernels.high_order import wavenumber_reach
 
 __all__ = [
     "EDGE",
@@ -25,10 +26,9 @@ __all__ = [
     "smooth_kernel",
 ]
 
-# exp(-k^2/4), in the transform of every kernel with a Gaussian in it, is 2e-16 at k = 12.
+# exp(-k^2/4), in the transform of every kernel with a Gaussian in it, is 2e-16 at k = 12. From order 6 on a polynomial
+# multiplies it: see `wavenumber_reach`.
 GAUSSIAN_BAND = 12.0
-# exp(-r^2) is 4e-19 at r = 6.5; the order-IV kernels hold exp(-r^2/2), which is that at 9.2.
-_GAUSSIAN_REACH = {2: 6.5, 4: 9.2}
 EDGE = 5.5  # erfc(5.5) / 2 < 1e-14: a cut-off is 1 on one side of this, 0 on the other
 MARGIN = 1.125  # the box of a set that grew is made so much wider than the set, so that not every step makes it anew
 # The largest strength: divided by an epsilon from 1e-100 to 1e100 and summed, they neither overflow nor lose digits.
@@ -75,9 +75,9 @@ def smooth_kernel(name: str, alpha: float, order: int = 2) -> ScatteredKernel:
         return np.asarray(kernel(name, r, alpha, order=order))
 
     profile(np.zeros(1))
-    gaussian = math.isinf(KERNELS[name].decay(alpha))
-    reach = _GAUSSIAN_REACH[order] if gaussian else math.inf
-    return ScatteredKernel(profile, GAUSSIAN_BAND, reach)
+    reach = gaussian_reach(order) if math.isinf(KERNELS[name].decay(alpha)) else math.inf
+    band = GAUSSIAN_BAND if order in PAPER_ORDERS else wavenumber_reach(order)
+    return ScatteredKernel(profile, band, reach)
 
 
 class ScatteredSum(ABC):

@@ -11,7 +11,7 @@ import numpy as np
 from fracparticles.problems.integrate import Integration
 from fracparticles.problems.problem import FORMS, Problem
 from fracparticles.run.complaints import label_of
-from fracparticles.run.dataset import source
+from fracparticles.run.dataset import along, described, scalar, source
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,30 +50,29 @@ def lattice_layout(problem: Problem) -> Layout:
     case, fields = problem.case, type(problem).model_fields
     axes = ("x", "y")[: problem.dim]
     coordinates = {
-        name: _scalar(_plain(getattr(problem, name)), label_of(fields[name]))
+        name: scalar(_plain(getattr(problem, name)), label_of(fields[name]))
         for name in _OF_A_LATTICE
     }
-    coordinates["particle_spacing"] = _scalar(case.particle_spacing, "particle spacing, realised")
-    coordinates |= {axis: ((axis,), case.x, _describe("particle position")) for axis in axes}
+    coordinates["particle_spacing"] = scalar(case.particle_spacing, "particle spacing, realised")
+    coordinates |= {axis: along(axis, case.x, "particle position") for axis in axes}
     return Layout(axes, coordinates, case.integral, FORMS[problem.form])
 
 
 def domain_layout(problem: Problem) -> Layout:
     """Return the layout of the particles of a bounded domain. Those of a disc lie on rings, at equal angles."""
     domain = problem.bounded_domain
-    place, places = _describe("particle position"), problem.places
-    coordinates: dict[str, tuple] = {"domain": _scalar(problem.domain, "bounded domain")}
+    coordinates: dict[str, tuple] = {"domain": scalar(problem.domain, "bounded domain")}
     if problem.domain == "disc":
         axes: tuple[str, ...] = ("ring", "angle")
-        coordinates |= {name: (axes, at, place) for name, at in places.items()}
+        place = described("particle position")
+        coordinates |= {name: (axes, at, place) for name, at in problem.places.items()}
     else:
         axes = ("x", "y")[: problem.dim]
         lines = (at[:, 0] if n == 0 and at.ndim == 2 else at[0] if n else at
-                 for n, at in enumerate(places.values()))  # fmt: skip
-        coordinates |= {
-            axis: ((axis,), line, place) for axis, line in zip(axes, lines, strict=True)
-        }
-    coordinates["volume"] = (axes, domain.volumes, _describe("particle volume V"))
+                 for n, at in enumerate(problem.places.values()))  # fmt: skip
+        placed = zip(axes, lines, strict=True)
+        coordinates |= {axis: along(axis, line, "particle position") for axis, line in placed}
+    coordinates["volume"] = (axes, domain.volumes, described("particle volume V"))
     kind = {"interval": "graded particles", "square": "fitted lattice", "disc": "rings"}
     scheme = kind[str(problem.domain)]
     return Layout(axes, coordinates, lambda u: float((domain.volumes * u).sum()), scheme)
@@ -105,40 +104,40 @@ def to_dataset(
     several = problem.times is not None
     u = np.array([one.reshape(u0.shape) for one in result.u])
     mass = np.array([layout.integral(one) for one in u])
-    along = ("t",) if several else ()
+    first = ("t",) if several else ()
 
     def each(values: Any, meaning: str) -> tuple:
         values = np.asarray(values, dtype=float)
-        return along, values if several else values[0], _describe(meaning)
+        return first, values if several else values[0], described(meaning)
 
     data = {
-        "u": ((*along, *layout.axes), u if several else u[0], _describe("particle strength u")),
+        "u": ((*first, *layout.axes), u if several else u[0], described("particle strength u")),
         "mass": each(mass, "total mass, the sum of V u"),
-        "mass_initial": _scalar(layout.integral(u0), "total mass, the sum of V u, at t_initial"),
-        "mass_final": _scalar(float(mass[-1]), "total mass, the sum of V u, at t_final"),
-        "accepted_steps": _scalar(np.int64(result.accepted), "number of time steps"),
-        "evaluations": _scalar(np.int64(result.evaluations), "number of evaluations of the right-hand side"),
-        "stiffness": _scalar(result.stiffness, "estimate of the largest eigenvalue times the time of the run"),
+        "mass_initial": scalar(layout.integral(u0), "total mass, the sum of V u, at t_initial"),
+        "mass_final": scalar(float(mass[-1]), "total mass, the sum of V u, at t_final"),
+        "accepted_steps": scalar(np.int64(result.accepted), "number of time steps"),
+        "evaluations": scalar(np.int64(result.evaluations), "number of evaluations of the right-hand side"),
+        "stiffness": scalar(result.stiffness, "estimate of the largest eigenvalue times the time of the run"),
         **{name: each(values, meaning) for name, (values, meaning) in estimates.items()},
     }  # fmt: skip
     if result.rejected is not None:
         thrown = "number of time steps that were thrown away"
-        data["rejected_steps"] = _scalar(np.int64(result.rejected), thrown)
+        data["rejected_steps"] = scalar(np.int64(result.rejected), thrown)
     fields = type(problem).model_fields
     coordinates: dict[str, tuple] = {
-        name: _scalar(_plain(getattr(problem, name)), label_of(fields[name])) for name in _STORED
+        name: scalar(_plain(getattr(problem, name)), label_of(fields[name])) for name in _STORED
     }
     for name, coefficient in (
         ("beta", problem.order_coefficient),
         ("diffusivity", problem.diffusion),
     ):
         if coefficient.constant is not None:
-            coordinates[name] = _scalar(coefficient.constant, label_of(fields[name]))
-    coordinates["scheme"] = _scalar(layout.scheme, "particle scheme")
-    coordinates["integrator"] = _scalar(result.method, "time integrator")
+            coordinates[name] = scalar(coefficient.constant, label_of(fields[name]))
+    coordinates["scheme"] = scalar(layout.scheme, "particle scheme")
+    coordinates["integrator"] = scalar(result.method, "time integrator")
     coordinates |= layout.coordinates
     if several:
-        coordinates["t"] = (("t",), np.array(problem.times), _describe("output time"))
+        coordinates["t"] = along("t", problem.output_times, "output time")
     return xr.Dataset(
         data,
         coordinates,
@@ -170,11 +169,3 @@ def _diffusion(problem: Problem) -> str:
 
 def _plain(value: Any) -> Any:
     return np.int64(value) if isinstance(value, int) else value
-
-
-def _scalar(value: object, meaning: str) -> tuple:
-    return (), value, _describe(meaning)
-
-
-def _describe(meaning: str) -> dict[str, str]:
-    return {"long_name": meaning, "units": "1"}

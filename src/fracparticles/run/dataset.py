@@ -32,7 +32,16 @@ if TYPE_CHECKING:
     from fracparticles.moving.dvm import ParticleRun
     from fracparticles.run.estimate import ErrorEstimate
 
-__all__ = ["read_benchmark", "read_run", "source", "to_dataset", "write"]
+__all__ = [
+    "along",
+    "described",
+    "read_benchmark",
+    "read_run",
+    "scalar",
+    "source",
+    "to_dataset",
+    "write",
+]
 
 REFERENCE = (
     "Lucchesi, Allouch, Le Maitre, Mustapha, Knio (2020), Particle simulation of space-fractional diffusion "
@@ -71,25 +80,25 @@ def to_dataset(solution: Solution, estimates: Sequence[ErrorEstimate] = ()) -> x
     total = case.integral(solution.u) if particles is None else float(particles.strength.sum())
     applications = np.int64(solution.operator_applications)
     data: Variables = {
-        "mass_initial": _scalar(
+        "mass_initial": scalar(
             case.integral(solution.u0), "total mass, the sum of V u, at t_initial"
         ),
-        "mass_final": _scalar(total, "total mass, the sum of V u, at t_final"),
-        "operator_applications": _scalar(applications, "number of operator applications"),
+        "mass_final": scalar(total, "total mass, the sum of V u, at t_final"),
+        "operator_applications": scalar(applications, "number of operator applications"),
     }
     if solution.initial.startswith(FUNDAMENTAL):
         data["relative_l1_error"] = _errors(solution)
     if solution.outputs is not None:
-        data["mass"] = _along("t", solution.outputs.mass, "total mass, the sum of V u")
+        data["mass"] = along("t", solution.outputs.mass, "total mass, the sum of V u")
     for name, (value, meaning) in solution.estimates.items():
-        data[name] = _scalar(float(value), meaning)
+        data[name] = scalar(float(value), meaning)
     data |= _estimated(solution, estimates)
-    coordinates = {name: _scalar(value, _label(name)) for name, value in _parameters(case).items()}
+    coordinates = {name: scalar(value, _label(name)) for name, value in _parameters(case).items()}
     fields, axes = _fields(solution)
     data |= fields
     coordinates |= axes
     if solution.outputs is not None:
-        coordinates["t"] = _along("t", solution.outputs.times, "output time")
+        coordinates["t"] = along("t", solution.outputs.times, "output time")
     if particles is not None:
         data |= _particle_variables(particles, case.store)
     return xr.Dataset(
@@ -125,20 +134,20 @@ def _fields(solution: Solution) -> tuple[Variables, Variables]:
         middle: tuple[Any, ...] = (..., slice(None), *(case.n,) * (case.dim - 1))
         diagonal = np.einsum("..." + "i" * case.dim + "->...i", u)
         profiles = {
-            "u_axis": ((*first, "x"), u[middle], _describe(f"{strength} for y = 0")),
-            "u_diagonal": ((*first, "x"), diagonal, _describe(f"{strength} for y = x")),
+            "u_axis": ((*first, "x"), u[middle], described(f"{strength} for y = 0")),
+            "u_diagonal": ((*first, "x"), diagonal, described(f"{strength} for y = x")),
         }
-        return profiles, {"x": _along("x", x, place)}
+        return profiles, {"x": along("x", x, place)}
     if case.store == "profile":
         kept = np.abs(x) <= 5.0 * mean_radius(case.alpha) * (1.0 + 1e-12)
         x, u = x[kept], u[..., kept]
     axes = ("x", "y", "z")[: case.dim]
-    coordinates = {axis: _along(axis, x, place) for axis in axes}
+    coordinates = {axis: along(axis, x, place) for axis in axes}
     # The particles of DVM leave the lattice: u is the field that they make on it.
     what = f"field u{when}" if case.kind.moving else strength
-    fields = {"u": ((*first, *axes), u, _describe(what))}
+    fields = {"u": ((*first, *axes), u, described(what))}
     if case.is_graded:
-        fields["volume"] = _along("x", np.asarray(case.volumes)[kept], "particle volume V")
+        fields["volume"] = along("x", np.asarray(case.volumes)[kept], "particle volume V")
     return fields, coordinates
 
 
@@ -146,10 +155,10 @@ def _errors(solution: Solution) -> tuple:
     """Return the error against the fundamental solution, at each output time."""
     meaning, outputs = "relative L1 error, Eqs. (48), (59)", solution.outputs
     if outputs is None:
-        return _scalar(relative_l1_error(solution.case, solution.u), meaning)
+        return scalar(relative_l1_error(solution.case, solution.u), meaning)
     pairs = zip(outputs.times, outputs.u, strict=True)
     errors = [relative_l1_error(solution.case.until(time), u) for time, u in pairs]
-    return _along("t", errors, meaning)
+    return along("t", errors, meaning)
 
 
 def _estimated(solution: Solution, estimates: Sequence[ErrorEstimate]) -> Variables:
@@ -168,8 +177,8 @@ def _estimated(solution: Solution, estimates: Sequence[ErrorEstimate]) -> Variab
     found: Variables = {}
     for part, (name, meaning) in meanings.items():
         values = [float(getattr(one, part)) for one in estimates]
-        along = solution.outputs is not None
-        found[name] = _along("t", values, meaning) if along else _scalar(values[0], meaning)
+        several = solution.outputs is not None
+        found[name] = along("t", values, meaning) if several else scalar(values[0], meaning)
     return found
 
 
@@ -178,29 +187,29 @@ def _particle_variables(run: ParticleRun, store: str) -> Variables:
     was = run.history
     overtaking, eliminated = np.int64(was.overtaking_steps), np.int64(was.eliminated_count)
     data = {
-        "remeshings": _scalar(np.int64(was.remeshings), "number of remeshings"),
-        "largest_spacing": _scalar(was.largest_spacing, "largest spacing after any step"),
-        "overtaking_steps": _scalar(overtaking, "steps that changed the order of the particles"),
-        "eliminated_particles": _scalar(eliminated, "particles left out below the threshold"),
-        "eliminated_strength": _scalar(
+        "remeshings": scalar(np.int64(was.remeshings), "number of remeshings"),
+        "largest_spacing": scalar(was.largest_spacing, "largest spacing after any step"),
+        "overtaking_steps": scalar(overtaking, "steps that changed the order of the particles"),
+        "eliminated_particles": scalar(eliminated, "particles left out below the threshold"),
+        "eliminated_strength": scalar(
             was.eliminated_strength, "total mass of the particles left out"
         ),
-        "lost_strength": _scalar(
+        "lost_strength": scalar(
             was.lost_strength, "total mass that remeshing put beyond the lattice"
         ),
-        "final_particles": _scalar(np.int64(run.x.size), "number of particles at t_final"),
+        "final_particles": scalar(np.int64(run.x.size), "number of particles at t_final"),
     }
     if store == "metrics":
         return data
     mass = "mass of a particle, V u, at t_final"
-    data["particle_position"] = _along("particle", run.x, "position at t_final")
-    data["particle_strength"] = _along("particle", run.strength, mass)
+    data["particle_position"] = along("particle", run.x, "position at t_final")
+    data["particle_strength"] = along("particle", run.strength, mass)
     if was.remeshings:
         # The dimension is not "remeshing", which is a parameter.
         before, where = "largest spacing before a remeshing", "middle of that gap"
-        data["remeshing_time"] = _along("event", was.remeshing_times, "instant of a remeshing")
-        data["spacing_before"] = _along("event", was.spacings_before, before)
-        data["spacing_where"] = _along("event", was.spacings_where, where)
+        data["remeshing_time"] = along("event", was.remeshing_times, "instant of a remeshing")
+        data["spacing_before"] = along("event", was.spacings_before, before)
+        data["spacing_where"] = along("event", was.spacings_where, where)
     return data
 
 
@@ -343,15 +352,18 @@ def _label(name: str) -> str:
     return label_of(fields[name.removeprefix("particle_")]) + _REALISED.get(name, "")
 
 
-def _scalar(value: object, long_name: str) -> tuple:
-    return (), value, _describe(long_name)
+def scalar(value: object, long_name: str) -> tuple:
+    """Return a number or a word as a variable without a dimension."""
+    return (), value, described(long_name)
 
 
-def _along(dimension: str, values: ArrayLike, long_name: str) -> tuple:
-    return (dimension,), np.asarray(values), _describe(long_name)
+def along(dimension: str, values: ArrayLike, long_name: str) -> tuple:
+    """Return numbers as a variable with one dimension."""
+    return (dimension,), np.asarray(values), described(long_name)
 
 
-def _describe(long_name: str) -> dict[str, str]:
+def described(long_name: str) -> dict[str, str]:
+    """Return the attributes of a variable."""
     return {"long_name": long_name, "units": "1"}
 
 

@@ -85,6 +85,7 @@ LIMITS = {
 }
 _LEAST_SMOOTHING = 1.1  # so that theta = 0.92, of a peak between two particles, is above the limit
 ULPS = 64.0  # in T |lambda| 2^-52: measured of a Chebyshev series, for sums by transforms and by a matrix alike
+_WAVES = 64  # of the strengths, of equal shares, at which the symbol is looked at
 _SURFACE = {1: 2.0, 2: 2.0 * np.pi, 3: 4.0 * np.pi}  # of the unit sphere
 
 
@@ -301,7 +302,7 @@ def _wave_error_at_the_end(case: Case, theta: np.ndarray) -> float:
     return _ratio(np.abs(amplitude - exact).sum(), exact.sum())
 
 
-def waves(u: np.ndarray, count: int = 64) -> np.ndarray:
+def waves(u: np.ndarray) -> np.ndarray:
     """Return wavenumbers theta = k h <= pi, to each of which an equal share of sum |u^| belongs; none for u = 0."""
     size = np.abs(np.fft.rfftn(u))
     size[..., 1 : (u.shape[-1] + 1) // 2] *= 2.0  # and its conjugate
@@ -312,7 +313,7 @@ def waves(u: np.ndarray, count: int = 64) -> np.ndarray:
     share = np.cumsum(size.reshape(-1)[order])
     if not share[-1] > 0.0:
         return np.zeros(0)
-    middles = share[-1] * (np.arange(count) + 0.5) / count
+    middles = share[-1] * (np.arange(_WAVES) + 0.5) / _WAVES
     return np.asarray(theta[order[np.searchsorted(share, middles)]])
 
 

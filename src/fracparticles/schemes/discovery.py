@@ -5,28 +5,33 @@ from __future__ import annotations
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import Any
 
 from fracparticles.errors import one_of
 from fracparticles.schemes.base import LatticeScheme, Scheme
 
-__all__ = ["all_schemes", "scheme"]
+__all__ = ["all_schemes", "named_classes", "scheme"]
 
-_PACKAGE = __name__.rpartition(".")[0]
+
+def named_classes(package: str, base: type) -> dict[str, Any]:
+    """Return the classes of `base` that the package's modules define, by name, in the order of their places."""
+    path = import_module(package).__path__
+    modules = [import_module(f"{package}.{one.name}") for one in iter_modules(path)]
+    kinds: list[Any] = [
+        kind
+        for module in modules
+        for kind in vars(module).values()
+        if isinstance(kind, type) and issubclass(kind, base)
+        if kind.__module__ == module.__name__ and "name" in vars(kind)
+    ]
+    return {kind.name: kind for kind in sorted(kinds, key=lambda kind: (kind.place, kind.name))}
 
 
 @cache
 def all_schemes() -> dict[str, Scheme]:
     """Return every scheme by its name, in the order of their places."""
-    package = import_module(_PACKAGE)
-    modules = [import_module(f"{_PACKAGE}.{one.name}") for one in iter_modules(package.__path__)]
-    found = [
-        kind()
-        for module in modules
-        for kind in vars(module).values()
-        if isinstance(kind, type) and issubclass(kind, Scheme)
-        if kind.__module__ == module.__name__ and "name" in vars(kind)
-    ]
-    return {one.name: one for one in sorted(found, key=lambda one: (one.place, one.name))}
+    kinds = named_classes(__name__.rpartition(".")[0], Scheme)
+    return {name: kind() for name, kind in kinds.items()}
 
 
 def scheme(name: str) -> LatticeScheme:

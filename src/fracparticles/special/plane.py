@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from math import gamma, pi
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from scipy.special import gammaln, j0, roots_legendre, xlogy
 from fracparticles.arguments import FloatArray
 from fracparticles.special.quadrature import gauss_legendre
 from fracparticles.special.stable import tail_mass
+from fracparticles.special.tails import plane_constant
 
 __all__ = [
     "planar_asymptotic",
@@ -28,8 +29,8 @@ _LAST_EXPONENT = 45.0  # the largest omega^alpha: exp(-45) is 3e-20
 _OCTANT_NODES = 32  # of the integrals over the angle, whose integrands are smooth
 
 
-def planar_integral(r: ArrayLike, alpha: float, power: float = 0.0) -> FloatArray:
-    """Return (1/2 pi) int_0^inf omega^(1 + power) exp(-omega^alpha) J_0(r omega) domega: (58) for power 0.
+def planar_integral(r: ArrayLike, alpha: float) -> FloatArray:
+    """Return (1/2 pi) int_0^inf omega exp(-omega^alpha) J_0(r omega) domega, (58).
 
     The Gauss-Legendre rule in s, omega = s^2, since this makes the integrand smooth at 0; exact to round-off for
     r <= 100. The result has the shape of r.
@@ -39,7 +40,7 @@ def planar_integral(r: ArrayLike, alpha: float, power: float = 0.0) -> FloatArra
     last = _LAST_EXPONENT ** (0.5 / alpha)
     s, weight = 0.5 * last * (1.0 + x), 0.5 * last * weight
     omega = s * s
-    factor = weight * 2.0 * s * omega ** (1.0 + power) * np.exp(-(omega**alpha)) / (2.0 * pi)
+    factor = weight * 2.0 * s * omega * np.exp(-(omega**alpha)) / (2.0 * pi)
     return np.asarray(j0(np.multiply.outer(np.asarray(r, dtype=float), omega)) @ factor)
 
 
@@ -75,11 +76,10 @@ def square_tail_mass(half_width: float, t: float, alpha: float) -> float:
 def square_exchange_error(half_width: float, alpha: float, time: float) -> float:
     """Return the relative error that truncation to |x|, |y| <= D causes in KPSE and GPSE.
 
-    It is time int c |y|^(-2-alpha) dy over the outside of the square, with c of (4) for n = 2,
-    c = alpha 2^(alpha-1) Gamma(1 + alpha/2) / (pi Gamma(1 - alpha/2)). This is the strength that each particle near the
-    origin keeps instead of giving it to places without particles. For n = 1 see `tails.exchange_truncation_error`.
-    `time` is the time of the run times the diffusivity.
+    It is time int c |y|^(-2-alpha) dy over the outside of the square, with c of (4) for n = 2, `plane_constant`. This
+    is the strength that each particle near the origin keeps instead of giving it to places without particles. For n = 1
+    see `tails.exchange_truncation_error`. `time` is the time of the run times the diffusivity.
     """
-    c = alpha * 2.0 ** (alpha - 1.0) * gamma(1.0 + 0.5 * alpha) / (pi * gamma(1.0 - 0.5 * alpha))
+    c = plane_constant(alpha)
     phi, weight = gauss_legendre(_OCTANT_NODES, 0.0, 0.25 * pi)
     return float(time * 8.0 * c / alpha * (weight @ np.cos(phi) ** alpha) * half_width**-alpha)

@@ -1,6 +1,8 @@
-"""The far field of the fractional Laplacian on the line: its constant, and the error of leaving it out."""
+"""The far field of the fractional Laplacian: its constants, and the error of leaving it out."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,7 +11,7 @@ from scipy.special import gamma
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
 
-__all__ = ["exchange_truncation_error", "tail_constant"]
+__all__ = ["exchange_truncation_error", "plane_constant", "tail_constant"]
 
 
 def tail_constant(alpha: float) -> float:
@@ -21,6 +23,15 @@ def tail_constant(alpha: float) -> float:
     alpha = check.fractional_order(alpha)
     # sin(pi alpha/2) keeps all digits as alpha nears 2.
     return float(gamma(1.0 + alpha) * np.sin(0.5 * np.pi * (2.0 - alpha)) / np.pi)
+
+
+def plane_constant(alpha: float) -> float:
+    """Return c of (-Laplacian)^(alpha/2) u(x) = c int (u(x) - u(y)) |x - y|^(-2-alpha) dy, Eq. (4) for n = 2.
+
+    c = alpha 2^(alpha-1) Gamma(1 + alpha/2) / (pi Gamma(1 - alpha/2)).
+    """
+    numerator = alpha * 2.0 ** (alpha - 1.0) * math.gamma(1.0 + 0.5 * alpha)
+    return numerator / (math.pi * math.gamma(1.0 - 0.5 * alpha))
 
 
 def exchange_truncation_error(half_width: ArrayLike, alpha: float, time: float) -> FloatArray:

@@ -12,12 +12,7 @@ from __future__ import annotations
 from fracparticles.time.chebyshev import ChebyshevSeries, exponential, power
 from fracparticles.time.pieces import Flow, exponential_flow, power_flow
 from fracparticles.time.polynomial import STEP_POLYNOMIALS, StepPolynomial
-from fracparticles.time.snapshots import (
-    Snapshots,
-    exponential_snapshots,
-    march,
-    power_snapshots,
-)
+from fracparticles.time.snapshots import Snapshots, exponential_snapshots, march, power_snapshots
 from fracparticles.time.stepping import single_pass, step
 
 __all__ = [

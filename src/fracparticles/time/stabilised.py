@@ -18,7 +18,15 @@ from functools import lru_cache
 import numpy as np
 
 from fracparticles.time.rkc import ChebyshevStep
-from fracparticles.time.steps import Absolute, Pace, Rate, absolute, blown_up, norm
+from fracparticles.time.steps import (
+    Absolute,
+    ControlledStep,
+    Pace,
+    Rate,
+    absolute,
+    blown_up,
+    norm,
+)
 
 __all__ = ["StabilisedStep", "spectral_radius"]
 
@@ -33,41 +41,17 @@ _CONVERGED = 0.01  # share of rho: a smaller change ends the iteration
 _SHORTEST = 16.0 * 2.0**-52  # the shortest step, relative to t
 
 
-class StabilisedStep:
-    """Steps of u' = R(t, u).
-
-    Parameters
-    ----------
-    rate : callable
-        R(t, u).
-    rtol : float
-    atol : float, or function of t and u
-        The root mean square of Est / (atol + rtol |u|) is at most sqrt(rtol) in each step.
-
-    Attributes
-    ----------
-    accepted, rejected : int
-    largest : float
-        The largest rho that was estimated.
-    """
+class StabilisedStep(ControlledStep):
+    """Steps of RKC2; the root mean square of Est / (atol + rtol |u|) is at most sqrt(rtol) in each."""
 
     def __init__(self, rate: Rate, rtol: float, atol: Absolute) -> None:
-        self._rate, self._rtol, self._atol = rate, rtol, atol
-        self.accepted = self.rejected = 0
-        self.largest, self._rho = 0.0, 0.0
-        self._dt: float | None = None
+        super().__init__(rate, rtol, atol)
+        self._rho = 0.0
         self._before: tuple[float, float] | None = None  # length and error of the last step
         self._mode: np.ndarray | None = None
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
-        """Return u after the time `span`, shape (N,).
-
-        Raises
-        ------
-        NonFiniteSolution
-            If it grows without bound, or comes to where the right-hand side is singular: the steps have shrunk to
-            nothing; says when.
-        """
+        """Return u after the time `span`, shape (N,); raises `NonFiniteSolution` as `EighthOrderStep.advance`."""
         t, end, pace = start, start + span, Pace(start, span)
         r = self._rate(t, u)
         self._look(t, u, r)
@@ -104,7 +88,8 @@ class StabilisedStep:
 
     def forget(self) -> None:
         """Let the next step find its length anew."""
-        self._dt = self._before = None
+        super().forget()
+        self._before = None
 
     def _growth(self, dt: float, error: float) -> float:
         """The ratio of the next step to this one, by a controller that remembers one step."""

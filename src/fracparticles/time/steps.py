@@ -13,6 +13,7 @@ from fracparticles.errors import NonFiniteSolution
 __all__ = [
     "STAGES",
     "Absolute",
+    "ControlledStep",
     "EighthOrderStep",
     "Pace",
     "Rate",
@@ -69,8 +70,8 @@ class Steps(Protocol):
         """Let the next step find its length anew: the right-hand side has changed suddenly."""
 
 
-class EighthOrderStep:
-    """Steps of order 8; the root mean square of their estimated error / (atol + rtol |u|) is at most 1.
+class ControlledStep:
+    """What steps of u' = R(t, u) with an estimated error have in common: their tolerances and counters, see `Steps`.
 
     Parameters
     ----------
@@ -85,6 +86,14 @@ class EighthOrderStep:
         self.accepted = self.rejected = 0
         self.largest = 0.0
         self._dt: float | None = None
+
+    def forget(self) -> None:
+        """Let the next step find its length anew."""
+        self._dt = None
+
+
+class EighthOrderStep(ControlledStep):
+    """Steps of order 8; the root mean square of their estimated error / (atol + rtol |u|) is at most 1."""
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u after the time `span`, of any shape.
@@ -121,10 +130,6 @@ class EighthOrderStep:
         self.rejected += round((solver.nfev - began) / STAGES) - taken
         self._dt = solver.h_abs
         return np.asarray(unit * solver.y).reshape(u.shape)
-
-    def forget(self) -> None:
-        """Let the next step find its length anew."""
-        self._dt = None
 
 
 class Pace:

@@ -33,14 +33,7 @@ from fracparticles.special.images import (
 )
 from fracparticles.time.exponents import SAME
 from fracparticles.time.meeting import Meeting
-from fracparticles.time.multipoles import (
-    HARMONICS,
-    Monomial,
-    Terms,
-    monomial,
-    terms_of,
-    values_of,
-)
+from fracparticles.time.multipoles import HARMONICS, Monomial, Terms, monomial, terms_of, values_of
 
 __all__ = ["Tails"]
 

@@ -25,7 +25,7 @@ def test_fundamental_solution(tmp_path):
     row = result.table.iloc[0]
     assert row["ours, error below"] <= 1e-13
     assert row["scipy, largest error"] > row["ours, error below"]
-    figure(result.series, result.table, shown=[1.5]).draw_without_rendering()
+    figure(result.series, shown=[1.5]).draw_without_rendering()
 
 
 def _by_series(x: float, alpha: float) -> mp.mpf:

@@ -25,7 +25,7 @@ def test_maps(computed):
     # The exchange conserves: at t_f it holds the mass inside the square at t_0, up to the midpoint rule.
     half = Case(scheme="KPSE", **GRID).reach
     assert kpse["mass at t_f"] == pytest.approx(1.0 - square_tail_mass(half, 0.5, 1.5), abs=2e-3)
-    figure(result.series, result.table, maps=MAPS).draw_without_rendering()
+    figure(result.series, maps=MAPS).draw_without_rendering()
 
 
 def test_runs_without_a_field_are_refused(computed):

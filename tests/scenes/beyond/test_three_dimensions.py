@@ -38,4 +38,4 @@ def test_sizes_orders_and_figure(result):
     # Two h for six pairs of scheme and order.
     assert table["order from the h above"].notna().sum() == 6
     assert (series["work"] > 0.0).all()
-    assert len(figure(series, table).axes) == 2
+    assert len(figure(series).axes) == 2

@@ -71,7 +71,7 @@ def test_with_the_open_exterior_the_strength_leaves_as_in_the_exact_solution(res
 
 
 def test_the_figure_is_drawn(result):
-    assert figure(result.series, result.table).axes
+    assert figure(result.series).axes
 
 
 def test_the_particles_of_dvm_spread_as_the_solution(result):

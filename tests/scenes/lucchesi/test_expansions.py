@@ -22,7 +22,7 @@ def test_expansions(alpha, item):
     assert asymptotic["gain"] > 1.0
     assert max(even.values()) < 1e-13
     assert overlap["far"] > overlap["near"]
-    drawn = figure(result.series, result.table, alpha=alpha)
+    drawn = figure(result.series, alpha=alpha)
     assert isinstance(drawn, Figure)
     drawn.draw_without_rendering()
 

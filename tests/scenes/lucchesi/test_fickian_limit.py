@@ -69,4 +69,4 @@ def test_fickian_limit(computed):
     singular = found["L-C17.singular_limit"]
     np.testing.assert_allclose(singular["order"], 1.0, atol=0.05)
     assert min(singular["growth"].values()) > 0.0 == singular["at_two"]
-    figure(result.series, result.table).draw_without_rendering()
+    figure(result.series).draw_without_rendering()

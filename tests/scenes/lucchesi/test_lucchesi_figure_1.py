@@ -44,7 +44,7 @@ def test_kernels():
     extrema = found["L-KERNELS.F_single_minimum"]
     assert set(extrema.numbers["extrema"].values()) == {1}
     assert next(iter(extrema.others.values()))["extrema"]["beta = 0.9"] == 3
-    drawn = figure(result.series, result.table)
+    drawn = figure(result.series)
     assert len(drawn.axes) == 3
     drawn.draw_without_rendering()
 

@@ -54,4 +54,4 @@ def test_the_reference_case_is_measured_in_both_windows(computed):
     assert set(numbers["L-C2.fd_comparable"]["ratio"]) == {"DD", "FPSE", "KPSE", "GPSE"}
     assert set(result.series["panel"]) == {0, 1}
     assert isinstance(result.table, pd.DataFrame)
-    assert len(figure(result.series, result.table).axes) == 3
+    assert len(figure(result.series).axes) == 3

@@ -67,7 +67,7 @@ def test_power_iteration_comes_from_above(result):
 
 
 def test_figure_renders(result):
-    drawn = figure(result.series, result.table, beta=BETAS)
+    drawn = figure(result.series, beta=BETAS)
     assert isinstance(drawn, Figure)
     assert len(drawn.axes) == 2
     drawn.draw_without_rendering()

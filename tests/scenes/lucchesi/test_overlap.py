@@ -43,4 +43,4 @@ def test_how_sensitive_each_scheme_is(result):
     assert numbers["L-C9.KPSE"]["change"]["IV"] < 0.25
     # At these overlaps the quadrature error is exp(-(2 pi)^2), and the order that of the kernel.
     assert max(numbers["L-C9.DD"]["order"].values()) < 0.15
-    assert len(figure(result.series, result.table, shown_beta=0.5).axes) == 2
+    assert len(figure(result.series, shown_beta=0.5).axes) == 2

@@ -53,7 +53,7 @@ def test_dpse(computed):
     row = result.table.set_index("scheme").loc["DPSE"]
     assert row["u / exact at |x| = D"] > 10.0
     assert abs(row["with v continued"]) < 0.1 * row["error of du/dt at D"]
-    assert draw_dpse(result.series, result.table).axes
+    assert draw_dpse(result.series).axes
 
 
 @pytest.mark.filterwarnings("ignore::fracparticles.errors.StabilityWarning")  # it grows
@@ -75,7 +75,7 @@ def test_scheme_29(computed):
     assert "no longer finite after step" in instability["message"]
     growing = result.table["greatest eigenvalue, λ h^α / D"]
     assert (growing > 0.09).all()
-    assert len(draw_29(result.series, result.table, shown_beta=0.5).axes) == 3
+    assert len(draw_29(result.series, shown_beta=0.5).axes) == 3
 
 
 def test_riesz(computed):
@@ -93,4 +93,4 @@ def test_riesz(computed):
     assert min(poor["ratio"].values()) > 10.0
     assert list(worst["rise"]) == ["alpha = 1.5", "alpha = 1.9"]
     assert min(worst["rise"].values()) > 1.0
-    assert len(draw_riesz(result.series, result.table).axes) == 3
+    assert len(draw_riesz(result.series).axes) == 3

@@ -55,7 +55,7 @@ def test_the_orders_of_the_kernels_are_found(computed):
     assert max(found["L-C8.cause"]["share"].values()) < 0.01
     assert min(found["L-C7.large_domain"]["short"].values()) > 0.5
     assert max(found["L-C7.large_domain"]["large"].values()) < 0.2
-    assert figure(result.series, table).axes
+    assert figure(result.series).axes
 
 
 def test_the_settled_order_is_of_the_finest_levels_that_show_the_spatial_error():

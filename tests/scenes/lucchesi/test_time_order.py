@@ -36,4 +36,4 @@ def test_every_claim_is_measured_and_the_figure_is_drawn(result):
         f"L-C10.{scheme}.{name}" for scheme in ("DD", "FPSE", "KPSE") for name in ("RK1", "RK2")
     }
     assert all(found["away"]["beta = 0.5"] < 0.15 for found in numbers.values())
-    assert figure(result.series, result.table).axes
+    assert figure(result.series).axes

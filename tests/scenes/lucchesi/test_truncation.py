@@ -35,7 +35,7 @@ def test_every_scheme_order_and_width_is_tabulated(truncated):
         kpse["error, truncated"], kpse["truncation error, predicted"], rtol=0.3
     )
     assert (kpse["error, open exterior"] < kpse["error, truncated"]).all()
-    assert figure.figure(truncated.series, table).axes
+    assert figure.figure(truncated.series).axes
 
 
 def test_the_truncation_is_a_share_of_the_error(truncated):
@@ -66,7 +66,7 @@ def test_the_claims_read_the_tables(truncated):
     change = numbers["L-C6.levels_off"]["change"]["beta = 0.5"]
     assert change == pytest.approx(2.0**1.5 - 1.0, rel=0.05)
     assert numbers["L-C4.independent.DD"]["variation"]["II, beta = 0.5"] < 0.01
-    assert len(figure_of_claims.figure(result.series, result.table).axes) == 3
+    assert len(figure_of_claims.figure(result.series).axes) == 3
 
 
 def test_another_scene_takes_other_beta_schemes_and_orders(computed):
@@ -77,7 +77,7 @@ def test_another_scene_takes_other_beta_schemes_and_orders(computed):
     assert list(result.table["order"].unique()) == ["IV", "VI"]
     assert (result.table["beta"] == 0.7).all()
     assert not result.findings
-    assert figure.figure(result.series, result.table).axes
+    assert figure.figure(result.series).axes
 
 
 def test_a_scene_without_the_open_exterior_is_refused(tmp_path):

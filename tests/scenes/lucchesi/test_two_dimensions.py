@@ -83,7 +83,7 @@ def test_density():
     assert numbers["equation"] < 1e-7
     # At the origin d/dt of t^(-2 / alpha) Phi(0) is -2 Phi(0) / alpha.
     assert numbers["rate"] == pytest.approx(-2.0 * green(0.0, 1.0, ALPHA, 2) / ALPHA, rel=1e-9)
-    draw_density(result.series, result.table, beta=0.5, reach=reach).draw_without_rendering()
+    draw_density(result.series, beta=0.5, reach=reach).draw_without_rendering()
 
 
 def test_operators():
@@ -119,7 +119,7 @@ def test_profiles(computed):
     assert max(numbers["L-C19.slightly"]["deviation"].values()) > 0.25
     (plotted,) = findings(result)["L-C19.slightly"].others.values()
     assert max(plotted["deviation"].values()) < 0.25
-    draw_profiles(result.series, result.table).draw_without_rendering()
+    draw_profiles(result.series).draw_without_rendering()
 
 
 def test_errors(computed):
@@ -149,11 +149,11 @@ def test_errors(computed):
     # The observed order is that between a lattice and the one before.
     pair = dd["error (59), truncated"]
     assert dd["observed order, truncated"].loc[65] == pytest.approx(np.log2(pair[33] / pair[65]))
-    draw_errors(result.series, result.table, particles=[17, 33, 65]).draw_without_rendering()
+    draw_errors(result.series, particles=[17, 33, 65]).draw_without_rendering()
     # On other lattices than the printed ones there is nothing to judge, and no failure.
     other = errors(inputs, particles=[41, 81])
     assert not other.findings
-    draw_errors(other.series, other.table, particles=[41, 81]).draw_without_rendering()
+    draw_errors(other.series, particles=[41, 81]).draw_without_rendering()
 
 
 PRINTED = {
@@ -205,4 +205,4 @@ def test_tables(computed):
     # ~ epsilon^-alpha.
     spurious = np.log2(dd["spurious decay in the run, step 0.1"])
     np.testing.assert_allclose(np.diff(spurious), ALPHA, atol=0.1)
-    draw_tables(result.series, result.table).draw_without_rendering()
+    draw_tables(result.series).draw_without_rendering()

@@ -30,4 +30,4 @@ def result(scene, parameters):
 @pytest.fixture(scope="module")
 def panels(scene, result, parameters):
     """The axes of the figure, drawn."""
-    return call(scene.function("figure"), result.series, result.table, **parameters).axes
+    return call(scene.function("figure"), result.series, **parameters).axes

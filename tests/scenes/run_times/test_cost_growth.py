@@ -85,7 +85,7 @@ def test_study_and_figure_take_what_was_measured_without_memory(growth, tmp_path
     result = cost_growth(given, extrapolate_to=TARGET)
     assert len(result.table) == len(frame) + 2 * 4
     assert result.table["peak memory / GB"].isna().all()
-    save(draw(result.series, result.table), tmp_path / "growth")
+    save(draw(result.series), tmp_path / "growth")
     assert (tmp_path / "growth.png").stat().st_size > 0
 
 
@@ -244,7 +244,7 @@ def test_the_series_holds_what_was_measured_and_one_point_more(result):
 
 
 def test_the_figure_draws_a_column_a_dimension(result, tmp_path):
-    figure = draw(result.series, result.table)
+    figure = draw(result.series)
     assert len(figure.axes) == 4
     save(figure, tmp_path / "growth")
     assert (tmp_path / "growth.svg").stat().st_size > 0

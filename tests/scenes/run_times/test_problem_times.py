@@ -349,7 +349,7 @@ def test_the_table_says_who_is_first_to_what():
 def test_figure_and_caption_can_be_made_from_the_smoke_grid(frame, tmp_path):
     inputs = Inputs("problem_times", benchmarks={"problem_times": frame})
     result = call(SCENE.function("study"), inputs, **SCENE.parameters)
-    drawn = call(SCENE.function("figure"), result.series, result.table, **SCENE.parameters)
+    drawn = call(SCENE.function("figure"), result.series, **SCENE.parameters)
     assert sum(ax.get_visible() for ax in drawn.axes) == len(CONTESTS)
     (tmp_path / "tables").mkdir()
     result.table.to_csv(tmp_path / "tables/problem_times.csv", index=False)

@@ -203,7 +203,7 @@ def test_the_figures_are_drawn_from_the_results(integrations, parts, tmp_path):
         result = study(inputs(name, frame))
         file = tmp_path / f"{name}.csv"
         result.series.to_csv(file, index=False)  # figures are drawn from files
-        figure = draw(pd.read_csv(file), result.table)
+        figure = draw(pd.read_csv(file))
         save(figure, tmp_path / name)
         assert len(figure.axes) == 2
         assert (tmp_path / f"{name}.svg").stat().st_size > 0

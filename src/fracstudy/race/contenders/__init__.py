@@ -3,9 +3,9 @@
 One small module each, with classes of `Contender`; they are found by their files.
 """
 
+from fracparticles.schemes.discovery import named_classes
 from fracstudy.race.contender import Contender
-from fracstudy.race.discovery import found
 
 __all__ = ["CONTENDERS"]
 
-CONTENDERS: dict[str, type[Contender]] = found(__name__, Contender)
+CONTENDERS: dict[str, type[Contender]] = named_classes(__name__, Contender)

@@ -3,9 +3,9 @@
 One small module each, with a class of `Problem`; it is found by its file.
 """
 
-from fracstudy.race.discovery import found
+from fracparticles.schemes.discovery import named_classes
 from fracstudy.race.problem import Problem
 
 __all__ = ["PROBLEMS"]
 
-PROBLEMS: dict[str, type[Problem]] = found(__name__, Problem)
+PROBLEMS: dict[str, type[Problem]] = named_classes(__name__, Problem)

@@ -25,7 +25,7 @@ _DOTS: Look = {"color": RED, "marker": "o", "markersize": 2.5, "linestyle": ""}
 _DOTS |= {"alpha": 0.5, "markeredgewidth": 0.0}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the paths of the particles, (b) the spacing against position, (c) the overlap against time."""
     titles = ("paths, no remeshing", "spacing", "least overlap")
     drawn, axes = axes_row(titles, width=3.5, height=3.9)

@@ -25,7 +25,7 @@ _REMESHINGS = {  # colour, marker, label
 _KINDS = {"II, field (7)": "-", "II, strengths": ":", "IV, field (7)": "--"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: float) -> Figure:
+def figure(series: pd.DataFrame, *, shown: float) -> Figure:
     """Draw (a) the error against h, (b) the deviation along x, (c) the error in time against the step."""
     titles = ("error", rf"near the peak, $h = {shown:.3g}$", "error in time")
     drawn, axes = axes_row(titles, width=3.5, height=3.9)

@@ -14,7 +14,7 @@ _CURVES: dict[str, Look] = {
 _ROUND_OFF: Look = {"color": "0.5", "linestyle": ":", "label": "round-off, $2^{-53}$"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[float]) -> Figure:
+def figure(series: pd.DataFrame, *, shown: list[float]) -> Figure:
     """Draw the error against x, a panel an alpha."""
     figure, axes = axes_row(len(shown), height=3.2, width=3.0, sharey=True)
     for letter, ax, alpha in zip("abcdefgh", axes, shown, strict=False):

@@ -12,7 +12,7 @@ _STYLES = ("-", "--", ":")
 _FLOOR = scheme_style("GPSE", color="0.35", markersize=3.5, markerfacecolor="0.35")
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw a panel a scheme: a shade an order, a line style an overlap, and GPSE in one step as the floor."""
     by_scheme = dict(tuple(series.sort_values("h").groupby("scheme")))
     floor = by_scheme.pop("GPSE", series.iloc[:0])

@@ -25,7 +25,7 @@ _BARS: dict[str, Look] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, maps: list[list[Any]]) -> Figure:
+def figure(series: pd.DataFrame, *, maps: list[list[Any]]) -> Figure:
     """Draw the maps, truncated above and open below; one colour scale for each quantity."""
     figure = Figure(figsize=(2.45 * len(maps), 5.9), layout="constrained")
     axes = figure.subplots(2, len(maps), sharex=True, sharey=True)

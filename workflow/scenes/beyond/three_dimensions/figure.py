@@ -17,7 +17,7 @@ _SMALL["color"] = COLOURS["GPSE"]
 _ARROW = {"arrowstyle": "-|>", "color": COLOURS["GPSE"], "shrinkB": 0.0}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the error against h, (b) the error against the floating-point operations of the run."""
     figure, axes = axes_row(2, height=4.6, width=4.4, sharey=True)
     series = series.sort_values("h")

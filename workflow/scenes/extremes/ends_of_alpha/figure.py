@@ -18,7 +18,7 @@ _LINES: dict[str, Look] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """(a) alpha to 1, (b) alpha to 2: what the limits would leave, and what the functions leave."""
     ends = {"one": 1, "two": 2}
     titles = [rf"$\alpha \to {end}$" for end in ends.values()]

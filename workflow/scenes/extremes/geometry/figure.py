@@ -24,7 +24,7 @@ _KINDS = dict(zip(_WORDS, "os^DPv", strict=True))
 _POINT: Look = {"linestyle": "none", "markerfacecolor": "none", "markersize": 4.5}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """One point a run: silent where no estimate is above its limit, and then right."""
     drawn, (ax,) = axes_row(1, height=4.0, width=6.0)
     for (kind, said), points in series.groupby(["panel", "series"]):

@@ -17,7 +17,7 @@ _LEVELS: dict[str, Look] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """(a) The error of du/dt against the jitter, (b) against h for a fixed overlap."""
     titles = ("error due to disorder", r"KPSE, $\epsilon = 2 h$")
     drawn, (jitter, spacing) = style.axes_row(titles, height=3.7)

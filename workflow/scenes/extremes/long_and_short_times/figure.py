@@ -10,7 +10,7 @@ from fracstudy.style import Figure
 _LOOKS = ((style.BLUE, "o"), (style.RED, "s"), (style.GREEN, "^"), (style.PINK, "D"))
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, betas: list[float]) -> Figure:
+def figure(series: pd.DataFrame, *, betas: list[float]) -> Figure:
     """(a) the profile, scaled; (b) the error relative to its peak."""
     alpha = 1.0 + (betas[0] if len(betas) == 1 else betas[1])
     of_profile = rf"line: exact; markers: graded particles, $\alpha = {alpha:g}$"

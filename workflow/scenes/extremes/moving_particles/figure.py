@@ -18,7 +18,7 @@ _HOLLOW: Look = {"linestyle": "none", "markerfacecolor": "none"}
 _ASKED = 0.05
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """(a) Growth of the fastest wave in a step, (b) error against smoothing length over spacing."""
     titles = ("lines: predicted, markers: measured", "a warning is required above the dotted line")
     drawn, (growth, error) = style.axes_row(titles, height=3.7)

@@ -16,7 +16,7 @@ _LOOK: dict[str, Look] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw the relative drift of the mass against the number of steps, between the two laws."""
     drawn, (ax,) = style.axes_row(1, height=3.8, width=5.4)
     for name, look in _LOOK.items():

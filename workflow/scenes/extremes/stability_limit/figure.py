@@ -15,7 +15,7 @@ _INTEGRATORS = {"euler": "D", "rk2": "o", "rk4": "^"}
 _POINTS: Look = {"linestyle": "none", "markerfacecolor": "none", "markersize": 5.0}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw nine maps, a row a scheme and a column an order, and beside them the growth per step."""
     maps = pick(series, panel="map")
     names = list(dict.fromkeys(maps["series"]))

@@ -17,7 +17,7 @@ _LOOK: dict[str, Look] = {
 _LABELS = {"applications": "operator applications", "error": "relative error"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) applications and (b) errors of KPSE; ways that take too many applications have no error."""
     drawn, axes = style.axes_row(("work", "error"), height=3.6)
     for ax, (panel, label) in zip(axes, _LABELS.items(), strict=True):

@@ -12,7 +12,7 @@ _PANELS = (("rl_integral", "sin"), ("caputo", "cos"), ("rl_derivative", "sin"))
 _FAINT: Look = {"color": SUMS["modified"][1], "alpha": 0.35}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw the error (39) of each operator's worst function against s; faint: the real part of the modified sum."""
     titles = [f"{OPERATORS[operator].axis}, {TITLES[name]}" for operator, name in _PANELS]
     drawn, axes = axes_row(titles, height=3.5, width=3.1, sharey=True)

@@ -12,7 +12,7 @@ _HOLLOW: Look = {"marker": "o", "linestyle": "", "markerfacecolor": "none"}
 _HOLLOW["color"] = SUMS["standard"][1]
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, operator: str) -> Figure:
+def figure(series: pd.DataFrame, *, operator: str) -> Figure:
     """Draw, a column for each function, the operator and the absolute error (38) of the three sums."""
     names = list(dict.fromkeys(series["function"]))
     drawn = Figure(figsize=(2.5 * len(names), 4.9), layout="constrained")

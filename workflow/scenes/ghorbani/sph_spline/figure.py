@@ -13,7 +13,7 @@ _KERNEL = {
 _SUMS = {"sum": (r"$\sum s\,W_{ij}$", BLUE), "L": (r"$L_i$ of (19)", RED)}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, smoothing_ratio: float) -> Figure:
+def figure(series: pd.DataFrame, *, smoothing_ratio: float) -> Figure:
     """Draw (a) the spline, its gradient and its integral; (b) its two sums over equally spaced particles."""
     drawn, (kernel, sums) = axes_row(2, height=3.0, width=3.8)
     curves = dict(tuple(series.groupby("curve")))

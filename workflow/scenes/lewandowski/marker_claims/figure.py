@@ -10,7 +10,7 @@ from scenes.lewandowski.square_profile import LOADINGS, SquareRuns
 _MARKERS = {"S1": "s", "S2": "D", "S3": "v", "S4": "o", "S8": "^"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, run: SquareRuns) -> Figure:
+def figure(series: pd.DataFrame, *, run: SquareRuns) -> Figure:
     """Draw (a) E by markers per eps, (b) the best eps, (c) the parts of the error, (d) F that turns negative."""
     titles = [
         "number of markers; grey: 10 to 15",

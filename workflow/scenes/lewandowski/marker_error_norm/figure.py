@@ -8,7 +8,7 @@ from fracstudy.style import Axes, Figure, axes_row, draw, entry, legend_below, n
 from scenes.lewandowski.marker_style import LOADING_LOOKS, symbol
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw E(t) for each shape function, all starts; for S7 also with the printed constant."""
     shapes = list(series.loc[series["panel"] == "E", "series"].unique())
     figure, axes = axes_row(len(shapes), height=3.7, width=3.0, sharey=True)

@@ -7,7 +7,7 @@ from fracstudy.style import Figure, draw, entry, legend_below
 from scenes.lewandowski import marker_style as look
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw F: a column for each shape function, a row for each start, markers below."""
     shapes = list(series.loc[series["panel"] == "markers", "series"].unique())
     figure, panels, _ = look.shape_panels(shapes, tuple(look.LOADING_LOOKS), first=8)

@@ -18,7 +18,7 @@ _FIGURES = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, support: float, shown: float) -> Figure:
+def figure(series: pd.DataFrame, *, support: float, shown: float) -> Figure:
     """Draw Figs. 1-4 at the x_0 shown, and below them the errors against x_0."""
     figure = Figure(figsize=(8.8, 5.6), layout="constrained")
     grid = figure.add_gridspec(2, 4, height_ratios=(1.0, 1.0))

@@ -10,7 +10,7 @@ from scenes.lewandowski import marker_style as look
 _REPRESENTED = {"color": "0.55", "linewidth": 0.9}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw F at the markers, f there, and f as the same markers represent it; below, the spectrum of the markers."""
     shapes = list(series.loc[series["panel"] == "field", "series"].unique())
     starts = ("midpoints", "random")

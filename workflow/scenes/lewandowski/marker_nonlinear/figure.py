@@ -11,7 +11,7 @@ from scenes.lewandowski.marker_style import HOLLOW
 _SMALL: Look = {"fontsize": 7.5}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, dt: float, scan_until: float) -> Figure:
+def figure(series: pd.DataFrame, *, dt: float, scan_until: float) -> Figure:
     """Draw (a) the profiles, (b) the step, (c) where the solution vanishes, (d) how the steady state is met."""
     titles = [
         "Figs. 17 and 18",

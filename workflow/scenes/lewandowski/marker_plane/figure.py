@@ -19,7 +19,7 @@ _GREYS: Look = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: dict[str, Any]) -> Figure:
+def figure(series: pd.DataFrame, *, shown: dict[str, Any]) -> Figure:
     """Draw the markers of each loading on the density, and the errors against a."""
     figure, axes = axes_row([*_LOOKS, "errors"], height=3.1, width=2.75)
     density = pick(series, panel="density").pivot(index="y", columns="x", values="z")

@@ -8,7 +8,7 @@ from scenes.lewandowski.marker_style import SHAPE_COLOURS, symbol
 from scenes.lewandowski.square_profile import SHAPES
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, wavenumbers: float) -> Figure:
+def figure(series: pd.DataFrame, *, wavenumbers: float) -> Figure:
     """Draw (a) the shape functions and (b) their Fourier transforms, enlarged where they change sign."""
     figure, (shapes, transforms) = axes_row(2, height=3.9, width=4.4)
     for name, colour in SHAPE_COLOURS.items():

@@ -12,9 +12,7 @@ _TICKS = {"error": (0.02, 0.05, 0.1, 0.2, 0.5), "slope": (1, 2, 5, 10, 20, 50)}
 _LABELS = {"error": "relative $L^2$ error", "slope": r"$\max|F_x| \,/\, \max|f_x|$"}
 
 
-def figure(
-    series: pd.DataFrame, table: pd.DataFrame, *, shown: list[float], run: SquareRuns
-) -> Figure:
+def figure(series: pd.DataFrame, *, shown: list[float], run: SquareRuns) -> Figure:
     """Draw Figs. 5-7 in the order of eps, and error and slope against eps."""
     figure = Figure(figsize=(8.8, 5.8), layout="constrained")
     grid = figure.add_gridspec(2, 6, height_ratios=(1.0, 1.0))

@@ -18,9 +18,7 @@ _PROFILES: dict[str, tuple[str, Look]] = {
 }
 
 
-def figure(
-    series: pd.DataFrame, table: pd.DataFrame, *, burgers: dict[str, Any], source: dict[str, Any]
-) -> Figure:
+def figure(series: pd.DataFrame, *, burgers: dict[str, Any], source: dict[str, Any]) -> Figure:
     """Draw (a) Burgers' equation, (b) a soliton, (c) a source, (d) the errors."""
     profile, t = rf"{source['q']['0']:g}\,\exp(-x^2)", source["t_final"]
     titles = [

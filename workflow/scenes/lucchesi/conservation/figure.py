@@ -12,7 +12,7 @@ _SIZES = {"DD": 9.0, "FPSE": 7.0, "KPSE": 5.0}  # of the rings
 _FREE: Look = {"markerfacecolor": "none", "linestyle": "--"}  # not remeshed
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """|M / M0 - 1|: round-off below, what leaves the lattice above."""
     figure, (ax,) = axes_row(1, width=6.4, height=4.2)
     series = series.sort_values("x").assign(y=series["y"].clip(lower=_FLOOR))

@@ -16,7 +16,7 @@ _LOOKS: dict[str, Look] = {
 _CROSS: Look = {"marker": "x", "linestyle": "", "markersize": 6, "markeredgewidth": 1.5}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the factor of a wave in a step and (b) the error of runs, against the step over DD's limit."""
     titles = ("growth of the worst wave", "error of runs")
     drawn, (growth, error) = axes_row(titles, width=4.5, height=3.9)

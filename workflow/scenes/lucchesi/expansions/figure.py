@@ -14,7 +14,7 @@ _EXACT: Look = {"color": COLOURS["exact"], "linewidth": 3.0, "alpha": 0.25}
 _SYMBOLS: Look = {"linestyle": "", "markersize": 4, "markerfacecolor": "white"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, alpha: float) -> Figure:
+def figure(series: pd.DataFrame, *, alpha: float) -> Figure:
     """Draw the function, partial sums of (A.1) as lines and of (A.2) as symbols, and their errors."""
     figure, (left, right) = axes_row(2, height=3.7)
     exact = pick(series, series="exact").set_index("x")["y"]

@@ -13,7 +13,7 @@ from fracstudy.style import Figure, axes_row, draw, entry, legend_below, log_log
 _LINES = {2: ("-", "order II"), 4: ("--", "order IV")}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) K for alpha towards 2 and Phi, (b) the error of (35), (c) the second moment up to r."""
     figure, (kernels, errors, moments) = axes_row(3, height=3.4, width=3.1)
     *below, limit = sorted(series["alpha"].unique())

@@ -9,7 +9,7 @@ from scenes.plane import spacing_axes
 _LEGENDS = {"DD": "lower right", "FPSE": "upper left"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw a panel for each scheme, with a line for each step of the table."""
     figure, axes = axes_row(list(_LEGENDS), height=3.9, sharey=True)
     series, last = series.sort_values("h"), series["step"].max()

@@ -16,7 +16,7 @@ _NAMES = {
 _ARROW: Look = {"arrowstyle": "-", "color": "0.5", "linewidth": 0.8}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) kappa, (b) the Green's function and K, (c) K near the change of sign of order IV."""
     figure, (potential, tails, near) = axes_row(3, height=3.3, width=3.0)
     colours = dict(zip(sorted(series["beta"].unique()), _COLOURS, strict=False))

@@ -22,7 +22,7 @@ _PANELS = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """The two windows of the figure, and the second one with the open exterior."""
     figure, axes = axes_row(list(_PANELS), width=3.3, height=3.3)
     # In units of 1e-7 at the boundary, as the axis says.

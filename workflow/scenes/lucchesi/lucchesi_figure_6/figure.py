@@ -19,7 +19,7 @@ _WAYS = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: float, reach: list[float]) -> Figure:
+def figure(series: pd.DataFrame, *, beta: float, reach: list[float]) -> Figure:
     """Draw the densities (a) near the origin and (b) far from it, and (c) the deviations."""
     figure, (near, far, deviation) = axes_row(3, width=3.4, height=3.3)
     curves = {name: part.set_index("r")["y"] for name, part in series.groupby("series")}

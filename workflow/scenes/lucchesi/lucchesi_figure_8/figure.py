@@ -10,7 +10,7 @@ _NOTE: Look = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "top"
 _OPEN = {"linestyle": "--", "marker": ""}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw u along the two lines (above) and its relative error (below), truncated and open."""
     figure = Figure(figsize=(8.6, 6.4), layout="constrained")
     rows = figure.subplots(2, 2, sharex="col", height_ratios=(1.0, 1.0))

@@ -25,7 +25,7 @@ _KEY = [
 ]
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, particles: list[int]) -> Figure:
+def figure(series: pd.DataFrame, *, particles: list[int]) -> Figure:
     """Draw (a) the paper's schemes, strengths and field (7); (b) all schemes, truncated and open."""
     series = pick(series, C=series["C"].min()).sort_values("h")
     groups = dict(iter(series.groupby(["scheme", "order", "exterior"])))

@@ -12,7 +12,7 @@ _ABOVE = {"FPSE": 0.45, "DD": 0.2, "KPSE": 0.2}  # where the name of a scheme st
 _PRINTED: Look = {"linestyle": "", "markerfacecolor": "white"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, beta: list[float]) -> Figure:
+def figure(series: pd.DataFrame, *, beta: list[float]) -> Figure:
     """Draw (a) the limit a against beta with the printed values, (b) the symbols at the middle beta."""
     figure, (left, right) = axes_row(2, height=3.6)
     panels = dict(list(series.groupby("panel")))

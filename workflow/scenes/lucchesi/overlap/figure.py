@@ -9,7 +9,7 @@ from scenes.lucchesi.exteriors import exterior_panels
 _INSIDE: Look = {"xycoords": ("data", "axes fraction"), "ha": "right", "va": "bottom"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown_beta: float) -> Figure:
+def figure(series: pd.DataFrame, *, shown_beta: float) -> Figure:
     """The paper's truncated lattice beside the open exterior; shaded where the kernels do not overlap."""
     series = pick(series, beta=shown_beta)
     figure, axes = exterior_panels(series, height=3.6, sharex=True)

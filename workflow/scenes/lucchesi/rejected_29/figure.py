@@ -15,7 +15,7 @@ _EIGENVALUES = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown_beta: float) -> Figure:
+def figure(series: pd.DataFrame, *, shown_beta: float) -> Figure:
     """Draw (a) the kernel, (b) the eigenvalues beside those of DD, (c) runs that grow at the end of the lattice."""
     titles = ("kernel of (29)", rf"spectrum, $\beta = {shown_beta:g}$", "growth")
     figure, axes = axes_row(titles, width=3.4, height=3.6)

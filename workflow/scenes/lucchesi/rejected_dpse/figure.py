@@ -13,7 +13,7 @@ _OWN: dict[str, Look] = {"DPSE": {"linewidth": 4.0, "markersize": 8.0}}
 _OWN["DD"] = {"linestyle": "--"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the solution next to the end, (b) the relative error against the distance from it."""
     titles = ("at the end of the lattice", "relative error, from the centre to the end")
     figure, (end, relative) = axes_row(titles, height=3.6)

@@ -19,7 +19,7 @@ _LEGEND = [
 ]
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the flux at the largest alpha, (b) the errors of the flux, (c) those of the solution."""
     profile = pick(series, panel="profile")
     titles = (rf"flux, $\alpha = {profile['alpha'].iloc[0]:g}$", "flux", "solution")

@@ -10,7 +10,7 @@ _RING: Look = {"linestyle": "none", "marker": "o", "markersize": 9}
 _RING |= {"markerfacecolor": "none", "alpha": 0.6, "color": COLOURS["KPSE"]}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw the errors with slope triangles, and rings where the integration is exact in time."""
     exact = series["integrator"] == "exponential"
     rings, series = series[exact].sort_values(["order", "x"]), series[~exact]

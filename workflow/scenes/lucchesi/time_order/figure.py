@@ -17,7 +17,7 @@ _INTEGRATORS: dict[str, tuple[str, Any, int]] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """One panel a beta. The schemes lie on each other: hollow markers of three sizes."""
     betas, schemes = sorted(series["beta"].unique()), sorted(series["scheme"].unique())
     looks: dict[str, Look] = {

@@ -6,7 +6,7 @@ from fracstudy.style import Figure, guide, name_ticks, scheme_legend
 from scenes.lucchesi.exteriors import exterior_panels
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw the errors; a dotted guide falls like C^-alpha."""
     figure, axes = exterior_panels(series)
     for ax in axes:

@@ -10,7 +10,7 @@ _PREDICTED: Look = {"color": "0.6", "linewidth": 4}
 _EITHER: Look = {"color": "0.3", "marker": "o", "linestyle": "none"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw one panel a beta: filled markers for the truncated lattice, open ones for the open exterior."""
     betas = sorted(series["beta"].unique())
     titles = [rf"$\beta = {beta:g}$" for beta in betas]

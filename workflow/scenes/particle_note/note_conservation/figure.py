@@ -17,9 +17,7 @@ _KERNELS = {"Gaussian (20)": {"linestyle": "-"}, "skewed (20)": {"linestyle": "-
 _FLOOR = 1e-17
 
 
-def figure(
-    series: pd.DataFrame, table: pd.DataFrame, *, half_width: float, particles: int
-) -> Figure:
+def figure(series: pd.DataFrame, *, half_width: float, particles: int) -> Figure:
     """(a) Strengths per volume on random particles, (b) total strength over time, (c) accuracy by arrangement."""
     drawn, axes = axes_row(3, height=3.7, width=3.3)
     panels = dict(tuple(series.groupby("panel")))

@@ -13,7 +13,7 @@ _BY_SPACING = (BLUE, GREEN, ORANGE, RED)
 _TICKS = {0.125: "1/8", 0.25: "1/4", 0.5: "1/2", 1.0: "1"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """(a) regularisation over its constant, (b) quadrature with its bound, (c) both against the radius."""
     drawn, axes = style.axes_row(3, height=3.7, width=3.2)
     _regularisation(axes[0], pick(series, panel="regularisation"))

@@ -7,7 +7,7 @@ from fracstudy.style import Figure, axes_row, legend_below
 from scenes.particle_note.waves import LINES
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, shown: list[int]) -> Figure:
+def figure(series: pd.DataFrame, *, shown: list[int]) -> Figure:
     """The kernels of some derivatives, with each accuracy, over their largest value."""
     parity = ("symmetric", "antisymmetric")
     titles = [rf"$\beta$ = {beta}, {parity[beta % 2]}" for beta in shown]

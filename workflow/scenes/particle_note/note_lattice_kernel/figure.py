@@ -16,7 +16,7 @@ _LOOKS: dict[str, Look] = {
 _ARROW = {"arrowstyle": "-", "color": _BLUE, "linewidth": 0.7, "shrinkB": 4}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, claimed_moment: list[int]) -> Figure:
+def figure(series: pd.DataFrame, *, claimed_moment: list[int]) -> Figure:
     """(a) the kernel (27) and what the lattice sees, (b) its discrete moment, (c) other stencils."""
     drawn, (shape, moments, errors) = axes_row(3, height=3.2, width=3.2)
     curves = dict(tuple(series.groupby(["panel", "series"])))

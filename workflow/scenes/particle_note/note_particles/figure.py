@@ -9,7 +9,7 @@ from fracstudy.style import BLUE, GREEN, ORANGE, PINK, RED, SKY, Figure, Look, a
 _ONE: Look = {"color": SKY, "linewidth": 0.8}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, spacing: float, shown: float) -> Figure:
+def figure(series: pd.DataFrame, *, spacing: float, shown: float) -> Figure:
     """(a) point particles, (b) the Gaussians of the particles and their sum, (c) by overlap."""
     titles = [
         "point particles (8)",

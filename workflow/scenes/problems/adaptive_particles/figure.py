@@ -6,7 +6,7 @@ from fracstudy.panels import pick
 from fracstudy.style import Figure, axes_row, curves, log_log, name_ticks, small_legend
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) errors against particles, (b) errors in time, (c) volumes."""
     count, time, spacing = (pick(series, panel=panel) for panel in ("count", "time", "spacing"))
     titles = [

@@ -9,7 +9,7 @@ from fracstudy.style import COLOURS, MARKERS, Axes, Figure
 _ENDS = {"absorbing": "-", "reflecting": "--", "given": "-.", "no flux, final state": ":"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, bump: dict[str, float]) -> Figure:
+def figure(series: pd.DataFrame, *, bump: dict[str, float]) -> Figure:
     """Draw (a) errors of the eigenvalue, (b) of truncated schemes, (c) profiles."""
     titles = [
         "first eigenvalue, absorbing ends",

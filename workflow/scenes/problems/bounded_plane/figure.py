@@ -15,7 +15,7 @@ _TITLES = (
 )
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) disc, (b) square, (c) decay, (d) truncated schemes."""
     drawn, axes = style.axes_row(_TITLES, height=3.7, width=3.4)
     fitted, plain = (pick(series, panel=f"square, {kind}") for kind in ("fitted", "plain"))

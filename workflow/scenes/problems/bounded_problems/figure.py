@@ -9,7 +9,7 @@ from fracstudy.style import BLUE, RED, Figure
 _TITLES = ("interval", "disc and square", "carried by $a = 4(1 - x^2)$")
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float) -> Figure:
+def figure(series: pd.DataFrame, *, drawn: float) -> Figure:
     """Draw (a) interval, (b) disc and square, (c) profiles."""
     figure, (line, plane, profile) = style.axes_row(_TITLES, height=3.7, width=4.0)
     errors = pick(series, alpha=drawn)

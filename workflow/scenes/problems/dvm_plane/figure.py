@@ -13,7 +13,7 @@ _TITLES = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw a panel for each way to end and to remesh the particles: solid the plane, dashed the line."""
     drawn, axes = axes_row(list(_TITLES.values()), height=3.7, width=2.9, sharey=True)
     for ax, panel in zip(axes, _TITLES, strict=True):

@@ -12,7 +12,7 @@ from fracstudy.style import BLUE, Axes, Figure
 _STEPS = {"dop853": "order 8 (DOP853)", "rkc2": "stabilised (RKC2)"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, drawn: float) -> Figure:
+def figure(series: pd.DataFrame, *, drawn: float) -> Figure:
     """Draw (a) the front, (b) its rate, (c) errors against evaluations, (d) how close particles come to the rate."""
     titles = [
         rf"front, $\alpha = {drawn:g}$",

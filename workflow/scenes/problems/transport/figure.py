@@ -33,7 +33,7 @@ _TITLES = ("linear field $a = -x$", "uniform field, error", "linear field, error
 _LEVELS = (0.03, 0.05)
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the linear field, (b), (c) errors against the spacing, (d) contours of the blob."""
     drawn, axes = style.axes_row(_TITLES, height=3.7, width=3.3)
     _linear(axes[0], pick(series, panel="linear field"))

@@ -15,7 +15,7 @@ _FORMS = (
 _SCHEMES = {"FPSE": "FPSE", "DD": "DD", "exchange": "KPSE"}
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a), (b) errors on the line and in the plane, (c) right-hand sides, (d) the distance of the equations."""
     drawn, axes = style.axes_row(_TITLES, height=3.9, width=3.4)
     for ax, panel in zip(axes, ("line", "plane"), strict=False):

@@ -15,7 +15,7 @@ _TAILS = {"own": "of each end", "one for both": "one for both", "none": "none: t
 _TITLES = ("error", r"interpolation in $\alpha$", "tails of a run", "tail beyond the lattice")
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) errors, (b) interpolation, (c) tails, (d) what is beyond a narrow lattice."""
     drawn, axes = style.axes_row(_TITLES, height=3.7, width=3.4)
     _errors(axes[0], pick(series, panel="error"))

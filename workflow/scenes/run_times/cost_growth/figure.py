@@ -30,7 +30,7 @@ _WAYS: dict[str, Any] = {
 _MINUTE, _HOUR, _YEAR = 60.0, 3600.0, 365.25 * 86400.0  # seconds
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the time of one application and (b) the peak memory, a column a dimension."""
     dims = sorted(series["dim"].unique())
     figure = Figure(figsize=(max(3.2 * len(dims), 4.6), 6.6), layout="constrained")

@@ -44,7 +44,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw the front of each contender; hollow with dashes are peers."""
     problems = list(series["problem"].unique())
     rows = -(-len(problems) // _COLUMNS)

@@ -23,7 +23,7 @@ _POINTS: dict[str, dict[str, Any]] = {
 }
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """One panel an operator; a line an integrator that takes steps, a large marker one that takes none."""
     operators = list(series["operator"].unique())
     width = 3.3 if len(operators) > 1 else 5.0

@@ -26,7 +26,7 @@ _WRITTEN = 0.08  # shares from here on are written into the bar
 _PANELS = ("set-up", "solve")
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame) -> Figure:
+def figure(series: pd.DataFrame) -> Figure:
     """Draw (a) the set-up and (b) the solve, a bar of shares a case, its whole time at the end."""
     cases = series.drop_duplicates("case")
     figure, axes = style.axes_row(_PANELS, 1.5 + 0.42 * len(cases), 4.3, sharey=True)

@@ -18,7 +18,7 @@ _HOLLOW: dict[str, Any] = {"markerfacecolor": "none", "linestyle": "--", "linewi
 _FLOOR = 1e-13
 
 
-def figure(series: pd.DataFrame, table: pd.DataFrame, *, time: str, ylabel: str) -> Figure:
+def figure(series: pd.DataFrame, *, time: str, ylabel: str) -> Figure:
     """Draw the least time to each error: filled markers ours and the papers' schemes, hollow ones peers."""
     there = {name: one for name, one in CONTENDERS.items() if (series["contender"] == name).any()}
     problems, betas = series["problem"].unique(), sorted(series["beta"].unique())
