@@ -43,7 +43,9 @@ from fracparticles.moving.remeshing import REMESHINGS
 __all__ = ["PlaneRun", "PlaneVelocity", "run_in_plane"]
 
 _MISFIT = 0.05  # of the total strength: what the far field may hold wrongly
-_REMESHED = 0.07  # of the peak: what remeshings may change. The error of a run is about two thirds of it.
+_REMESHED = (
+    0.07  # of the peak: what remeshings may change. The error of a run is about two thirds of it.
+)
 
 
 class PlaneVelocity:
