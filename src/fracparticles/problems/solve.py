@@ -38,10 +38,10 @@ def solve_problem(
         a bounded domain only these two, and the array has the shape of `problem.bounded_domain.volumes`. If left out,
         the fundamental solution at `t_initial`, for a problem with a constant order and diffusivity.
     estimate : bool
-        Whether to solve on fewer particles as well, for `space_error`, the error that the particles leave: see
-        `fewer_particles`, and with smaller steps, for `time_error`, see `tighter_steps`. It takes about half as long
-        again, and on an interval up to a second more. On a bounded domain with a D that depends on place and time it
-        takes up to three times as long.
+        Whether to solve on fewer particles as well, for `space_error`, the error that the particles leave, see
+        `fewer_particles`; and there with smaller steps, for `time_error`, the error that the steps leave, see
+        `tighter_steps`. It takes once or twice as long again, and on a bounded domain up to half a second more, or
+        three times as long with a D that depends on place and time.
 
     Returns
     -------
