@@ -34,16 +34,16 @@ def test_a_layer_that_the_rings_do_not_resolve_is_said_and_adds_nothing(rings):
     Differences that were one-sided at the edge made waves of it that grew, at rates of 2e2 and 2e3.
     """
     problem = Problem(
-        **FIELDS, alpha=1.05, particles=rings, velocity=("10 + 0*x", "0*x"), times=(0.1, 0.2)
+        **FIELDS, alpha=1.05, particles=rings, velocity=("10 + 0*x", "0*x"), times=(0.05, 0.1)
     )
     with pytest.warns(AccuracyWarning, match="do not resolve the solution"):
-        run = solve_problem(problem, dome)
+        run = solve_problem(problem, dome, estimate=False)
     norm = problem.bounded_domain.norm
     sizes = [norm(u) for u in (dome(*problem.bounded_domain.points), *run.u.values)]
     assert sizes[0] > sizes[1] > sizes[2]
 
 
-@pytest.mark.parametrize(("until", "said"), [(0.4, StabilityWarning), (3.0, NonFiniteSolution)])
+@pytest.mark.parametrize(("until", "said"), [(0.2, StabilityWarning), (3.0, NonFiniteSolution)])
 def test_a_wave_that_grows_where_u_is_pressed_together_is_said_or_refused(until, said):
     """Onto the ring r = 0.7, where eight rings are too few; of the equation int |u| falls."""
     problem = Problem(**FIELDS, alpha=1.05, particles=8, velocity=ONTO_A_RING, t_final=until)
@@ -53,7 +53,7 @@ def test_a_wave_that_grows_where_u_is_pressed_together_is_said_or_refused(until,
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         with expected(said, match=rf"grow by exp\({found * until:.3g}\).*presses u together"):
-            solve_problem(problem, dome)
+            solve_problem(problem, dome, estimate=False)
 
 
 @pytest.mark.parametrize(("until", "said"), [(0.2, StabilityWarning), (2.0, NonFiniteSolution)])
@@ -69,7 +69,7 @@ def test_one_on_a_square_too(until, said):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         with expected(said, match=rf"grow by exp\({found * until:.3g}\) on the square"):
-            solve_problem(problem, lambda x, y: (1.0 - x * x) * (1.0 - y * y))
+            solve_problem(problem, lambda x, y: (1.0 - x * x) * (1.0 - y * y), estimate=False)
 
 
 def test_a_layer_that_they_resolve_is_not_said():
