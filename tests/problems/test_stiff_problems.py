@@ -11,11 +11,14 @@ import warnings
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.special import gammaln
 
 from fracparticles.adaptive.follow import follow
 from fracparticles.bounded import switching
+from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.exponential import ExponentialSteps
 from fracparticles.bounded.interval import Interval
+from fracparticles.bounded.square import Square
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
 from fracparticles.problems.tighter_steps import TIME_ERROR
@@ -69,6 +72,63 @@ def test_a_pulse_of_any_width_is_found_on_both_sides(width):
     else:
         near = found[np.abs(found - 0.3) < 3.0 * width]
         assert near.min() < 0.3 < near.max()
+
+
+@pytest.mark.usefixtures("silent")
+@pytest.mark.parametrize("door", ["problem", "domain"])
+def test_none_of_many_pulses_is_stepped_over(door):
+    """All of them were. The mean of sin^n, n even, is Gamma((n + 1) / 2) / (sqrt(pi) Gamma(n / 2 + 1))."""
+    n = 10**8
+    mean = np.exp(gammaln(0.5 * (n + 1)) - gammaln(0.5 * n + 1.0)) / np.sqrt(np.pi)
+    if door == "problem":
+        u, _ = level(f"1 + sin(10*pi*t)**{n}/{mean}", 0.0, rtol=1e-3)
+    else:
+        line = Interval(alpha=1.5, particles=16, exterior="reflecting")
+        u = line.react(
+            0.0, 1.0, lambda x, t, u: 1.0 + np.sin(10.0 * np.pi * t) ** n / mean + 0.0 * x, tolerance=1e-3
+        )  # fmt: skip
+    assert u == pytest.approx(2.0, rel=50.0 * 1e-3)
+
+
+@pytest.mark.parametrize("waves", [30, 300, 3000])
+def test_many_pulses_are_found_and_a_wave_is_none(waves):
+    ends = np.array(sorted(pulses(lambda t: np.sin(np.pi * waves * t) ** 100, 0.0, 1.0)))
+    middles = (np.arange(waves) + 0.5) / waves
+    # Two times a pulse, one on either side.
+    assert ends.size == 2 * waves
+    assert (ends[::2] < middles).all()
+    assert (middles < ends[1::2]).all()
+    assert len(pulses(lambda t: np.sin(np.pi * waves * t), 0.0, 1.0)) <= 2
+
+
+@pytest.mark.usefixtures("silent")
+@pytest.mark.parametrize(
+    ("kind", "width", "form"),
+    covering(["interval", "square", "disc"], [1e-3, 1e-6], ["adds", "reacts", "multiplies"]),
+)
+def test_a_domain_alone_does_not_step_over_a_pulse_either(kind, width, form):
+    """It was 0.64 of u too small at 1e-6."""
+    domain = {
+        "interval": lambda: Interval(alpha=1.5, particles=16, exterior="reflecting"),
+        "square": lambda: Square(1.5, 8, "reflecting"),
+        "disc": lambda: Disc(1.5, 8, 8, "reflecting"),
+    }[kind]()
+
+    def pulse(t):
+        return np.exp(-(((t - 0.512345) / width) ** 2)) / width
+
+    def adds(*at):
+        *place, t = at
+        return 1.0 + pulse(t) + 0.0 * sum(place)
+
+    if form == "adds":
+        u, exact = domain.evolve(0.0, 1.0, adds, tolerance=RTOL), 1.0 + TOTAL
+    elif form == "reacts":
+        u, exact = domain.react(0.0, 1.0, lambda *at: adds(*at[:-1]), tolerance=RTOL), 1.0 + TOTAL
+    else:
+        u = domain.react(1.0, 1.0, lambda *at: at[-1] * pulse(at[-2]), tolerance=RTOL)
+        exact = np.exp(TOTAL)
+    assert u == pytest.approx(exact, rel=NEAR)
 
 
 def test_values_outside_that_are_on_for_a_millionth_of_the_run_are_refused():

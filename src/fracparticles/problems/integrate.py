@@ -137,11 +137,11 @@ def advanced(
     No step is taken within a jump: a faded solution would be followed into it beyond the last digit of the time.
     """
     times, outputs, u = problem.output_times, [], u0
-    at_once = instant(problem.t_initial, problem.span)
+    changes, at_once = set(sudden), instant(problem.t_initial, problem.span)
     for before, after in pairwise(sorted({problem.t_initial, *sudden, *times})):
-        if before in sudden:
+        if before in changes:
             steps.forget()
-        if not (before in sudden and after in sudden and after - before <= at_once):
+        if not (before in changes and after in changes and after - before <= at_once):
             u = steps.advance(u, after - before, before)
         if after in times:
             outputs.append(np.array(u))

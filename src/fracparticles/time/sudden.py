@@ -6,6 +6,9 @@ tenth of its range from one of these times to the next, bisection finds the jump
 than a thousandth of the run may lie between them. So a function that takes many times at once is evaluated at a million
 equally spaced times too, at a few places. They are compared at the finest spacing, and at 4, 16, 64 and 256 times that:
 a pulse of any width has a spacing at which it is sudden, and which it fills. Shorter pulses may not be found.
+
+Many pulses, one after the other, have quiet times between them, from which a step might go on over the next pulses. The
+run is cut where each quiet time begins and where it ends. A wave has no quiet times: every step sees it.
 """
 
 from __future__ import annotations
@@ -28,6 +31,9 @@ _MOST = 32  # sudden changes that are found exactly
 _FINE = 2**20  # intervals of the fine looks
 _STRIDES = (1, 4, 16, 64, 256)  # looks from one to the next with which it is compared
 _AT_ONCE = 2**17  # times that are handed to a function at once
+# Looks without a sudden change that make a quiet time. A wave that changes by _SUDDEN from one look to the next has half
+# a period of pi / (2 _SUDDEN) = 15.7 looks at most.
+_QUIET = 16
 _MOST_CUTS = 256  # cuts at evenly chosen looks, if there are more sudden changes
 
 
@@ -99,8 +105,10 @@ def pulses(few: Callable[[np.ndarray], np.ndarray], start: float, span: float) -
         at = times[::stride]
         change = np.abs(np.diff(values[:, ::stride], axis=1))
         sudden = np.flatnonzero((change > _SUDDEN * scale).any(axis=0))
-        if sudden.size > _MOST:  # the function changes as quickly everywhere
-            break
+        if sudden.size > _MOST:  # the function changes as quickly again and again
+            quiet = np.flatnonzero(np.diff(sudden) > _QUIET)
+            ends = [sudden[quiet] + 1, sudden[quiet + 1], sudden[[0, -1]] + [0, 1]]
+            return found | set(at[np.concatenate(ends)].tolist())
         for interval in sudden:
             before, after = at[interval : interval + 2]
             if not any(before <= t <= after for t in found):
@@ -112,10 +120,11 @@ def pulses(few: Callable[[np.ndarray], np.ndarray], start: float, span: float) -
 def pulses_at(
     function: Callable[..., Any], place: Sequence[np.ndarray], start: float, span: float
 ) -> set[float]:
-    """Return the pulses of a function of a place, arrays of shape (1,), and of time; none if it takes one time only."""
+    """Return the pulses of a function of places, arrays of shape (P,), and of time; none if it takes one time only."""
 
     def few(t: np.ndarray) -> np.ndarray:
-        return np.broadcast_to(np.asarray(function(*place, t), dtype=float), t.shape)
+        values = np.asarray(function(*place, t), dtype=float)
+        return np.broadcast_to(values, (t.shape[0], place[0].size))
 
     times = irregular_times(start, span, 4)
     try:
