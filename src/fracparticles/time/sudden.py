@@ -31,7 +31,7 @@ _MOST = 32  # sudden changes that are found exactly
 _FINE = 2**20  # intervals of the fine looks
 _STRIDES = (1, 4, 16, 64, 256)  # looks from one to the next with which it is compared
 _AT_ONCE = 2**17  # times that are handed to a function at once
-# Looks without a sudden change that make a quiet time. A wave that changes by _SUDDEN from one look to the next has half
+# Looks without a sudden change that make a quiet time. A wave that changes by _SUDDEN between two looks has half
 # a period of pi / (2 _SUDDEN) = 15.7 looks at most.
 _QUIET = 16
 _MOST_CUTS = 256  # cuts at evenly chosen looks, if there are more sudden changes
