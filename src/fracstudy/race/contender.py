@@ -36,7 +36,7 @@ TRUNCATIONS = (3.0, 5.0, 8.0, 12.0, 20.0, 40.0, 160.0, 640.0)  # C = D / (R_alph
 ENOUGH = 1e-10
 """An error that is small enough: finer grids are not tried."""
 _LEFT = 0.9  # share of an error: if two refinements leave more, it is not due to what was refined
-_MOST = {1: 2**16, 2: 2**20, 3: 2**20}  # points of a grid, by dimension
+_MOST = {1: 2**16, 2: 2**20, 3: 2**19}  # points of a grid, by dimension
 
 
 @dataclass(frozen=True)

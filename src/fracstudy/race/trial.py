@@ -206,7 +206,7 @@ def _block_time(record: _Record) -> float:
     block = np.broadcast_to(u0, (count, *u0.shape)).copy()
     times = []
     if ready.batched:
-        times.append(measure(partial(ready.solve, block), 2, LONG)[0].minimum)
+        times.append(measure(partial(ready.solve, block))[0].minimum)
     if ready.points <= _MATRIX:
         times.append(_matrix_time(count, ready.points))
     return min(times, default=record.solves.minimum * count) / count

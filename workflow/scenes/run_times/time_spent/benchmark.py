@@ -34,7 +34,7 @@ _FUNCTIONS: dict[str, tuple[Callable[..., Any], ...]] = {
     "time series": (exponential_flow, power_flow),
 }
 _OTHER = "plans and the rest"
-_SOLVES = 10  # solves for every set-up
+_SOLVES = 5  # solves for every set-up
 _LABELS = {"run": "what is run"}
 _VARIABLES = {
     "particles": ("number of particles", "1"),
