@@ -43,12 +43,17 @@ def save(figure: Figure, stem: str | Path, formats: Iterable[str] = _FORMATS) ->
 def _without_minor_ticks(figure: Figure) -> Iterator[None]:
     """Leave out, for a while, minor ticks without labels: the major ones are longer, and one by one they take long."""
     tickers = {axis.minor for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)}
-    bare = {one: one.locator for one in tickers if isinstance(one.formatter, NullFormatter)}
-    for ticker in bare:
-        ticker.locator = NullLocator()
-    yield
-    for ticker, locator in bare.items():
-        if locator is not None:
+    bare = [
+        (one, one.locator)
+        for one in tickers
+        if one.locator is not None and isinstance(one.formatter, NullFormatter)
+    ]
+    try:
+        for ticker, _ in bare:
+            ticker.locator = NullLocator()
+        yield
+    finally:
+        for ticker, locator in bare:
             ticker.locator = locator
 
 

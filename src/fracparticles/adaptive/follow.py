@@ -14,6 +14,7 @@ particles reach so far that a share of 1e-7 is beyond; nothing leaves there.
 from __future__ import annotations
 
 import warnings
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -211,7 +212,7 @@ def _onward(
     unheld: _Unheld,
     cuts: list[float],
 ) -> Iterator[Followed]:
-    """The particles at each output time: advanced as long as their places are valid, then placed again."""
+    """The particles at each output time: advanced to the next cut, or as long as their places are valid."""
     until = place.valid_until(state.particles, state.u, state.time) if again else np.inf
     unheld.note_coefficients(place.missed(state.particles, state.u, state.time))
     for output in outputs:
@@ -225,7 +226,8 @@ def _onward(
                         f"u, its source or the velocity change so fast at t = {state.time:.6g} that particles would be "
                         f"placed again every {until - state.time:.2g}. Smooth them, or take a shorter time."
                     )
-            time = min(until, output, *(t for t in cuts if t > state.time))
+            later = bisect_right(cuts, state.time)
+            time = min(until, output, *cuts[later : later + 1])
             moved, u = advance(state.particles, state.u, state.time, time)
             state = replace(state, time=time, particles=moved, u=u)
             unheld.of_u = max(unheld.of_u, uncertain(moved.x, u))

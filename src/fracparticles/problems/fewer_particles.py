@@ -43,6 +43,7 @@ __all__ = [
     "halved",
     "quietly",
     "space_errors",
+    "with_error",
     "with_space_error",
 ]
 
@@ -144,11 +145,13 @@ def _still_to_come(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 def with_space_error(found: Estimates, *given: Any) -> Estimates:
     """Return the estimates, together with that of `space_errors` if there is one."""
-    errors = space_errors(*given)
-    if errors is None:
-        return found
     meaning = "estimated relative error, from the waves of the data, and half and a quarter of the particles"
-    return found | {"space_error": (errors, meaning)}
+    return with_error(found, "space_error", meaning, space_errors(*given))
+
+
+def with_error(found: Estimates, name: str, meaning: str, errors: list[float] | None) -> Estimates:
+    """Return the estimates, together with that of a name and a meaning if its errors are known."""
+    return found if errors is None else found | {name: (errors, meaning)}
 
 
 def distance(problem: Problem, u: np.ndarray, v: np.ndarray) -> float:

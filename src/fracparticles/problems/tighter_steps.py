@@ -24,6 +24,7 @@ from fracparticles.problems.fewer_particles import (
     distance,
     halved,
     quietly,
+    with_error,
 )
 from fracparticles.problems.problem import Problem
 
@@ -95,8 +96,5 @@ def _on_fewer(problem: Problem, initial: Any, halvings: int) -> tuple[Problem, A
 
 def with_time_error(found: Estimates, *given: Any) -> Estimates:
     """Return the estimates, together with that of `time_errors` if there is one."""
-    errors = time_errors(*given)
-    if errors is None:
-        return found
     meaning = "estimated relative error of the steps in time, from fewer particles and a tenth of the tolerance"
-    return found | {"time_error": (errors, meaning)}
+    return with_error(found, "time_error", meaning, time_errors(*given))
