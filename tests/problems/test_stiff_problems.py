@@ -63,9 +63,12 @@ def test_a_pulse_of_a_millionth_of_the_run_is_not_stepped_over(domain, width, fo
     assert u == pytest.approx(exact, rel=NEAR)
 
 
+@pytest.mark.parametrize("places", [1, 2])
 @pytest.mark.parametrize("width", [1e-6, 1e-5, 1e-4, 1e-3, 1e-2])
-def test_a_pulse_of_any_width_is_found_on_both_sides(width):
-    found = np.array(sorted(pulses(lambda t: np.exp(-(((t - 0.3) / width) ** 2)), 0.0, 1.0)))
+def test_a_pulse_of_any_width_is_found_on_both_sides(width, places):
+    found = np.array(
+        sorted(pulses(lambda t: np.exp(-(((t - 0.3) / width) ** 2)), places, 0.0, 1.0))
+    )
     # A tenth of the range is passed from one look to the next of the widest stride, or it is no pulse.
     if width > 1e-2 / 2:
         assert found.size == 0
@@ -90,15 +93,16 @@ def test_none_of_many_pulses_is_stepped_over(door):
     assert u == pytest.approx(2.0, rel=50.0 * 1e-3)
 
 
+@pytest.mark.parametrize("places", [1, 2])
 @pytest.mark.parametrize("waves", [30, 300, 3000])
-def test_many_pulses_are_found_and_a_wave_is_none(waves):
-    ends = np.array(sorted(pulses(lambda t: np.sin(np.pi * waves * t) ** 100, 0.0, 1.0)))
+def test_many_pulses_are_found_and_a_wave_is_none(waves, places):
+    ends = np.array(sorted(pulses(lambda t: np.sin(np.pi * waves * t) ** 100, places, 0.0, 1.0)))
     middles = (np.arange(waves) + 0.5) / waves
     # Two times a pulse, one on either side.
     assert ends.size == 2 * waves
     assert (ends[::2] < middles).all()
     assert (middles < ends[1::2]).all()
-    assert len(pulses(lambda t: np.sin(np.pi * waves * t), 0.0, 1.0)) <= 2
+    assert len(pulses(lambda t: np.sin(np.pi * waves * t), places, 0.0, 1.0)) <= 2
 
 
 @pytest.mark.usefixtures("silent")

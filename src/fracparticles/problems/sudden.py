@@ -59,7 +59,7 @@ def _changes(
             known = _of_a_text(*given, problem.half_width, start, span)
         else:
             places = {name: x[_few_of(x.size)] for name, x in some.items()}
-            known = frozenset(pulses(lambda t: one.checked(_of(one, places, t)), start, span))
+            known = _pulses(one, places, start, span)
         return sudden_times(at_once, start, span, at_once=at_once, known=known)
     if _takes_any_points(one, some, lattice, chosen, np.array(start)):
         return sudden_times(at_once, start, span)
@@ -109,11 +109,15 @@ def _of_a_text(
     """Return the pulses of a text without u; runs on fewer particles ask for them again."""
     one = Coefficient(field, text, variables)
     places = {name: half_width * np.array(_FEW) for name in variables}
-    return frozenset(pulses(lambda t: one.checked(_of(one, places, t)), start, span))
+    return _pulses(one, places, start, span)
+
+
+def _pulses(one: Coefficient, places: Places, start: float, span: float) -> frozenset[float]:
+    return frozenset(pulses(lambda t: one.checked(_of(one, places, t)), len(_FEW), start, span))
 
 
 def _few_of(count: int) -> list[int]:
-    """Return two of some places: the middle, and one beside it."""
+    """Return as many as `_FEW` of some places: the middle, and one beside it."""
     return [int(share * count) for share in (0.5, 0.68)]
 
 

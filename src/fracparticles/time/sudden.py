@@ -4,8 +4,9 @@ An error-controlled step evaluates the function at a few times only, and does no
 is therefore evaluated before the run, at 1025 times that are not equally spaced. Where one of its values changes by a
 tenth of its range from one of these times to the next, bisection finds the jump, or the steepest place. A pulse shorter
 than a thousandth of the run may lie between them. So a function that takes many times at once is evaluated at a million
-equally spaced times too, at a few places. They are compared at the finest spacing, and at 4, 16, 64 and 256 times that:
-a pulse of any width has a spacing at which it is sudden, and which it fills. Shorter pulses may not be found.
+equally spaced times too, at a few places in turn. Those at one place are compared at the finest spacing, and at 4, 16,
+64 and 256 times that: a pulse of any width has a spacing at which it is sudden, and which it fills. Shorter pulses may
+not be found.
 
 Many pulses, one after the other, have quiet times between them, from which a step might go on over the next pulses. The
 run is cut where each quiet time begins and where it ends. A wave has no quiet times: every step sees it.
@@ -14,6 +15,8 @@ run is cut where each quiet time begins and where it ends. A wave has no quiet t
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -28,9 +31,9 @@ _SUDDEN = 0.1  # share of the range of a value: a larger change between two look
 _NOTICED = 1e-6  # share of the greatest value: a smaller range does not count
 _FINEST = 2.0**-44  # share of the run: how closely a sudden change is found
 _MOST = 32  # sudden changes that are found exactly
-_FINE = 2**20  # intervals of the fine looks
-_STRIDES = (1, 4, 16, 64, 256)  # looks from one to the next with which it is compared
-_AT_ONCE = 2**17  # times that are handed to a function at once
+_FINE = 2**20  # fine looks, at all places together
+_STRIDES = (1, 4, 16, 64, 256)  # looks at a place from one to the next with which it is compared
+_AT_ONCE = 2**16  # times at each place that are handed to a function at once
 # Looks without a sudden change that make a quiet time. A wave that changes by _SUDDEN between two looks has half
 # a period of pi / (2 _SUDDEN) = 15.7 looks at most.
 _QUIET = 16
@@ -75,45 +78,48 @@ def sudden_times(
     for interval in sudden:
         low, high = times[interval : interval + 2]
         if not any(low <= t <= high for t in found):
-            found |= set(_narrowed(look, int(seen[change[interval].argmax()]), low, high, width))
+            most = int(seen[change[interval].argmax()])
+            found |= set(_narrowed(lambda t, one=most: look(t)[one], low, high, width))
     return sorted(t for t in found if start < t < start + span)
 
 
-def pulses(few: Callable[[np.ndarray], np.ndarray], start: float, span: float) -> set[float]:
+def pulses(
+    few: Callable[[np.ndarray], np.ndarray], places: int, start: float, span: float
+) -> set[float]:
     """Return the times before and after each sudden change that the fine looks see, at the finest spacing that does.
+
+    The looks go from one place to the next.
 
     Parameters
     ----------
     few : callable
-        The values at a few places, shape (T, P), at times of shape (T, 1).
+        The values at a few places, shape (T, P), at times of shape (T, P).
+    places : int
+        P.
     start, span : float
         The first time and the duration.
     """
-    times = start + span * np.arange(_FINE + 1.0) / _FINE
-    parts = [times[n : n + _AT_ONCE, None] for n in range(0, times.size, _AT_ONCE)]
-    values = np.concatenate([np.asarray(few(part)).T for part in parts], axis=1)
-    low, high = values.min(axis=1, initial=np.inf), values.max(axis=1, initial=-np.inf)
-    seen = np.flatnonzero(high - low > _NOTICED * max(np.abs(low).max(), np.abs(high).max()))
-    values, scale = values[seen], (high - low)[seen, None]
+    times = start + span * np.linspace(0.0, 1.0, _FINE - _FINE % places).reshape(-1, places)
+    parts = [few(times[n : n + _AT_ONCE]) for n in range(0, times.shape[0], _AT_ONCE)]
+    values = np.concatenate(parts).T.copy()
+    scale = values.max(axis=1) - values.min(axis=1)
+    seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max())
 
-    def look(t: float) -> np.ndarray:
-        return np.asarray(few(np.array([[t]]))[0])
+    def look(place: int, t: float) -> float:
+        return float(few(np.full((1, places), t))[0, place])
 
     found: set[float] = set()
     width = instant(start, span)
-    for stride in _STRIDES:
-        at = times[::stride]
-        change = np.abs(np.diff(values[:, ::stride], axis=1))
-        sudden = np.flatnonzero((change > _SUDDEN * scale).any(axis=0))
+    for stride, place in product(_STRIDES, seen):
+        at, change = times[::stride, place], np.abs(np.diff(values[place, ::stride]))
+        sudden = np.flatnonzero(change > _SUDDEN * scale[place])
         if sudden.size > _MOST:  # the function changes as quickly again and again
             quiet = np.flatnonzero(np.diff(sudden) > _QUIET)
             ends = [sudden[quiet] + 1, sudden[quiet + 1], sudden[[0, -1]] + [0, 1]]
             return found | set(at[np.concatenate(ends)].tolist())
-        for interval in sudden:
-            before, after = at[interval : interval + 2]
+        for before, after in zip(at[sudden], at[sudden + 1], strict=True):
             if not any(before <= t <= after for t in found):
-                one = int(seen[(change[:, interval] / scale[:, 0]).argmax()])
-                found |= set(_narrowed(look, one, before, after, width))
+                found |= set(_narrowed(partial(look, place), before, after, width))
     return found
 
 
@@ -121,17 +127,17 @@ def pulses_at(
     function: Callable[..., Any], place: Sequence[np.ndarray], start: float, span: float
 ) -> set[float]:
     """Return the pulses of a function of places, arrays of shape (P,), and of time; none if it takes one time only."""
+    places = place[0].size
 
     def few(t: np.ndarray) -> np.ndarray:
-        values = np.asarray(function(*place, t), dtype=float)
-        return np.broadcast_to(values, (t.shape[0], place[0].size))
+        return np.broadcast_to(np.asarray(function(*place, t), dtype=float), t.shape)
 
-    times = irregular_times(start, span, 4)
+    times = np.repeat(irregular_times(start, span, 4)[:, None], places, axis=1)
     try:
-        together, alone = few(times[:, None]), [few(np.array([[t]]))[0] for t in times]
+        together, alone = few(times), [few(t[None])[0] for t in times]
     except Exception:  # a function that takes one time may raise anything
         return set()
-    return pulses(few, start, span) if np.array_equal(together, alone) else set()
+    return pulses(few, places, start, span) if np.array_equal(together, alone) else set()
 
 
 def instant(start: float, span: float) -> float:
@@ -146,12 +152,14 @@ def irregular_times(start: float, span: float, looks: int = LOOKS) -> np.ndarray
     return start + span * np.concatenate([[0.0], within, [1.0]])
 
 
-def _narrowed(look: Look, one: int, low: float, high: float, width: float) -> tuple[float, float]:
-    """Return two times, at most `width` apart, between which one of the values changes most."""
-    at_low, at_high = look(low)[one], look(high)[one]
+def _narrowed(
+    look: Callable[[float], float], low: float, high: float, width: float
+) -> tuple[float, float]:
+    """Return two times, at most `width` apart, between which the value changes most."""
+    at_low, at_high = look(low), look(high)
     while high - low > width:
         middle = 0.5 * (low + high)
-        now = look(middle)[one]
+        now = look(middle)
         if abs(now - at_low) > abs(at_high - now):
             high, at_high = middle, now
         else:
