@@ -7,7 +7,7 @@ import pytest
 
 from fracparticles.errors import AccuracyWarning, InvalidInput, StabilityWarning
 from fracparticles.moving import dvm
-from fracparticles.moving.reliability import cells, ripple
+from fracparticles.moving.reliability import cells, looked_at, ripple
 from fracparticles.schemes.stability import stability_limit
 from fracparticles.special.stable import green
 
@@ -154,6 +154,18 @@ def test_remeshings_that_change_the_field_are_said(remeshing, overlap, recwarn):
     (text,) = (str(one.message) for one in recwarn)
     # What changes the peak early has spread by the end, and what is measured stands for as many again: twice or half.
     assert off / 2.0 < float(text.split("changed the field by ")[1].split(" of")[0]) < 2.0 * off
+
+
+def test_of_many_places_the_strongest_are_looked_at_and_some_everywhere():
+    """All of them were: with sums one by one that took as long as the run."""
+    u = np.zeros(100_000)
+    u[[700, 90_001]] = -3.0, 2.0
+    looks = looked_at(u)
+    assert looks.size <= 2048
+    assert np.isin([700, 90_001], looks).all()
+    # Half of them are equally spaced.
+    assert np.diff(looks).max() <= -(-u.size // 1023)
+    assert looked_at(u[:2048]).tolist() == list(range(2048))
 
 
 def test_gaps_before_a_remeshing_are_said():

@@ -30,7 +30,14 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.arguments import choice, finite_array, positive_real, real_array, scale
+from fracparticles.arguments import (
+    choice,
+    finite_array,
+    positive_real,
+    real_array,
+    scale,
+    vector,
+)
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.moving.diffusion_velocity import EXTERIORS, DiffusionVelocity
 from fracparticles.moving.lagrangian import (
@@ -47,6 +54,7 @@ from fracparticles.moving.reliability import (
     END,
     Changes,
     Particles,
+    looked_at,
     ripple,
     warn_of_misfit,
     warn_of_remeshing,
@@ -197,8 +205,11 @@ def run_to_outputs(
     if exterior == "open" and lattice != "initial":
         raise InvalidInput("lattice", lattice, "'initial' for exterior='open'", "Leave it out.")
     velocity = DiffusionVelocity(alpha, order, overlap * spacing, diffusivity, summation, exterior)
+    given = strengths_of(vector("u", u, x.size), spacing)
     inner = np.abs(x - 0.5 * (x.min() + x.max())) <= 0.5 * float(np.ptp(x)) - END * velocity.epsilon
-    at = x[inner] if inner.any() else x
+    if not inner.any():
+        inner[:] = True
+    at = x[inner][looked_at(given[inner])]
     changes = Changes(lambda particles: velocity.field(particles[0], particles[1], at))
     ripples: list[float] = []
 
@@ -216,7 +227,6 @@ def run_to_outputs(
         continued = None if velocity.tail is None else velocity.tail.continued
         above = largest_gap(exterior) if remesh_above is None else remesh_above
         redistribution = Remeshing(remeshing, spacing, above, ends, continued, noticed)
-    given = strengths_of(finite_array("u", u), spacing)
     longest = max(positive_real("dt", dt) for dt, _ in legs)
     warn_of_step(longest, velocity.largest_stable_step, stacklevel=3)
     warn_of_round_off(x, sum(steps for _, steps in legs), velocity.epsilon)

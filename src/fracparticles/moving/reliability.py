@@ -17,8 +17,8 @@ smoothing
     from the data, over their peak.
 
 remeshing
-    The estimate is the sum of what the remeshings of a run change of the field at the places of the lattice, over its
-    peak. The first, second, fourth and so on is measured, and stands for those up to the next of these.
+    The estimate is the sum of what the remeshings of a run change of the field at places of the lattice, over its peak.
+    The first, second, fourth and so on is measured, and stands for those up to the next of these.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ __all__ = [
     "Changes",
     "Particles",
     "cells",
+    "looked_at",
     "ripple",
     "warn_of_misfit",
     "warn_of_remeshing",
@@ -54,6 +55,7 @@ RIPPLE = 0.02  # above, a warning is given: the error of a run is about once or 
 _OTHER = 0.05  # of the integral of |u|: the error of a run is this
 _SMOOTHED = 0.1  # above, a warning is given: the error of a run is about half of this, of its peak
 _ROUNDED = 0.02  # epsilon: of the places, by all steps together
+_MOST_LOOKS = 2048  # places at which the field is looked at before and after a remeshing
 _WAVENUMBERS = np.linspace(0.0, 60.0, 1201)
 
 Transform = Callable[[np.ndarray], np.ndarray]
@@ -87,6 +89,21 @@ class Changes:
     def largest(self) -> float:
         """That of the place where they are largest."""
         return float(np.abs(self._sum).max(initial=0.0))
+
+
+def looked_at(u: np.ndarray) -> np.ndarray:
+    """Return the indices of the places to look at: all, or half as many as may be by |u|, and half equally spaced.
+
+    Parameters
+    ----------
+    u : array, shape (N,)
+        The field, in the order of the places.
+    """
+    if u.size <= _MOST_LOOKS:
+        return np.arange(u.size)
+    half = _MOST_LOOKS // 2
+    strongest = np.argpartition(np.abs(u), -half)[-half:]
+    return np.union1d(strongest, np.linspace(0, u.size - 1, half).astype(int))
 
 
 def cells(x: np.ndarray) -> np.ndarray:
