@@ -79,7 +79,7 @@ def sudden_times(
         low, high = times[interval : interval + 2]
         if not any(low <= t <= high for t in found):
             most = int(seen[change[interval].argmax()])
-            found |= set(_narrowed(lambda t, one=most: look(t)[one], low, high, width))
+            found |= set(_narrowed(partial(_one_of, look, most), low, high, width))
     return sorted(t for t in found if start < t < start + span)
 
 
@@ -105,12 +105,12 @@ def pulses(
     scale = values.max(axis=1) - values.min(axis=1)
     seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max())
 
-    def look(place: int, t: float) -> float:
-        return float(few(np.full((1, places), t))[0, place])
+    def look(t: float) -> np.ndarray:
+        return few(np.full((1, places), t))[0]
 
     found: set[float] = set()
     width = instant(start, span)
-    for stride, place in product(_STRIDES, seen):
+    for stride, place in product(_STRIDES, seen.tolist()):
         at, change = times[::stride, place], np.abs(np.diff(values[place, ::stride]))
         sudden = np.flatnonzero(change > _SUDDEN * scale[place])
         if sudden.size > _MOST:  # the function changes as quickly again and again
@@ -119,7 +119,7 @@ def pulses(
             return found | set(at[np.concatenate(ends)].tolist())
         for before, after in zip(at[sudden], at[sudden + 1], strict=True):
             if not any(before <= t <= after for t in found):
-                found |= set(_narrowed(partial(look, place), before, after, width))
+                found |= set(_narrowed(partial(_one_of, look, place), before, after, width))
     return found
 
 
@@ -150,6 +150,10 @@ def irregular_times(start: float, span: float, looks: int = LOOKS) -> np.ndarray
     k = np.arange(1.0, looks)
     within = (k + 0.5 * (k * _GOLDEN % 1.0)) / looks
     return start + span * np.concatenate([[0.0], within, [1.0]])
+
+
+def _one_of(look: Look, one: int, t: float) -> float:
+    return float(look(t)[one])
 
 
 def _narrowed(
