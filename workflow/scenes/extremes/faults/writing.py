@@ -60,8 +60,11 @@ class Setup:
     @property
     def mended(self) -> bool:
         """Whether the next call gives the file of an undisturbed run, and nothing else."""
-        done = forked(self.run) == (0, "") and os.listdir(self.folder) == ["run.nc"]
-        return done and self.path.read_bytes() == self.right
+        again, left = forked(self.run), os.listdir(self.folder)
+        mended = again == (0, "") and left == ["run.nc"] and self.path.read_bytes() == self.right
+        if not mended:  # for the log
+            print(f"The next call: {again}, in the folder {left}")
+        return mended
 
 
 def one_line(text: str) -> bool:
@@ -118,6 +121,8 @@ def _interrupted(setup: Setup, moment: float) -> bool:
     status, text = ended(begun(lambda: _command(setup)), moment * setup.took, signal.SIGINT)
     said = (status, text) in [(0, f"{setup.path}\n"), (130, "error: interrupted\n")]
     late = status == 130 and text == f"{setup.path}\nerror: interrupted\n"
+    if not (said or late):  # for the log: it is rare
+        print(f"SIGINT at {moment:.6f} of a run: status {status}, {text!r}")
     return (said or late) and setup.whole
 
 
