@@ -31,7 +31,8 @@ _NOTHING = 1e-300  # the least size of u by which an error is divided, in its or
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 3.0
 _ORDER = 3.0  # the order of the difference in the step, where N does not vanish at the edge
 _APART = 0.25  # power of the tolerance that the slopes in the middle may be apart: 3/5 is usual in a smooth step
-_TERMS = 24  # terms of the series for z <= 1
+_TERMS = np.arange(24.0)  # k of the series for z <= 1
+_FACTORIALS = factorial(_TERMS)
 
 
 class TooManySteps(NonFiniteSolution):
@@ -151,8 +152,9 @@ def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
     recursion loses digits by a factor m! / z^m, so that it is for low degrees.
     """
     small, large = np.minimum(z, 1.0), np.maximum(z, 1.0)
-    m, k = np.arange(degree + 1.0), np.arange(float(_TERMS))
-    series = (-small[..., None]) ** k @ (1.0 / (factorial(k) * (m[:, None] + 1.0 + k))).T
+    m = np.arange(degree + 1.0)
+    weights = 1.0 / (_FACTORIALS * (m[:, None] + 1.0 + _TERMS))
+    series = (-small[..., None]) ** _TERMS @ weights.T
     decay, closed = np.exp(-large), [-np.expm1(-large) / large]
     for power in m[1:]:
         closed.append((power * closed[-1] - decay) / large)
