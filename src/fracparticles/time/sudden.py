@@ -99,7 +99,9 @@ def pulses(
     start, span : float
         The first time and the duration.
     """
-    times = start + span * np.linspace(0.0, 1.0, _FINE - _FINE % places).reshape(-1, places)
+    # None is a simple share of the run, where a function may take a value between those before and after a jump.
+    looks = (np.arange(_FINE - _FINE % places) + _GOLDEN) / _FINE
+    times = (start + span * looks).reshape(-1, places)
     parts = [few(times[n : n + _AT_ONCE]) for n in range(0, times.shape[0], _AT_ONCE)]
     values = np.concatenate(parts).T.copy()
     scale = values.max(axis=1) - values.min(axis=1)
