@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from fracparticles.moving.dvm import DiffusionVelocity
+from fracparticles.moving.lagrangian import advance
 from fracparticles.run.case import Case
-from fracparticles.run.solver import advect, prepare
+from fracparticles.run.solver import prepare
 from fracparticles.schemes import SCHEMES
 from fracparticles.time.whole_space import WholeSpace
 from fracstudy.race.clock import (
@@ -83,9 +85,12 @@ def _steps(dim: int, points: int) -> Iterator[tuple[str, int, Callable[[], Any]]
     yield "GPSE, step made anew", data.size, partial(_one_step, green, data)
     if dim == 1:
         moving = Case(scheme="DVM", dt=_STEP, **lattice)
-        yield "DVM, two velocities", data.size, partial(advect, moving, data)
-        naive = moving.model_copy(update={"summation": "naive"})
-        yield "DVM, two velocities, naive sums", data.size, partial(advect, naive, data)
+        for sums, summation in (("", "fft"), (", naive sums", "naive")):
+            epsilon = moving.resolved_overlap * moving.particle_spacing
+            velocity = DiffusionVelocity(problem.alpha, moving.order, epsilon, summation=summation)
+            strength = moving.particle_spacing * data
+            step_of_dvm = partial(advance, moving.x, strength, velocity, dt=_STEP, steps=1)
+            yield f"DVM, two velocities{sums}", data.size, step_of_dvm
 
 
 def _applied(case: Case, u: np.ndarray) -> np.ndarray:
