@@ -11,7 +11,6 @@ from scipy.special import hyp2f1
 
 from fracparticles.bounded.disc import Disc
 from fracparticles.bounded.domain import Domain
-from fracparticles.bounded.given import takes
 from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.square import Square
 from fracparticles.errors import InvalidInput, NonFiniteSolution
@@ -122,12 +121,14 @@ def test_the_rate_is_what_evolve_starts_with(kind):
     assert one.total(np.abs(one.rate(one.evolve(u, dt)) - slope)) < 1e-4
 
 
-def test_how_many_arguments_a_function_takes():
-    assert takes(lambda x, t: x, 2)
-    assert not takes(lambda x: x, 2)
-    assert takes(np.cos, 1)
-    assert not takes(np.cos, 2)
-    assert takes(lambda *a: a, 3)
+def test_the_names_of_its_arguments_say_what_a_function_is_of():
+    one = domain("interval", "given")
+    byplace = one.evolve(bell, 0.2, lambda x, t: x + np.cos(t), lambda x, t: np.sin(t) + 0.0 * x)
+    named = one.evolve(bell, 0.2, lambda t, x: x + np.cos(t), lambda time: np.sin(time))
+    np.testing.assert_array_equal(named, byplace)
+    ends = domain("interval", "absorbing")
+    reacted = ends.react(bell, 0.2, lambda x, t, u: x * u)
+    np.testing.assert_array_equal(ends.react(bell, 0.2, lambda u, x: x * u), reacted)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -101,10 +101,11 @@ def test_a_tower_of_powers_costs_nothing_and_is_infinite():
         (lambda *a: a[0] + a[1], X + 0.5),
         (np.tanh, np.tanh(X)),
         (lambda x, t: 3.0, np.full(7, 3.0)),
-        (lambda x, scale=2.0, *, more=1.0: x * more, X),  # its second is taken for t
+        (lambda x, scale=2.0, *, more=1.0: x * scale * more, 2.0 * X),
+        (lambda t, x: x - t, X - 0.5),
     ],
 )
-def test_a_function_takes_as_many_variables_as_it_can(function, expected):
+def test_a_function_is_called_with_the_variables_that_it_takes(function, expected):
     np.testing.assert_allclose(Coefficient("diffusivity", function, XT)({"x": X, "t": T}), expected)
 
 
@@ -118,8 +119,8 @@ def test_what_a_coefficient_depends_on():
 
 
 BAD_FUNCTIONS = {
-    "no arguments": (lambda: 1.0, "or of the first of these"),
-    "too many": (lambda x, t, u, v: 1.0, "or of the first of these"),
+    "no arguments": (lambda: 1.0, "or of several of these"),
+    "too many": (lambda x, t, u, v: 1.0, "or of several of these"),
     "shape": (lambda x, t: np.ones(3), "one number for each of the points"),
     "kind": (lambda x, t: "text", "one number for each of the points"),
     "raises": (lambda x, t: x[99], "out of bounds"),

@@ -29,6 +29,7 @@ from fracparticles.adaptive.splitting import Physics, Splitting
 from fracparticles.adaptive.transfer import among, between, conserving, uncertain
 from fracparticles.adaptive.weights import MOST_NEAR, order_of
 from fracparticles.arguments import FloatArray
+from fracparticles.called import Called
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 from fracparticles.time.sudden import pulses_at, sudden_times
 
@@ -92,8 +93,8 @@ def follow(
     window: tuple[float, float],
     where: Any = (),
     diffusivity: float | Callable[[FloatArray], FloatArray] = 1.0,
-    velocity: Callable[[FloatArray, float], FloatArray] | None = None,
-    source: Callable[[FloatArray, float, FloatArray], FloatArray] | None = None,
+    velocity: Callable[..., Any] | None = None,
+    source: Callable[..., Any] | None = None,
     step: float = 0.25,
     near: int = 6,
     reach: float | None = None,
@@ -117,9 +118,10 @@ def follow(
     diffusivity : float or callable
         D, or D(x), which is not negative.
     velocity : callable, optional
-        a(x, t), with which the particles move.
+        a(x, t), or a function of x or t alone, with which the particles move.
     source : callable, optional
-        f(x, t, u). A pulse of a or f that is short in time is noticed only near its time: let one of `times` be there.
+        f(x, t, u), or a function of some of these. A pulse of a or f that is short in time is noticed only near its
+        time: let one of `times` be there.
     step : float
         h, the distance of neighbours as a part of the length in which u changes. The error is like
         h^(2 near + 2 - alpha).
@@ -152,9 +154,11 @@ def follow(
     physics = Physics(
         check.fractional_order(alpha),
         check.whole_number("near", near, 1, MOST_NEAR),
-        diffusivity if callable(diffusivity) else check.scale("diffusivity", diffusivity),
-        None if velocity is None else check.function("velocity", velocity),
-        None if source is None else check.function("source", source),
+        Called("diffusivity", diffusivity, ("x",))
+        if callable(diffusivity)
+        else check.scale("diffusivity", diffusivity),
+        None if velocity is None else Called("velocity", velocity, ("x", "t")),
+        None if source is None else Called("source", source, ("x", "t", "u")),
     )
     tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
     again = check.flag("again", again)

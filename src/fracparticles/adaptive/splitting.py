@@ -71,17 +71,15 @@ class Physics:
 
     def velocity_at(self, x: FloatArray, t: float) -> FloatArray:
         """Return a at these places. Raises `InvalidInput` if it is not finite."""
-        velocity = self.velocity
-        if velocity is None:
+        if self.velocity is None:
             return np.zeros(x.size)
-        return check.sampled("velocity", lambda x: velocity(x, t), x)
+        return check.sampled("velocity", self.velocity, x, np.asarray(t))
 
     def source_at(self, x: FloatArray, t: float, u: FloatArray) -> FloatArray:
         """Return f at these places. Raises `InvalidInput` if it is not finite."""
-        source = self.source
-        if source is None:
+        if self.source is None:
             return np.zeros(x.size)
-        return check.sampled("source", lambda x, u: source(x, t, u), x, u)
+        return check.sampled("source", self.source, x, np.asarray(t), u)
 
     @property
     def is_diffusion(self) -> bool:

@@ -27,9 +27,10 @@ import numpy as np
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
-from fracparticles.bounded.given import Outside, given_outside, takes
+from fracparticles.bounded.given import Outside, given_outside
 from fracparticles.bounded.modes import Rest
 from fracparticles.bounded.operator import LOOKS, DomainOperator
+from fracparticles.called import AXES, Called
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 from fracparticles.time.fading import FADED, early_errors
 from fracparticles.time.sudden import instant, pulses_at, sudden_times
@@ -101,9 +102,10 @@ class Domain(DomainOperator):
         time : float
             The time from `initial` on.
         source : callable, array or number, optional
-            f as a function of places and time, or of places alone, or values that do not change.
+            f as a function of places and time, or of some of these (`called` says which), or values that do not
+            change.
         outside : callable or number, optional
-            g as a function of places and time, or of places alone, if the exterior is given.
+            g as a function of places and time, or of some of these, if the exterior is given.
         tolerance : float
             The error of each step in time, relative to u or to the values outside, if steps are taken. A pulse of less
             than a millionth of the time may not be seen, nor one of less than a 513th if the source cannot be evaluated
@@ -126,13 +128,14 @@ class Domain(DomainOperator):
         time = self._lasting(time)
         tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
         g = given_outside(self.exterior, outside, dim)
-        if callable(source) and takes(source, dim + 1):
+        given = Called("source", source, (*AXES[:dim], "t")) if callable(source) else None
+        if given is not None and "t" in given.takes:
 
             def forced(t: float, u: FloatArray) -> FloatArray:
-                return self.values("source", lambda *place: source(*place, t))
+                return self.values("source", lambda *place: given(*place, t))
 
             start = self.seen("initial", initial)
-            known = self._pulses(lambda u, *at: source(*at), start, time)
+            known = self._pulses(lambda u, *at: given(*at), start, time)
             return self._moved(start, time, forced, g, tolerance, known)
         f = self.seen("source", 0.0 if source is None else source)
         start = self.seen("initial", initial)
@@ -156,7 +159,7 @@ class Domain(DomainOperator):
         initial, time, outside, tolerance
             As those of `evolve`.
         source : callable
-            f as a function of places, time and u.
+            f as a function of places, time and u, or of some of these: `called` says which.
 
         Raises
         ------
@@ -170,7 +173,8 @@ class Domain(DomainOperator):
         AccuracyWarning
             As `evolve`.
         """
-        check.function("source", source)
+        axes = AXES[: len(self.points)]
+        f = Called("source", source, (*axes, "t", "u"))
         time = self._lasting(check.positive_real("time", time))
         tolerance = check.real_between("tolerance", tolerance, 1e-12, 1e-2)
         g = given_outside(self.exterior, outside, len(self.points))
@@ -178,11 +182,11 @@ class Domain(DomainOperator):
 
         def reaction(t: float, u: FloatArray) -> FloatArray:
             with np.errstate(over="ignore", invalid="ignore"):
-                f = np.asarray(source(*self.points, t, u), dtype=float)
-            return np.broadcast_to(f, u.shape)
+                rates = np.asarray(f(*self.points, t, u), dtype=float)
+            return np.broadcast_to(rates, u.shape)
 
-        self.values("source", lambda *place: source(*place, 0.0, start) + 0.0 * place[0])
-        known = self._pulses(lambda u, *at: source(*at, u), start, time)
+        self.values("source", lambda *place: f(*place, 0.0, start) + 0.0 * place[0])
+        known = self._pulses(lambda u, *at: f(*at, u), start, time)
         return self._moved(start, time, reaction, g, tolerance, known)
 
     # --- how -----------------------------------------------------------------------------------------

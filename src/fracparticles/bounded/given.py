@@ -11,7 +11,6 @@ polynomials of the time, whose derivative is w'.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -21,6 +20,7 @@ from scipy.fft import dct
 
 from fracparticles import arguments as check
 from fracparticles.arguments import FloatArray
+from fracparticles.called import AXES, Called
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 
 __all__ = [
@@ -29,7 +29,6 @@ __all__ = [
     "Outside",
     "given_outside",
     "lifted_in_time",
-    "takes",
 ]
 
 _FIRST, _LAST = 8, 512  # the first and the last degree that is tried
@@ -37,19 +36,6 @@ _MISSED = 1e-6  # the greatest miss at a sudden change over the greatest coeffic
 
 RESOLVED = 1e-11
 """The last coefficients over the greatest, of polynomials that resolve g in time."""
-
-
-def takes(f: Callable[..., Any], count: int) -> bool:
-    """Return whether a function can be called with `count` arguments; True for one without a known signature."""
-    if isinstance(f, np.ufunc):
-        return bool(f.nin == count)
-    try:
-        inspect.signature(f).bind(*range(count))
-    except TypeError:
-        return False
-    except ValueError:  # a function written in C
-        return True
-    return True
 
 
 class Outside(NamedTuple):
@@ -60,7 +46,7 @@ class Outside(NamedTuple):
 
 
 def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
-    """Return g from a function of places and time, a function of places alone, or a number; None if there is none.
+    """Return g from a function of places and time, of some of them, or a number; None if there is none.
 
     Raises
     ------
@@ -73,9 +59,8 @@ def given_outside(exterior: str, outside: Any, dim: int) -> Outside | None:
     if outside is None:
         return None
     if callable(outside):
-        if takes(outside, dim + 1):
-            return Outside(outside, True)
-        return Outside(lambda *place: outside(*place[:dim]), False)
+        given = Called("outside", outside, (*AXES[:dim], "t"))
+        return Outside(given, "t" in given.takes)
     value = check.finite_real("outside", outside)
     return Outside(lambda *place: np.full(np.shape(place[0]), value), False)
 

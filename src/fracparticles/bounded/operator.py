@@ -21,6 +21,7 @@ from fracparticles.bounded.given import (
     lifted_in_time,
 )
 from fracparticles.bounded.modes import Held, Rest
+from fracparticles.called import AXES, Called
 from fracparticles.time.steps import Steps, norm
 from fracparticles.time.sudden import pulses_at, sudden_times
 
@@ -120,15 +121,18 @@ class DomainOperator(ABC):
     def values(self, field: str, given: Any) -> FloatArray:
         """Return a function of places, an array or a number at the particles."""
         if callable(given):
-            return check.sampled(field, given, *self.points)
+            return check.sampled(field, self._of_places(field, given), *self.points)
         return np.asarray(check.finite_array(field, given, self.volumes.shape), dtype=float)
 
     def seen(self, field: str, given: Any) -> FloatArray:
         """Return `values`; warns if they are those of a function that the particles do not resolve."""
         values = self.values(field, given)
         if callable(given):
-            self.warn_of_the_unseen(field, given, values)
+            self.warn_of_the_unseen(field, self._of_places(field, given), values)
         return values
+
+    def _of_places(self, field: str, given: Callable[..., Any]) -> Called:
+        return Called(field, given, AXES[: len(self.points)])
 
     def lift_in_time(self, g: Outside | None, start: float, span: float) -> Callable[[float], Lift]:
         """Return the lift as a function of the time from `start` to `start + span`; zero if nothing is given."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fracparticles.arguments import SIZES, finite_array
+from fracparticles.called import AXES
 from fracparticles.data.interpolated import Measured
 from fracparticles.data.tables import is_table, name_and_unit, read_table
 from fracparticles.errors import InvalidInput, one_of, spelled
@@ -29,7 +30,6 @@ _FEWEST = 4  # points along an axis
 # The sizes of values and of their integrals: slopes and sums of both do not overflow.
 _LEAST, _MOST = 1e-200, 1e200
 _FIELD = "initial"  # the argument that messages name
-_AXES = ("x", "y", "z")
 
 
 def measured(data: Any, *, x: str | Sequence[str] | None = None, u: str | None = None) -> Measured:
@@ -159,7 +159,7 @@ def _of_columns(
 
 def _by_their_names(known: list[str]) -> tuple[tuple[str, ...] | None, str | None]:
     """Return which columns are places and which has the values: x, y, z and the other one, or the last as values."""
-    axes = [name for name in known if name.lower() in _AXES]
+    axes = [name for name in known if name.lower() in AXES]
     others = [name for name in known if name not in axes]
     if axes and others:
         return _in_order(axes), others[0] if len(others) == 1 else None
@@ -172,7 +172,7 @@ def _by_their_names(known: list[str]) -> tuple[tuple[str, ...] | None, str | Non
 def _in_order(names: Iterable[str]) -> tuple[str, ...]:
     """Return x, y, z in this order, and others as they come."""
     names = tuple(names)
-    known = all(name.lower() in _AXES for name in names)
+    known = all(name.lower() in AXES for name in names)
     return tuple(sorted(names, key=str.lower)) if known else names
 
 

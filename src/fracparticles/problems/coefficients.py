@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from fracparticles.called import AXES
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.fields import ProblemFields
 
-__all__ = ["AXES", "WithCoefficients"]
-
-AXES = ("x", "y")
+__all__ = ["WithCoefficients"]
 
 
 class WithCoefficients(ProblemFields):

@@ -1,16 +1,16 @@
 """The coefficients of a problem: a number, a text such as "1 + tanh(x)", or a function.
 
-For what a text may hold see `formulas`. A function is called with as many of the variables as it takes, in their order.
+For what a text may hold see `formulas`, and for the variables that a function is called with see `called`.
 """
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from fracparticles.called import Called
 from fracparticles.errors import InvalidInput, reason_of, spelled
 from fracparticles.problems.formulas import Formula
 
@@ -27,7 +27,7 @@ class Coefficient:
     given : float, str or callable
         The number, the text, or the function.
     variables : sequence of str
-        The variables that it may depend on, in the order of the arguments of a function.
+        The variables that it may depend on.
 
     Attributes
     ----------
@@ -48,8 +48,8 @@ class Coefficient:
             self._formula = Formula(field, given, self.variables)
             self.depends_on = self._formula.depends_on
         elif callable(given):
-            self._takes = _arguments_of(field, given, self.variables)
-            self.depends_on = frozenset(self.variables[: self._takes])
+            self._called = Called(field, given, self.variables)
+            self.depends_on = self._called.takes
         elif isinstance(self.given, int | float) and not isinstance(self.given, bool):
             self.depends_on = frozenset()
             if not np.isfinite(self.given):
@@ -99,7 +99,7 @@ class Coefficient:
         if not callable(self.given):
             return self.given
         try:
-            return self.given(*(_read_only(values[name]) for name in self.variables[: self._takes]))
+            return self._called(*(_read_only(values[name]) for name in self.variables))
         except InvalidInput:
             raise
         except Exception as error:  # it may raise anything
@@ -141,28 +141,3 @@ def _read_only(value: Any) -> Any:
     view = np.asarray(value).view()
     view.flags.writeable = False
     return view
-
-
-def _arguments_of(field: str, function: Callable[..., Any], variables: Sequence[str]) -> int:
-    """Return how many of the variables a function takes: as many as it can."""
-    counts = range(len(variables), 0, -1)
-    if isinstance(function, np.ufunc):
-        takes = [count for count in counts if count == function.nin]
-    else:
-        try:
-            signature = inspect.signature(function)
-        except (TypeError, ValueError):  # a function written in C
-            return len(variables)
-        takes = [count for count in counts if _binds(signature, count)]
-    if not takes:
-        wanted = f"a function of {', '.join(variables)}, or of the first of these"
-        raise InvalidInput(field, function, wanted, "Mend its arguments.")
-    return takes[0]
-
-
-def _binds(signature: inspect.Signature, count: int) -> bool:
-    try:
-        signature.bind(*range(count))
-    except TypeError:
-        return False
-    return True

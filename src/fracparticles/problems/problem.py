@@ -16,8 +16,9 @@ from pydantic import model_validator
 
 from fracparticles.arguments import SIZES
 from fracparticles.bounded.domain import Domain
+from fracparticles.called import AXES
 from fracparticles.errors import InvalidInput
-from fracparticles.problems.coefficients import AXES, WithCoefficients
+from fracparticles.problems.coefficients import WithCoefficients
 from fracparticles.problems.domains import (
     OF_A_LATTICE,
     check_domain,
