@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline, RegularGridInterpolator
+from scipy.interpolate import CubicSpline
 
 import fracparticles as fp
 from fracparticles.called import Called
@@ -15,7 +15,6 @@ XTU = ("x", "t", "u")
 X, T, U = np.linspace(-1.0, 1.0, 5), 0.5, np.linspace(2.0, 3.0, 5)
 LINE = np.linspace(-40.0, 40.0, 161)
 CUBE = CubicSpline(LINE, LINE**3)
-IN_PLANE = RegularGridInterpolator((LINE, LINE), np.add.outer(LINE, 2.0 * LINE))
 
 
 class Slope:
@@ -87,7 +86,9 @@ def test_what_would_get_another_variable_than_its_name_says_is_refused(case):
 
 
 def test_a_message_shows_the_function_of_the_caller():
-    assert repr(Called("source", np.sin, XTU)) == repr(np.sin)
+    assert repr(Called("source", Slope().of_u, XTU)) == "the function of_u"
+    with pytest.raises(fp.InvalidInput, match=r"^source = the function <lambda> is not allowed\."):
+        Called("source", lambda v, w, x, y: v, XTU)
 
 
 def test_a_problem_and_followed_particles_take_functions_by_their_names():
@@ -97,8 +98,10 @@ def test_a_problem_and_followed_particles_take_functions_by_their_names():
 
     text = solved(diffusivity="1 + 0.1*x**2/(1 + x**2)", source="-0.1*u*t")
     bump = CubicSpline(LINE, LINE**2 / (1.0 + LINE**2))
-    # A cubic spline of knots 0.5 apart misses the bump, whose fourth derivative is 24 at most, by 5/384 0.5^4 24 = 0.02.
-    splined = solved(diffusivity=lambda x, k=0.1: 1.0 + k * bump(x), source=lambda u, t: -0.1 * u * t)
+    # A cubic spline of knots 0.5 apart misses a function of fourth derivative 24 by 5/384 0.5^4 24 = 0.02 at most.
+    splined = solved(
+        diffusivity=lambda x, k=0.1: 1.0 + k * bump(x), source=lambda u, t: -0.1 * u * t
+    )
     assert np.abs(splined - text).max() < 0.1 * 0.02 * np.abs(text).max()
     exact = solved(
         diffusivity=lambda x, k=0.1: 1.0 + k * x**2 / (1.0 + x**2), source=lambda u, t: -0.1 * u * t

@@ -142,6 +142,9 @@ def test_errors_are_what_they_say():
     error = fp.InvalidInput("beta", 2.0, "a number between 0 and 1", "Give such a value.")
     assert isinstance(error, ValueError)
     assert isinstance(error, fp.FracparticlesError)
-    assert str(error) == ("beta = 2.0 is not allowed: a number between 0 and 1. Give such a value.")
+    assert (
+        str(error)
+        == "beta = 2.0 is not allowed. Allowed: a number between 0 and 1. Give such a value."
+    )
     assert issubclass(fp.NonFiniteSolution, ArithmeticError)
     assert issubclass(fp.StabilityWarning, UserWarning)

@@ -2,9 +2,10 @@
 
 Names decide. A function is called with the variables that its arguments are named after, in whatever order they stand:
 ``lambda t: ...`` is a function of the time, ``lambda t, x: ...`` and ``lambda x, t: ...`` are alike. Case does not
-count, and "time" is t. An argument of another name with a default keeps its default: of ``lambda x, k=2.0: ...``, and of the
-splines of SciPy, only x is given. If arguments without a default have other names, all of these stand for the variables
-in order: ``lambda s: ...`` is a function of x. One that would then get another variable than its name says is refused.
+count, and "time" is t. An argument of another name with a default keeps its default: of ``lambda x, k=2.0: ...``, and
+of the splines of SciPy, only x is given. If arguments without a default have other names, all of these stand for the
+variables in order: ``lambda s: ...`` is a function of x. One that would then get another variable than its name says is
+refused.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from fracparticles.errors import InvalidInput, spelled
+from fracparticles.errors import InvalidInput, shown, spelled
 
 __all__ = ["AXES", "Called"]
 
@@ -55,7 +56,7 @@ class Called:
         self.takes = frozenset((*self._placed, *self._named.values()))
 
     def __repr__(self) -> str:
-        return repr(self.function)
+        return shown(self.function)
 
     def __call__(self, *values: Any) -> Any:
         """Return the function's values for values of each variable, in their order; one number stands at all places."""

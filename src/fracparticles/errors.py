@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from types import FunctionType, MethodType
 from typing import Any
 
 __all__ = [
@@ -12,8 +13,10 @@ __all__ = [
     "InvalidInput",
     "NonFiniteSolution",
     "StabilityWarning",
+    "closest",
     "one_of",
     "reason_of",
+    "shown",
     "spelled",
 ]
 
@@ -33,7 +36,7 @@ class InvalidInput(FracparticlesError, ValueError):
     field : str
         Name of the offending field or argument.
     value : object
-        The value that was given.
+        The value that was given; None if none was.
     allowed : str
         What is allowed, in words.
     remedy : str
@@ -45,14 +48,19 @@ class InvalidInput(FracparticlesError, ValueError):
         self.field, self.value, self.allowed, self.remedy = field, value, allowed, remedy
 
     def __str__(self) -> str:
-        value = " ".join(_shown(self.value).split())
-        shown = value if len(value) <= _LONGEST else f"{value[:_LONGEST]}..."
-        line = f"{self.field} = {shown} is not allowed: {self.allowed}. {self.remedy}"
+        value = " ".join(shown(self.value).split())
+        value = value if len(value) <= _LONGEST else f"{value[:_LONGEST]}..."
+        what = "is missing" if self.value is None else f"= {value} is not allowed"
+        line = f"{self.field} {what}. Allowed: {self.allowed}. {self.remedy}"
         return " ".join(line.split())  # a name may hold a line feed, too
 
 
-def _shown(value: Any) -> str:
-    """Return the value as text; for an array of many numbers its shape and type, since the first numbers say little."""
+def shown(value: Any) -> str:
+    """Return the value as text: an array of many numbers as its shape and type, a function as its name."""
+    if isinstance(value, FunctionType | MethodType):
+        return f"the function {value.__name__}"
+    if type(value).__module__ == "numpy" and getattr(value, "shape", None) == ():  # none of masked arrays
+        value = value.item()
     if getattr(value, "size", 0) > _MOST_NUMBERS and hasattr(value, "dtype"):
         return f"array of shape {value.shape} and type {value.dtype}"
     return repr(value)
@@ -67,14 +75,27 @@ def spelled(values: Iterable[object], last: str = " or ") -> str:
     return last.join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
+def closest(value: object, choices: Iterable[object]) -> str | None:
+    """Return the question whether the choice nearest to `value` was meant; None if none is near."""
+    import difflib
+
+    if not isinstance(value, str):
+        return None
+    names = {str(choice).casefold(): choice for choice in choices}
+    close = difflib.get_close_matches(value[:100].casefold(), names, n=1)
+    return f"Did you mean {names[close[0]]!r}?" if close else None
+
+
 def one_of(
     field: str,
     value: object,
     choices: Iterable[object],
     where: str = "",
-    remedy: str = "Choose one of these.",
+    remedy: str = "",
 ) -> InvalidInput:
     """Return the error for a value that is none of the choices; `where` names what has only these."""
+    choices = list(choices)
+    remedy = remedy or closest(value, choices) or "Choose one of these."
     allowed = f"{spelled(choices)} for {where}" if where else f"one of {spelled(choices, ', ')}"
     return InvalidInput(field, value, allowed, remedy)
 

@@ -23,9 +23,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from fracparticles.errors import InvalidInput
+from fracparticles.errors import InvalidInput, closest
 from fracparticles.run.case import Case
-from fracparticles.run.complaints import closest
 from fracstudy.run_blocks import RunBlock, expand
 
 __all__ = ["Scene", "call", "check_parameters"]

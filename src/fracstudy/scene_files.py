@@ -15,8 +15,7 @@ from typing import Any
 import yaml
 from pydantic import BaseModel, ValidationError
 
-from fracparticles.errors import InvalidInput
-from fracparticles.run.complaints import closest
+from fracparticles.errors import InvalidInput, closest
 from fracstudy.read_yaml import read_yaml
 from fracstudy.run_blocks import RunBlock
 from fracstudy.scene import Scene

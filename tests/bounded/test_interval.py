@@ -218,7 +218,7 @@ def test_what_is_refused_in_one_line():
         with pytest.raises(InvalidInput, match=f"^{field} = ") as error:
             call()
         assert "\n" not in str(error.value)
-    with pytest.raises(InvalidInput, match=r"^outside = None"):
+    with pytest.raises(InvalidInput, match=r"^outside is missing"):
         given.evolve(0.0, 1.0)
     for g in (lambda y, t: y * y, lambda y, t: np.abs(y) ** 1.5):
         with pytest.raises(InvalidInput, match="do not grow"):

@@ -42,7 +42,7 @@ REFUSED = {
     "times": ({"t_final": None, "times": (2.0, 1.0)}, "ascending"),
     "far terms": ({"exterior": "truncated", "far_terms": 2}, "far_terms"),
     "missing": ({"half_width": None}, "half_width"),
-    "no order": ({"alpha": None, "beta": None}, "beta = None is not allowed: between 0 and 1"),
+    "no order": ({"alpha": None, "beta": None}, "beta is missing. Allowed: between 0 and 1"),
 }
 
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import fracparticles as fp
 from fracparticles.errors import InvalidInput, one_of, spelled
+from fracparticles.problems.problem import Problem
 from fracparticles.run.case import Case
 from fracparticles.run.complaints import choices_of, field_table, label_of, takes_numbers
 from fracparticles.special import mean_radius
@@ -97,7 +98,7 @@ def test_json_round_trip():
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "3", "null", '"a"', "[" * 100000, None, 3])
 def test_json_of_something_else(text):
-    with pytest.raises(InvalidInput, match="case = ") as refused:
+    with pytest.raises(InvalidInput, match=r"^case (=|is missing)") as refused:
         Case.from_json(text)
     assert len(str(refused.value)) < 400
 
@@ -275,7 +276,7 @@ def test_refused_in_one_clear_line(changes, field, words):
         case(**changes)
     message = str(refused.value)
     assert refused.value.field == field
-    assert message.startswith(f"{field} = ")
+    assert message.startswith((f"{field} = ", f"{field} is missing"))
     assert words in message
     assert "\n" not in message
     assert message[-1] in ".?"
@@ -288,13 +289,33 @@ def test_what_is_needed(name):
     assert refused.value.field == name
 
 
+def test_a_name_of_something_else_is_told_where_it_belongs():
+    assert set(Case.elsewhere) == set(Problem.model_fields) - set(Case.model_fields)
+    for model, name, said in [
+        (Case, "velocity", r"It is a field of fp\.Problem"),
+        (Problem, "scheme", r"It is a field of fp\.Case"),
+        (Case, "alfa", "Did you mean 'alpha'?"),
+        (Problem, "alfa", "Did you mean 'alpha'?"),
+    ]:
+        given = {"half_width": 20.0, "spacing": 0.1, "t_final": 2.0, name: 1.0}
+        with pytest.raises(InvalidInput, match=said) as refused:
+            model(**given)
+        assert refused.value.field == name
+    with pytest.raises(InvalidInput, match=r"one that varies is for fp\.Problem"):
+        Case(**GIVEN, diffusivity="1 + x**2")
+
+
 def test_lists_in_words():
     assert [spelled(range(k)) for k in range(4)] == ["", "0", "0 or 1", "0, 1 or 2"]
     assert spelled(("a", "b", "c"), " and ") == "a, b and c"
     assert spelled((None, "rk2")) == "nothing or 'rk2'"
-    assert str(one_of("n", 3, (1, 2))) == "n = 3 is not allowed: one of 1, 2. Choose one of these."
+    assert (
+        str(one_of("n", 3, (1, 2)))
+        == "n = 3 is not allowed. Allowed: one of 1, 2. Choose one of these."
+    )
+    assert str(one_of("name", "k", ("K", "F"))).endswith("Did you mean 'K'?")
     refused = str(one_of("n", 3, (1, 2), "KPSE", "Take 1."))
-    assert refused == "n = 3 is not allowed: 1 or 2 for KPSE. Take 1."
+    assert refused == "n = 3 is not allowed. Allowed: 1 or 2 for KPSE. Take 1."
 
 
 def test_long_and_multi_line_values_are_shown_in_one_short_line():
@@ -406,9 +427,9 @@ def test_a_complaint_about_a_name_with_a_line_feed_is_one_line():
 
 
 def test_a_name_that_is_not_utf_8_is_refused():
-    with pytest.raises(InvalidInput, match="one of scheme, order"):
+    with pytest.raises(InvalidInput, match="only the fields scheme, order"):
         case(**{"\ud800": 1})
-    with pytest.raises(InvalidInput, match="one of scheme, order"):
+    with pytest.raises(InvalidInput, match="only the fields scheme, order"):
         Case.from_json(r'{"scheme": "DD", "\ud800": 1}')
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.special import gamma
 
-from fracparticles.errors import InvalidInput, spelled
+from fracparticles.errors import InvalidInput, closest, spelled
 
 __all__ = ["FUNCTIONS", "Formula"]
 
@@ -150,8 +150,6 @@ def _parsed(field: str, text: str, variables: Sequence[str]) -> ast.expr:
 
 def _complaints(tree: ast.expr, variables: Sequence[str]) -> Iterator[tuple[str, ast.expr, str]]:
     """Yield what is allowed, the node that is not, and a remedy; the numbers become floats on the way."""
-    from fracparticles.run.complaints import closest
-
     known = (*variables, *_CONSTANTS)
     plain = f"an expression of numbers, {spelled(variables)}, + - * / ** and functions"
     waiting: list[tuple[ast.expr, int]] = [(tree, 0)]

@@ -8,8 +8,9 @@ alpha = 1 + beta, in one and two dimensions: on the whole space, or on an interv
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from pydantic import model_validator
@@ -44,9 +45,8 @@ _FUNCTION = "a function, which the file does not hold"  # in JSON
 class Problem(WithCoefficients):
     """One problem; the fields are the parameters, keyword only.
 
-    A text is an expression, see `expressions`: "1 + 0.5*sin(x)*exp(-t)". A function takes arrays x, t on the line and
-    x, y, t in the plane, or only the first of these; a source also takes u, as the last. `alpha` may be given instead
-    of `beta`.
+    A text is an expression, see `formulas`: "1 + 0.5*sin(x)*exp(-t)". A function takes arrays: those of x, y and t, and
+    for a source of u, that its arguments are named after, see `called`. `alpha` may be given instead of `beta`.
 
     Raises
     ------
@@ -54,6 +54,11 @@ class Problem(WithCoefficients):
         If a field is wrong; names the field, the value, what is allowed and what to do. For a coefficient it names the
         place where it is wrong.
     """
+
+    elsewhere: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        Case.model_fields.keys() - WithCoefficients.model_fields.keys(),
+        "It is a field of fp.Case, for fp.solve.",
+    )
 
     def __init__(self, **data: Any) -> None:  # alpha is no field: for type checkers
         super().__init__(**data)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from hashlib import sha256
-from typing import Any
+from typing import Any, ClassVar
 from urllib.parse import quote
 
 from pydantic import model_validator
@@ -36,6 +37,11 @@ class Case(Derived):
     InvalidInput
         Names the field, the value, what is allowed and what to do.
     """
+
+    elsewhere: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ["velocity", "source", "domain", "particles", "form", "exterior_data", "rtol", "atol"],
+        "It is a field of fp.Problem, for fp.solve_problem.",
+    )
 
     def __init__(self, **data: Any) -> None:  # alpha is no field, for those who check types
         super().__init__(**data)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -26,11 +26,14 @@ class Checked(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
+    elsewhere: ClassVar[Mapping[str, str]] = {}
+    """Names that are no field of this model, and where they belong."""
+
     def __init__(self, **data: Any) -> None:
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise first_complaint(error, type(self)) from None
+            raise first_complaint(error, type(self), self.elsewhere) from None
 
     @classmethod
     def _plain_values(cls, data: dict[str, Any]) -> dict[str, Any]:

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping
 from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from fracparticles.errors import InvalidInput, one_of, spelled
+from fracparticles.errors import InvalidInput, closest, spelled
 
 __all__ = [
     "allowed",
     "choices_of",
-    "closest",
     "field_table",
     "first_complaint",
     "label_of",
@@ -24,9 +23,16 @@ __all__ = [
 ]
 
 
-def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidInput:
-    """Turn the first complaint of pydantic into one line of ours."""
-    first = error.errors()[0]
+def first_complaint(
+    error: ValidationError, model: type[BaseModel], elsewhere: Mapping[str, str]
+) -> InvalidInput:
+    """Turn one complaint of pydantic into one line of ours; `elsewhere` says where other names belong.
+
+    It is the first, or that of an unknown name: a misspelt field is missing, too.
+    """
+    complaints = error.errors()
+    unknown = (one for one in complaints if one["type"] == "extra_forbidden")
+    first = next(unknown, complaints[0])
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, InvalidInput):  # one of our own checks
         return cause
@@ -34,7 +40,9 @@ def first_complaint(error: ValidationError, model: type[BaseModel]) -> InvalidIn
     # A name that is not UTF-8 has no place: there the value is the name.
     name = str(first["loc"][0] if first["loc"] else value)
     if first["type"] in ("extra_forbidden", "string_unicode") and name not in fields:
-        return one_of(name, value, fields, remedy=closest(name, fields) or "Leave it out.")
+        names = [*fields, "alpha"]  # every model has beta, for which alpha may be given
+        remedy = elsewhere.get(name) or closest(name, names) or "Leave it out."
+        return InvalidInput(name, value, f"only the fields {spelled(names, ' and ')}", remedy)
     if first["type"] == "missing":
         remedy = _remedy(fields[name]) or f"Give {name}."
         return InvalidInput(name, None, allowed(fields[name]), remedy)
@@ -91,17 +99,6 @@ def takes_numbers(annotation: Any) -> bool:
 def takes_lists(annotation: Any) -> bool:
     """Return whether a field with this annotation takes several numbers."""
     return tuple in (get_origin(annotation), *map(get_origin, get_args(annotation)))
-
-
-def closest(value: object, choices: Iterable[object]) -> str | None:
-    """Return the question whether the choice nearest to `value` was meant; None if none is near."""
-    import difflib
-
-    if not isinstance(value, str):
-        return None
-    names = {str(choice).casefold(): choice for choice in choices}
-    close = difflib.get_close_matches(value[:100].casefold(), names, n=1)
-    return f"Did you mean {names[close[0]]!r}?" if close else None
 
 
 def label_of(field: FieldInfo) -> str:

@@ -113,7 +113,11 @@ class Parameters(Checked):
         "diffusivity if left out.",
     )
     diffusivity: float = Field(
-        default=1.0, ge=SIZES[0], le=SIZES[1], description="Diffusivity D of Eq. (2). A constant."
+        default=1.0,
+        ge=SIZES[0],
+        le=SIZES[1],
+        description="Diffusivity D of Eq. (2). A constant.",
+        json_schema_extra={"remedy": "Give a positive number; one that varies is for fp.Problem."},
     )
     t_initial: float = Field(default=0.5, ge=0.0, le=SIZES[1], description="Initial time.")
     t_final: float = Field(default=1.5, ge=SIZES[0], le=SIZES[1], description="Final time.")
