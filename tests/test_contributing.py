@@ -48,9 +48,17 @@ files = []
 for case in scenes["gain"].cases:
     fp.write(fp.solve(case), Path("runs") / case.path)
     files.append(str(Path("runs") / case.path))
-make(scenes["gain"], Path("results"), files, None)
+make(scenes["gain"], Path("results"), files, None, ["svg"])
+scene = Path("scenes/beyond/gain/figure.py")
+scene.write_text(scene.read_text().replace("table", "series"))
+del sys.modules["scenes.beyond.gain.figure"]
+try:
+    make(read_scenes(Path("scenes").resolve(), ["beyond"], smoke=False)["gain"], Path("results"), files, None, ["svg"])
+except fp.FracparticlesError as error:
+    refused = str(error)
 print(json.dumps({
     "file": fp.__file__,
+    "refused": refused,
     "errors": [evolved(scheme="XPSE", spacing=h) for h in (0.2, 0.1)],
     "limits": [fp.stability_limit(name, 0.5) for name in ("XPSE", "KPSE")],
     "steps": [float(np.abs(stepped(dt) - exact).max()) for dt in (0.04, 0.02)],
@@ -81,6 +89,7 @@ def found(tmp_path_factory) -> dict:
         new = RK3 + old if "Step" in old else '"rk2", "rk3", "rk4"'
         module.write_text(text.replace(old, new), encoding="utf-8")
     said = answer(copy, PROGRAM)
+    said["figure"] = (copy / "results/figures/gain.svg").read_text("utf-8")
     said["table"] = pd.read_csv(copy / "results/tables/gain.csv")
     return said
 
@@ -105,6 +114,11 @@ def test_the_integrator_is_of_third_order_stepping_and_as_a_series(found):
 def test_the_scene_makes_its_table(found):
     assert list(found["table"].columns) == ["spacing", "gain"]
     assert (found["table"]["gain"] < 1.0).all()
+
+
+def test_the_scene_draws_its_table_and_what_it_has_no_series_for_is_told(found):
+    assert "<svg" in found["figure"]
+    assert found["refused"].startswith("gain: figure.py draws the series, and study.py returns none.")
 
 
 def test_the_claim_is_judged_by_what_the_scene_measures(found, tmp_path):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from inspect import signature
 from pathlib import Path
 
 import pandas as pd
 
+from fracparticles.errors import FracparticlesError
 from fracparticles.run.dataset import read_benchmark
 from fracstudy.claims import Value
 from fracstudy.findings import write_findings
@@ -45,6 +47,11 @@ def make(
         The file of the printed claims that the scene judges.
     figure_formats : sequence of str
         The formats of its figure.
+
+    Raises
+    ------
+    FracparticlesError
+        If the figure draws series that the study does not return.
     """
     csv, md, findings, series, *figures = made(scene, results, figure_formats)
     claims = [] if printed is None else read_claims(printed)
@@ -66,8 +73,16 @@ def make(
     if figures:
         from fracstudy.figure_files import save
 
+        draw = scene.function("figure")
         given = {"table": _read(csv), **scene.parameters}
-        drawn = call(scene.function("figure"), _read(series), **given)
+        if "series" in signature(draw).parameters:
+            if result.series is None:
+                raise FracparticlesError(
+                    f"{scene.name}: figure.py draws the series, and study.py returns none. Return Result(table, "
+                    "series=...), or draw the table: figure(table)."
+                )
+            given["series"] = _read(series)
+        drawn = call(draw, **given)
         save(drawn, figures[0].with_suffix(""), figure_formats)
 
 
