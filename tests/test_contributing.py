@@ -118,7 +118,9 @@ def test_the_scene_makes_its_table(found):
 
 def test_the_scene_draws_its_table_and_what_it_has_no_series_for_is_told(found):
     assert "<svg" in found["figure"]
-    assert found["refused"].startswith("gain: figure.py draws the series, and study.py returns none.")
+    assert found["refused"].startswith(
+        "gain: figure.py draws the series, and study.py returns none."
+    )
 
 
 def test_the_claim_is_judged_by_what_the_scene_measures(found, tmp_path):

@@ -59,7 +59,9 @@ def shown(value: Any) -> str:
     """Return the value as text: an array of many numbers as its shape and type, a function as its name."""
     if isinstance(value, FunctionType | MethodType):
         return f"the function {value.__name__}"
-    if type(value).__module__ == "numpy" and getattr(value, "shape", None) == ():  # none of masked arrays
+    if (
+        type(value).__module__ == "numpy" and getattr(value, "shape", None) == ()
+    ):  # none of masked arrays
         value = value.item()
     if getattr(value, "size", 0) > _MOST_NUMBERS and hasattr(value, "dtype"):
         return f"array of shape {value.shape} and type {value.dtype}"

@@ -196,7 +196,9 @@ def _check_keywords(
     for name, (parameter, names) in keywords.items():
         if name not in given:
             if parameter.default is parameter.empty:
-                raise InvalidInput(f"{where}.{name}", None, "needed by the study", "Add it.")
+                raise InvalidInput(
+                    f"{where}.{name}", None, "a value, which the study needs", "Add it."
+                )
         elif parameter.annotation is not parameter.empty:
             try:
                 written = parameter.annotation

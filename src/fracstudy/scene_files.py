@@ -64,7 +64,8 @@ def _scenes_of(file: Path, smoke: bool) -> Iterator[Scene]:
         problem = " ".join(str(error).split())
         raise InvalidInput(str(file), problem, "YAML", "Mend the file.") from None
     if not isinstance(tree, dict):
-        raise InvalidInput(str(file), tree, "a mapping with title and runs", "Fill it in.")
+        found = "an empty file" if tree is None else tree
+        raise InvalidInput(str(file), found, "a mapping with title and runs", "Fill it in.")
     variants = tree.pop("variants", {file.parent.name: {}})
     if not (isinstance(variants, dict) and all(isinstance(own, dict) for own in variants.values())):
         raise InvalidInput(f"{file}: variants", variants, "mappings by name", "Mend them.")
@@ -119,10 +120,17 @@ def resolved(tree: _Tree, smoke: bool) -> _Tree:
 
 
 def complaint(error: ValidationError, where: str, model: type[BaseModel]) -> InvalidInput:
-    """Return the first mistake that pydantic found, in our words; `where` begins the name of the field."""
-    first = error.errors()[0]
-    # A field of a run block may be a value or a list. Pydantic complains about both; the first complaint is enough.
-    place = [str(part) for part in first["loc"] if not (isinstance(part, str) and "[" in part)]
+    """Return one mistake that pydantic found, in our words; `where` begins the name of the field.
+
+    It is the first, or an unknown name: a misspelt key is missing, too.
+    """
+    unknown = (one for one in error.errors() if one["type"] == "extra_forbidden")
+    first = next(unknown, error.errors()[0])
+    # A field of a run block may be a value or a list. Pydantic complains about both, and names the kind of the value;
+    # the first complaint is enough.
+    kinds = ("float", "int", "str", "bool")
+    parts = [str(part) for part in first["loc"]]
+    place = [part for part in parts if "[" not in part and part not in kinds]
     field = where + (".".join(place) or "configuration")
     if first["type"] == "extra_forbidden":
         fields = (RunBlock if place[0] == "runs" else model).model_fields
@@ -130,8 +138,10 @@ def complaint(error: ValidationError, where: str, model: type[BaseModel]) -> Inv
         remedy = closest(place[-1], names) or "Remove it."
         return InvalidInput(field, first["input"], f"one of {', '.join(names)}", remedy)
     if first["type"] == "missing":
-        return InvalidInput(field, None, "needed", "Add it.")
+        return InvalidInput(field, None, "a value, which is needed", "Add it.")
     number = isinstance(first["input"], str) and "number" in first["msg"]
     hint = " YAML reads 1e-4 as text: write 1.0e-4." if number else ""
+    if first["type"] == "list_type":
+        hint = " Begin each item of a list with a dash."
     allowed = first["msg"].removeprefix("Input should be ")
     return InvalidInput(field, first["input"], allowed, f"Mend the value.{hint}")

@@ -51,6 +51,13 @@ def write(root: Path, name: str = "one", study: str = "", **scene) -> dict:
     }
 
 
+def test_an_empty_scene_is_no_missing_one(tmp_path):
+    config = write(tmp_path)
+    file = next(tmp_path.rglob("scene.yaml"))
+    file.write_text("")
+    assert "scene.yaml = 'an empty file' is not allowed. Allowed: a mapping" in refusal(config)
+
+
 def refusal(config: dict) -> str:
     with pytest.raises(InvalidInput) as caught:
         read_config(config)
@@ -62,7 +69,9 @@ def refusal(config: dict) -> str:
 @pytest.mark.parametrize(
     ("scene", "words"),
     [
-        ({"runs": [{**BLOCK, "dt": "1e-4"}]}, ("scene.yaml: runs.0.dt", "'1e-4'", "1.0e-4")),
+        ({"runs": [{**BLOCK, "dt": "1e-4"}]}, ("scene.yaml: runs.0.dt = ", "'1e-4'", "1.0e-4")),
+        ({"runs": BLOCK}, ("runs = ", "Begin each item of a list with a dash.")),
+        ({"title": None, "titel": "t"}, ("titel = 't'", "Did you mean 'title'?")),
         ({"runs": [{**BLOCK, "spacng": 0.1}]}, ("spacng", "Did you mean 'spacing'?")),
         ({"runs": [{**BLOCK, "scheme": "KPSF"}]}, ("scheme", "KPSF", "KPSE")),
         ({"runs": [{**BLOCK, "order": 3}]}, ("order", "3", "2, 4, 6, 8, 10 or 12")),
@@ -92,7 +101,7 @@ def test_a_mistake_is_named_in_one_line(tmp_path, scene, words):
 @pytest.mark.parametrize(
     ("scene", "words"),
     [
-        ({}, ("parameters.width", "needed")),
+        ({}, ("parameters.width", "which the study needs")),
         ({"parameters": {"width": "1e-4"}}, ("parameters.width", "'1e-4'", "number")),
         ({"parameters": {"width": 1.0, "widht": 1.0}}, ("widht", "Did you mean 'width'?")),
         ({"parameters": {"width": 1.0, "counts": [1.5]}}, ("counts", "integer")),
