@@ -38,6 +38,11 @@ def test_the_decay_takes_its_share_of_the_mass(done):
     assert run.mass.values == pytest.approx(expected, rel=40.0**-1.5)
 
 
+def test_functions_of_other_arguments_are_coefficients(done):
+    decay = np.exp(-0.1 * (1.0 - np.exp(-0.5)))
+    assert float(done["spread"].mass) == pytest.approx(np.sqrt(np.pi) * decay, rel=40.0**-1.5)
+
+
 def test_what_all_varies_between_absorbing_ends(done):
     between = done["between"]
     assert fp.Problem.from_json(between.attrs["problem"]) == done["ends"]

@@ -122,7 +122,13 @@ class DomainOperator(ABC):
         """Return a function of places, an array or a number at the particles."""
         if callable(given):
             return check.sampled(field, self._of_places(field, given), *self.points)
-        return np.asarray(check.finite_array(field, given, self.volumes.shape), dtype=float)
+        values, shape = check.finite_array(field, given), self.volumes.shape
+        each = "a value at each particle of the domain"
+        return (
+            np.full(shape, values)
+            if values.ndim == 0
+            else check.of_shape(field, values, shape, each)
+        )
 
     def seen(self, field: str, given: Any) -> FloatArray:
         """Return `values`; warns if they are those of a function that the particles do not resolve."""

@@ -52,7 +52,7 @@ def warn_if_unstable(case: Case, operator: LatticeOperator) -> None:
             warnings.warn(
                 f"dt = {case.time_step:.6g} lies outside the stability interval of {case.scheme} with "
                 f"{case.resolved_integrator}: at most {-polynomial.stability_interval / low:.6g} is stable. "
-                "The run is computed as it is.",
+                "The run is computed as it is. Take a smaller dt.",
                 StabilityWarning,
                 stacklevel=3,
             )

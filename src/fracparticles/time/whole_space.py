@@ -303,7 +303,7 @@ def _refuse_shape(shape: tuple[int, ...], allowed: str) -> NoReturn:
 def _refuse_outgrown(points: int, spread: float) -> None:
     if 0.5 * points < _OUTGROWN * spread:
         least = f"one of half-width {_OUTGROWN:g} (D t)^(1/alpha) = {_OUTGROWN * spread:.4g} spacings at least"
-        remedy = "Take a wider one, or a shorter time."
+        remedy = "Take a wider one, a shorter time, or fp.evolve_long, which widens it."
         raise InvalidInput("lattice", 0.5 * points, least, remedy)
 
 
