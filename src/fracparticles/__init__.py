@@ -1,4 +1,4 @@
-"""fracparticles: particle methods for fractional diffusion, as a study that anyone can re-run.
+"""Particle methods for fractional diffusion.
 
 >>> import fracparticles as fp
 >>> case = fp.Case(scheme="KPSE", order=4, beta=0.5, truncation=20.0, spacing=0.05, dt=2.0e-4, exterior="open")
@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import Any
 
@@ -56,7 +57,9 @@ __all__ = ["__version__", *_HOME]
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        # With these two, Python adds "Did you mean ...?".
+        said = f"module {__name__!r} has no attribute {name!r}"
+        raise AttributeError(said, name=name, obj=sys.modules[__name__])
     value = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
     globals()[name] = value
     return value

@@ -93,7 +93,7 @@ class Problem(WithCoefficients):
         if self.times is not None and self.times[0] <= self.t_initial:
             later = f"numbers > t_initial = {self.t_initial:g}"
             raise InvalidInput(
-                "times", self.times, later, "Leave out the others: there are the data."
+                "times", self.times, later, "Leave out times up to it: u is given there."
             )
         least_d = SIZES[0] if self.is_bounded else 0.0
         for one in (self.diffusion, *self.transport):
