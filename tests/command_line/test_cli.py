@@ -559,7 +559,8 @@ def test_a_limit_of_zero_says_that_no_step_is_stable(cli, flags):
 @pytest.mark.parametrize(
     ("flags", "words"),
     [
-        ("--scheme KPS --beta 0.5", ("scheme = 'KPS'", "one of DD")),
+        ("--scheme KPS --beta 0.5", ("scheme = 'KPS'", "one of DD", "Did you mean 'KPSE'?")),
+        ("--scheme DVM --beta 0.5", ("scheme = 'DVM'", "its waves are DD's")),
         ("--scheme KPSE --beta 1", ("beta = 1", "between 0 and 1")),
         ("--scheme KPSE --beta x", ("beta = 'x'",)),
         ("--scheme KPSE --beta 0.5 --order 3", ("order = 3",)),
@@ -582,6 +583,18 @@ def test_bad_limits(cli, flags, words):
 
 def test_unknown_commands(cli):
     assert refused(cli("solv"), "solv", 'Did you mean "solve"?')
+
+
+def test_what_belongs_to_no_option(cli):
+    assert refused(cli("solve", "KPSE", "--beta", "0.5"), "'KPSE' belongs to no option")
+    assert refused(cli("solve", "--times", "0.7", "1", "-o", "run.nc"), "lists as 1,2,3")
+
+
+def test_python_runs_the_package():
+    """`python -m fracparticles` is the command."""
+    command = [sys.executable, "-m", "fracparticles", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == f"{fp.__version__}\n"
 
 
 def test_version_and_help(cli):

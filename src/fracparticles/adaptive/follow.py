@@ -81,7 +81,9 @@ class Followed:
         x = check.finite_array("x", x)
         low, high = self.particles.x[[0, -1]]
         if x.size and not (low <= x.min() and x.max() <= high):
-            raise InvalidInput("x", x, f"from {low:g} to {high:g}", "There are no particles.")
+            raise InvalidInput(
+                "x", x, f"from {low:g} to {high:g}", "Beyond there are no particles."
+            )
         return between(self.particles.x, self.u, x.ravel()).reshape(x.shape)
 
 

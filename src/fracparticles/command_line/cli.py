@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    from cyclopts import CycloptsError
+    from cyclopts import CycloptsError, UnusedCliTokensError
 
     from fracparticles.command_line.program import app
 
@@ -50,6 +50,9 @@ def _run(arguments: Sequence[str] | None) -> int:
                 result_action="return_value",
             )
             sys.stdout.flush()
+        except UnusedCliTokensError as error:
+            left = " ".join(error.unused_tokens or ())
+            return _fail(f"{left!r} belongs to no option. Give --option value, lists as 1,2,3.", 2)
         except (CycloptsError, InvalidInput) as error:
             return _fail(error, 2)
         except NonFiniteSolution as error:

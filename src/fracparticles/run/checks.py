@@ -140,7 +140,9 @@ def _check_time(case: Derived) -> None:
         raise InvalidInput("t_final", case.t_final, later, "Give a later final time.")
     if case.times is not None and case.times[0] <= case.t_initial:
         later = f"numbers > t_initial = {case.t_initial:g}"
-        raise InvalidInput("times", case.times, later, "Leave out times up to it: u is given there.")
+        raise InvalidInput(
+            "times", case.times, later, "Leave out times up to it: u is given there."
+        )
 
 
 def _check_width(case: Derived) -> None:

@@ -45,4 +45,8 @@ def scheme(name: str) -> LatticeScheme:
     lattice = {key: one for key, one in all_schemes().items() if isinstance(one, LatticeScheme)}
     if isinstance(name, str) and name in lattice:
         return lattice[name]
-    raise one_of("scheme", name, lattice)
+    moving = all_schemes().get(name) if isinstance(name, str) else None
+    waves = (
+        "" if moving is None else f"{name} moves its particles; its waves are {moving.symbol_of}'s."
+    )
+    raise one_of("scheme", name, lattice, remedy=waves)
