@@ -47,6 +47,28 @@ def test_every_variable_that_has_a_dimension_is_in_its_unit():
     assert square.y.attrs["units"] == "m"
 
 
+def test_those_of_a_problem():
+    def units(initial, **given):
+        problem = fp.Problem(t_final=0.1, **given)
+        run = fp.solve_problem(problem, initial, estimate=False, units=METRES)
+        return {name: one.attrs.get("units") for name, one in run.variables.items()}
+
+    line = units(lambda x: np.exp(-x * x), alpha=1.5, half_width=20.0, spacing=0.5, source="-u")
+    expected = {"x": "m", "u": "mg/L", "mass": "mg/L m", "diffusivity": "m^1.5 d^-1"}
+    assert line.items() >= {**expected, "t_final": "d", "beta": "1"}.items()
+    disc = units(
+        lambda x, y: 1.0 - x * x - y * y,
+        alpha=1.5, half_width=1.0, exterior="absorbing", domain="disc", particles=12,
+    )  # fmt: skip
+    assert disc.items() >= {"x": "m", "volume": "m^2", "mass_final": "mg/L m^2"}.items()
+    varied = units(
+        lambda x: np.exp(-x * x),
+        beta="0.5 + 0.1*tanh(x)", form="DD", half_width=20.0, spacing=0.5,
+    )  # fmt: skip
+    assert varied["diffusivity"] is None  # in length^alpha(x) / time
+    assert varied["u"] == "mg/L"
+
+
 def test_without_them_nothing_changes():
     run = solved()
     assert {v.attrs["units"] for v in run.variables.values() if "units" in v.attrs} == {"1"}

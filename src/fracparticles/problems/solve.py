@@ -18,6 +18,7 @@ from fracparticles.problems.rates import Rates, probe_source
 from fracparticles.problems.reliability import estimates, warn_if_doubtful
 from fracparticles.problems.tighter_steps import with_time_error
 from fracparticles.run.initial import Initial, initial_strengths
+from fracparticles.run.units import Units, units_of, with_units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +27,11 @@ __all__ = ["solve_problem"]
 
 
 def solve_problem(
-    problem: Problem, initial: Initial | None = None, *, estimate: bool = True
+    problem: Problem,
+    initial: Initial | None = None,
+    *,
+    estimate: bool = True,
+    units: Units | None = None,
 ) -> xr.Dataset:
     """Solve a problem, and estimate the errors of the solution.
 
@@ -42,6 +47,8 @@ def solve_problem(
         `fewer_particles`; and there with smaller steps, for `time_error`, the error that the steps leave, see
         `tighter_steps`. It takes once or twice as long again, and on a bounded domain up to half a second more, or
         three times as long with a D that depends on place and time.
+    units : Units, optional
+        Names of the units of the numbers, for the attributes of the result; left out, those that the data name.
 
     Returns
     -------
@@ -75,9 +82,9 @@ def solve_problem(
     """
     remedy = "Make one: fp.Problem(alpha=1.5, ...). A fp.Case is for fp.solve."
     problem = check.instance("problem", problem, Problem, "a fp.Problem", remedy)
-    estimate = check.flag("estimate", estimate)
+    estimate, units = check.flag("estimate", estimate), units_of(initial, units)
     if problem.is_bounded:
-        return solve_on_domain(problem, initial, estimate)
+        return with_units(solve_on_domain(problem, initial, estimate), units)
     plain = problem.order_coefficient.constant is not None and problem.diffusion.constant
     if initial is None and not plain:
         given = "data of your own: there is no fundamental solution with these coefficients"
@@ -96,7 +103,8 @@ def solve_problem(
         )
         found = with_time_error(found, problem, initial if sampled else u0, _fields_of)
     warn_if_doubtful(problem, found)
-    return to_dataset(problem, lattice_layout(problem), u0, result, found, origin)
+    data = to_dataset(problem, lattice_layout(problem), u0, result, found, origin)
+    return with_units(data, units)
 
 
 def _fields_of(problem: Problem, initial: Initial | None) -> list[np.ndarray]:

@@ -72,4 +72,4 @@ def solve(
         result = to_dataset(solution, estimates_of(solution, source))
     else:
         result = to_dataset(solution)
-    return result if units is None else with_units(result, case, units)
+    return with_units(result, units)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from fracparticles.data.interpolated import Measured
 from fracparticles.errors import InvalidInput
 from fracparticles.files import load_netcdf
-from fracparticles.run.case import FUNDAMENTAL, Case
+from fracparticles.run.case import FUNDAMENTAL
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,10 +24,11 @@ __all__ = ["Units", "units_of", "with_units"]
 
 _LONGEST = 40  # characters of a name
 _NONE = "1"  # the name of no unit
-# The powers of length, time and concentration in the unit of each variable; "alpha" and "dim" stand for the case's.
+# The powers of length, time and concentration in the unit of each variable; "alpha" and "dim" are those of the run.
 _DIMENSIONS: dict[str, tuple[float | str, float, float]] = {
     **dict.fromkeys(("x", "y", "z", "half_width", "spacing", "particle_spacing"), (1, 0, 0)),
-    **dict.fromkeys(("graded_scale", "volume", "particle_position"), (1, 0, 0)),
+    **dict.fromkeys(("graded_scale", "particle_position"), (1, 0, 0)),
+    "volume": ("dim", 0, 0),
     **dict.fromkeys(("largest_spacing", "spacing_before", "spacing_where"), (1, 0, 0)),
     **dict.fromkeys(("t", "t_initial", "t_final", "dt", "remeshing_time"), (0, 1, 0)),
     **dict.fromkeys(("u", "u_axis", "u_diagonal"), (0, 0, 1)),
@@ -78,13 +79,17 @@ class Units:
             raise InvalidInput("units", text, three, "Write 1 where there is none.")
         return cls(*names)
 
-    def of(self, name: str, case: Case) -> str | None:
-        """Return the unit of a variable of a data set; None for a variable that has none."""
+    def of(self, name: str, alpha: float | None, dim: int) -> str | None:
+        """Return the unit of a variable of a data set; None for a variable that has none.
+
+        Nor has the diffusivity one if alpha is None: an order that varies.
+        """
         powers = _DIMENSIONS.get(name)
-        if powers is None:
+        if powers is None or (alpha is None and "alpha" in powers):
             return None
-        numbers = [float(getattr(case, p)) if isinstance(p, str) else float(p) for p in powers]
-        length, time, concentration = numbers
+        of_length, time, concentration = powers
+        own = {"alpha": alpha or 0.0, "dim": float(dim)}
+        length = own[of_length] if isinstance(of_length, str) else of_length
         pairs = zip(
             (self.concentration, self.length, self.time), (concentration, length, time), strict=True
         )
@@ -135,11 +140,16 @@ def _told(source: Any) -> Units | None:
     return None if found == Units() else found
 
 
-def with_units(data: xr.Dataset, case: Case, units: Units) -> xr.Dataset:
-    """Name the units of each variable of a run's data set, in place, and return it."""
+def with_units(data: xr.Dataset, units: Units | None) -> xr.Dataset:
+    """Name the units of each variable of a run's data set, if there are any, in place; return it."""
+    if units is None:
+        return data
+    alpha = 1.0 + float(data.beta) if "beta" in data.coords else None  # an order that varies
     for name, variable in data.variables.items():
-        unit = units.of(str(name), case)
-        if unit is not None:
-            data[name].attrs["units"] = unit
-            variable.attrs["units"] = unit
+        unit = units.of(str(name), alpha, int(data.dim))
+        for attributes in (data[name].attrs, variable.attrs):  # of a coordinate, two
+            if unit is not None:
+                attributes["units"] = unit
+            elif name in _DIMENSIONS:
+                attributes.pop("units", None)
     return data
