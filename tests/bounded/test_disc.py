@@ -281,9 +281,9 @@ def test_a_field_that_the_particles_do_not_see_is_said():
     [
         ({"alpha": 2.0}, "alpha"),
         ({"alpha": np.nan}, "alpha"),
-        ({"radial": 7}, "radial"),
-        ({"radial": 129}, "radial"),
-        ({"angular": 0}, "angular"),
+        ({"rings": 7}, "rings"),
+        ({"rings": 129}, "rings"),
+        ({"angles": 0}, "angles"),
         ({"exterior": "open"}, "exterior"),
         ({"radius": -1.0}, "radius"),
         ({"diffusivity": 0.0}, "diffusivity"),
@@ -291,7 +291,7 @@ def test_a_field_that_the_particles_do_not_see_is_said():
 )
 def test_bad_discs_are_refused(bad, field):
     with pytest.raises(InvalidInput, match=rf"^{field} = ") as error:
-        Disc(**{"alpha": 1.5, "radial": 8, "angular": 4, **bad})
+        Disc(**{"alpha": 1.5, "rings": 8, "angles": 4, **bad})
     assert "\n" not in str(error.value)
 
 

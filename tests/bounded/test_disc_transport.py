@@ -96,7 +96,7 @@ def test_no_wave_grows_where_nothing_leaves(flow, rings):
 
 def third(one, fine):
     """Values on a third of the rings, which are among them."""
-    step = fine.shape[0] // one.radial
+    step = fine.shape[0] // one.rings
     return fine[step // 2 :: step]
 
 

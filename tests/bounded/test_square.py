@@ -324,8 +324,8 @@ def test_a_field_that_the_particles_do_not_see_is_said():
     ("bad", "field"),
     [
         ({"alpha": 1.0}, "alpha"),
-        ({"side": 7}, "side"),
-        ({"side": 513}, "side"),
+        ({"particles": 7}, "particles"),
+        ({"particles": 513}, "particles"),
         ({"exterior": "open"}, "exterior"),
         ({"half_width": 0.0}, "half_width"),
         ({"diffusivity": -1.0}, "diffusivity"),
@@ -334,7 +334,7 @@ def test_a_field_that_the_particles_do_not_see_is_said():
 )
 def test_bad_squares_are_refused(bad, field):
     with pytest.raises(InvalidInput, match=rf"^{field} = ") as error:
-        Square(**{"alpha": 1.5, "side": 8, **bad})
+        Square(**{"alpha": 1.5, "particles": 8, **bad})
     assert "\n" not in str(error.value)
 
 

@@ -32,7 +32,7 @@ def side(x, y):
 
 def through_edges(one, velocity):
     """sum max(a_n, 0) (value of each line at its end)^2 over the edges, as a matrix: what is carried out."""
-    count = one.side
+    count = one.particles
     end = np.zeros((2, count))
     end[0, :3] = end[1, : count - 4 : -1] = 15.0 / 8.0, -5.0 / 4.0, 3.0 / 8.0
     line = np.sqrt(np.diag(one.volumes))
@@ -112,7 +112,7 @@ def test_no_wave_grows_where_nothing_leaves(flow, count):
 
 def third(one, fine):
     """Values on a third of the lines along either axis, which are among them."""
-    step = fine.shape[0] // one.side
+    step = fine.shape[0] // one.particles
     return fine[step // 2 :: step, step // 2 :: step]
 
 
@@ -185,5 +185,5 @@ def test_a_layer_thinner_than_the_spacing_makes_no_waves(alpha):
     """
     one = Square(alpha, 16)
     u = np.ones_like(one.x)
-    ours = one.carried(u, 0.0 * u, (u, 0.0 * u)) * 2.0 / one.side
+    ours = one.carried(u, 0.0 * u, (u, 0.0 * u)) * 2.0 / one.particles
     assert np.abs(ours[-5:]).max() < 37.0 / 60.0 / 5.0

@@ -48,17 +48,17 @@ class Disc(ModalDomain):
     ----------
     alpha : float
         Fractional order, 1 < alpha < 2.
-    radial : int
-        Rings, 8 to 128.
-    angular : int
-        Particles on each, 1 to 512. With 1 all fields are radial.
+    rings : int
+        How many, 8 to 128.
+    angles : int
+        Particles on each ring, 1 to 512. With 1 all fields are radial.
     exterior : {"absorbing", "reflecting", "given"}
     radius, diffusivity : float
         R and D.
 
     Attributes
     ----------
-    x, y, volumes : array, shape (radial, angular)
+    x, y, volumes : array, shape (rings, angles)
         The places of the particles, and their volumes; a field is an array of that shape.
 
     Raises
@@ -72,26 +72,26 @@ class Disc(ModalDomain):
     def __init__(
         self,
         alpha: float,
-        radial: int = 64,
-        angular: int = 32,
+        rings: int = 64,
+        angles: int = 32,
         exterior: str = "absorbing",
         *,
         radius: float = 1.0,
         diffusivity: float = 1.0,
     ) -> None:
         self.alpha = check.fractional_order(alpha)
-        self.radial = check.whole_number("radial", radial, 8, _MOST_RINGS)
-        self.angular = check.whole_number("angular", angular, 1, _MOST_ANGLES)
+        self.rings = check.whole_number("rings", rings, 8, _MOST_RINGS)
+        self.angles = check.whole_number("angles", angles, 1, _MOST_ANGLES)
         self.exterior = check.choice("exterior", exterior, EXTERIORS)
         self.radius = check.scale("radius", radius)
         self.diffusivity = check.scale("diffusivity", diffusivity)
-        self._rings = Rings.graded(self.radial)
-        angle = 2.0 * np.pi / self.angular * np.arange(self.angular)
+        self._rings = Rings.graded(self.rings)
+        angle = 2.0 * np.pi / self.angles * np.arange(self.angles)
         self._direction = np.cos(angle), np.sin(angle)
         r = self.radius * self._rings.r[:, None]
         self.x, self.y = self.points = tuple(r * one for one in self._direction)
-        share = self.radius**2 * 2.0 * np.pi / self.angular * self._rings.volumes
-        self.volumes = np.repeat(share[:, None], self.angular, axis=1)
+        share = self.radius**2 * 2.0 * np.pi / self.angles * self._rings.volumes
+        self.volumes = np.repeat(share[:, None], self.angles, axis=1)
         self._rate = self.diffusivity * self.radius**-self.alpha  # D A over that of the unit disc
 
     def applied(self, u: FloatArray) -> FloatArray:
@@ -146,18 +146,18 @@ class Disc(ModalDomain):
     def modes_with(self, d: FloatArray, form: str) -> Modes:
         """Return all modes of the negative of `spread`, from one symmetric matrix between all particles."""
         root = np.sqrt(self._rings.volumes)
-        block = np.fft.irfft(self._matrices * np.outer(root, root), self.angular, axis=0)
-        angle = np.arange(self.angular)
+        block = np.fft.irfft(self._matrices * np.outer(root, root), self.angles, axis=0)
+        angle = np.arange(self.angles)
         # V_i A between the particles (i, a) and (j, b) on the rings i, j.
-        whole = block[(angle[:, None] - angle) % self.angular].transpose(2, 0, 3, 1)
-        size = self.radial * self.angular
+        whole = block[(angle[:, None] - angle) % self.angles].transpose(2, 0, 3, 1)
+        size = self.rings * self.angles
         exchange, d = -whole.reshape(size, size), d.reshape(-1)
         np.fill_diagonal(exchange, 0.0)
         exchange *= 0.5 * (d[:, None] + d)
-        volumes = np.repeat(self._rings.volumes, self.angular)
+        volumes = np.repeat(self._rings.volumes, self.angles)
         given_up = exchange.sum(axis=1)
         if self.exterior != "reflecting":
-            given_up += d * volumes * np.repeat(self._rings.outward_rate(self.alpha), self.angular)
+            given_up += d * volumes * np.repeat(self._rings.outward_rate(self.alpha), self.angles)
         root = np.sqrt(volumes)
         rates, vectors = np.linalg.eigh((np.diag(given_up) - exchange) / np.outer(root, root))
         if self.exterior == "reflecting":
@@ -171,9 +171,9 @@ class Disc(ModalDomain):
 
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the least eigenvalues of -D L, in order, each as often as it occurs."""
-        count = check.positive_integer("count", count, self.radial * self.angular)
+        count = check.positive_integer("count", count, self.rings * self.angles)
         parts = self._spectra[0]
-        alone = {0, self.angular / 2}  # a cosine without a sine
+        alone = {0, self.angles / 2}  # a cosine without a sine
         every = [np.repeat(part, 1 if wave in alone else 2) for wave, part in enumerate(parts)]
         return self._rate * np.sort(np.concatenate(every))[:count]
 
@@ -200,7 +200,7 @@ class Disc(ModalDomain):
     @cached_property
     def _matrices(self) -> FloatArray:
         """`_form` between the values of V^(1/2) f, for each wave number."""
-        forms = np.array([self._form(wave) for wave in range(self.angular // 2 + 1)])
+        forms = np.array([self._form(wave) for wave in range(self.angles // 2 + 1)])
         return np.asarray(forms / np.outer(self._root, self._root))
 
     @cached_property
@@ -216,8 +216,8 @@ class Disc(ModalDomain):
         values, vectors = self._spectra
         waves = np.arange(len(values))
         # int u^2 is the sum of |y|^2. A cosine and its sine share one amplitude, and each has half of 2 pi r V.
-        both = np.where((waves == 0) | (2 * waves == self.angular), 1.0, 2.0)
-        size = np.sqrt(self.volumes[:, 0] / self.angular * both[:, None])  # (waves, N)
+        both = np.where((waves == 0) | (2 * waves == self.angles), 1.0, 2.0)
+        size = np.sqrt(self.volumes[:, 0] / self.angles * both[:, None])  # (waves, N)
 
         def into(u: FloatArray) -> Any:
             return _products(vectors.transpose(0, 2, 1), size * self._transformed(u).T)
@@ -250,7 +250,7 @@ class Disc(ModalDomain):
     @cached_property
     def _from_outside(self) -> tuple[FloatArray, FloatArray]:
         """The rate to the outside beyond the rings there, and the rates to these rings for each wave number."""
-        waves = range(self.angular // 2 + 1)
+        waves = range(self.angles // 2 + 1)
         rates = np.array([exterior_rate(self._rings, self.alpha, wave) for wave in waves])
         return self._rings.outward_rate(self.alpha) - rates[0].sum(axis=1), rates
 
@@ -258,18 +258,18 @@ class Disc(ModalDomain):
 
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
         """Warn if the particles do not resolve f."""
-        between = Rings.between(self.radial)
-        angle = 2.0 * np.pi / self.angular * (np.arange(self.angular) + _TURN)
+        between = Rings.between(self.rings)
+        angle = 2.0 * np.pi / self.angles * (np.arange(self.angles) + _TURN)
         r = self.radius * between.r[:, None]
         other = check.sampled(name, f, r * np.cos(angle), r * np.sin(angle))
-        volumes = 2.0 * np.pi / self.angular * self.radius**2 * between.volumes[:, None]
+        volumes = 2.0 * np.pi / self.angles * self.radius**2 * between.volumes[:, None]
         warn_of_the_unseen(name, values, self.volumes, other, volumes)
 
     def _transformed(self, field: FloatArray) -> Any:
         return np.fft.rfft(field, axis=1)
 
     def _back(self, modes: Any) -> FloatArray:
-        return np.asarray(np.fft.irfft(modes, self.angular, axis=1))
+        return np.asarray(np.fft.irfft(modes, self.angles, axis=1))
 
 
 def _products(matrices: FloatArray, vectors: Any) -> Any:

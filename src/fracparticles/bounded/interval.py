@@ -61,9 +61,9 @@ class Interval(ModalDomain):
         Fractional order, 1 < alpha < 2.
     particles : int
         N, from 16 to 4000; 100 give six digits of the first eigenvalue.
+    exterior : {"absorbing", "reflecting", "given"}
     ends : (float, float)
         The ends a and b.
-    exterior : {"absorbing", "reflecting", "given"}
     diffusivity : float
         The diffusivity D.
     degree : float
@@ -86,11 +86,11 @@ class Interval(ModalDomain):
 
     def __init__(
         self,
-        *,
         alpha: float,
         particles: int = 200,
-        ends: tuple[float, float] = (-1.0, 1.0),
         exterior: str = "absorbing",
+        *,
+        ends: tuple[float, float] = (-1.0, 1.0),
         diffusivity: float = 1.0,
         degree: float = 8.0,
         near: int = 3,

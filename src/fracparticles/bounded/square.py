@@ -60,7 +60,7 @@ class Square(Domain):
     ----------
     alpha : float
         Fractional order, 1 < alpha < 2.
-    side : int
+    particles : int
         N, particles along a side, 8 to 512.
     exterior : {"absorbing", "reflecting", "given"}
     half_width, diffusivity : float
@@ -84,7 +84,7 @@ class Square(Domain):
     def __init__(
         self,
         alpha: float,
-        side: int = 64,
+        particles: int = 64,
         exterior: str = "absorbing",
         *,
         half_width: float = 1.0,
@@ -92,39 +92,41 @@ class Square(Domain):
         fitted: bool = True,
     ) -> None:
         self.alpha = check.fractional_order(alpha)
-        self.side = check.whole_number("side", side, 8, _MOST)
+        self.particles = check.whole_number("particles", particles, 8, _MOST)
         self.exterior = check.choice("exterior", exterior, EXTERIORS)
         self.half_width = check.scale("half_width", half_width)
         self.diffusivity = check.scale("diffusivity", diffusivity)
         fitted = check.flag("fitted", fitted)
-        h = self._spacing = 2.0 * self.half_width / self.side
+        h = self._spacing = 2.0 * self.half_width / self.particles
         # The unit of the operator: it is that of a lattice of spacing one.
         self._rate = self.diffusivity * h**-self.alpha
-        middle = h * (np.arange(self.side) - 0.5 * (self.side - 1))
+        middle = h * (np.arange(self.particles) - 0.5 * (self.particles - 1))
         self.x, self.y = self.points = tuple(np.meshgrid(middle, middle, indexing="ij"))
-        line = np.ones(self.side)
+        line = np.ones(self.particles)
         if fitted and exterior != "reflecting":
-            line = edge_volumes(self.alpha, self.side)
+            line = edge_volumes(self.alpha, self.particles)
             line = line * line[::-1]
         self._line = line
         volumes = np.multiply.outer(line, line)
         self.volumes = h * h * volumes
         # Between the values of V^(1/2) u the operator is symmetric.
         self._root = np.sqrt(volumes).reshape(-1)
-        shape = (self.side, self.side)
-        self._sums = BoxConvolution([weights(self.alpha, self.side)], [None], self.side, self.side)
+        shape = (self.particles, self.particles)
+        self._sums = BoxConvolution(
+            [weights(self.alpha, self.particles)], [None], self.particles, self.particles
+        )
         if exterior == "reflecting" or not fitted:
             lost = self._sums(np.ones(shape))[0].copy()
             if exterior != "reflecting":
-                lost += outward_rate(self.x / h, self.y / h, 0.5 * self.side, self.alpha)
+                lost += outward_rate(self.x / h, self.y / h, 0.5 * self.particles, self.alpha)
         else:
-            fit = edge_fit(self.alpha, self.side)
+            fit = edge_fit(self.alpha, self.particles)
             fit = fit + fit[::-1]
             lost = rate_of_all(self.alpha) + np.add.outer(fit, fit)
         self._lost = lost.reshape(-1)
-        self._along = np.zeros((self.side, 1))
+        self._along = np.zeros((self.particles, 1))
         if fitted and exterior == "reflecting":
-            along = edge_exchange(self.alpha, self.side)
+            along = edge_exchange(self.alpha, self.particles)
             self._along = (along + along[::-1])[:, None]
         self._operator = ConvolutionOperator(self._convolved, -self._lost, None, dim=2)
 
@@ -187,7 +189,7 @@ class Square(Domain):
     def eigenvalues(self, count: int) -> FloatArray:
         """Return the least eigenvalues of -D L, in order, each as often as it occurs: up to 20 of them."""
         count = check.positive_integer("count", count, 20)
-        size = self.side**2
+        size = self.particles**2
         idle = self.exterior == "reflecting"  # the constant
         if idle and count == 1:
             return np.zeros(1)
@@ -210,13 +212,13 @@ class Square(Domain):
     def unresolved(self, v: FloatArray) -> float:
         """Return the norm of v in sines, or cosines, of more than half a wave for two particles."""
         waves = (dctn if self.exterior == "reflecting" else dstn)(v, type=2, norm="ortho")
-        waves[: self.side // 2, : self.side // 2] = 0.0
-        return norm(waves) * 2.0 * self.half_width / self.side
+        waves[: self.particles // 2, : self.particles // 2] = 0.0
+        return norm(waves) * 2.0 * self.half_width / self.particles
 
     # --- between V^(1/2) u and u ------------------------------------------------------------------
 
     def _convolved(self, v: FloatArray) -> FloatArray:
-        field = (self._root * v).reshape(self.side, self.side)
+        field = (self._root * v).reshape(self.particles, self.particles)
         out = self._sums(field)[0]
         if self.exterior == "reflecting":
             for u, y in ((field, out), (field.T, out.T)):  # lines along either pair of edges
@@ -229,7 +231,7 @@ class Square(Domain):
         return self._root * u.reshape(-1)
 
     def _outer(self, v: FloatArray) -> FloatArray:
-        return (v / self._root).reshape(self.side, self.side)
+        return (v / self._root).reshape(self.particles, self.particles)
 
     def _at_rest(self, f: FloatArray) -> FloatArray:
         """Return the v with L v + f = 0, by conjugate gradients; for a reflecting exterior the one of total 0."""
@@ -253,7 +255,7 @@ class Square(Domain):
         """Apply the inverse of the spectral power of the Laplacian, by sines or cosines: -L is equivalent to it."""
         idle = self.exterior == "reflecting"
         there, back = (dctn, idctn) if idle else (dstn, idstn)
-        k = np.pi / self.side * (np.arange(self.side) + float(not idle))
+        k = np.pi / self.particles * (np.arange(self.particles) + float(not idle))
         symbol = np.add.outer(k * k, k * k) ** (0.5 * self.alpha)
         symbol[0, 0] = symbol[0, 0] or np.inf
         u = self._outer(f)
@@ -264,16 +266,16 @@ class Square(Domain):
     def warn_of_the_unseen(self, name: str, f: Callable[..., Any], values: FloatArray) -> None:
         """Warn if the particles do not resolve f."""
         # The corners of the cells; those at the edges count for a half.
-        line = np.linspace(-self.half_width, self.half_width, self.side + 1)
-        part = np.full(self.side + 1, 2.0 * self.half_width / self.side)
+        line = np.linspace(-self.half_width, self.half_width, self.particles + 1)
+        part = np.full(self.particles + 1, 2.0 * self.half_width / self.particles)
         part[[0, -1]] *= 0.5
         corners = check.sampled(name, f, *np.meshgrid(line, line, indexing="ij"))
-        cell = np.full(values.shape, (2.0 * self.half_width / self.side) ** 2)
+        cell = np.full(values.shape, (2.0 * self.half_width / self.particles) ** 2)
         warn_of_the_unseen(name, values, cell, corners, np.multiply.outer(part, part))
 
     def _rate_of_smooth(self, g: Callable[..., Any]) -> FloatArray:
         """Return L g in the square, in the unit of the lattice, by a lattice twice as wide and the mean beyond."""
-        n, h, margin = self.side, 2.0 * self.half_width / self.side, self._margin
+        n, h, margin = self.particles, 2.0 * self.half_width / self.particles, self._margin
         wide = h * (np.arange(n + 2 * margin) - 0.5 * (n + 2 * margin - 1))
         values = check.sampled("outside", g, *np.meshgrid(wide, wide, indexing="ij"))
         own = values[margin : margin + n, margin : margin + n]
@@ -287,12 +289,12 @@ class Square(Domain):
     @property
     def _margin(self) -> int:
         """Cells that the wider lattice has beyond each edge."""
-        return self.side // 2
+        return self.particles // 2
 
     @cached_property
     def _of_smooth(self) -> tuple[BoxConvolution, FloatArray, Outside]:
         """The sums on the wider lattice, the sums of one, and the means beyond."""
-        n, h, margin = self.side, 2.0 * self.half_width / self.side, self._margin
+        n, h, margin = self.particles, 2.0 * self.half_width / self.particles, self._margin
         sums = BoxConvolution([weights(self.alpha, n + margin)], [None], n + 2 * margin, n)
         of_one = sums(np.ones((n + 2 * margin,) * 2))[0].copy()
         return sums, of_one, Outside(self.x / h, self.y / h, 0.5 * n + margin, self.alpha)

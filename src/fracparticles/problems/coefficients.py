@@ -32,8 +32,9 @@ class WithCoefficients(ProblemFields):
             return ()
         given = self.velocity if isinstance(self.velocity, tuple) else (self.velocity,)
         if len(given) != self.dim:
-            each = f"one expression for each of the {self.dim} coordinate(s)"
-            raise InvalidInput("velocity", self.velocity, each, "Give a tuple of them.")
+            each = f"one component for each coordinate, of which dim={self.dim} has {self.dim}"
+            remedy = "Give one, or dim=2." if self.dim == 1 else "Give a tuple of two."
+            raise InvalidInput("velocity", self.velocity, each, remedy)
         return tuple(Coefficient("velocity", one, (*AXES[: self.dim], "t")) for one in given)
 
     @cached_property

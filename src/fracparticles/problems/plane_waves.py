@@ -68,4 +68,4 @@ def warn_of_growth(problem: Problem, rates: DomainRates) -> None:
 
 def high_waves(disc: Disc, v: FloatArray) -> float:
     """Return the norm of v in the upper half of the waves along the rings."""
-    return size_of(disc.all_modes().into(v)[disc.angular // 4 + 1 :].reshape(-1))
+    return size_of(disc.all_modes().into(v)[disc.angles // 4 + 1 :].reshape(-1))
