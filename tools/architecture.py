@@ -34,7 +34,7 @@ def floors(project: Path) -> list[list[str]]:
 def imports() -> dict[str, set[str]]:
     """Return the rooms from which each room imports."""
     graph = grimp.build_graph(_LIBRARY)
-    rooms = graph.find_children(_LIBRARY)
+    rooms = graph.find_children(_LIBRARY) - {f"{_LIBRARY}.__main__"}  # no room, but the door
     found = {}
     for room in rooms:
         members = graph.find_descendants(room) | {room}

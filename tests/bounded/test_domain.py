@@ -145,7 +145,7 @@ def test_what_is_refused(kind):
             call()
         assert "\n" not in str(error.value)
     for outside in (None, lambda *place: place[0] * np.nan):
-        with pytest.raises(InvalidInput, match=r"^outside = "):
+        with pytest.raises(InvalidInput, match=r"^outside (=|is missing)"):
             given.evolve(1.0, 1.0, outside=outside)
 
 

@@ -192,9 +192,9 @@ def test_a_flag_given_twice(cli, flags):
 
 
 def test_missing_flags(cli):
-    assert refused(cli("solve", "-o", "run.nc"), "scheme = None", "Give scheme.")
-    assert refused(cli("solve", *SMALL, "--dt", 0.1), "output = None", "Give -o run.nc.")
-    assert refused(cli("solve", *SMALL, "-o", "run.nc"), "dt = None", "stable up to 0.1936")
+    assert refused(cli("solve", "-o", "run.nc"), "scheme is missing", "Give scheme.")
+    assert refused(cli("solve", *SMALL, "--dt", 0.1), "output is missing", "Give -o run.nc.")
+    assert refused(cli("solve", *SMALL, "-o", "run.nc"), "dt is missing", "stable up to 0.1936")
 
 
 def test_outputs_that_cannot_be_written_are_refused_before_any_work(cli, tmp_path, monkeypatch):

@@ -282,9 +282,9 @@ def test_shapes_and_types():
 )
 def test_refuses_what_does_not_exist(field, arguments):
     arguments = {"name": "K", "alpha": 1.5, **arguments}
-    with pytest.raises(InvalidInput, match=f"^{field} = "):
+    with pytest.raises(InvalidInput, match=rf"^{field} (=|is missing)"):
         kernel(r=1.0, **arguments)
-    with pytest.raises(InvalidInput, match=f"^{field} = "):
+    with pytest.raises(InvalidInput, match=rf"^{field} (=|is missing)"):
         kernel_transform(k=1.0, **arguments)
 
 
@@ -295,7 +295,7 @@ def test_the_refusal_names_the_kernels():
 
 def test_refuses_distances_and_wavenumbers():
     for r in (np.nan, "1", None, 1j, np.inf, -1e151):
-        with pytest.raises(InvalidInput, match=r"^r = "):
+        with pytest.raises(InvalidInput, match=r"^r (=|is missing)"):
             kernel("K", r, 1.5)
     with pytest.raises(InvalidInput, match=r"^r = "):
         kernel("K", [0.0, -1.0], 1.5, dim=2)

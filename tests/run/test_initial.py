@@ -149,7 +149,7 @@ def test_a_prepared_case_takes_bare_arrays_only():
         np.ones(80),
         None,
     ):
-        with pytest.raises(InvalidInput, match="initial = "):
+        with pytest.raises(InvalidInput, match=r"^initial (=|is missing)"):
             ready.solve(data)
 
 

@@ -311,14 +311,14 @@ def test_refuses_x(x):
         lambda: tail_mass(x, 1.0, 1.5),
         lambda: green_asymptotic(x, 1.5, 3),
     ):
-        with pytest.raises(InvalidInput, match="x = "):
+        with pytest.raises(InvalidInput, match=r"^x (=|is missing)"):
             call()
 
 
 @pytest.mark.parametrize("t", [0.0, -1.0, np.nan, np.inf, "1", None, 1j, True])
 def test_refuses_t(t):
     for call in (lambda: green(1.0, t, 1.5), lambda: central_mass(1.0, t, 1.5)):
-        with pytest.raises(InvalidInput, match="t = "):
+        with pytest.raises(InvalidInput, match=r"^t (=|is missing)"):
             call()
 
 

@@ -274,7 +274,8 @@ def _refuse_what_does_not_fit(dataset: xr.Dataset, path: Path) -> None:
     ]
     for what, attributes in holders:
         for name, value in attributes.items():
-            refuse_unless_written(xr.Dataset(attrs={name: value}), f"{what} {name!r}", value)
+            shown = "None" if value is None else value
+            refuse_unless_written(xr.Dataset(attrs={name: value}), f"{what} {name!r}", shown)
     for name, variable in dataset.variables.items():
         bare = variable.copy(deep=False)
         bare.attrs = {}
