@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fracparticles.data.measured import measured
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.formulas import FUNCTIONS
@@ -133,6 +134,12 @@ def test_a_function_that_is_none_of_these_is_refused(case):
     function, said = BAD_FUNCTIONS[case]
     with pytest.raises(InvalidInput, match=said):
         Coefficient("diffusivity", function, XT)({"x": X, "t": T})
+
+
+def test_measured_data_are_no_coefficient():
+    """They are zero beyond their points: a diffusivity would end there."""
+    with pytest.raises(InvalidInput, match="PchipInterpolator"):
+        Coefficient("diffusivity", measured((X, 1.0 + X * X)), XT)
 
 
 @pytest.mark.parametrize("given", [None, True, [1.0], np.ones(3), np.nan, np.inf, {}, b"x"])

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fracparticles.called import Called
+from fracparticles.data.interpolated import Measured
 from fracparticles.errors import InvalidInput, reason_of, spelled
 from fracparticles.problems.formulas import Formula
 
@@ -47,6 +48,10 @@ class Coefficient:
         if isinstance(given, str):
             self._formula = Formula(field, given, self.variables)
             self.depends_on = self._formula.depends_on
+        elif isinstance(given, Measured):
+            allowed = "a function that goes on beyond the points, and measured data are zero there"
+            remedy = "Take a spline, such as scipy.interpolate.PchipInterpolator(x, values)."
+            raise InvalidInput(field, "measured data", allowed, remedy)
         elif callable(given):
             self._called = Called(field, given, self.variables)
             self.depends_on = self._called.takes
