@@ -21,7 +21,9 @@ from fracparticles.bounded.interval import Interval
 from fracparticles.bounded.square import Square
 from fracparticles.errors import AccuracyWarning, NonFiniteSolution
 from fracparticles.problems import Problem, solve_problem
+from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.tighter_steps import TIME_ERROR
+from fracparticles.special import central_mass
 from fracparticles.special.stable import green
 from fracparticles.time.sudden import pulses
 from sweeps import covering
@@ -103,6 +105,65 @@ def test_many_pulses_are_found_and_a_wave_is_none(waves, places):
     assert (ends[::2] < middles).all()
     assert (middles < ends[1::2]).all()
     assert len(pulses(lambda t: np.sin(np.pi * waves * t), places, 0.0, 1.0)) <= 2
+
+
+def wave(t):
+    """On for the first half of each of 17 periods; u = 0 until it is on for the first time."""
+    return np.where(np.sin(34.0 * np.pi * t) > 0.0, 1.0, 0.0)
+
+
+@pytest.mark.usefixtures("silent")
+@pytest.mark.parametrize(
+    "source",
+    [
+        "where(sin(34*pi*t) > 0, 1, 0)",
+        lambda x, t: float(wave(float(t))) + 0.0 * x,  # of one time only
+    ],
+)
+def test_a_rectangular_wave_may_begin_from_nothing(source):
+    """It was refused at once: no step into a jump is accurate to a share of nothing."""
+    u, _ = level(source, 0.0, rtol=1e-4)
+    assert u == pytest.approx(0.5, rel=50.0 * 1e-4)
+
+
+@pytest.mark.parametrize(
+    ("domain", "particles", "on_from"),
+    [
+        ("interval", 16, "abs(x - 0.33) + 0.2"),
+        ("interval", 40, "1.2 - x"),  # from an end on, where particles are 1e-9 apart
+        ("square", 12, "abs(x - 0.33) + 0.2"),
+    ],
+)
+def test_the_edge_of_a_source_may_move_into_nothing(domain, particles, on_from):
+    """It was refused where no particle that was looked at is the first to be in the source."""
+    problem = Problem(
+        domain=domain, exterior="reflecting", half_width=1.0, alpha=1.5, t_final=0.6,
+        particles=particles, source=f"where({on_from} < t, 1, 0)",
+    )  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # so few particles do not resolve an edge
+        run = solve_problem(problem, lambda *place: 0.0 * sum(place), estimate=False)
+    begin = Coefficient("source", on_from, problem.places)(problem.places)
+    brought = float((problem.bounded_domain.volumes * np.maximum(0.0, 0.6 - begin)).sum())
+    assert float(run.mass_final) == pytest.approx(brought, rel=NEAR)
+
+
+@pytest.mark.parametrize("integrator", ["dop853", "rkc2"])
+def test_nor_on_the_line(integrator):
+    problem = Problem(
+        alpha=1.5, half_width=20.0, spacing=0.1, t_final=0.6, integrator=integrator, rtol=1e-4,
+        source="where(abs(x - 0.33) < t - 0.2, 1, 0)",
+    )  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        run = solve_problem(problem, lambda x: 0.0 * x, estimate=False)
+    brought = 0.1 * float(np.maximum(0.0, 0.4 - np.abs(problem.places["x"] - 0.33)).sum())
+    beyond = 1.0 - central_mass(19.0, 0.6, 1.5, 1)  # of what is brought within a unit at t = 0
+    assert (
+        (1.0 - beyond - 50.0 * 1e-4) * brought
+        < float(run.mass_final)
+        < (1.0 + 50.0 * 1e-4) * brought
+    )
 
 
 @pytest.mark.usefixtures("silent")

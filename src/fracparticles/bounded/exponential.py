@@ -7,6 +7,9 @@ Krogstad's scheme of order 4 (J. Comput. Phys. 203 (2005) 72) has the coefficien
 Stiff rates cost nothing, and without N the steps are exact. Each step is compared with two of half its length; these
 two are kept. Where N jumps with u, the three may agree by chance, because N takes few values. So the two slopes in the
 middle of the step, N_2 and N_3, must be close as well: h phi_2 (N_2 - N_3) is of third order in h where N is smooth.
+
+Where N jumps in time while u is almost nothing, no step is accurate to a share of u. The shortest step is then taken as
+it is: it brings 1e-10 of what N brings in the whole time. In a blow-up N does not change with the time alone.
 """
 
 from __future__ import annotations
@@ -23,6 +26,9 @@ from fracparticles.errors import NonFiniteSolution
 from fracparticles.time.steps import ordinary_unit
 
 __all__ = ["ExponentialSteps", "TooManySteps", "moments_of_decay"]
+
+Slope = Callable[[Any, float], Any]
+"""N between amplitudes, at a time."""
 
 _FIRST = 1e-3  # the first step over the time span
 _SHORTEST = 1e-10  # the shortest step over the time span
@@ -69,7 +75,7 @@ class ExponentialSteps(ModalSteps):
 
     def _advanced(self, y: Any, span: float, start: float, unit: float) -> Any:
         """Return the amplitudes after the time `span`; both are in the unit of `ordinary_unit`."""
-        t, h = 0.0, self._h or _FIRST * span
+        t, h, shortest = 0.0, self._h or _FIRST * span, _SHORTEST * span
 
         def slope(y: Any, t: float) -> Any:
             return self._slope(unit * y, t) / unit
@@ -84,7 +90,8 @@ class ExponentialSteps(ModalSteps):
             off = size_of(halves - whole) / size
             if size_of(jump) > self._tolerance**_APART * size:
                 off = max(off, self._tolerance / _SHRINK)
-            if off <= self._tolerance:
+            jumps = off > self._tolerance and h <= shortest and _jumps(slope, y, start + t, h)
+            if off <= self._tolerance or jumps:
                 t, y = t + h, halves
                 self.accepted += 1
                 if t >= span * (1.0 - 1e-14):
@@ -93,11 +100,11 @@ class ExponentialSteps(ModalSteps):
                 self._h = h
             else:
                 self.rejected += 1
+                if h <= shortest:
+                    raise NonFiniteSolution(_stopped(start + t))
             ratio = self._tolerance / off if off > 0.0 else np.inf
             grown = float(np.clip(_SAFETY * ratio ** (1.0 / _ORDER), _SHRINK, _GROW))
-            h *= grown if np.isfinite(off) else _SHRINK
-            if h < _SHORTEST * span:
-                raise NonFiniteSolution(_stopped(start + t))
+            h = max(h * (grown if np.isfinite(off) else _SHRINK), shortest)
         stopped = TooManySteps(_stopped(start + t))
         stopped.time, stopped.amplitudes = start + t, unit * y
         raise stopped
@@ -117,6 +124,12 @@ def _stopped(t: float) -> str:
     )
 
 
+def _jumps(slope: Slope, y: Any, t: float, h: float) -> bool:
+    """Whether N changes by a half of itself in a time h, at the same u."""
+    before, after = slope(y, t), slope(y, t + h)
+    return bool(size_of(after - before) > 0.5 * max(size_of(before), size_of(after)))
+
+
 class _Step:
     """Steps of Krogstad's scheme of one length h."""
 
@@ -126,7 +139,7 @@ class _Step:
         self._half = _phi(0.5 * h * rates)
         self._whole = _phi(h * rates)
 
-    def advance(self, y: Any, t: float, slope: Callable[[Any, float], Any]) -> tuple[Any, Any]:
+    def advance(self, y: Any, t: float, slope: Slope) -> tuple[Any, Any]:
         """Return y a step later, and h phi_2 (N_2 - N_3)."""
         h, (half1, half2, _), (phi1, phi2, phi3) = self._h, self._half, self._whole
         n1 = slope(y, t)

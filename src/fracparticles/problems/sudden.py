@@ -10,7 +10,7 @@ import numpy as np
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
-from fracparticles.time.sudden import LOOKS, irregular_times, pulses, sudden_times
+from fracparticles.time.sudden import LOOKS, instant, irregular_times, pulses, sudden_times
 
 __all__ = ["sudden_changes"]
 
@@ -42,6 +42,9 @@ def sudden_changes(problem: Problem, u0: np.ndarray) -> list[float]:
     for one in (problem.diffusion, *problem.transport, problem.reaction):
         if one is not None and "t" in one.depends_on:
             found |= set(_changes(one, problem, lattice, some, chosen))
+    source = problem.reaction
+    if source is not None and "t" in source.depends_on and not u0.any():
+        found |= _beginning(source, problem, lattice)
     return sorted(found)
 
 
@@ -63,10 +66,41 @@ def _changes(
         return sudden_times(at_once, start, span, at_once=at_once, known=known)
     if _takes_any_points(one, some, lattice, chosen, np.array(start)):
         return sudden_times(at_once, start, span)
-    looks = max(_FEWEST, min(LOOKS, _NUMBERS // lattice["u"].size))
     return sudden_times(
-        lambda t: one.checked(_of(one, lattice, np.array(t)))[chosen], start, span, looks=looks
+        lambda t: one.checked(_of(one, lattice, np.array(t)))[chosen],
+        start,
+        span,
+        looks=_looks(lattice),
     )
+
+
+def _beginning(source: Coefficient, problem: Problem, lattice: Places) -> set[float]:
+    """Return the times before and after the first at which the source is not zero at some particle, if there is one.
+
+    Until then u is zero, and no step into a jump is accurate to a share of it: see `time.sudden`. The particle may not
+    be among those that are looked at, as where an edge moves.
+    """
+    start, span = problem.t_initial, problem.span
+
+    def is_on(t: float) -> bool:
+        return bool(np.any(source(_of(source, lattice, np.array(t))) != 0.0))
+
+    low = start
+    for high in irregular_times(start, span, _looks(lattice)):
+        if is_on(high):
+            break
+        low = high
+    else:
+        return set()
+    while high - low > instant(start, span):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if is_on(middle) else (middle, high)
+    return {float(low), float(high)}
+
+
+def _looks(lattice: Places) -> int:
+    """Return how many intervals there are between looks at all particles."""
+    return max(_FEWEST, min(LOOKS, _NUMBERS // lattice["u"].size))
 
 
 def _takes_any_points(

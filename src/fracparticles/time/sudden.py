@@ -9,13 +9,16 @@ equally spaced times too, at a few places in turn. Those at one place are compar
 not be found.
 
 Many pulses, one after the other, have quiet times between them, from which a step might go on over the next pulses. The
-run is cut where each quiet time begins and where it ends. A wave has no quiet times: every step sees it.
+run is cut where each quiet time begins and where it ends, and if this is a jump, within it. A wave has no quiet times:
+every step sees it.
+
+A jump must be found to the last digits where u is zero before it. Until u is more than nothing, no step into the jump
+is accurate to a share of u.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from functools import partial
 from itertools import product
 from typing import Any
 
@@ -49,7 +52,7 @@ def sudden_times(
     known: Collection[float] = (),
     looks: int = LOOKS,
 ) -> list[float]:
-    """Return the times before and after each sudden change, ascending, after `start` and before `start + span`.
+    """Return the times before and after each sudden change, ascending, from `start` to `start + span`.
 
     Parameters
     ----------
@@ -64,23 +67,33 @@ def sudden_times(
     looks : int
         The number of intervals between two looks.
     """
-    found = set(known)
+    found = list(known)
     times = irregular_times(start, span, looks)
     values = np.array([look(t) for t in times]) if at_once is None else at_once(times[:, None])
     scale = np.ptp(values, axis=0)
     seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max(initial=0.0))
     change = np.abs(np.diff(values[:, seen], axis=0)) / scale[seen]
     sudden = np.flatnonzero(change.max(axis=1, initial=0.0) > _SUDDEN)
-    if sudden.size > _MOST:  # the function changes quickly everywhere
-        found |= set(times[sudden[:: -(-sudden.size // _MOST_CUTS)]].tolist())
-        sudden = sudden[:0]
-    width = instant(start, span)
-    for interval in sudden:
-        low, high = times[interval : interval + 2]
-        if not any(low <= t <= high for t in found):
-            most = int(seen[change[interval].argmax()])
-            found |= set(_narrowed(partial(_one_of, look, most), low, high, width))
-    return sorted(t for t in found if start < t < start + span)
+    quick = sudden.size > _MOST  # the function changes quickly everywhere
+    if quick:
+        sudden = sudden[:: -(-sudden.size // _MOST_CUTS)]
+    sudden = sudden[_hold_none(found, times[sudden], times[sudden + 1])]
+    if quick and at_once is None:  # many calls, so that only the first is found closely
+        found += times[sudden[1:]].tolist()
+        sudden = sudden[:1]
+    most = seen[change[sudden].argmax(axis=1)] if seen.size else sudden
+
+    def values_at(t: np.ndarray) -> np.ndarray:
+        if at_once is None:
+            return np.array([look(one)[place] for one, place in zip(t, most, strict=True)])
+        return np.take_along_axis(at_once(t[:, None]), most[:, None], axis=1)[:, 0]
+
+    low, high, jumps = _narrowed(values_at, times[sudden], times[sudden + 1], instant(start, span))
+    if quick:
+        found += times[sudden[~jumps]].tolist()
+        low, high = low[jumps], high[jumps]
+    found += [*low.tolist(), *high.tolist()]
+    return sorted(t for t in set(found) if start <= t <= start + span)
 
 
 def pulses(
@@ -107,21 +120,27 @@ def pulses(
     scale = values.max(axis=1) - values.min(axis=1)
     seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max())
 
-    def look(t: float) -> np.ndarray:
-        return few(np.full((1, places), t))[0]
-
     found: set[float] = set()
     width = instant(start, span)
     for stride, place in product(_STRIDES, seen.tolist()):
+
+        def look(t: np.ndarray, place: int = place) -> np.ndarray:
+            return few(np.repeat(t[:, None], places, axis=1))[:, place]
+
         at, change = times[::stride, place], np.abs(np.diff(values[place, ::stride]))
         sudden = np.flatnonzero(change > _SUDDEN * scale[place])
         if sudden.size > _MOST:  # the function changes as quickly again and again
             quiet = np.flatnonzero(np.diff(sudden) > _QUIET)
-            ends = [sudden[quiet] + 1, sudden[quiet + 1], sudden[[0, -1]] + [0, 1]]
-            return found | set(at[np.concatenate(ends)].tolist())
-        for before, after in zip(at[sudden], at[sudden + 1], strict=True):
-            if not any(before <= t <= after for t in found):
-                found |= set(_narrowed(partial(_one_of, look, place), before, after, width))
+            first, last = sudden[np.insert(quiet + 1, 0, 0)], sudden[np.append(quiet, -1)]
+            for ends, flanks in ((first, first), (last, last + 1)):
+                low, high, jumps = _narrowed(look, at[ends], at[ends + 1], width)
+                found.update(
+                    *(one.tolist() for one in (low[jumps], high[jumps], at[flanks[~jumps]]))
+                )
+            return found
+        sudden = sudden[_hold_none(found, at[sudden], at[sudden + 1])]
+        low, high, _ = _narrowed(look, at[sudden], at[sudden + 1], width)
+        found.update(low.tolist(), high.tolist())
     return found
 
 
@@ -154,20 +173,25 @@ def irregular_times(start: float, span: float, looks: int = LOOKS) -> np.ndarray
     return start + span * np.concatenate([[0.0], within, [1.0]])
 
 
-def _one_of(look: Look, one: int, t: float) -> float:
-    return float(look(t)[one])
+def _hold_none(times: Collection[float], low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return which of the intervals from `low` to `high` hold none of the times."""
+    known = np.sort(np.array(list(times)))
+    return np.asarray(np.searchsorted(known, low, "left") == np.searchsorted(known, high, "right"))
 
 
 def _narrowed(
-    look: Callable[[float], float], low: float, high: float, width: float
-) -> tuple[float, float]:
-    """Return two times, at most `width` apart, between which the value changes most."""
+    look: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray, width: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return two times in each interval, at most `width` apart, between which the value changes most.
+
+    Also return whether most of the change is there: a jump.
+    """
     at_low, at_high = look(low), look(high)
-    while high - low > width:
+    whole = np.abs(at_high - at_low)
+    while (high - low).max(initial=0.0) > width:
         middle = 0.5 * (low + high)
         now = look(middle)
-        if abs(now - at_low) > abs(at_high - now):
-            high, at_high = middle, now
-        else:
-            low, at_low = middle, now
-    return low, high
+        first = np.abs(now - at_low) > np.abs(at_high - now)
+        low, at_low = np.where(first, low, middle), np.where(first, at_low, now)
+        high, at_high = np.where(first, middle, high), np.where(first, now, at_high)
+    return low, high, np.abs(at_high - at_low) > 0.5 * whole
