@@ -2,7 +2,8 @@
 
 The known part is the error from the initial data alone, see `frozen` and `finer_particles`. An array may stand for
 several data between the particles: then the largest of their errors counts. Before two solutions are compared, the
-error of the smoothest of these data is taken off each, if that brings the two closer together.
+error of the smoothest of these data is taken off each, if that brings the two closer together. So are the initial data,
+if they are a function: at early times u has their kinks and jumps, which no spline follows between the particles.
 
 Let d_1 be the distance between u and the solution on half of the particles along each axis, and d_2 that between half
 and a quarter. Each halving of the spacing leaves r = d_1 / d_2 of the distance before. The distances that are still to
@@ -90,6 +91,7 @@ def space_errors(
         Returns the known errors at the particles for a problem, its initial data and such a list, see `frozen`.
     """
     apart: list[np.ndarray] = []
+    start = _at_start(problem, initial)
     errors = quietly(known, problem, initial, fields)
     least = np.array([
         max((distance(problem, u, u - e) for e in each), default=0.0)
@@ -108,21 +110,33 @@ def space_errors(
             apart.append(np.full(len(fields), np.inf))
             break
         coarse_errors = quietly(known, fewer, initial, coarse)
+        coarse_start = _at_start(fewer, initial)
         apart.append(np.array([
-            min(distance(fewer, among(problem, fewer, a), b) for a, b in ((u, v), (u - e, v - f)))
+            min(
+                distance(fewer, among(problem, fewer, u - e - a) + b, v - f)
+                for e, f in ((0.0, 0.0), (e, f))
+                for a, b in ((0.0, 0.0), (start, coarse_start))
+            )
             for u, e, v, f in zip(
                 fields, _smoothest(errors), coarse, _smoothest(coarse_errors), strict=True
             )
         ]))  # fmt: skip
         if apart[0].max() <= SPACE_ERROR:
             break
-        problem, fields, errors = fewer, coarse, coarse_errors
+        problem, fields, errors, start = fewer, coarse, coarse_errors, coarse_start
     if not apart:  # the known part is not the whole error: it counts only if it is large
         return list(least) if least.max() > SPACE_ERROR else None
     factor = np.full(len(fields), 1.0 if carried else _UNKNOWN)
     if len(apart) > 1:
         factor = _still_to_come(*apart)
     return list(least + apart[0] * factor)
+
+
+def _at_start(problem: Problem, initial: Any) -> Any:
+    """Return the data at the particles of a bounded domain, if they are a function; zero otherwise."""
+    if not (problem.is_bounded and callable(initial)):
+        return 0.0
+    return np.array(problem.bounded_domain.values("initial", initial))
 
 
 def _smoothest(errors: list[list[np.ndarray]]) -> list[Any]:

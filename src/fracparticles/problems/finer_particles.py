@@ -6,10 +6,12 @@ and a source, and with a steady D, a step may have any length: see `steady_diffu
 
 On three times as many particles a function is given by its mean over each cell, less a twenty-fourth of the second
 differences. So the total is that of the function, and where the function is smooth these are its values up to h^4. With
-values alone, a jump in the middle third between two of the fewer particles would lie where those place it.
+values alone, a jump in the middle third between two of the fewer particles would lie where those place it. What the
+means leave out at early times is added, see `within_cells`.
 
-Data like |x|^p with an infinite bend look the same at a third of the spacing, 3^-p as large, and a shape a third as
-wide spreads in 3^-alpha of the time. So with d(t) the distance from the run on three times as many, the error at t is
+Of an array this is not known. Data like |x|^p with an infinite bend look the same at a third of the spacing, 3^-p as
+large, and a shape a third as wide spreads in 3^-alpha of the time. So with d(t) the distance from the run on three
+times as many, the error at t is
 
     sum_k 3^(-k p) d(3^(k alpha) t),
 
@@ -49,6 +51,7 @@ from fracparticles.problems.steady_diffusion import (
     in_own_time,
     is_steady,
 )
+from fracparticles.problems.within_cells import WithinCells
 
 __all__ = ["errors_of_diffusion", "values_of"]
 
@@ -58,7 +61,6 @@ _MOST = {"interval": 300, "square": 32, "disc": 24}
 _MOST_IN_ONE = 16
 _WRAPPED = 12  # particles by which an angle is continued beyond a turn
 _PARTS = 8  # parts of a cell along each axis, in whose middles a function is evaluated
-_JUMP = 0.25  # a smaller power p is that of a jump
 _TERMS = 12  # terms of the sum: towards h^alpha they grow, at first by 3^(alpha - p) each
 
 Terms = list[tuple[float, float]]
@@ -92,16 +94,23 @@ def errors_of_diffusion(
         if few < count and p is None:
             return nothing
         values = values_of(some, initial) if callable(initial) else among(problem, some, initial)
-        given = [_with_means(many, initial)] if callable(initial) else []
+        given, left_out = [], None
+        if callable(initial):
+            exact = values_of(many, initial)
+            given = [_with_means(many, initial, exact)]
+            left_out = WithinCells(many, initial, exact, given[0])
         if few < count or not callable(initial):
             given += _interpolated(some, many, values)
-        placed = callable(initial) and p is not None and p < _JUMP
-        for run in _runs(some, few / count, p, placed):
+        for run in _runs(some, few / count, p, callable(initial)):
             times = tuple(sorted({t for every in run.terms for t, _ in every}))
             update = {"times": times, "t_final": times[-1]}
             finest = run.problem.model_copy(update=update | {"particles": many.particles})
             made = diffused(run.problem.model_copy(update=update), values, solve)
-            finer = [[among(many, some, w) for w in diffused(finest, one, solve)] for one in given]
+            finer = [diffused(finest, one, solve) for one in given]
+            if left_out is not None:
+                each = zip(finer[0], times, strict=True)
+                finer[0] = [w + left_out.after(finest, t) for w, t in each]
+            finer = [[among(many, some, w) for w in every] for every in finer]
             sizes = [1.0 if problem.adds else 1.0 / (_greatest(v) or 1.0) for v in made]
             for output, every in zip(run.outputs, run.terms, strict=True):
                 terms = [(times.index(t), share) for t, share in every]
@@ -167,9 +176,9 @@ def _terms(some: Problem, t: float, ratio: float, p: float | None, placed: bool)
     ]
 
 
-def _with_means(problem: Problem, initial: Any) -> np.ndarray:
+def _with_means(problem: Problem, initial: Any, values: np.ndarray) -> np.ndarray:
     """Return the mean of a function over each cell, less 1/24 of the second differences; at an end its value."""
-    values, axes = values_of(problem, initial), axes_of(problem)
+    axes = axes_of(problem)
     parts = (np.arange(_PARTS) + 0.5) / _PARTS - 0.5
     places = []
     for n, (_, turns) in zip(values.shape, axes, strict=True):
