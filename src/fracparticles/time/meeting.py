@@ -14,6 +14,7 @@ __all__ = ["Meeting"]
 # Distances from the middle, in half-widths: one of `_DEPTHS` for each gamma, or all of `_OUTER` by least squares.
 _DEPTHS = (1.0, 0.75, 0.5, 0.875, 0.625, 0.375)
 _OUTER = np.linspace(1.0, 0.8, 8)
+_BETWEEN = np.array([0.9375, 0.8125])  # where the tail may miss the data
 
 
 class Meeting:
@@ -42,8 +43,14 @@ class Meeting:
         away = np.array([m for m in product(sides, repeat=self._dim) if max(map(abs, m)) == 1.0])
         low, high = np.array([(middle - at.start, at.stop - 1 - middle) for at in inside]).T
         reach = np.where(away < 0.0, low, high) * away
-        places = (depths.reshape(-1, 1, 1) * reach).astype(int).reshape(-1, self._dim) + middle
-        self._samples = places.T - np.array([[at.start] for at in inside])
+        corner = np.array([[at.start] for at in inside])
+
+        def at(depths: np.ndarray) -> np.ndarray:
+            return (depths.reshape(-1, 1, 1) * reach).astype(int).reshape(-1, self._dim) + middle
+
+        places, between = at(depths), at(_BETWEEN)
+        self._samples, self._others = places.T - corner, between.T - corner
+        self._columns_between = values_of(terms, x[between.T], odd[between.T]).T
         self._nearest = float(min(*low, *high)) / x.size
         self._columns = values_of(terms, x[places.T], odd[places.T]).T
         self._weight = np.ones((len(places), 1))
@@ -54,6 +61,11 @@ class Meeting:
     def fitted(self, u: np.ndarray) -> np.ndarray:
         """Return the amplitudes of the terms, shape (data, terms), from data of shape (data, N, .., N)."""
         return np.asarray(u[(slice(None), *self._samples)] @ self._fit.T)
+
+    def misfit(self, u: np.ndarray) -> np.ndarray:
+        """Return the greatest distance of the tail from data of shape (data, N, .., N) between the depths, for each."""
+        off = u[(slice(None), *self._others)] - self.fitted(u) @ self._columns_between.T
+        return np.asarray(np.abs(off).max(axis=1))
 
     def left_open(self, u: np.ndarray) -> tuple[float, float]:
         """Return the uncertainty of int u and of int x u beyond the lattice; the period is the unit of length.
