@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -124,6 +126,29 @@ def test_a_step_beyond_the_limit_is_warned_of():
     assert velocity.largest_stable_step == pytest.approx(limit, rel=1e-5)
     with pytest.warns(StabilityWarning, match="outside the stability interval of DVM"):
         moved(x, u, dt=1.01 * limit, steps=1)
+
+
+def test_a_few_steps_that_are_too_long_are_warned_of(recwarn):
+    """Within the limit of stability a twentieth of the peak was wrong without a word, and up to a third."""
+    h, alpha, start = 0.3, 1.18, 1.3**1.18
+    x = h * np.arange(-33.0, 34.0)
+
+    def run(dt, steps):
+        how = {"spacing": h, "alpha": alpha, "start": start, "exterior": "open"}
+        return dvm.run(x, green(x, start, alpha), dt=dt, steps=steps, **how).field(x)
+
+    limit = dvm.DiffusionVelocity(alpha, 2, 2.0 * h, exterior="open").largest_stable_step
+    few, end = 4, 4 * 0.95 * limit
+    with pytest.warns(AccuracyWarning, match="so long that they leave an error of about") as caught:
+        u = run(end / few, few)
+    fine = run(end / (16 * few), 16 * few)
+    said = float(re.search(r"about ([\d.e-]+) of", str(caught[0].message))[1])
+    measured = np.abs(u - fine).max() / u.max()
+    # Of second order: half the step has a quarter of it, give or take the next order, which is half of that before.
+    assert measured / 2.0 < said < 2.0 * measured
+    recwarn.clear()
+    run(0.25 * end / few, few)
+    assert not len(recwarn)
 
 
 def test_numbers_that_overflow_are_refused():

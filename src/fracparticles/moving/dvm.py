@@ -14,8 +14,8 @@ D dt / h^alpha <= a with DD's a, although the strengths never change. At the end
 particles run outward unchecked, the step is limited further, by the effect of remeshing wide gaps on the field.
 
 A run warns of what it can detect: a step beyond that limit, particles too far apart for the smoothing length
-(`moving.reliability`), remeshings that change the field, strength lost to a threshold or at the ends of the lattice,
-and tails that do not continue the field inside.
+(`moving.reliability`), remeshings that change the field, a few steps that are too long, strength lost to a threshold or
+at the ends of the lattice, and tails that do not continue the field inside.
 
 An open exterior continues the set by its far field (`moving.tail`). The end particles then follow the paths of the
 solution, and remeshing is needed only because all spacings grow.
@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -38,7 +38,7 @@ from fracparticles.arguments import (
     scale,
     vector,
 )
-from fracparticles.errors import AccuracyWarning, InvalidInput
+from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 from fracparticles.moving.diffusion_velocity import EXTERIORS, DiffusionVelocity
 from fracparticles.moving.lagrangian import (
     REMESH_ABOVE,
@@ -85,6 +85,8 @@ GONE = 0.05  # of the total strength: what a threshold, or the ends of a truncat
 _MISFIT = 0.125  # of the total strength: what the tails of an open exterior may hold wrongly; runs err by a third of it
 # Of the peak: what remeshings may change. The error of a run is from a third of it to all of it.
 _REMESHED = 0.1
+_FEW_STEPS = 8  # up to so many, the same run with half the step tells their error; beyond, other errors are larger
+_OF_STEPS = 0.05  # of the peak: above, a warning is given
 
 
 @dataclass(frozen=True)
@@ -196,8 +198,8 @@ def run_to_outputs(
         If the step is larger than `DiffusionVelocity.largest_stable_step`.
     AccuracyWarning
         If the particles are not `spacing` apart, or too far apart for the smoothing length; if remeshings change the
-        field; if much of the strength has been left out; or if the far field of an open exterior does not fit the field
-        inside.
+        field; if the steps are at most eight, and half the step changes it; if much of the strength has been left out;
+        or if the far field of an open exterior does not fit the field inside.
     """
     spacing, overlap = scale("spacing", spacing), positive_real("overlap", overlap)
     x = real_array("x", x)
@@ -230,7 +232,7 @@ def run_to_outputs(
     longest = max(positive_real("dt", dt) for dt, _ in legs)
     warn_of_step(longest, velocity.largest_stable_step, stacklevel=3)
     warn_of_round_off(x, sum(steps for _, steps in legs), velocity.epsilon)
-    initial, strength, history, runs = x, given, None, []
+    initial, strength, history, runs, began = x, given, None, [], start
     for dt, steps in legs:
         x, strength, own = advance(
             x,
@@ -253,10 +255,55 @@ def run_to_outputs(
         max(ripples), velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=3
     )
     warn_of_remeshing(changes.largest, _REMESHED, stacklevel=3)
+    if sum(steps for _, steps in legs) <= _FEW_STEPS:
+        again = None if redistribution is None else replace(redistribution, noticed=None)
+        left = _error_of_steps(runs[-1], (initial, given), legs, began, again, threshold, at)
+        _warn_of_steps(left)
     _warn_of_loss(runs[-1].history, exterior)
     if velocity.tail is not None:
         warn_of_misfit(velocity.tail.misfit(x, strength), _MISFIT, stacklevel=3)
     return runs
+
+
+def _error_of_steps(
+    run: ParticleRun,
+    initial: Particles,
+    legs: Sequence[tuple[float, int]],
+    start: float,
+    redistribution: Remeshing | None,
+    threshold: float,
+    at: np.ndarray,
+) -> float:
+    """Return the error of the steps over the peak, at some places; infinite if half the step does not get to the end.
+
+    The midpoint rule is of second order: with half the step a quarter of its error is left.
+    """
+    x, strength = initial
+    try:
+        for dt, steps in legs:
+            x, strength, _ = advance(
+                x, strength, run.velocity, dt=0.5 * dt, steps=2 * steps, start=start,
+                remeshing=redistribution, threshold=threshold,
+            )  # fmt: skip
+            start += dt * steps
+    except NonFiniteSolution:
+        return np.inf
+    field = run.field(at)
+    finer = run.velocity.field(x, strength, at)
+    peak = float(np.abs(field).max())
+    return 4.0 / 3.0 * float(np.abs(field - finer).max()) / peak if peak else 0.0
+
+
+def _warn_of_steps(left: float) -> None:
+    if left > _OF_STEPS:
+        says = f"of about {left:.2g} of the peak, as half the step says"
+        if left == np.inf:
+            says = "that is not known: with half the step the run does not get to the end"
+        warnings.warn(
+            f"the time steps are so long that they leave an error {says}. Take a smaller step.",
+            AccuracyWarning,
+            stacklevel=4,
+        )
 
 
 def _warn_of_loss(history: History, exterior: str) -> None:
