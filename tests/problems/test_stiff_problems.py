@@ -126,6 +126,24 @@ def test_a_rectangular_wave_may_begin_from_nothing(source):
     assert u == pytest.approx(0.5, rel=50.0 * 1e-4)
 
 
+@pytest.mark.usefixtures("silent")
+@pytest.mark.parametrize("door", ["problem", "domain"])
+def test_a_pulse_that_multiplies_u_is_found_where_u_begins_as_zero(door):
+    """There it is nothing, and was stepped over: a fifteenth of u was missed without a word."""
+    on = 0.0042  # u' = 1 - 30 u then, from u = 0.5386 on
+    source = f"1 - 30*where((t > 0.5386) & (t < {0.5386 + on}), 1, 0)*u"
+    if door == "problem":
+        u, _ = level(source, 0.0)
+    else:
+        line = Interval(alpha=1.5, particles=16, exterior="reflecting")
+        of = Coefficient("source", source, ("x", "t", "u"))
+        u = line.react(
+            0.0, 1.0, lambda x, t, u: of({"x": x, "t": t, "u": u}) + 0.0 * x, tolerance=RTOL
+        )
+    held = np.exp(-30.0 * on)
+    assert u == pytest.approx(0.5386 * held + (1.0 - held) / 30.0 + 1.0 - 0.5386 - on, rel=NEAR)
+
+
 @pytest.mark.parametrize(
     ("domain", "particles", "on_from"),
     [

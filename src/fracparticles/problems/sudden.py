@@ -10,7 +10,14 @@ import numpy as np
 from fracparticles.errors import InvalidInput
 from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
-from fracparticles.time.sudden import LOOKS, instant, irregular_times, pulses, sudden_times
+from fracparticles.time.sudden import (
+    LOOKS,
+    instant,
+    irregular_times,
+    pulses,
+    sudden_times,
+    what_comes,
+)
 
 __all__ = ["sudden_changes"]
 
@@ -43,9 +50,28 @@ def sudden_changes(problem: Problem, u0: np.ndarray) -> list[float]:
         if one is not None and "t" in one.depends_on:
             found |= set(_changes(one, problem, lattice, some, chosen))
     source = problem.reaction
-    if source is not None and "t" in source.depends_on and not u0.any():
-        found |= _beginning(source, problem, lattice)
+    if source is not None and "t" in source.depends_on:
+        if not u0.any():
+            found |= _beginning(source, problem, lattice)
+        if "u" in source.depends_on:
+            found |= _of_what_comes(source, problem, lattice, chosen)
     return sorted(found)
+
+
+def _of_what_comes(
+    source: Coefficient, problem: Problem, lattice: Places, chosen: Index
+) -> set[float]:
+    """Return the sudden changes for the u that the source may make: what multiplies u is not seen where u = 0."""
+    u0, start, span = lattice["u"], problem.t_initial, problem.span
+    try:
+        u = what_comes(lambda t: source.checked(_of(source, lattice, np.array(t))), u0, start, span)
+        if u is None:
+            return set()
+        later = lattice | {"u": u}
+        some = {name: np.broadcast_to(x, u0.shape)[chosen] for name, x in later.items()}
+        return set(_changes(source, problem, later, some, chosen))
+    except InvalidInput:  # u may not come so far
+        return set()
 
 
 def _changes(

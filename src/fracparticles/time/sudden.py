@@ -24,7 +24,15 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["LOOKS", "instant", "irregular_times", "pulses", "pulses_at", "sudden_times"]
+__all__ = [
+    "LOOKS",
+    "instant",
+    "irregular_times",
+    "pulses",
+    "pulses_at",
+    "sudden_times",
+    "what_comes",
+]
 
 Look = Callable[[float], np.ndarray]
 
@@ -40,6 +48,8 @@ _AT_ONCE = 2**16  # times at each place that are handed to a function at once
 # Looks without a sudden change that make a quiet time. A wave that changes by _SUDDEN between two looks has half
 # a period of pi / (2 _SUDDEN) = 15.7 looks at most.
 _QUIET = 16
+_RATES = 16  # intervals between the times at which a source is evaluated for the u that it may make
+_MORE = 1.1  # times the greatest |u| at first: less is no other u
 _MOST_CUTS = 256  # cuts at evenly chosen looks, if there are more sudden changes
 
 
@@ -159,6 +169,19 @@ def pulses_at(
     except Exception:  # a function that takes one time may raise anything
         return set()
     return pulses(few, places, start, span) if np.array_equal(together, alone) else set()
+
+
+def what_comes(rate: Look, u: np.ndarray, start: float, span: float) -> np.ndarray | None:
+    """Return the u that a source may make, from its rates for the u at first; None if that is no greater, or no number.
+
+    Where u = 0, what multiplies u is not seen. So the source has sudden changes for this u as well.
+    """
+    rates = np.array([rate(t) for t in irregular_times(start, span, _RATES)])
+    greatest = np.take_along_axis(rates, np.abs(rates).argmax(axis=0)[None], axis=0)[0]
+    with np.errstate(all="ignore"):
+        later = np.asarray(u + span * greatest)
+    more = np.abs(later).max() > _MORE * np.abs(u).max()
+    return later if more and np.isfinite(later).all() else None
 
 
 def instant(start: float, span: float) -> float:
