@@ -34,6 +34,7 @@ mean of D about a kink or a jump. Later the time is not scaled, l = 1, and the s
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -109,7 +110,9 @@ def errors_of_diffusion(
             finer = [diffused(finest, one, solve) for one in given]
             if left_out is not None:
                 each = zip(finer[0], times, strict=True)
-                finer[0] = [w + left_out.after(finest, t) for w, t in each]
+                finer[0] = [
+                    w + _asked(partial(left_out.after, finest, t), initial) for w, t in each
+                ]
             finer = [[among(many, some, w) for w in every] for every in finer]
             sizes = [1.0 if problem.adds else 1.0 / (_greatest(v) or 1.0) for v in made]
             for output, every in zip(run.outputs, run.terms, strict=True):
