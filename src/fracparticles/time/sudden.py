@@ -130,7 +130,7 @@ def pulses(
     scale = values.max(axis=1) - values.min(axis=1)
     seen = np.flatnonzero(scale > _NOTICED * np.abs(values).max())
 
-    found: set[float] = set()
+    found, flanking = set[float](), set[float]()
     width = instant(start, span)
     for stride, place in product(_STRIDES, seen.tolist()):
 
@@ -147,11 +147,13 @@ def pulses(
                 found.update(
                     *(one.tolist() for one in (low[jumps], high[jumps], at[flanks[~jumps]]))
                 )
-            return found
+            return found | flanking
         sudden = sudden[_hold_none(found, at[sudden], at[sudden + 1])]
-        low, high, _ = _narrowed(look, at[sudden], at[sudden + 1], width)
+        low, high, jumps = _narrowed(look, at[sudden], at[sudden + 1], width)
         found.update(low.tolist(), high.tolist())
-    return found
+        # A change that is no jump is steepest within it: the run is cut before and after all of it, too.
+        flanking.update(at[sudden[~jumps]].tolist(), at[sudden[~jumps] + 1].tolist())
+    return found | flanking
 
 
 def pulses_at(
