@@ -62,6 +62,15 @@ def test_peak_memory_is_that_of_a_process_of_its_own():
     assert 2e7 < clock.in_fresh_process(clock.peak_so_far) < here.nbytes
 
 
+def test_a_peak_begins_anew():
+    here = np.ones(2**25)
+    before = here.nbytes
+    del here
+    high = clock.peak_so_far()
+    clock.forget_peak()
+    assert clock.peak_so_far() < high - 0.9 * before
+
+
 def test_rows_become_a_data_set_and_a_frame(tmp_path):
     rows = [{"name": "a", "x": 1.0, "what": ""}, {"name": "b", "what": "broken"}]
     data = clock.timings_dataset(

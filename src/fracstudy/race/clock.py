@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import _lru_cache_wrapper, cache, lru_cache
 from importlib.metadata import PackageNotFoundError, version
@@ -34,6 +35,7 @@ __all__ = [
     "Measurements",
     "Timing",
     "conditions",
+    "forget_peak",
     "forget_tables",
     "in_fresh_process",
     "machine",
@@ -187,6 +189,12 @@ def peak_so_far() -> float:
         return float("nan")
     lines = status.read_text().splitlines()
     return 1024.0 * float(next(line.split()[1] for line in lines if line.startswith("VmHWM")))
+
+
+def forget_peak() -> None:
+    """Let the peak of `peak_so_far` begin anew, from the memory of now: imports may have needed more."""
+    with suppress(OSError):  # outside Linux
+        Path("/proc/self/clear_refs").write_text("5")
 
 
 def in_fresh_process(function: Callable[..., Any], *arguments: Any) -> Any:

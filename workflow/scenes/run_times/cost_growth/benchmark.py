@@ -92,6 +92,7 @@ def measure_sizes(
     is not wanted, is that of the process so far.
     """
     clock.one_core()
+    clock.forget_peak()
     rows = []
     for number, size in enumerate(sizes):
         case = _case(kind, dim, size, _END if number else _START + _SHORT)
