@@ -44,6 +44,7 @@ __all__ = [
 ]
 
 
+_MOST_TERMS = 10_000  # of a partial sum
 _FAR = 1e20  # r from which the second term of (A.2) is below 1e-20 of the first
 
 
@@ -63,7 +64,7 @@ def _checked(x: Any, alpha: Any, terms: Any) -> tuple[FloatArray, float, FloatAr
     size = np.abs(check.real_array("x", x))
     if np.isinf(size).any():
         raise InvalidInput("x", x, "finite numbers", "Remove the infinite entries.")
-    count = check.positive_integer("terms", terms)
+    count = check.positive_integer("terms", terms, _MOST_TERMS)
     return size[..., None], check.fractional_order(alpha), np.arange(1.0, count + 1.0)
 
 
@@ -75,7 +76,7 @@ def green_series(x: Any, alpha: float, terms: int) -> FloatArray | float:
     (the terms of even m are zero and not counted). Far from 0 a partial sum loses all digits; it
     overflows to +-inf, never to nan.
 
-    Raises `InvalidInput` if x is not finite and numeric, alpha outside (1, 2), or `terms` not a positive integer.
+    Raises `InvalidInput` if x is not finite and numeric, alpha outside (1, 2), or `terms` not a whole number from 1 to 10 000.
     """
     size, alpha, j = _checked(x, alpha, terms)
     m = 2.0 * j - 1.0
