@@ -76,7 +76,8 @@ def green_series(x: Any, alpha: float, terms: int) -> FloatArray | float:
     (the terms of even m are zero and not counted). Far from 0 a partial sum loses all digits; it
     overflows to +-inf, never to nan.
 
-    Raises `InvalidInput` if x is not finite and numeric, alpha outside (1, 2), or `terms` not a whole number from 1 to 10 000.
+    Raises `InvalidInput` if x is not finite and numeric, alpha outside (1, 2), or `terms` no whole number, or above
+    10 000.
     """
     size, alpha, j = _checked(x, alpha, terms)
     m = 2.0 * j - 1.0
