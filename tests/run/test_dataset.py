@@ -294,7 +294,7 @@ def test_a_write_that_fails_keeps_the_old_file(run_file):
 
 
 def test_what_is_not_a_data_set_is_refused(tmp_path):
-    for thing in (None, fp.solve(case()).u, {}, tmp_path / "run.nc"):
+    for thing in (None, fp.solve(case()).u, {}, tmp_path / "run.nc", xr.Dataset()):
         with pytest.raises(InvalidInput, match=r"^dataset (=|is missing)"):
             fp.write(thing, tmp_path / "run.nc")
     for path in (None, 3, b"run.nc", "a\0b", tmp_path, ""):

@@ -226,8 +226,8 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
     Raises
     ------
     InvalidInput
-        If `path` is there and not a regular file, or has the name of a table, or the data set has an attribute or a
-        variable that NetCDF cannot hold.
+        If `path` is there and not a regular file, or has the name of a table, or the data set is empty, or has an
+        attribute or a variable that NetCDF cannot hold.
     OSError
         If the file cannot be written: a folder without permission, a full disk.
     """
@@ -235,6 +235,10 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
 
     if not isinstance(dataset, xr.Dataset):
         raise InvalidInput("dataset", type(dataset).__name__, "a Dataset", "Give what solve gives.")
+    if not dataset.variables:  # it would replace what is there by nothing
+        raise InvalidInput(
+            "dataset", "an empty one", "one with variables", "Give what solve gives."
+        )
     with replacing(path) as temporary:
         not_a_table(path, "path")
         try:
