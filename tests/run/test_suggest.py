@@ -11,6 +11,7 @@ import fracparticles as fp
 from fracparticles.errors import AccuracyWarning, InvalidInput
 from fracparticles.run.radius import radius_of
 from fracparticles.run.solver import compute
+from fracparticles.run.suggest import _errors
 from fracstudy.race.problems import PROBLEMS
 from sweeps import covering, few, thorough
 
@@ -188,6 +189,24 @@ def test_data_far_wider_than_they_spread_take_few_particles(width):
     case = fp.suggest(lambda x: np.exp(-((x / width) ** 2)), error=1e-3, alpha=1.5, t_final=1.0)
     assert case.x.size < 100
     assert width < case.reach < 10.0 * width
+
+
+def test_particles_that_do_not_resolve_the_data_are_no_answer():
+    """Data that fall slowly hardly change between particles 10^4 apart: the peak of width 1 was lost, and 1e-5 said."""
+    fields = {"scheme": "KPSE", "order": 12, "exterior": "open", "integrator": "exponential"}
+    case = fp.Case(alpha=1.5, t_final=1.0, half_width=8e4, spacing=1e4, **fields)
+    assert _errors(case, lambda x: 1.0 / (1.0 + np.abs(x) ** 1.2), 6.7e4, 1e-3)[0] == np.inf
+
+
+@pytest.mark.parametrize("alpha", [1.2, 1.8])
+@pytest.mark.filterwarnings("error::fracparticles.errors.AccuracyWarning")
+def test_a_run_that_is_suggested_says_nothing(alpha):
+    """For a tenth, particles were suggested that did not resolve the narrower of two blobs."""
+
+    def data(x):
+        return np.exp(-((x - 7.0) ** 2)) + 0.3 * np.exp(-((x + 4.0) ** 2) / 0.2)
+
+    fp.solve(fp.suggest(data, error=0.1, alpha=alpha, t_final=1.0, t_initial=0.0), data)
 
 
 @pytest.mark.parametrize("initial", [lambda x: 1.0, lambda x: np.where(x > 0.0, 1.0, 0.0)])

@@ -23,6 +23,7 @@ from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.estimate import estimate_of
 from fracparticles.run.initial import Initial, resolved
 from fracparticles.run.radius import radius_of
+from fracparticles.run.reliability import LIMITS
 from fracparticles.run.solver import compute
 from fracparticles.schemes import ALL_SCHEMES
 from fracparticles.special.stable import central_mass
@@ -44,6 +45,9 @@ _FAR = 10.0  # error over the one asked for: from here the search takes two step
 _BACK = 1.2  # the factor by which spacing and half-width are taken back at a time
 _SAFE = 0.7  # share of the error asked for that a case must meet
 _CERTAIN = 0.03  # share of the error asked for by which the estimates may be uncertain
+# What a run warns of if the particles do not resolve the data. The estimate may not see it: data that fall very slowly
+# are nearly constant from one of the far particles to the next, and have their peak at one of them.
+_OF_THE_DATA = "resolution", "between_particles"
 _MOST_TRIALS, _MOST_WIDENINGS = 60, 8
 # A trial that leaves more than this part of the lowest error is in vain; so many of them in a row end the search.
 _LOWER, _MOST_IN_VAIN = 0.9, 5
@@ -52,6 +56,9 @@ _HELD = 0.97  # share of the mass of a point that the lattice must hold if no ra
 _WIDE = 100.0
 # (D T)^(1/alpha) over the radius, to the power of the dimension: some 2e6 particles, two minutes.
 _MOST_SPREAD = 1e4
+_MOST_PARTICLES = (
+    4_000_000  # with more, a run takes minutes and ten gigabytes, and each of some trials as much
+)
 # The most points of an estimate, by dimension: many estimates are made.
 _POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}
 _TERMS = {1: 3, 2: 3, 3: 2}  # of the tail beyond the lattice, by dimension
@@ -192,6 +199,8 @@ def _search(wanted: _Wanted, reached: list[float]) -> Case | None:
             else:  # too many particles, or a kernel wider than can be summed
                 return None
             continue
+        if trial.particles > _MOST_PARTICLES:
+            return None
         total, spacing, domain = _errors(trial, initial, within, error)
         reached.append(total)
         in_vain = in_vain + 1 if total > _LOWER * lowest and np.isfinite(total) else 0
@@ -300,6 +309,8 @@ def _errors(
             try:
                 source = resolved(case, initial)
                 run = compute(case.until(time), source)
+                if any(run.estimates.get(name, (0.0,))[0] > LIMITS[name] for name in _OF_THE_DATA):
+                    return np.inf, 1.0, 0.0
                 one = estimate_of(run, source, within, _POINTS[case.dim], _CERTAIN * asked)
             except InvalidInput as refused:
                 if refused.field != "initial":
