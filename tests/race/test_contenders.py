@@ -161,7 +161,7 @@ class Slow(Echo):
 
 def test_what_takes_long_is_timed_at_fewer_moments():
     rows = run_trials(PROBLEMS["fundamental"](0.5), [Slow()], rounds=1, repeats=3, seconds=1.0)
-    # After three moments no more: they have taken longer than 0.03 s.
+    # After three moments no more: they have taken longer than 0.015 s.
     assert rows[0]["setups"] == rows[0]["solves"] == 1 + 3 * 3
 
 

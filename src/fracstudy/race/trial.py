@@ -32,7 +32,7 @@ _FOLLOWED = 3.0
 # Trials within these factors, of the front of their contender and of the front of all, are timed in so many times as
 # many rounds: a machine has slow moments.
 _LEAD, _BEHIND, _MOMENTS = 1.2, 3.0, 20
-_FEW, _SPENT = 3, 0.03  # after so many times, and so many seconds, a trial is not timed again
+_FEW, _SPENT = 3, 0.015  # after so many times, and so many seconds, a trial is not timed again
 _MATRIX = 600  # points up to which the whole run may be one matrix
 _MOST = 2**17  # numbers in a block
 
