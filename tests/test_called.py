@@ -81,7 +81,7 @@ REFUSED = {
 @pytest.mark.parametrize("case", REFUSED)
 def test_what_would_get_another_variable_than_its_name_says_is_refused(case):
     function, variables = REFUSED[case]
-    with pytest.raises(fp.InvalidInput, match=r"^velocity = .* several of these.*default\.$"):
+    with pytest.raises(fp.InvalidInput, match=r"^velocity = .* a function of .*default\.$"):
         Called("velocity", function, variables)
 
 

@@ -63,7 +63,8 @@ class Called:
         given = dict(zip(self.variables, values, strict=True))
         placed = (given[name] for name in self._placed)
         found = self.function(*placed, **{key: given[name] for key, name in self._named.items()})
-        return found if np.ndim(found) else np.full(np.shape(values[0]), found)
+        several = isinstance(found, list | tuple) or np.ndim(found)
+        return found if several else np.full(np.shape(values[0]), found)
 
     def _arguments(self) -> tuple[tuple[str, ...], dict[str, str]]:
         """Return the variables given by position, and those given by the name of an argument."""
@@ -113,7 +114,8 @@ class Called:
         return variable in AXES or name not in AXES
 
     def _refused(self) -> InvalidInput:
-        allowed = f"a function of {spelled(self.variables)}, or of several of these"
+        several = ", or of several of these" if len(self.variables) > 1 else ""
+        allowed = f"a function of {spelled(self.variables)}{several}"
         return InvalidInput(
             self.field, self.function, allowed, "Name its arguments so; others need a default."
         )

@@ -199,14 +199,29 @@ def test_what_a_callable_raises_goes_through_with_a_note():
     for function, kind, words in (
         (of_its_own, KeyError, "mine"),
         (too_hot, ValueError, "too hot"),
-        (lambda: 1.0, TypeError, "positional argument"),
-        (lambda x, y: x, TypeError, "missing 1 required"),
         (lambda x: math.log(x), TypeError, "0-dimensional"),
     ):
         with pytest.raises(kind, match=words) as raised:
             initial_strengths(case(), function)
         assert "case.positions" in raised.value.__notes__[0]
     assert raised.value.__notes__[1] == "For single numbers: ValueError: math domain error"
+
+
+def test_the_names_of_arguments_say_which_coordinate_they_take():
+    def at_three(x, y):
+        return np.exp(-((x - 3.0) ** 2) - y * y)
+
+    straight, swapped = (
+        initial_strengths(square(), f)[0] for f in (at_three, lambda y, x: at_three(x, y))
+    )
+    np.testing.assert_array_equal(swapped, straight)
+    assert np.ptp(straight - straight.T) > 0.1  # another order would be another solution
+
+
+def test_a_function_of_other_variables_is_refused():
+    for function in (lambda: 1.0, lambda x, y: x, lambda t: t, lambda y, x: x):
+        refused(case(), function, "a function of x. Name")
+    refused(square(), lambda x, y, z: x, "a function of x or y, or of several of these")
 
 
 # --- labels ---------------------------------------------------------------------------------------

@@ -165,7 +165,7 @@ def follow(
     tolerance = check.real_between("tolerance", tolerance, 1e-13, 1e-2)
     again = check.flag("again", again)
     outputs = _output_times(times)
-    samples = adapted_samples(check.function("initial", initial), low, high, seen)
+    samples = adapted_samples(Called("initial", initial, ("x",)), low, high, seen)
     if reach is None:
         most = float(physics.diffusivity_at(samples[0]).max())
         reach = reach_of(initial, samples, physics.alpha, most * float(outputs[-1]))

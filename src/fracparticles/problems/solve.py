@@ -17,7 +17,7 @@ from fracparticles.problems.problem import Problem
 from fracparticles.problems.rates import Rates, probe_source
 from fracparticles.problems.reliability import estimates, warn_if_doubtful
 from fracparticles.problems.tighter_steps import with_time_error
-from fracparticles.run.initial import Initial, initial_strengths
+from fracparticles.run.initial import Initial, initial_strengths, of_places
 from fracparticles.run.units import Units, units_of, with_units
 
 if TYPE_CHECKING:
@@ -89,6 +89,7 @@ def solve_problem(
     if initial is None and not plain:
         given = "data of your own: there is no fundamental solution with these coefficients"
         raise InvalidInput("initial", None, given, "Pass an array, or a function.")
+    initial = None if initial is None else of_places(initial, problem.dim)
     # So t_initial counts as given, even if it is the default.
     case = problem.case.model_copy(update={"t_initial": problem.t_initial})
     u0, origin = initial_strengths(case, initial)

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from fracparticles.arguments import real_array
+from fracparticles.called import AXES, Called
 from fracparticles.data.interpolated import Measured
 from fracparticles.data.measured import MEASURED, measured
 from fracparticles.data.tables import is_table
@@ -37,6 +38,7 @@ __all__ = [
     "bare_strengths",
     "case_of_run",
     "initial_strengths",
+    "of_places",
     "refuse_non_finite",
     "resolved",
 ]
@@ -44,7 +46,6 @@ __all__ = [
 Initial: TypeAlias = "str | os.PathLike[str] | np.ndarray | xr.DataArray | xr.Dataset | pd.Series | Callable[..., Any]"
 
 _FLOAT64 = np.dtype(float)
-_AXES = ("x", "y", "z")
 _GIVEN = "given, sha256 "  # begins `initial` of a stored case whose data came with the call
 # Variable or field of a stored run: the field of the case that must be the same.
 _SAYS = {
@@ -124,9 +125,22 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
 
 def resolved(case: Case, initial: Initial | None = None) -> Initial:
     """Return the initial data of a run: those of the call, or else those that the case names; a table as `Measured`."""
-    source = case.initial if initial is None else initial
+    source = of_places(case.initial if initial is None else initial, case.dim)
     path = os.fspath(source) if isinstance(source, str | os.PathLike) else ""
     return measured(path) if path.startswith(MEASURED) or is_table(path) else source
+
+
+def of_places(initial: Initial, dim: int) -> Initial:
+    """Return initial data of which a function is called with the coordinates that its arguments are named after.
+
+    Raises
+    ------
+    InvalidInput
+        If it is a function of other variables, or of more.
+    """
+    if not callable(initial) or isinstance(initial, Measured):
+        return initial
+    return Called("initial", initial, AXES[:dim])
 
 
 def bare_strengths(u0: Any, shape: tuple[int, ...]) -> np.ndarray:
@@ -224,7 +238,7 @@ def _on_lattice(case: Case, given: Any, what: str) -> tuple[np.ndarray, bool]:
     data = _at_its_time(data, case.t_initial, name)
     told = _told(data)
     _check_equation(case, told, name)
-    axes = _AXES[: case.dim]
+    axes = AXES[: case.dim]
     wanted = f"u({', '.join(axes)}) and the coordinates {', '.join(axes)}"
     if "u" not in data.variables:
         held = ", ".join(map(str, data.variables)) or "nothing"
@@ -346,7 +360,7 @@ def _labels(given: Any) -> xr.Dataset | None:
 
 
 def _read(path: Path) -> xr.Dataset:
-    return load_netcdf(path, ("u", *_AXES, "t", *_SAYS))
+    return load_netcdf(path, ("u", *AXES, "t", *_SAYS))
 
 
 def _real(values: Any) -> np.ndarray:

@@ -21,7 +21,7 @@ from fracparticles.data.interpolated import Measured
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
 from fracparticles.run.case import FUNDAMENTAL, Case
 from fracparticles.run.estimate import estimate_of
-from fracparticles.run.initial import Initial, resolved
+from fracparticles.run.initial import Initial, of_places, resolved
 from fracparticles.run.radius import radius_of
 from fracparticles.run.reliability import LIMITS
 from fracparticles.run.solver import compute
@@ -113,6 +113,7 @@ def suggest(
     """
     error = real_between("error", error, _SMALLEST, 0.5)
     dim = dimension(dim)
+    initial = of_places(initial, dim)
     if not (callable(initial) or (isinstance(initial, str) and initial == FUNDAMENTAL)):
         known = "a function, measured data (fp.measured) or 'fundamental': what is known everywhere"
         raise InvalidInput("initial", type(initial).__name__, known, "Give one of these.")
