@@ -33,7 +33,7 @@ from fracparticles.bounded.operator import LOOKS, DomainOperator
 from fracparticles.called import AXES, Called
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
 from fracparticles.time.fading import FADED, early_errors
-from fracparticles.time.sudden import instant, pulses_at, sudden_times, what_comes
+from fracparticles.time.sudden import changes_of_what_comes, instant, pulses_at, sudden_times
 
 __all__ = ["EXTERIORS", "Domain"]
 
@@ -185,9 +185,14 @@ class Domain(DomainOperator):
                 rates = np.asarray(f(*self.points, t, u), dtype=float)
             return np.broadcast_to(rates, u.shape)
 
+        def changes(u: FloatArray) -> set[float]:
+            found = sudden_times(lambda t: reaction(t, u).reshape(-1), 0.0, time, looks=LOOKS)
+            return set(found) | self._pulses(lambda one, *at: f(*at, one), u, time)
+
         self.values("source", lambda *place: f(*place, 0.0, start) + 0.0 * place[0])
         known = self._pulses(lambda u, *at: f(*at, u), start, time)
-        known |= self._of_what_comes(f, reaction, start, time)
+        with np.errstate(all="ignore"):
+            known |= changes_of_what_comes(changes, reaction, start, 0.0, time)
         return self._moved(start, time, reaction, g, tolerance, known)
 
     # --- how -----------------------------------------------------------------------------------------
@@ -201,20 +206,6 @@ class Domain(DomainOperator):
         steady = self.at_rest(f - mean + lift.load)
         left = self.decayed(start - lift.base - steady, time)
         return np.asarray(lift.base + steady + time * mean + left)
-
-    def _of_what_comes(
-        self, source: Callable[..., Any], reaction: Rest, start: FloatArray, time: float
-    ) -> set[float]:
-        """Return the sudden changes for the u that the source may make."""
-        try:
-            with np.errstate(all="ignore"):
-                u = what_comes(lambda t: reaction(t, start), start, 0.0, time)
-                if u is None:
-                    return set()
-                found = sudden_times(lambda t: reaction(t, u).reshape(-1), 0.0, time, looks=LOOKS)
-                return set(found) | self._pulses(lambda one, *at: source(*at, one), u, time)
-        except Exception:  # u may not come so far, and a function may raise anything there
-            return set()
 
     def _pulses(self, f: Callable[..., Any], start: FloatArray, time: float) -> set[float]:
         """Return the pulses of f(u, *place, t) at two particles: near the middle, and where |start| is greatest."""

@@ -12,11 +12,11 @@ from fracparticles.problems.expressions import Coefficient
 from fracparticles.problems.problem import Problem
 from fracparticles.time.sudden import (
     LOOKS,
+    changes_of_what_comes,
     instant,
     irregular_times,
     pulses,
     sudden_times,
-    what_comes,
 )
 
 __all__ = ["sudden_changes"]
@@ -61,17 +61,17 @@ def sudden_changes(problem: Problem, u0: np.ndarray) -> list[float]:
 def _of_what_comes(
     source: Coefficient, problem: Problem, lattice: Places, chosen: Index
 ) -> set[float]:
-    """Return the sudden changes for the u that the source may make: what multiplies u is not seen where u = 0."""
-    u0, start, span = lattice["u"], problem.t_initial, problem.span
-    try:
-        u = what_comes(lambda t: source.checked(_of(source, lattice, np.array(t))), u0, start, span)
-        if u is None:
-            return set()
+    u0 = lattice["u"]
+
+    def rate(t: float, u: np.ndarray) -> np.ndarray:
+        return source.checked(_of(source, lattice | {"u": u}, np.array(t)))
+
+    def changes(u: np.ndarray) -> list[float]:
         later = lattice | {"u": u}
         some = {name: np.broadcast_to(x, u0.shape)[chosen] for name, x in later.items()}
-        return set(_changes(source, problem, later, some, chosen))
-    except InvalidInput:  # u may not come so far
-        return set()
+        return _changes(source, problem, later, some, chosen)
+
+    return changes_of_what_comes(changes, rate, u0, problem.t_initial, problem.span)
 
 
 def _changes(

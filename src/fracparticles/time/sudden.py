@@ -19,6 +19,7 @@ is accurate to a share of u.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
 from itertools import product
 from typing import Any
 
@@ -26,12 +27,12 @@ import numpy as np
 
 __all__ = [
     "LOOKS",
+    "changes_of_what_comes",
     "instant",
     "irregular_times",
     "pulses",
     "pulses_at",
     "sudden_times",
-    "what_comes",
 ]
 
 Look = Callable[[float], np.ndarray]
@@ -49,6 +50,7 @@ _AT_ONCE = 2**16  # times at each place that are handed to a function at once
 # a period of pi / (2 _SUDDEN) = 15.7 looks at most.
 _QUIET = 16
 _RATES = 16  # intervals between the times at which a source is evaluated for the u that it may make
+_SHARES = 1.0, 0.1, 0.01  # of the u that it may make: where it is not valid for so much, for less
 _MORE = 1.1  # times the greatest |u| at first: less is no other u
 _MOST_CUTS = 256  # cuts at evenly chosen looks, if there are more sudden changes
 
@@ -173,17 +175,42 @@ def pulses_at(
     return pulses(few, places, start, span) if np.array_equal(together, alone) else set()
 
 
-def what_comes(rate: Look, u: np.ndarray, start: float, span: float) -> np.ndarray | None:
-    """Return the u that a source may make, from its rates for the u at first; None if that is no greater, or no number.
+def changes_of_what_comes(
+    changes: Callable[[np.ndarray], Collection[float]],
+    rate: Callable[[float, np.ndarray], np.ndarray],
+    u: np.ndarray,
+    start: float,
+    span: float,
+) -> set[float]:
+    """Return the sudden changes of a source for the u that it may make: where u = 0, what multiplies u is not seen.
 
-    Where u = 0, what multiplies u is not seen. So the source has sudden changes for this u as well.
+    Parameters
+    ----------
+    changes : callable
+        Returns the sudden changes for a u.
+    rate : callable
+        The source at a time for a u.
+    u : array
+        The u at first.
+    start, span : float
+        The run is from `start` to `start + span`.
     """
-    rates = np.array([rate(t) for t in irregular_times(start, span, _RATES)])
-    greatest = np.take_along_axis(rates, np.abs(rates).argmax(axis=0)[None], axis=0)[0]
-    with np.errstate(all="ignore"):
-        later = np.asarray(u + span * greatest)
-    more = np.abs(later).max() > _MORE * np.abs(u).max()
-    return later if more and np.isfinite(later).all() else None
+    try:
+        rates = np.array([rate(t, u) for t in irregular_times(start, span, _RATES)])
+    except (
+        Exception
+    ):  # u may not be so small any more, and a function of the caller's may raise anything there
+        return set()
+    most = np.take_along_axis(rates, np.abs(rates).argmax(axis=0)[None], axis=0)[0]
+    for share in _SHARES:
+        with np.errstate(all="ignore"):
+            later = np.asarray(u + share * span * most)
+        if np.abs(later).max() <= _MORE * np.abs(u).max():
+            break
+        with suppress(Exception):  # u may not come so far
+            if np.isfinite(later).all() and np.isfinite(rate(start, later)).all():
+                return set(changes(later))
+    return set()
 
 
 def instant(start: float, span: float) -> float:
