@@ -43,7 +43,7 @@ from scipy.interpolate import CubicSpline
 from fracparticles import arguments as check
 from fracparticles.errors import InvalidInput, NonFiniteSolution
 from fracparticles.problems.fewer_particles import Solve, among, axes_of
-from fracparticles.problems.interpolants import interpolants, power
+from fracparticles.problems.interpolants import holds_no_short_waves, interpolants, power
 from fracparticles.problems.problem import Problem
 from fracparticles.problems.steady_diffusion import (
     diffused,
@@ -91,7 +91,7 @@ def errors_of_diffusion(
     try:
         alone = in_own_time(problem)
         some, many = (alone.model_copy(update={"particles": n}) for n in (few, 3 * few))
-        p = power(values_of(problem, initial))
+        p = _power(problem, values_of(problem, initial))
         if few < count and p is None:
             return nothing
         values = values_of(some, initial) if callable(initial) else among(problem, some, initial)
@@ -230,12 +230,29 @@ def _asked(values: Callable[[], Any], initial: Any) -> np.ndarray:
         ) from error
 
 
+def _power(problem: Problem, values: np.ndarray) -> float | None:
+    turning = _smooth_angles(problem, values)
+    return power(values, [axis for axis in range(values.ndim) if axis not in turning])
+
+
+def _smooth_angles(problem: Problem, values: np.ndarray) -> list[int]:
+    return [
+        axis
+        for axis, (_, turns) in enumerate(axes_of(problem))
+        if turns and holds_no_short_waves(values, axis)
+    ]
+
+
 def _interpolated(some: Problem, many: Problem, values: np.ndarray) -> list[np.ndarray]:
     """Return what data with these values at some particles may be at many, see `interpolants`."""
     places = [
         np.round(at * n - 0.5 * (not turns), 9)  # at a particle, without round-off
         for n, (_, turns), (at, _) in zip(values.shape, axes_of(some), axes_of(many), strict=True)
     ]
+    for axis in _smooth_angles(some, values):
+        n, m = values.shape[axis], places[axis].size
+        values = m / n * np.fft.irfft(np.fft.rfft(values, axis=axis), m, axis)
+        places[axis] = np.arange(float(m))
     values, places = _unwound(some, values, places)
     return interpolants(values, *places)
 

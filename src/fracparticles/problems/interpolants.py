@@ -18,21 +18,26 @@ r_s falls to no less than a fourth, u has one of these forms instead:
     Where two particles differ by more than twice the differences beside them, u between them is the lesser or the
     greater of the two values. This is exact for a jump just beside a particle.
 
+Along an angle, data without waves shorter than four spacings are their trigonometric interpolation. Eight angles hold
+cos 2 theta so, of which the cubic misses a third.
+
 The error of a kink between two particles is between those of the spline and of the straight lines. The error of a jump
 is between those for its two ends. With the lesser value everywhere, or the greater, the total is off by most.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d
 
-__all__ = ["interpolants", "is_rough", "power"]
+__all__ = ["holds_no_short_waves", "interpolants", "is_rough", "power"]
 
 _ROUGH = 0.25  # the miss of the cubic over that at twice the stride, above which u is rough
 _JUMP = 2.0  # the difference of two particles over those beside it, above which u jumps
-_LEAST = 1e-4  # share of the greatest |u| below which a miss does not count
+_LEAST = 1e-4  # share of the greatest |u|, or of its greatest wave, below which a miss or a wave does not count
 _JUMPS = None, np.minimum, np.maximum  # the value between the ends of a jump, if not powers
 _NEAR = {1: 5, 2: 9}  # particles among which the greatest miss is taken, by stride
 # The weights of r_s, and of 9/24 of the fourth difference, by stride.
@@ -61,15 +66,22 @@ def interpolants(u: np.ndarray, *at: np.ndarray) -> list[np.ndarray]:
     return [spline, rough[0]] if np.array_equal(rough[1], rough[2]) else [spline, *rough[1:]]
 
 
+def holds_no_short_waves(u: np.ndarray, axis: int) -> bool:
+    """Return whether u, along an angle, has only waves of four spacings and more."""
+    waves = np.abs(np.fft.rfft(u, axis=axis))
+    short = np.arange(waves.shape[axis]) > u.shape[axis] / 4
+    return bool(waves.compress(short, axis).max(initial=0.0) <= _LEAST * waves.max())
+
+
 def is_rough(u: np.ndarray) -> bool:
     """Return whether u has another form than its spline somewhere."""
     return power(u) is not None
 
 
-def power(u: np.ndarray) -> float | None:
-    """Return the power p of |x|^p at the greatest miss of u, 0 at a jump; None if u is rough nowhere."""
+def power(u: np.ndarray, axes: Iterable[int] | None = None) -> float | None:
+    """Return the power p of |x|^p at the greatest miss of u, 0 at a jump; None if u is rough nowhere along the axes."""
     greatest, p = 0.0, None
-    for axis in range(u.ndim):
+    for axis in range(u.ndim) if axes is None else axes:
         fine, coarse, rough = _misses(np.moveaxis(u, axis, 0))
         at = np.where(rough, fine, 0.0).argmax()
         if rough.any() and fine.flat[at] > greatest:
