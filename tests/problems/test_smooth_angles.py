@@ -21,7 +21,7 @@ def test_waves_of_four_spacings_and_more_are_smooth_and_corners_and_jumps_are_no
 
 
 def test_eight_angles_tell_the_error_of_a_wave_that_they_hold():
-    """Of cos 2 theta the cubic through eight angles misses a third: the error said was ten times that of the function."""
+    """Of cos 2 theta the cubic through eight angles misses a third: ten times the error of the function was said."""
 
     def wave(x, y):
         return (1.0 - x * x - y * y) * (1.0 + x * x - y * y + 0.5 * x)
