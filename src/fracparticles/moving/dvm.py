@@ -24,7 +24,7 @@ solution, and remeshing is needed only because all spacings grow.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -203,95 +203,132 @@ def run_to_outputs(
     """
     spacing, overlap = scale("spacing", spacing), positive_real("overlap", overlap)
     x = real_array("x", x)
-    choice("lattice", lattice, LATTICES)
-    if exterior == "open" and lattice != "initial":
-        raise InvalidInput("lattice", lattice, "'initial' for exterior='open'", "Leave it out.")
     velocity = DiffusionVelocity(alpha, order, overlap * spacing, diffusivity, summation, exterior)
-    given = strengths_of(vector("u", u, x.size), spacing)
-    inner = np.abs(x - 0.5 * (x.min() + x.max())) <= 0.5 * float(np.ptp(x)) - END * velocity.epsilon
-    if not inner.any():
-        inner[:] = True
-    at = x[inner][looked_at(given[inner])]
-    changes = Changes(lambda particles: velocity.field(particles[0], particles[1], at))
-    ripples: list[float] = []
-
-    def rippled(particles: Particles) -> None:
-        ripples.append(ripple(particles[0], particles[1], velocity.epsilon, velocity.transform))
-
-    def noticed(before: Particles, after: Particles) -> None:
-        rippled(before)  # they are farthest apart
-        changes.add(before, after)
-
-    if remeshing == "none":
-        redistribution = None
-    else:
-        ends = (float(x.min()), float(x.max())) if lattice == "initial" else None
-        continued = None if velocity.tail is None else velocity.tail.continued
-        above = largest_gap(exterior) if remesh_above is None else remesh_above
-        redistribution = Remeshing(remeshing, spacing, above, ends, continued, noticed)
+    initial = x, strengths_of(vector("u", u, x.size), spacing)
+    watch = _Watch(velocity, initial)
+    redistribution = _redistribution(
+        velocity, x, spacing, remeshing, remesh_above, lattice, exterior, watch
+    )
     longest = max(positive_real("dt", dt) for dt, _ in legs)
     warn_of_step(longest, velocity.largest_stable_step, stacklevel=3)
     warn_of_round_off(x, sum(steps for _, steps in legs), velocity.epsilon)
-    initial, strength, history, runs, began = x, given, None, [], start
+    runs = list(
+        _after_each(legs, initial, velocity, start, redistribution, threshold, observe=observe)
+    )
+    warn_of_volumes(*initial, spacing, stacklevel=3)
+    watch.warn(runs[-1])
+    if sum(steps for _, steps in legs) <= _FEW_STEPS:
+        again = None if redistribution is None else replace(redistribution, noticed=None)
+        finer = _after_each(legs, initial, velocity, start, again, threshold, parts=2)
+        _warn_of_steps(_error_of_steps(runs[-1], finer, watch.at))
+    _warn_of_loss(runs[-1].history, exterior)
+    if velocity.tail is not None:
+        misfit = velocity.tail.misfit(runs[-1].x, runs[-1].strength)
+        warn_of_misfit(misfit, _MISFIT, stacklevel=3)
+    return runs
+
+
+def _after_each(
+    legs: Sequence[tuple[float, int]],
+    particles: Particles,
+    velocity: DiffusionVelocity,
+    start: float,
+    redistribution: Remeshing | None,
+    threshold: float,
+    observe: Observer | None = None,
+    parts: int = 1,
+) -> Iterator[ParticleRun]:
+    """Yield the particles after each leg; each step is cut into so many parts."""
+    (x, strength), history = particles, None
     for dt, steps in legs:
         x, strength, own = advance(
             x,
             strength,
             velocity,
-            dt=dt,
-            steps=steps,
+            dt=dt / parts,
+            steps=steps * parts,
             start=start,
             remeshing=redistribution,
             threshold=threshold,
             observe=observe,
         )
         history = own if history is None else history.followed_by(own)
-        runs.append(ParticleRun(x, strength, history, velocity))
+        yield ParticleRun(x, strength, history, velocity)
         start += dt * steps
-    warn_of_volumes(initial, given, spacing, stacklevel=3)
-    rippled((initial, given))
-    rippled((x, strength))
-    warn_of_ripple(
-        max(ripples), velocity.epsilon, "Take a larger overlap, or remesh sooner.", stacklevel=3
-    )
-    warn_of_remeshing(changes.largest, _REMESHED, stacklevel=3)
-    if sum(steps for _, steps in legs) <= _FEW_STEPS:
-        again = None if redistribution is None else replace(redistribution, noticed=None)
-        left = _error_of_steps(runs[-1], (initial, given), legs, began, again, threshold, at)
-        _warn_of_steps(left)
-    _warn_of_loss(runs[-1].history, exterior)
-    if velocity.tail is not None:
-        warn_of_misfit(velocity.tail.misfit(x, strength), _MISFIT, stacklevel=3)
-    return runs
 
 
-def _error_of_steps(
-    run: ParticleRun,
-    initial: Particles,
-    legs: Sequence[tuple[float, int]],
-    start: float,
-    redistribution: Remeshing | None,
-    threshold: float,
-    at: np.ndarray,
-) -> float:
+def _redistribution(
+    velocity: DiffusionVelocity,
+    x: np.ndarray,
+    spacing: float,
+    remeshing: str,
+    remesh_above: float | None,
+    lattice: str,
+    exterior: str,
+    watch: _Watch,
+) -> Remeshing | None:
+    """Return how the particles are remeshed, None if they are not."""
+    choice("lattice", lattice, LATTICES)
+    if exterior == "open" and lattice != "initial":
+        raise InvalidInput("lattice", lattice, "'initial' for exterior='open'", "Leave it out.")
+    if remeshing == "none":
+        return None
+    ends = (float(x.min()), float(x.max())) if lattice == "initial" else None
+    continued = None if velocity.tail is None else velocity.tail.continued
+    above = largest_gap(exterior) if remesh_above is None else remesh_above
+    return Remeshing(remeshing, spacing, above, ends, continued, watch.remeshed)
+
+
+class _Watch:
+    """What remeshings show of a run: the ripple of the particles before each, and how it changes the field.
+
+    Attributes
+    ----------
+    at : array
+        The places at which the field is looked at, all of them well inside.
+    """
+
+    def __init__(self, velocity: DiffusionVelocity, initial: Particles) -> None:
+        x, strength = initial
+        inner = np.abs(x - 0.5 * (x.min() + x.max())) <= 0.5 * np.ptp(x) - END * velocity.epsilon
+        if not inner.any():
+            inner[:] = True
+        self.at = x[inner][looked_at(strength[inner])]
+        self._velocity, self._initial, self._ripples = velocity, initial, list[float]()
+        self._changes = Changes(
+            lambda particles: velocity.field(particles[0], particles[1], self.at)
+        )
+
+    def remeshed(self, before: Particles, after: Particles) -> None:
+        """Take note of a remeshing."""
+        self._note_ripple(before)  # they are farthest apart
+        self._changes.add(before, after)
+
+    def warn(self, end: ParticleRun) -> None:
+        """Warn of a ripple, and of what remeshings have changed."""
+        for particles in (self._initial, (end.x, end.strength)):
+            self._note_ripple(particles)
+        remedy = "Take a larger overlap, or remesh sooner."
+        warn_of_ripple(max(self._ripples), self._velocity.epsilon, remedy, stacklevel=4)
+        warn_of_remeshing(self._changes.largest, _REMESHED, stacklevel=4)
+
+    def _note_ripple(self, particles: Particles) -> None:
+        x, strength = particles[:2]
+        self._ripples.append(ripple(x, strength, self._velocity.epsilon, self._velocity.transform))
+
+
+def _error_of_steps(run: ParticleRun, finer: Iterator[ParticleRun], at: np.ndarray) -> float:
     """Return the error of the steps over the peak, at some places; infinite if half the step does not get to the end.
 
     The midpoint rule is of second order: with half the step a quarter of its error is left.
     """
-    x, strength = initial
     try:
-        for dt, steps in legs:
-            x, strength, _ = advance(
-                x, strength, run.velocity, dt=0.5 * dt, steps=2 * steps, start=start,
-                remeshing=redistribution, threshold=threshold,
-            )  # fmt: skip
-            start += dt * steps
+        *_, end = finer
     except NonFiniteSolution:
         return np.inf
     field = run.field(at)
-    finer = run.velocity.field(x, strength, at)
     peak = float(np.abs(field).max())
-    return 4.0 / 3.0 * float(np.abs(field - finer).max()) / peak if peak else 0.0
+    return 4.0 / 3.0 * float(np.abs(field - end.field(at)).max()) / peak if peak else 0.0
 
 
 def _warn_of_steps(left: float) -> None:
