@@ -123,39 +123,46 @@ def to_dataset(
     if result.rejected is not None:
         thrown = "number of time steps that were thrown away"
         data["rejected_steps"] = scalar(np.int64(result.rejected), thrown)
+    coordinates = _coordinates(problem, layout, result.method)
+    return xr.Dataset(data, coordinates, attrs=_attributes(problem, origin))
+
+
+def _coordinates(problem: Problem, layout: Layout, integrator: str) -> dict[str, tuple]:
+    """Return the places, the output times, and each parameter that is a number or a word."""
     fields = type(problem).model_fields
-    coordinates: dict[str, tuple] = {
+    given = {
         name: scalar(_plain(getattr(problem, name)), label_of(fields[name])) for name in _STORED
     }
-    for name, coefficient in (
-        ("beta", problem.order_coefficient),
-        ("diffusivity", problem.diffusion),
-    ):
-        if coefficient.constant is not None:
-            coordinates[name] = scalar(coefficient.constant, label_of(fields[name]))
-    coordinates["scheme"] = scalar(layout.scheme, "particle scheme")
-    coordinates["integrator"] = scalar(result.method, "time integrator")
-    coordinates |= layout.coordinates
-    if several:
-        coordinates["t"] = along("t", problem.output_times, "output time")
-    return xr.Dataset(
-        data,
-        coordinates,
-        attrs={
-            "Conventions": "CF-1.11, ACDD-1.3",
-            "title": f"Fractional diffusion, transport and source: u_t + div(a u) = {_diffusion(problem)} + f",
-            "summary": "Particle strengths of one run and its parameters.",
-            "keywords": "fractional diffusion, particle method, transport, reaction",
-            "source": source(),
-            "history": "fracparticles.solve_problem(problem, initial)",
-            "references": "Lucchesi et al. (2020), doi:10.1007/s40571-019-00275-8",
-            "initial_data": origin,
-            "problem": problem.to_json(),
-            "reproducible": "yes"
-            if problem.reproducible
-            else "no: a coefficient is a function, which no file holds",
-        },
-    )
+    coefficients = {"beta": problem.order_coefficient, "diffusivity": problem.diffusion}
+    constant = {
+        name: scalar(one.constant, label_of(fields[name]))
+        for name, one in coefficients.items()
+        if one.constant is not None
+    }
+    ways = {
+        "scheme": scalar(layout.scheme, "particle scheme"),
+        "integrator": scalar(integrator, "time integrator"),
+    }
+    several = problem.times is not None
+    times = {"t": along("t", problem.output_times, "output time")} if several else {}
+    return given | constant | ways | layout.coordinates | times
+
+
+def _attributes(problem: Problem, origin: str) -> dict[str, str]:
+    return {
+        "Conventions": "CF-1.11, ACDD-1.3",
+        "title": f"Fractional diffusion, transport and source: u_t + div(a u) = {_diffusion(problem)} + f",
+        "summary": "Particle strengths of one run and its parameters.",
+        "keywords": "fractional diffusion, particle method, transport, reaction",
+        "source": source(),
+        "history": "fracparticles.solve_problem(problem, initial)",
+        "references": "Lucchesi et al. (2020), doi:10.1007/s40571-019-00275-8",
+        "initial_data": origin,
+        "problem": problem.to_json(),
+        "reproducible": "yes"
+        if problem.reproducible
+        else "no: a coefficient is a function, which no file holds",
+    }
 
 
 def _diffusion(problem: Problem) -> str:
