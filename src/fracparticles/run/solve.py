@@ -33,7 +33,7 @@ def solve(
         The run.
     initial : array, labelled data, callable or path, optional
         Initial strengths of shape `case.shape`; a DataArray, Dataset or Series with u on x, y and z, in any order; a
-        function of `case.positions` (of x; of x and y; of x, y and z); a NetCDF file that holds u; a table or other
+        function of x (y, z), as its arguments are named; a NetCDF file that holds u; a table or other
         `measured` data. Left out, the run starts from the data that `case.initial` names, by default the fundamental
         solution at `case.t_initial`.
     estimate : bool
