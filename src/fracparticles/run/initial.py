@@ -66,8 +66,8 @@ def initial_strengths(case: Case, initial: Initial | None = None) -> tuple[np.nd
     initial : array, DataArray, Dataset, Series, callable or path, optional
         An array of shape `case.shape`; labelled data with u on the coordinates x (y, z) of the case, in any order; a
         function of the coordinates that its arguments are named after, of arrays or of single numbers, a constant
-        included; a NetCDF file with u on these coordinates; `Measured` data, a table or "measured:PATH", which are interpolated. Left out, the data are
-        those that `case.initial` names.
+        included; a NetCDF file with u on these coordinates; `Measured` data, a table or "measured:PATH", which are
+        interpolated. Left out, the data are those that `case.initial` names.
 
     Raises
     ------
