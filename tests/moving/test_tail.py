@@ -38,7 +38,7 @@ def test_a_power_goes_on_as_itself(alpha):
     x = lattice(200, 0.1)
     tail = TailModel(alpha, 0.2)(x, 0.1 * power(x, alpha))
     for end in (tail.left, tail.right):
-        assert end.amplitude == pytest.approx(1.0, rel=1e-4)
+        assert alpha * end.beyond * end.last**alpha == pytest.approx(1.0, rel=1e-4)  # c
         assert end.x[0] == pytest.approx(20.1)
         assert end.strength == pytest.approx(0.1 * power(end.x, alpha), rel=1e-4)
         # The strengths and what is beyond hold the whole tail.
@@ -69,7 +69,8 @@ def test_the_flux_is_the_integral_over_both_tails(alpha):
             return s ** (2.0 * alpha - 1.0) * (1.0 - s * at / end.start) ** -alpha
 
         value = quad(integrand, 0.0, 1.0, epsabs=0.0, epsrel=1e-10, limit=400)[0]
-        return end.amplitude * end.start ** (-2.0 * alpha) * value
+        c = alpha * end.beyond * end.last**alpha
+        return c * end.start ** (-2.0 * alpha) * value
 
     constant = 3.0 * tail_constant(alpha) / alpha
     expected = [constant * (one(tail.left, -at) - one(tail.right, at)) for at in z]
@@ -282,3 +283,26 @@ def test_points_too_far_beyond_the_particles_are_refused_with_how_far_is_allowed
     with pytest.raises(InvalidInput, match=rf"up to {0.5 * REACH:g} smoothing lengths beyond"):
         velocity.field_and_flux(x, 0.1 * power(x, 1.5), np.array([20.0 + 0.6 * REACH * 0.2]))
     velocity.field_and_flux(x, 0.1 * power(x, 1.5), np.array([20.0 + 0.45 * REACH * 0.2]))
+
+
+@pytest.mark.parametrize(("length", "peak"), [(1e-99, 1e-60), (1e98, 1e60)])
+def test_a_run_knows_no_unit(length, peak):
+    """With alpha = 1.9, c = u y^2.9 has the 347th power of ten, or minus that, and Y^(-2 alpha) the 376th."""
+
+    def solved(length, peak):
+        scale = length**0.95  # so that neither D nor the time is too large: D t = 0.3 length^alpha
+        case = Case(
+            scheme="DVM",
+            alpha=1.9,
+            exterior="open",
+            half_width=10.0 * length,
+            spacing=0.5 * length,
+            diffusivity=scale,
+            dt=0.05 * scale,
+            t_initial=0.0,
+            t_final=0.3 * scale,
+        )
+        return solve(case, lambda x: peak / (1.0 + (x / length) ** 2)).u.values / peak
+
+    # Powers of such numbers have some hundred ulps.
+    np.testing.assert_allclose(solved(length, peak), solved(1.0, 1.0), rtol=1e-11)

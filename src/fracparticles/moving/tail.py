@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.special import hyp2f1
@@ -47,8 +48,8 @@ class TailEnd:
 
     Attributes
     ----------
-    amplitude : float
-        c.
+    beyond : float
+        The strength of all that lies beyond the last particle, c last^-alpha / alpha. In small units c underflows.
     last : float
         The last particle.
     start : float
@@ -57,7 +58,7 @@ class TailEnd:
         The particles of the tail.
     """
 
-    amplitude: float
+    beyond: float
     last: float
     start: float
     x: np.ndarray
@@ -142,11 +143,11 @@ class TailModel:
             raise InvalidInput("exterior", "open", allowed, remedy)
         gap = max((last - float(x[0])) / (x.size - 1), _CLOSEST * self.epsilon)
         edges = last + gap * np.arange(0.5, math.ceil(REACH * self.epsilon / gap) + 1.0)
-        beyond = edges**-self.alpha  # alpha int_edge^inf y^(-1-alpha) dy
-        share = float(strength[1:].sum()) / (inner**-self.alpha - float(beyond[0]))
-        strengths = share * (beyond[:-1] - beyond[1:])
+        shares = (edges / last) ** -self.alpha  # beyond each edge, of what lies beyond the last particle
+        beyond = float(strength[1:].sum()) / ((inner / last) ** -self.alpha - float(shares[0]))
+        strengths = beyond * (shares[:-1] - shares[1:])
         places = 0.5 * (edges[:-1] + edges[1:])
-        return TailEnd(self.alpha * share, last, float(edges[-1]), places, strengths)
+        return TailEnd(beyond, last, float(edges[-1]), places, strengths)
 
     def misfit(self, x: np.ndarray, strength: np.ndarray) -> float:
         """Return the error of the total due to the tails: their strength times the misfit of their power law.
@@ -158,10 +159,9 @@ class TailModel:
         width, wrong = cells(x), 0.0
         for end, side in ((tail.left, -1.0), (tail.right, 1.0)):
             there = np.abs(side * x / end.last - 0.5) < _HALF_WAY
-            beyond = end.amplitude / self.alpha * end.last**-self.alpha
             field = float(strength[there].sum() / width[there].sum()) if there.any() else np.inf
-            power = end.amplitude * (0.5 * end.last) ** (-1.0 - self.alpha)
-            wrong += abs(beyond) * min(abs(field / power - 1.0) if power else 0.0, 1.0)
+            power = self._field(end, 0.5)
+            wrong += abs(end.beyond) * min(abs(field / power - 1.0) if power else 0.0, 1.0)
         return float(wrong / np.abs(strength).sum())
 
     def continued(self, x: np.ndarray, strength: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -170,8 +170,12 @@ class TailModel:
 
     def far_field(self, tail: Tail, z: np.ndarray) -> np.ndarray:
         """Return c |z|^(-1-alpha) at points beyond the particles."""
-        c = np.where(z > 0.0, tail.right.amplitude, tail.left.amplitude)
-        return np.asarray(c * np.abs(z) ** (-1.0 - self.alpha))
+        left, right = (self._field(end, np.abs(z) / end.last) for end in (tail.left, tail.right))
+        return np.where(z > 0.0, right, left)
+
+    def _field(self, end: TailEnd, part: float | np.ndarray) -> Any:
+        """Return c |y|^(-1-alpha) at parts of the way from the origin to the last particle."""
+        return self.alpha * end.beyond / end.last * part ** (-1.0 - self.alpha)
 
     def flux(self, tail: Tail, z: np.ndarray) -> np.ndarray:
         """Return what the tails from Y on add to the flux at points that the tail `holds`."""
@@ -183,7 +187,8 @@ class TailModel:
         ):
             middle, half, polynomials = self._g(farthest / end.start, nearest / end.start)
             t = np.log(1.0 - (sign / end.start) * z)
-            factor = -sign * self._factor * end.amplitude * end.start ** (-2.0 * self.alpha)
+            beyond = self.alpha * end.beyond * (end.last / end.start) ** self.alpha  # c Y^-alpha
+            factor = -sign * self._factor * beyond * end.start**-self.alpha
             _add(t, middle, 1.0 / half, *polynomials, factor, out)
         return out
 
