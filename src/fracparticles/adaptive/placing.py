@@ -51,7 +51,8 @@ class Place:
         fields = [LengthField(u[0], wanted_lengths(*u)), *self._lengths(u, time)]
 
         def length(x: FloatArray) -> FloatArray:
-            return np.asarray(sum(field(x) ** -4.0 for field in fields) ** -0.25)
+            first, *others = (field(x) for field in fields)
+            return np.asarray(first * (1.0 + sum((first / one) ** 4.0 for one in others)) ** -0.25)
 
         return place_particles(length if len(fields) > 1 else fields[0], *ends, self.step)
 

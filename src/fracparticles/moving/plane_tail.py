@@ -92,10 +92,10 @@ class PlaneTail:
         width = float(np.mean(sides)) + 0.5 * gap
         edge = _edge(at_x)
         r = np.hypot(at_x[edge], at_y[edge])
-        cell = _cells(at_x, at_y)[edge]
-        amplitude = float((strength[edge] / cell * r ** (2.0 + self._alpha)).mean())
-        size = self._constant * amplitude * width ** (-1.0 - 2.0 * self._alpha)
-        size *= self._epsilon ** (self._alpha - 1.0)  # sums of F_eps, before the 1 / eps^beta
+        field = strength[edge] / _cells(at_x, at_y)[edge]
+        far = float((field * (r / width) ** (2.0 + self._alpha)).mean())  # A W^(-2-alpha)
+        # Sums of F_eps, before the 1 / eps^beta.
+        size = self._constant * far * (self._epsilon / width) ** (self._alpha - 1.0)
         inner = float(max(np.abs(x).max(), np.abs(y).max())) / width
         # A few of them serve the whole run.
         reach = min(0.97, 0.05 * np.ceil(20.0 * inner))

@@ -1,0 +1,74 @@
+"""Particles that move know no unit: of the length, of the time or of u, however large or small.
+
+With alpha = 1.9 a far field c |x|^(-1-alpha) has c with some 347 decades in these units, and its integrals have
+|x|^(-2 alpha) with 376.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fracparticles as fp
+from fracparticles.moving.dvm_plane import run_in_plane
+
+ALPHA = 1.9
+
+
+def on_the_line(length, peak, rate):
+    case = fp.Case(
+        scheme="DVM",
+        alpha=ALPHA,
+        exterior="open",
+        half_width=10.0 * length,
+        spacing=0.5 * length,
+        diffusivity=rate,
+        dt=0.05 * rate,
+        t_initial=0.0,
+        t_final=0.3 * rate,
+    )
+    return fp.solve(case, lambda x: peak / (1.0 + (x / length) ** 2)).u.values
+
+
+def in_the_plane(length, peak, rate):
+    x = 0.5 * np.arange(-12.0, 13.0)
+    u = peak / (1.0 + x[:, None] ** 2 + x**2) ** 1.5
+    run = run_in_plane(
+        u,
+        spacing=0.5 * length,
+        alpha=ALPHA,
+        dt=0.03 * rate,
+        steps=4,
+        diffusivity=rate,
+        exterior="open",
+    )
+    return run.strength / length**2
+
+
+def followed(length, peak, rate):
+    (*_, last) = fp.follow(
+        lambda x: peak * np.exp(-((x / length) ** 2)),
+        [0.3 * rate],
+        alpha=ALPHA,
+        window=(-8.0 * length, 8.0 * length),
+        tolerance=1e-4,
+        diffusivity=rate,
+        velocity=lambda x: 0.1 * x / rate,
+    )
+    return np.interp(np.linspace(-5.0, 5.0, 41), last.particles.x / length, last.u)
+
+
+@pytest.mark.filterwarnings("ignore::fracparticles.AccuracyWarning")
+@pytest.mark.parametrize(
+    ("solved", "length", "peak"),
+    [
+        *((solved, 1e-99, 1e-60) for solved in (on_the_line, in_the_plane, followed)),
+        *((solved, 1e98, 1e60) for solved in (on_the_line, in_the_plane)),
+        (followed, 1e88, 1e60),  # its outermost particles are ten thousand times as far away
+    ],
+)
+def test_the_solution_is_the_same(solved, length, peak):
+    rate = length ** (0.5 * ALPHA)  # D and the times are as large: D t = 0.3 length^alpha
+    # A power of such a number is off by a few hundred ulps.
+    found, expected = solved(length, peak, rate) / peak, solved(1.0, 1.0, 1.0)
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-11 * np.abs(expected).max())
