@@ -143,7 +143,9 @@ class TailModel:
             raise InvalidInput("exterior", "open", allowed, remedy)
         gap = max((last - float(x[0])) / (x.size - 1), _CLOSEST * self.epsilon)
         edges = last + gap * np.arange(0.5, math.ceil(REACH * self.epsilon / gap) + 1.0)
-        shares = (edges / last) ** -self.alpha  # beyond each edge, of what lies beyond the last particle
+        shares = (
+            edges / last
+        ) ** -self.alpha  # beyond each edge, of what lies beyond the last particle
         beyond = float(strength[1:].sum()) / ((inner / last) ** -self.alpha - float(shares[0]))
         strengths = beyond * (shares[:-1] - shares[1:])
         places = 0.5 * (edges[:-1] + edges[1:])
