@@ -15,7 +15,9 @@ from fracparticles.run.reliability import LIMITS
 from fracparticles.run.solution import relative_l1_error
 from fracparticles.run.solve import solve
 from fracparticles.run.solver import compute, prepare
+from fracparticles.schemes import SCHEMES
 from fracparticles.schemes.dpse import laplacian_weights, potential_weights
+from fracparticles.schemes.spectrum import eigenvalue_bounds
 from fracparticles.time import STEP_POLYNOMIALS
 from fracstudy.probe import EPS, HELD
 from scenes.extremes.dense import whole
@@ -48,7 +50,11 @@ def _growth(case: Case) -> float:
     """Return the greatest factor by which the steps amplify a wave, which they do to round-off, too."""
     if case.is_graded or (case.kind.self_timed and case.is_one_step):
         return 1.0
-    exponents = case.span * case.setting.rate * np.array(case.symbol_range)
+    setting = case.setting
+    exponents = case.span * setting.rate * np.array(case.symbol_range)
+    if not case.kind.moving and exponents.max() <= 0.0:  # the ends may amplify waves, too
+        operator = SCHEMES[case.scheme].operator(setting)
+        exponents = case.span * np.array(eigenvalue_bounds(case.scheme, setting, operator))
     if case.steps:
         polynomial = STEP_POLYNOMIALS[case.resolved_integrator]
         _, exponents = polynomial.log_power(exponents / case.steps, case.steps)
