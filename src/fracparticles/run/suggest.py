@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fracparticles.arguments import dimension, positive_real, real_between
+from fracparticles.arguments import dimension, positive_real, real_between, scale
 from fracparticles.data.interpolated import Measured
 from fracparticles.errors import AccuracyWarning, FracparticlesWarning, InvalidInput
 from fracparticles.run.case import FUNDAMENTAL, Case
@@ -124,7 +124,8 @@ def suggest(
     fields = {name: value for name, value in given.items() if value is not None}
     if t_final is None and times is None:
         raise InvalidInput("t_final", None, "a number > t_initial", "Give it, or times.")
-    problem = Case(scheme=_EXCHANGE, integrator="exponential", half_width=1.0, spacing=0.1,
+    unit = _unit(fields)
+    problem = Case(scheme=_EXCHANGE, integrator="exponential", half_width=unit, spacing=0.1 * unit,
                    **(fields | {"dim": 1}))  # fmt: skip
     if isinstance(initial, str):
         problem.refuse_point_mass()
@@ -289,6 +290,16 @@ def _trial(fields: dict[str, Any], h: float, half: float, spread: float) -> Case
         return Case(**fields, **own, half_width=half, spacing=h)
     except InvalidInput as refused:
         return refused if refused.field != "dt" else InvalidInput("overlap", *refused.args[1:])
+
+
+def _unit(fields: dict[str, Any]) -> float:
+    """Return (D T)^(1/alpha) of fields that nobody has checked yet, 1 if it is no length."""
+    try:
+        last = fields["t_final"] if "t_final" in fields else max(fields["times"])
+        power = fields.get("diffusivity", 1.0) * (last - fields["t_initial"])
+        return scale("spread", power ** (1.0 / _alpha(fields)))
+    except (InvalidInput, ArithmeticError, LookupError, TypeError, ValueError):
+        return 1.0
 
 
 def _alpha(fields: dict[str, Any]) -> float:
