@@ -87,3 +87,46 @@ def test_the_suggestion_is_the_same(length):
 
     # A trial that meets the error by a hair may miss it in another unit: here it is met by some per cent.
     assert suggested(length) == pytest.approx(suggested(1.0), rel=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore::fracparticles.AccuracyWarning")
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"half_width": 20.0, "spacing": 0.25, "integrator": "dop853"},
+        {"half_width": 20.0, "spacing": 0.25, "integrator": "rkc2"},
+        {"half_width": 1.0, "particles": 60, "exterior": "absorbing"},
+    ],
+    ids=["dop853", "rkc2", "interval"],
+)
+def test_time_may_be_counted_from_far_away(given):
+    """Beside t = 1e6 the shortest step of a solver was longer than a pulse lets it be: u "grew without bound"."""
+
+    def solved(start):
+        def source(x, t, u):
+            return -u * np.where(np.abs(t - start - 0.2) < 1e-5, 1e4, 1.0)
+
+        problem = fp.Problem(
+            alpha=1.5,
+            t_initial=start,
+            t_final=start + 0.5,
+            source=source,
+            **given,
+        )
+        return fp.solve_problem(problem, lambda x: np.exp(-4.0 * x * x), estimate=False).u.values
+
+    # Both ends of the pulse, 1e4 high, are off by the rounding of t.
+    rounding = 2.0 * 1e4 * np.spacing(1e6)
+    np.testing.assert_allclose(solved(1e6), solved(0.0), rtol=0.0, atol=10.0 * rounding)
+
+
+def test_numbers_that_float64_does_not_tell_apart_are_refused():
+    far = 1e12
+    with pytest.raises(fp.InvalidInput, match=r"^window = .* an origin that is nearer"):
+        next(fp.follow(lambda x: np.exp(-x * x), [1.0], alpha=1.5, window=(far, far + 16.0)))
+    with pytest.raises(fp.InvalidInput, match=r"^ends = .* an origin that is nearer"):
+        fp.Interval(1.5, ends=(far, far + 1.0))
+    times = {"half_width": 20.0, "spacing": 0.5, "t_initial": far, "t_final": far + 0.5}
+    fp.Problem(alpha=1.5, **times)  # it knows no time
+    with pytest.raises(fp.InvalidInput, match=r"^t_final = .* an origin that is nearer"):
+        fp.Problem(alpha=1.5, velocity="sin(t)", **times)

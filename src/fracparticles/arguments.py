@@ -342,7 +342,18 @@ def pair(field: str, value: Any, *, rising: bool = False) -> tuple[Any, Any]:
         low, high = place(field, low), place(field, high)
         if not low < high:
             raise InvalidInput(field, value, "two increasing numbers", "Mend their order.")
+        told_apart(field, value, low, high)
     return low, high
+
+
+def told_apart(field: str, value: Any, low: float, high: float) -> None:
+    """Refuse two numbers so far from zero that float64 does not resolve a millionth of what is between them."""
+    if not high - 1e-6 * (high - low) < high:
+        closest = float(np.spacing(abs(high)))
+        allowed = (
+            f"numbers that differ by a million times {closest:.2g}, which float64 tells apart there"
+        )
+        raise InvalidInput(field, value, allowed, "Count from an origin that is nearer.")
 
 
 def fields(record: Any, **checks: Callable[[str, Any], Any]) -> None:

@@ -60,17 +60,18 @@ class ImplicitSteps(ModalSteps):
             unit = ordinary_unit(self._size(start, y) or first)
             y = y / unit
 
+            # The time is counted from the start: beside a large one, no step of scipy's is short.
             def rate(t: float, y: FloatArray) -> FloatArray:
-                beside = modes.into(self._rest(t, modes.back(unit * y))) / unit
+                beside = modes.into(self._rest(start + t, modes.back(unit * y))) / unit
                 return np.asarray(-modes.rates * y + beside)
 
             def atol(t: float, y: FloatArray) -> float:
-                size = max((self._size(t, unit * y) or first or 1.0) / unit, _NOTHING)
+                size = max((self._size(start + t, unit * y) or first or 1.0) / unit, _NOTHING)
                 return self._tolerance * size / np.sqrt(y.size)
 
             solver = Radau(
-                rate, start, y, start + span, rtol=self._tolerance, atol=atol(start, y),
-                jac=lambda t, y: self._beside(t, modes.back(unit * y)) - diagonal,
+                rate, 0.0, y, span, rtol=self._tolerance, atol=atol(0.0, y),
+                jac=lambda t, y: self._beside(start + t, modes.back(unit * y)) - diagonal,
                 first_step=None if self._h is None else min(self._h, span),
             )  # fmt: skip
             for _ in range(_MOST):
@@ -81,14 +82,14 @@ class ImplicitSteps(ModalSteps):
                     raise
                 # Of scipy's solver of linear equations, which refuses infinite numbers.
                 except ValueError as error:
-                    raise blown_up(solver.t, modes.back(unit * solver.y)) from error
+                    raise blown_up(start + solver.t, modes.back(unit * solver.y)) from error
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
-                    raise blown_up(solver.t, modes.back(unit * solver.y))
+                    raise blown_up(start + solver.t, modes.back(unit * solver.y))
                 self.accepted += 1
                 if solver.status == "finished":
                     self._h = float(solver.h_abs)
                     return modes.back(unit * solver.y)
         raise NonFiniteSolution(
-            f"the solution stops at t = {solver.t:g} after {_MOST} steps. End before, or mend the source "
+            f"the solution stops at t = {start + solver.t:g} after {_MOST} steps. End before, or mend the source "
             "or the velocity."
         )

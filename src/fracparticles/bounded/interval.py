@@ -101,8 +101,6 @@ class Interval(ModalDomain):
         self.diffusivity = check.scale("diffusivity", diffusivity)
         self.near = check.whole_number("near", near, 0, MOST_NEAR)
         self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
-        if not self._middle + self._half * (1.0 - 1e-6) < high:
-            raise InvalidInput("ends", ends, "ends that are told apart", "Move the origin.")
         self._unit = graded_on_interval(particles, degree)
         self.x = self._place(self._unit.x)
         self.volumes = self._half * self._unit.volumes

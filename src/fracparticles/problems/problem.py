@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from fracparticles.arguments import SIZES
+from fracparticles.arguments import SIZES, told_apart
 from fracparticles.bounded.domain import Domain
 from fracparticles.called import AXES
 from fracparticles.errors import InvalidInput
@@ -86,7 +86,6 @@ class Problem(WithCoefficients):
             if self.diffusion.depends_on - {"t"}:
                 what = "a number, or an expression in t alone, beside a variable order"
                 raise InvalidInput("diffusivity", self.diffusivity, what, "Leave the place out.")
-        _ = self.reaction, self.outside  # they are checked when they are made, as the case is
         between = np.linspace(self.t_initial, self.t_final, _LOOKS)
         check_domain(self, between)
         places = points if self.is_bounded else self.places
@@ -95,6 +94,8 @@ class Problem(WithCoefficients):
             raise InvalidInput(
                 "times", self.times, later, "Leave out times up to it: u is given there."
             )
+        if any("t" in one.depends_on for one in self.coefficients):
+            told_apart("t_final", self.t_final, self.t_initial, self.t_final)
         least_d = SIZES[0] if self.is_bounded else 0.0
         for one in (self.diffusion, *self.transport):
             least = least_d if one is self.diffusion else None

@@ -52,16 +52,19 @@ class StabilisedStep(ControlledStep):
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u after the time `span`, shape (N,); raises `NonFiniteSolution` as `EighthOrderStep.advance`."""
-        t, end, pace = start, start + span, Pace(start, span)
-        r = self._rate(t, u)
+        done, pace = (
+            0.0,
+            Pace(start, span),
+        )  # counted from the start: beside a large time, no step is short
+        t, r = start, self._rate(start, u)
         self._look(t, u, r)
         dt = min(span, self._dt or self._first(t, u, r, span))
         since = 0
-        while t < end:
-            dt = min(dt, end - t)
+        while done < span:
+            dt = min(dt, span - done)
             most = (_MOST_STAGES - 1) ** 2 / (1.54 * self._rho) if self._rho > 0.0 else np.inf
             dt = min(dt, most)
-            if dt < _SHORTEST * max(abs(t), span):
+            if dt < _SHORTEST * span:
                 raise blown_up(t, u)
             stages = max(2, 1 + int(np.sqrt(1.0 + 1.54 * dt * self._rho)))
             new = _one_step(self._rate, stages, t, u, r, dt)
@@ -75,12 +78,13 @@ class StabilisedStep(ControlledStep):
                     since = 0
                 continue
             self.accepted += 1
-            t = t + dt if end - t - dt > 1e-14 * span else end
+            done = done + dt if span - done - dt > 1e-14 * span else span
+            t = start + done
             pace.stepped(t)
             u, r = new, after
             self._dt, dt = dt, dt * self._growth(dt, max(error, 1e-10))
             since += 1
-            if since >= _RENEW and t < end:
+            if since >= _RENEW and done < span:
                 self._look(t, u, r)
                 since = 0
         self._dt = max(self._dt or 0.0, dt)

@@ -112,20 +112,21 @@ class EighthOrderStep(ControlledStep):
         def atol(t: float, u: np.ndarray) -> float:
             return max(absolute(self._atol, t, u) / unit, _LEAST)  # u may have faded to nothing
 
+        # The time is counted from the start: beside a large one, no step of scipy's is short.
         with np.errstate(over="ignore", invalid="ignore"):
             solver = DOP853(
-                lambda t, y: self._rate(t, unit * y.reshape(u.shape)).reshape(-1) / unit,
-                start, u.reshape(-1) / unit, start + span,
+                lambda t, y: self._rate(start + t, unit * y.reshape(u.shape)).reshape(-1) / unit,
+                0.0, u.reshape(-1) / unit, span,
                 first_step=first, rtol=self._rtol, atol=atol(start, u),
             )  # fmt: skip
             began, taken, pace = solver.nfev, 0, Pace(start, span)
             while solver.status == "running":
-                solver.atol = atol(solver.t, unit * solver.y)
+                solver.atol = atol(start + solver.t, unit * solver.y)
                 solver.step()
                 taken += 1
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
-                    raise blown_up(solver.t, unit * solver.y)
-                pace.stepped(solver.t)
+                    raise blown_up(start + solver.t, unit * solver.y)
+                pace.stepped(start + solver.t)
         self.accepted += taken
         self.rejected += round((solver.nfev - began) / STAGES) - taken
         self._dt = solver.h_abs
