@@ -122,11 +122,10 @@ def derivative(
 
     Errors as for `reconstruct`; also if the order is not a whole number from 1 to 24.
 
-    Warns with `AccuracyWarning` if round-off is more than a twentieth of the result.
-
     Warns with `AccuracyWarning` if the particles near some of the points give far less or far more than one for the
     moment sum_p V_p (x_p - x)^beta eta_eps(x - x_p) / (beta! eps^beta), which must be one. Warns with it, too, if
-    epsilon is too large for the field; for a stencil this cannot be known.
+    round-off is more than a twentieth of the result, or epsilon is too large for the field; of a stencil the latter
+    cannot be known.
 
     Parameters
     ----------
