@@ -10,8 +10,9 @@ from pathlib import Path
 _SAID = ".said"
 _CONTEXT = multiprocessing.get_context("forkserver")
 _CONTEXT.set_forkserver_preload(
-    ["matplotlib.pyplot", "numba", "pydantic", "scipy.stats", "snakemake.cli", "xarray"]
-)
+    ["jinja2", "matplotlib.pyplot", "numba", "pyfftw", "pydantic", "scipy.stats", "smart_open", "snakemake.cli",
+     "snakemake.report.html_reporter", "xarray"]
+)  # fmt: skip
 
 
 def call(folder: Path, *arguments: str) -> tuple[bool, str]:

@@ -10,8 +10,6 @@ import os
 import re
 import shutil
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -29,9 +27,9 @@ from test_contributing import FILES
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("Snakefile", "config", "profiles", "workflow", "report", "src")
 SMOKE = ("--configfile", "config/smoke.yaml")
-# One of each kind, the quickest: with runs, variants, tables of others, a benchmark, a study alone.
+# One of each kind, the quickest: with variants, tables of others, a benchmark, a study alone.
 KEPT = {
-    "lucchesi": ("rejected_dpse", "truncation", "truncation_claims"),
+    "lucchesi": ("truncation", "truncation_claims"),
     "lewandowski": (),
     "ghorbani": ("sph_spline",),
     "particle_note": (),
@@ -40,13 +38,26 @@ KEPT = {
     "problems": (),
     "extremes": (),
 }
-TARGETS = tuple(name for names in KEPT.values() for name in names)
+OWN = "of_my_own"  # added to them: with runs
+TARGETS = (*(name for names in KEPT.values() for name in names), OWN)
 SMOKE_JOBS = "_SMOKE_JOBS = "
 
 
-def environment(project: Path) -> dict[str, str]:
-    paths = [str(project / "src"), os.environ.get("PYTHONPATH", "")]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))}
+NEW_SCENE = """
+title: "Errors of a scheme of one's own"
+runs:
+  - {scheme: [KPSE, SMEAR], beta: 0.5, truncation: 10.0, spacing: [0.4, 0.2], integrator: exponential, store: metrics}
+"""
+
+NEW_FIGURE = """
+from fracstudy.style import axes_row, scheme_lines
+
+
+def figure(series, table):
+    figure, (axes,) = axes_row(1)
+    scheme_lines(axes, table, x="particle_spacing", y="relative error")
+    return figure
+"""
 
 
 def planned(project: Path, *arguments: str) -> set[str]:
@@ -81,33 +92,58 @@ def copy(target: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory):
-    return copy(tmp_path_factory.mktemp("project"))
-
-
-@pytest.fixture(scope="module")
-def finished(project):
-    """By the command itself, in a process of its own."""
-    done = subprocess.run(
-        [sys.executable, "-m", "snakemake", "-j2", *TARGETS, "report", *SMOKE],
-        cwd=project,
-        env=environment(project),
-        capture_output=True,
-        text=True,
-        timeout=600,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr[-4000:]
-    longest = max(done.stderr.splitlines(), key=len)
-    assert len(longest) < 300, longest  # a job says what it does, and does not list its files
+    """With a new scheme and a new scene: one module, one folder."""
+    project = copy(tmp_path_factory.mktemp("project"))
+    module = "src/fracparticles/schemes/smear.py"
+    (project / module).write_text(FILES[module])
+    folder = project / "workflow/scenes/beyond" / OWN
+    folder.mkdir()
+    (folder / "scene.yaml").write_text(NEW_SCENE)
+    (folder / "figure.py").write_text(NEW_FIGURE)
+    (folder / "caption.md").write_text("The report wants one.\n")
     return project
 
 
+@pytest.fixture(scope="module")
+def killed(project):
+    """Killed outright in the middle of its runs."""
+    runs = project / "results-smoke/runs"
+    process = started(project, "solve_part_1", *SMOKE)
+    for _ in range(12_000):
+        if any(runs.rglob("[!.]*.nc")):
+            break
+        time.sleep(0.005)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.join()
+    return project
+
+
+@pytest.fixture(scope="module")
+def finished(killed):
+    """All of it is there: the call carries on where another was killed."""
+    succeeded, said = call(killed, *TARGETS, "report", *SMOKE)
+    assert succeeded, said[-4000:]
+    longest = max(said.splitlines(), key=len)
+    assert len(longest) < 300, longest  # a job says what it does, and does not list its files
+    return killed
+
+
 def test_a_misspelt_key_is_refused_before_any_work(project):
-    succeeded, said = call(project, "rejected_dpse", "--config", "result_dir=elsewhere")
+    succeeded, said = call(project, OWN, "--config", "result_dir=elsewhere")
     assert not succeeded
     assert "result_dir" in said
     assert "Did you mean 'results_dir'?" in said
     assert not (project / "results").exists()
+
+
+def test_no_file_of_a_killed_workflow_is_damaged(killed):
+    """The next call ends its work: that is the one of all other tests."""
+    from fracparticles.run.dataset import read_run
+
+    runs = list((killed / "results-smoke/runs").rglob("[!.]*.nc"))
+    assert runs
+    for path in runs:
+        assert "mass_final" in read_run(path)
 
 
 def test_every_scene_has_its_table_findings_and_figure(finished):
@@ -160,7 +196,7 @@ def test_nothing_is_left_to_do_and_nothing_half_written(finished):
 
 
 def test_editing_a_plot_reruns_its_scene_and_no_solver(finished):
-    with changed(finished / "workflow/scenes/lucchesi/rejected_dpse/figure.py"):
+    with changed(finished / "workflow/scenes/lucchesi/truncation/figure.py"):
         jobs = planned(finished, *TARGETS, *SMOKE)
     assert "make_part" in jobs
     assert not {"solve_part", "compile"} & jobs
@@ -168,7 +204,7 @@ def test_editing_a_plot_reruns_its_scene_and_no_solver(finished):
 
 def test_editing_a_solver_reruns_its_runs(finished):
     with changed(finished / "src/fracparticles/time/chebyshev.py"):
-        jobs = planned(finished, "rejected_dpse", *SMOKE)
+        jobs = planned(finished, "truncation", *SMOKE)
     assert {"solve_part", "make_part"} <= jobs
 
 
@@ -189,64 +225,13 @@ def test_a_folder_that_jobs_cannot_take_is_refused_in_one_line(tmp_path, folder)
     assert not (project / "results").exists()
 
 
-def test_a_killed_workflow_carries_on(finished):
-    """Killed outright in the middle of its runs: no file under a final name is damaged, the next call ends the work."""
-    from fracparticles.run.dataset import read_run
-
-    runs = finished / "results-killed/runs"
-    runs.mkdir(parents=True)
-    shutil.copy2(finished / "results-smoke/runs/.compiled", runs)  # what is compiled is there
-    words = ["solve_part_1", *SMOKE, "--config", "results_dir=results-killed"]
-    process = started(finished, *words)
-    for _ in range(12_000):
-        if any(runs.rglob("[!.]*.nc")):
-            break
-        time.sleep(0.005)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.join()
-    for path in runs.rglob("[!.]*.nc"):
-        assert "mass_final" in read_run(path)
-    succeeded, said = call(finished, *words)
-    assert succeeded, said[-4000:]
-
-
-# --- nothing to register ------------------------------------------------------------------------------------------
-
-NEW_SCENE = """
-title: "Errors of a scheme of one's own"
-runs:
-  - {scheme: [KPSE, SMEAR], beta: 0.5, truncation: 10.0, spacing: [0.4, 0.2], integrator: exponential, store: metrics}
-"""
-
-NEW_FIGURE = """
-from fracstudy.style import axes_row, scheme_lines
-
-
-def figure(series, table):
-    figure, (axes,) = axes_row(1)
-    scheme_lines(axes, table, x="particle_spacing", y="relative error")
-    return figure
-"""
-
-
 def test_a_new_scheme_and_a_new_scene_run_to_a_figure_and_nothing_else_is_touched(finished):
-    """One module, one folder."""
-    (finished / "src/fracparticles/schemes/smear.py").write_text(
-        FILES["src/fracparticles/schemes/smear.py"]
-    )
-    folder = finished / "workflow/scenes/beyond/of_my_own"
-    folder.mkdir()
-    (folder / "scene.yaml").write_text(NEW_SCENE)
-    (folder / "figure.py").write_text(NEW_FIGURE)
-    (finished / "mine/runs").mkdir(parents=True)
-    shutil.copy2(finished / "results-smoke/runs/.compiled", finished / "mine/runs")
-    succeeded, said = call(finished, "of_my_own", "--config", "results_dir=mine")
-    assert succeeded, said[-4000:]
-    table = pd.read_csv(finished / "mine/tables/of_my_own.csv")
+    """There is nothing to register."""
+    table = pd.read_csv(finished / f"results-smoke/tables/{OWN}.csv")
     assert set(table["scheme"]) == {"KPSE", "SMEAR"}
     assert len(table) == 4
     assert (table["relative error"] < 0.5).all()
-    assert (finished / "mine/figures/of_my_own.png").stat().st_size > 5000
+    assert (finished / f"results-smoke/figures/{OWN}.svg").stat().st_size > 5000
 
 
 @contextmanager
