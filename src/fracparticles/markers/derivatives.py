@@ -11,11 +11,13 @@ even one they see its peak, each with the same sign. F itself may be smooth to f
 from __future__ import annotations
 
 import warnings
+from functools import lru_cache
 
 import numpy as np
 
 from fracparticles.errors import AccuracyWarning, FracparticlesError
 from fracparticles.markers.reliability import CORE, Velocity
+from fracparticles.markers.shapes import Shape
 from fracparticles.moving.reliability import cells
 
 __all__ = ["flux_ripple", "warn_of_derivatives"]
@@ -36,10 +38,8 @@ def flux_ripple(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float
     inner = (x > x.min() + felt) & (x < x.max() - felt)
     if x.size < 2 or not even or not inner.any():
         return 0.0
-    sizes = 2.0 * np.abs(velocity.shape.transform(_WAVENUMBERS))
-    envelope = np.maximum.accumulate(sizes[::-1])[::-1]
     k = 2.0 * np.pi / cells(x)
-    amplitude = np.interp(velocity.epsilon * k, _WAVENUMBERS, envelope, right=0.0)
+    amplitude = np.interp(velocity.epsilon * k, _WAVENUMBERS, _envelope(velocity.shape), right=0.0)
     with np.errstate(all="ignore"):
         flux, rippled = velocity.flux(x, fields), fields.copy()
         for m in even:
@@ -48,6 +48,14 @@ def flux_ripple(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float
     size, share = float(np.abs(flux[inner]).max()), np.abs(weights[inner])
     found = float(share @ off / (share.sum() * size)) if size > 0.0 else 0.0
     return found if np.isfinite(found) else 0.0
+
+
+@lru_cache(maxsize=16)
+def _envelope(shape: Shape) -> np.ndarray:
+    sizes = 2.0 * np.abs(shape.transform(_WAVENUMBERS))
+    envelope = np.maximum.accumulate(sizes[::-1])[::-1]
+    envelope.flags.writeable = False
+    return envelope
 
 
 def warn_of_derivatives(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> None:

@@ -23,12 +23,20 @@ from __future__ import annotations
 
 import math
 import warnings
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import erfc
 
 from fracparticles.errors import AccuracyWarning, FracparticlesError
-from fracparticles.markers.reliability import CORE, WAVENUMBERS, Steps, Velocity, all_coefficients
+from fracparticles.markers.reliability import (
+    CORE,
+    WAVENUMBERS,
+    Steps,
+    Velocity,
+    all_coefficients,
+    transformed,
+)
 from fracparticles.markers.shapes import Shape
 from fracparticles.markers.stability import extremes
 from fracparticles.moving.lagrangian import advance, quotient_velocity
@@ -41,6 +49,7 @@ _LINE, _EACH = 8, 20  # length of the measured half line in epsilon, and markers
 _LONG, _FEWEST = 1.0, 8  # the longest run of it, in epsilon^2, and its fewest steps
 _ACROSS = np.linspace(-3.0, 3.0, 121)  # epsilon: where its error is looked for
 _NEAR = np.linspace(0.0, 3.0, 31)  # epsilon: where the error of a step is looked for
+_WAVES = np.sin(np.outer(_NEAR, WAVENUMBERS)) / WAVENUMBERS
 
 
 def edge_error(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps: Steps) -> float:
@@ -68,17 +77,17 @@ def _step_error(velocity: Velocity, c: np.ndarray, side: float, steps: Steps) ->
         count = min(count, 4.0 * spread / (math.pi * against**2 * steps.dt))
     late = -c[1] * count * steps.dt / velocity.epsilon**2
     displaced = _displaced(velocity.shape, float(late)) if late > 0.0 else 0.0
-    transform = velocity.shape.transform(WAVENUMBERS)
+    transform = transformed(velocity.shape)
     exact = steps.dt * c[1] * (WAVENUMBERS / velocity.epsilon) ** 2
     with np.errstate(all="ignore"):
         # Waves that grow are left to `warn_of_waves`.
         made = np.minimum(steps.factor(exact * transform) ** count, 1.0)
         d = transform * made - np.exp(count * exact)
-        waves = np.sin(np.outer(_NEAR, WAVENUMBERS)) / WAVENUMBERS
-        off = float(np.abs(waves @ d).max()) * (WAVENUMBERS[1] - WAVENUMBERS[0]) / math.pi
+        off = float(np.abs(_WAVES @ d).max()) * (WAVENUMBERS[1] - WAVENUMBERS[0]) / math.pi
     return max(off, displaced) if off <= 1.0 else displaced
 
 
+@lru_cache(maxsize=256)  # both ends of the markers ask for the same, and run after run
 def _displaced(shape: Shape, time: float) -> float:
     """The largest error of F at the edge of a half line of markers, epsilon = 1, by diffusion for this time."""
     x = -(np.arange(_LINE * _EACH) + 0.5) / _EACH

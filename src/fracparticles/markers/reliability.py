@@ -19,6 +19,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -37,6 +38,7 @@ __all__ = [
     "kept",
     "midpoint",
     "rates",
+    "transformed",
     "warn_of_waves",
     "wave_error",
 ]
@@ -63,6 +65,14 @@ class Velocity(Protocol):
 
     def field_alone(self, epsilon: float) -> Velocity:
         """Return the same with another epsilon, without derivatives."""
+
+
+@lru_cache(maxsize=64)
+def transformed(shape: Shape) -> np.ndarray:
+    """Return S^ at `WAVENUMBERS`, not to be changed: every run asks for it several times."""
+    values = shape.transform(WAVENUMBERS)
+    values.flags.writeable = False
+    return values
 
 
 def midpoint(z: np.ndarray) -> np.ndarray:
@@ -136,7 +146,7 @@ def kept(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps: Steps) -
 
     Of the c_m that leave the most; at most 1.
     """
-    transform = velocity.shape.transform(WAVENUMBERS)
+    transform = transformed(velocity.shape)
     sigma = rates(coefficients(velocity, x, weights), WAVENUMBERS / velocity.epsilon) * transform
     with np.errstate(all="ignore"):
         left = np.minimum(np.abs(steps.factor(steps.dt * sigma)) ** (2 * steps.count), 1.0)
@@ -186,7 +196,7 @@ def warn_of_waves(velocity: Velocity, x: np.ndarray, weights: np.ndarray, steps:
         error = wave_error(velocity, x, weights, steps)
     except FracparticlesError:
         return  # the run will say so, with the step
-    sigma = rates(c, WAVENUMBERS / velocity.epsilon) * velocity.shape.transform(WAVENUMBERS)
+    sigma = rates(c, WAVENUMBERS / velocity.epsilon) * transformed(velocity.shape)
     complaint = _growth(velocity.epsilon, sigma, steps)
     if complaint:
         warnings.warn(complaint, StabilityWarning, stacklevel=3)

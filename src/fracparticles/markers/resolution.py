@@ -23,7 +23,14 @@ import warnings
 import numpy as np
 
 from fracparticles.errors import AccuracyWarning, InvalidInput
-from fracparticles.markers.reliability import WAVENUMBERS, Steps, Velocity, inner, kept
+from fracparticles.markers.reliability import (
+    WAVENUMBERS,
+    Steps,
+    Velocity,
+    inner,
+    kept,
+    transformed,
+)
 from fracparticles.moving.reliability import RIPPLE, cells, ripple, warn_of_ripple
 
 __all__ = ["noise", "smoothing", "warn_of_resolution"]
@@ -88,7 +95,7 @@ def noise(velocity: Velocity, x: np.ndarray, weights: np.ndarray) -> float:
     if x.size < 3:
         return 0.0
     width, field = cells(x), velocity.fields(x, weights)[0]
-    squares = velocity.shape.transform(WAVENUMBERS) ** 2
+    squares = transformed(velocity.shape) ** 2
     # int S^2, by Parseval.
     square = float(squares.sum()) * (WAVENUMBERS[1] - WAVENUMBERS[0]) / math.pi
     variance = np.minimum(2.0 * np.diff(width * field / weights) ** 2, 1.0)

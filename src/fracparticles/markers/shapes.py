@@ -18,7 +18,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -66,7 +67,7 @@ class Shape:
     equation: str
     constant: float
     printed: float
-    polynomial: Polynomial
+    polynomial: Polynomial = field(hash=False)  # it has no hash
     gaussian: bool = False
     finite: bool = True
     smoothness: int | None = None
@@ -103,24 +104,7 @@ class Shape:
 
     def kernel(self, derivative: int = 0) -> ScatteredKernel:
         """The derivative as a kernel of `moving.scattered`."""
-        p = self._factor(derivative)
-        coefficients, odd = p.convert(domain=[-1, 1], window=[-1, 1]).coef[::-1], derivative % 2
-
-        def profile(x: np.ndarray) -> np.ndarray:
-            # The sum over neighbours asks for |x| <= reach only, the one over all pairs for any x.
-            r = np.abs(x)
-            value = np.full_like(r, coefficients[0])
-            for c in coefficients[1:]:
-                value *= r
-                value += c
-            if self.gaussian:
-                value *= np.exp(-r * r)
-            if odd:
-                value *= np.sign(x)
-            value[r > self.reach] = 0.0
-            return value
-
-        return ScatteredKernel(profile, reach=self.reach)
+        return _kernel(self, whole_number("derivative", derivative, most=_HIGHEST))
 
     def transform(self, k: Any) -> np.ndarray:
         """Return int S(x) exp(-i k x) dx, real and even; absolute accuracy 1e-14.
@@ -156,6 +140,28 @@ class Shape:
         for _ in range(derivative):
             p = p.deriv() - (2.0 * Polynomial([0.0, 1.0]) * p if self.gaussian else 0.0)
         return self.constant * p
+
+
+@lru_cache(maxsize=256)
+def _kernel(shape: Shape, derivative: int) -> ScatteredKernel:
+    p = shape._factor(derivative)
+    coefficients, odd = p.convert(domain=[-1, 1], window=[-1, 1]).coef[::-1], derivative % 2
+
+    def profile(x: np.ndarray) -> np.ndarray:
+        # The sum over neighbours asks for |x| <= reach only, the one over all pairs for any x.
+        r = np.abs(x)
+        value = np.full_like(r, coefficients[0])
+        for c in coefficients[1:]:
+            value *= r
+            value += c
+        if shape.gaussian:
+            value *= np.exp(-r * r)
+        if odd:
+            value *= np.sign(x)
+        value[r > shape.reach] = 0.0
+        return value
+
+    return ScatteredKernel(profile, reach=shape.reach)
 
 
 _HAT = Polynomial([1.0, -1.0])

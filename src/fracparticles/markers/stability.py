@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -96,7 +97,11 @@ def extremes(shape: Shape, largest: float = 30.0) -> Extremes:
 
     Raises `InvalidInput` if it is not a shape function, or `largest` not from 1 to 2000.
     """
-    shape, largest = instance("shape", shape, Shape), real_between("largest", largest, 1.0, 2000.0)
+    return _extremes(instance("shape", shape, Shape), real_between("largest", largest, 1.0, 2000.0))
+
+
+@lru_cache(maxsize=64)
+def _extremes(shape: Shape, largest: float) -> Extremes:
     k = np.linspace(0.0, largest, 6001)[1:]
     sigma, transform = rate(shape, k), shape.transform(k)
     # Round-off makes the transform of S8 vanish far out; only what is clearly negative counts.
