@@ -28,7 +28,7 @@ WAYS = {
     "KPSE": "scheme='KPSE', order=4, dt=0.001, exterior='open'",
     "graded particles": "scheme='GPSE', graded_scale=2.0",
 }
-CASES = dict(few(WAYS.items(), 3))
+CASES = dict(few(WAYS.items()))
 
 
 def modules_of(program: str) -> set[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import signal
 import socket
 import stat
@@ -17,12 +18,14 @@ import pytest
 import xarray as xr
 
 import fracparticles as fp
+from fracparticles.command_line.cli import main
 from fracparticles.errors import InvalidInput
 from fracparticles.files import replaceable, replacing, uninterrupted
 from fracparticles.run.case import Case
 from fracparticles.run.initial import initial_strengths
 from fracparticles.run.solver import compute
 from fracparticles.special import mean_radius
+from scenes.extremes.faults.processes import forked
 from sweeps import covering
 
 GIVEN = {
@@ -305,19 +308,16 @@ def test_what_is_not_a_data_set_is_refused(tmp_path):
 
 
 def test_the_mode_is_what_the_umask_leaves(tmp_path):
-    program = (
-        "import os, sys, xarray as xr\n"
-        "from fracparticles.run.dataset import write\n"
-        "for path in sys.argv[1:]:\n"
-        "    os.umask(int(os.path.basename(path), 8))\n"
-        "    write(xr.Dataset({'a': 1.0}), path)"
-    )
-    umasks = 0o022, 0o077, 0o027, 0o002
-    paths = [tmp_path / f"{umask:o}" for umask in umasks]
-    for path in paths:
-        path.touch(0o600)  # the mode of what was there does not count
-    subprocess.run([sys.executable, "-c", program, *map(str, paths)], check=True)
-    assert [stat.S_IMODE(path.stat().st_mode) for path in paths] == [0o666 & ~u for u in umasks]
+    before = os.umask(0o022)
+    try:
+        for umask in (0o022, 0o077, 0o027, 0o002):
+            path = tmp_path / f"{umask:o}"
+            path.touch(0o600)  # the mode of what was there does not count
+            os.umask(umask)
+            fp.write(xr.Dataset({"a": 1.0}), path)
+            assert stat.S_IMODE(path.stat().st_mode) == 0o666 & ~umask
+    finally:
+        os.umask(before)
 
 
 def test_only_regular_files_are_replaced(tmp_path, monkeypatch):
@@ -379,39 +379,31 @@ def test_names_as_long_as_they_may_be(tmp_path, name):
     assert fp.read_run(tmp_path / name).identical(run)
 
 
-_FULL_DISK = (
-    "import sys, warnings, fracparticles as fp\n"
-    "from fracparticles.command_line.cli import main\n"
-    "{limit}\n"
-    "sys.exit(main(sys.argv[1:]))"
-)
 _ARGUMENTS = (
     "solve --scheme KPSE --beta 0.5 --half-width 100 --spacing 0.01 --integrator exponential -o"
 )
 
 
-def full_disk(folder: Path, limit: str = "") -> None:
+def full_disk(folder: Path, most: int | None = None) -> None:
     """Run the command line where the disk does not take the file: one line, status 1, the old file as it was."""
     old = folder / "run.nc"
     old.write_text("old")
-    done = subprocess.run(
-        [sys.executable, "-c", _FULL_DISK.format(limit=limit), *_ARGUMENTS.split(), str(old)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 1, done.stderr
-    assert done.stdout == ""
-    assert done.stderr.startswith(f"error: cannot write '{old}' (")
-    assert done.stderr.count("\n") == 1
+
+    def work() -> int:
+        if most is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        return main([*_ARGUMENTS.split(), str(old)])
+
+    status, said = forked(work)  # what it prints and the line of the error
+    assert status == 1, said
+    assert said.startswith(f"error: cannot write '{old}' (")
+    assert said.count("\n") == 1
     assert old.read_text() == "old"
     assert [p.name for p in folder.iterdir()] == ["run.nc"]
 
 
 def test_a_file_larger_than_it_may_be_is_one_line(tmp_path):
-    full_disk(
-        tmp_path, "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (50000, 50000))"
-    )
+    full_disk(tmp_path, 50_000)
 
 
 def test_a_full_disk_is_one_line(tmp_path):

@@ -13,8 +13,8 @@ from fracstudy.config import batches, benchmark_jobs, jobs, read_config
 from fracstudy.run_blocks import expand
 from fracstudy.scene import Scene
 from fracstudy.scene_files import merged, resolved
+from scene_functions import configured
 
-ROOT = Path(__file__).resolve().parents[2]
 BLOCK = {
     "scheme": ["DD", "KPSE"],
     "order": [2, 4],
@@ -248,9 +248,7 @@ def test_scenes_share_a_run_and_the_wider_store_wins(tmp_path):
 
 @pytest.fixture(scope="module")
 def ours():
-    config = yaml.safe_load((ROOT / "config/study.yaml").read_text())
-    config["scenes_dir"] = str(ROOT / "workflow/scenes")
-    return read_config(config)[1]
+    return configured()[1]
 
 
 def test_a_scene_computes_nothing_that_it_does_not_need(ours):

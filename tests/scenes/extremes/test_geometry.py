@@ -8,7 +8,7 @@ PARAMETERS = {
     "orders": [12],
     "overlaps": [0.25, 2.0],
     "half": {1: [0, 1, 4], 2: [0, 1]},
-    "beyond": [1, 8],
+    "beyond": [8],
     "points": {1: [3, 8, 17, 128]},
     "schemes": {1: ["GPSE", "DVM"], 2: ["KPSE"]},
     "half_widths": {1: 40.0, 2: 8.0},

@@ -11,10 +11,10 @@ PARAMETERS = {
     "particles": 50,
     "orders": ORDERS,
     "half_width": 6.0,
-    "spacing": 0.1,
+    "spacing": 0.15,
     "walkers": 2000,
     "shapes": few(["S1", "S4", "S8"]),
-    "markers_in_a_run": 120,
+    "markers_in_a_run": 60,
     "supports": [0.5, 50.0],
     "reynolds": [1e3],
 }

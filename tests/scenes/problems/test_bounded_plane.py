@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from fracstudy.panels import pick
 
+PARAMETERS = {"finest": 64, "sides": [16, 32]}
+
 
 def test_the_disc_has_the_order_four_less_alpha(result):
     for part in ("first eigenvalue", "Getoor, mean error"):

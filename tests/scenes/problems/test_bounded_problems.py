@@ -6,7 +6,7 @@ from fracstudy.panels import pick
 
 PARAMETERS = {
     "counts": {"interval": [50, 100], "disc": [16, 32], "square": [12, 24]},
-    "rtol": {"interval": 1e-8, "disc": 1e-6, "square": 1e-6},
+    "rtol": {"interval": 1e-7, "disc": 1e-5, "square": 1e-5},
 }
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from fracstudy.panels import pick
 
+PARAMETERS = {"half_width": 4.0}
+
 
 def test_the_total_is_kept_or_counted(result):
     assert pick(result.table, dim=2)["drift below"].max() < 1e-12

@@ -7,6 +7,8 @@ import pytest
 
 from fracstudy.panels import pick
 
+# Of the runs that of a line only: those of the plane are no more than run by the smoke grid.
+PARAMETERS = {"runs": [["FPSE", 1, 12, 0.1]]}
 FLUX, MEAN = "div(D grad^beta u)", "(D L u + L(D u) - u L D) / 2"
 
 
