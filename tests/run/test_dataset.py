@@ -26,7 +26,7 @@ from fracparticles.run.initial import initial_strengths
 from fracparticles.run.solver import compute
 from fracparticles.special import mean_radius
 from scenes.extremes.faults.processes import forked
-from sweeps import covering
+from sweeps import covering, few
 
 GIVEN = {
     "scheme": "KPSE",
@@ -443,7 +443,7 @@ def test_runs_combine_into_a_cube(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # its own
-@pytest.mark.parametrize("store", ["field", "metrics"])
+@pytest.mark.parametrize("store", few(["field", "metrics"], 1))
 def test_the_checker_of_the_convention_finds_nothing(tmp_path, store):
     from compliance_checker.runner import CheckSuite, ComplianceChecker
 

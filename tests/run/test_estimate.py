@@ -51,7 +51,7 @@ def estimated_and_true(problem, half_width, spacing, **given):
 # In the plane beta is 0.5, of mixtures any.
 @pytest.mark.parametrize(
     ("name", "way", "beta", "lattice"),
-    covering(ROUGH, LINE, [0.1, 0.9], [(4.0, 0.2), (20.0, 0.1)], together=2),
+    covering(ROUGH, LINE, [0.1, 0.9], [(4.0, 0.2), (20.0, 0.1)]),
 )
 def test_on_the_line_it_is_within_a_factor_of_three(name, way, beta, lattice):
     problem, (widths, spacing) = PROBLEMS[name](beta), lattice

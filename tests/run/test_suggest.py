@@ -28,7 +28,7 @@ def asked_and_met(problem, error, **more):
 
 @pytest.mark.parametrize(
     ("name", "beta", "error"),
-    covering(["fundamental", "mixture", "other tail"], [0.1, 0.5, 0.9], [1e-3, 1e-9], together=2),
+    covering(["fundamental", "mixture", "other tail"], [0.1, 0.5, 0.9], [1e-3, 1e-9]),
 )
 def test_met_on_the_line(name, beta, error):
     _, true = asked_and_met(PROBLEMS[name](beta), error)

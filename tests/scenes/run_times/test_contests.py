@@ -106,7 +106,7 @@ def test_a_row_for_each_problem_beta_and_error(tmp_path, betas):
     assert blocks["scheme of the papers"][0] == "none"
     parameters = {"time": "total_time", "ylabel": "error"}
     drawn = figure("work_precision")(result.series, result.table, parameters)
-    save(drawn, tmp_path / "fronts")
+    save(drawn, tmp_path / "fronts", ["svg"])
     assert (tmp_path / "fronts.svg").stat().st_size > 0
 
 
