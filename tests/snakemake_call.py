@@ -39,6 +39,7 @@ def _main(folder: Path, arguments: list[str]) -> None:
         filter(None, [str(folder / "src"), os.environ.get("PYTHONPATH", "")])
     )
     sys.path.insert(0, str(folder / "src"))
+    sys.argv = ["snakemake", *arguments]  # what it says that it was called by
     from snakemake.cli import main
 
     main(arguments)
