@@ -69,7 +69,8 @@ class DiscTransport:
         """Return -div(a u) for a_r and a_theta, if u is zero beyond the edge, or nothing leaves."""
         b = self._r * outwards
         parts = self._adjoint(b * u) + b * self._skew.of(u)
-        parts += _around(around * u) + around * _around(u)
+        moved, plain = np.split(_around(np.concatenate([around * u, u])), 2)
+        parts += moved + around * plain
         return np.asarray(-0.5 * (parts / self._r + self.divergence(outwards, around) * u))
 
     def of_smooth(self, u: FloatArray, outwards: FloatArray, around: FloatArray) -> FloatArray:

@@ -15,7 +15,7 @@ it is: it brings 1e-10 of what N brings in the whole time. In a blow-up N does n
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import factorial
@@ -82,8 +82,9 @@ class ExponentialSteps(ModalSteps):
 
         for _ in range(self.most):
             h = min(h, span - t)
-            whole, jump = _Step(self._modes.rates, h).advance(y, start + t, slope)
-            half = _Step(self._modes.rates, 0.5 * h)
+            step = _Step.of(self._modes.rates, h)
+            whole, jump = step.advance(y, start + t, slope)
+            half = step.halved()
             middle, _ = half.advance(y, start + t, slope)
             halves, _ = half.advance(middle, start + t + 0.5 * h, slope)
             size = max(self._size(start + t + h, unit * halves) / unit, _NOTHING)
@@ -130,32 +131,47 @@ def _jumps(slope: Slope, y: Any, t: float, h: float) -> bool:
     return bool(size_of(after - before) > 0.5 * max(size_of(before), size_of(after)))
 
 
-class _Step:
-    """Steps of Krogstad's scheme of one length h."""
+class _Decay(NamedTuple):
+    """e^-z, and phi_1, phi_2 and phi_3 of -z."""
 
-    def __init__(self, rates: FloatArray, h: float) -> None:
-        self._h = h
-        self._half_decay, self._decay = np.exp(-0.5 * h * rates), np.exp(-h * rates)
-        self._half = _phi(0.5 * h * rates)
-        self._whole = _phi(h * rates)
+    factor: FloatArray
+    phi1: FloatArray
+    phi2: FloatArray
+    phi3: FloatArray
+
+    @classmethod
+    def of(cls, z: FloatArray) -> _Decay:
+        zero, one, two = moments_of_decay(z, 2)
+        return cls(np.exp(-z), zero, zero - one, 0.5 * (zero - 2.0 * one + two))
+
+
+class _Step(NamedTuple):
+    """Steps of Krogstad's scheme of one length h, with what decays in h and in h / 2."""
+
+    rates: FloatArray
+    h: float
+    whole: _Decay
+    half: _Decay
+
+    @classmethod
+    def of(cls, rates: FloatArray, h: float) -> _Step:
+        return cls(rates, h, _Decay.of(h * rates), _Decay.of(0.5 * h * rates))
+
+    def halved(self) -> _Step:
+        """Return steps of half the length."""
+        return _Step(self.rates, 0.5 * self.h, self.half, _Decay.of(0.25 * self.h * self.rates))
 
     def advance(self, y: Any, t: float, slope: Slope) -> tuple[Any, Any]:
         """Return y a step later, and h phi_2 (N_2 - N_3)."""
-        h, (half1, half2, _), (phi1, phi2, phi3) = self._h, self._half, self._whole
+        h, (half_decay, half1, half2, _), (decay, phi1, phi2, phi3) = self.h, self.half, self.whole
         n1 = slope(y, t)
-        first = self._half_decay * y + 0.5 * h * half1 * n1
+        first = half_decay * y + 0.5 * h * half1 * n1
         n2 = slope(first, t + 0.5 * h)
         n3 = slope(first + h * half2 * (n2 - n1), t + 0.5 * h)
-        n4 = slope(self._decay * y + h * (phi1 * n1 + 2.0 * phi2 * (n3 - n1)), t + h)
+        n4 = slope(decay * y + h * (phi1 * n1 + 2.0 * phi2 * (n3 - n1)), t + h)
         middle = n2 + n3
         change = phi1 * n1 + phi2 * (2.0 * middle - 3.0 * n1 - n4) + 4.0 * phi3 * (n1 - middle + n4)
-        return self._decay * y + h * change, h * phi2 * (n2 - n3)
-
-
-def _phi(z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return phi_1, phi_2 and phi_3 of -z."""
-    zero, one, two = moments_of_decay(z, 2)
-    return zero, zero - one, 0.5 * (zero - 2.0 * one + two)
+        return decay * y + h * change, h * phi2 * (n2 - n3)
 
 
 def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
@@ -164,11 +180,13 @@ def moments_of_decay(z: FloatArray, degree: int) -> FloatArray:
     For z <= 1 it is sum_k (-z)^k / (k! (m + 1 + k)), beyond I_0 = (1 - e^-z) / z and I_m = (m I_(m-1) - e^-z) / z. The
     recursion loses digits by a factor m! / z^m, so that it is for low degrees.
     """
-    small, large = np.minimum(z, 1.0), np.maximum(z, 1.0)
+    large = np.maximum(z, 1.0)
     m = np.arange(degree + 1.0)
     weights = 1.0 / (_FACTORIALS * (m[:, None] + 1.0 + _TERMS))
-    series = (-small[..., None]) ** _TERMS @ weights.T
+    powers, small = np.zeros((*z.shape, _TERMS.size)), z <= 1.0
+    powers[small] = (-z[small][:, None]) ** _TERMS
+    series = powers @ weights.T
     decay, closed = np.exp(-large), [-np.expm1(-large) / large]
     for power in m[1:]:
         closed.append((power * closed[-1] - decay) / large)
-    return np.where(z <= 1.0, np.moveaxis(series, -1, 0), closed)
+    return np.where(small, np.moveaxis(series, -1, 0), closed)

@@ -57,12 +57,13 @@ class DomainRates:
         anywhere = (np.array(0.0),) * problem.dim
         self._d = over_time(problem.diffusion, at if self._varies else anywhere, start=start)
         self._flux = self._varies and problem.form == "FPSE"
+        self._swings = "t" in problem.diffusion.depends_on
         self._velocity = [over_time(one, at, start=start) for one in problem.transport]
         self.source = reaction_of(problem)
         self.lift = self.domain.lift_in_time(_outside(problem), start, problem.span)
         self.shape = self.domain.volumes.shape
         linear = (problem.diffusion, *problem.transport)
-        self._steady_matrix = all("t" not in one.depends_on for one in linear)
+        self._steady = all("t" not in one.depends_on for one in linear)
         self._matrix: np.ndarray | None = None
         self._kept: tuple[float, tuple[Any, Any, list[Any]]] | None = None
 
@@ -103,8 +104,8 @@ class DomainRates:
         return total
 
     def _now(self, t: float) -> tuple[Any, Any, list[Any]]:
-        """Return D, D' and a at one time; they are kept until the next time."""
-        if self._kept is None or self._kept[0] != t:
+        """Return D, D' and a at one time; they are kept until the next time, or for all if none depends on it."""
+        if self._kept is None or not (self._steady or self._kept[0] == t):
             d = self._d(t)
             slope = self._line.slope(d) if self._flux else None
             self._kept = t, (d, slope, [one(t) for one in self._velocity])
@@ -122,12 +123,15 @@ class DomainRates:
 
     def beside_modes(self, t: float, v: np.ndarray) -> np.ndarray:
         """Return dv/dt without the decay of the modes."""
-        return self._forcing(t, v) + self.modes.back(self._in_modes(t, v))
+        forcing = self._forcing(t, v)
+        if not (self._flux or self._velocity or self._swings):  # nothing linear is beside them
+            return forcing
+        return forcing + self.modes.back(self._in_modes(t, v))
 
     def derivative_in_modes(self, t: float, v: np.ndarray) -> np.ndarray:
         """Return the derivative of `beside_modes` by v, between amplitudes of the modes, shape (N, N)."""
         modes = self.modes
-        if not self._steady_matrix or self._matrix is None:
+        if not self._steady or self._matrix is None:
             columns = (self._in_modes(t, modes.back(e)) for e in np.eye(modes.rates.size))
             self._matrix = np.stack(list(columns), axis=1)
         if self.problem.is_linear:
@@ -186,12 +190,13 @@ class DomainRates:
     def _in_modes(self, t: float, v: np.ndarray) -> Any:
         """Return the linear terms beside the modes; modes too fast to be known, and their part of D, are left out."""
         modes, part = self.modes, self._lower(t, v)
-        y = np.where(self._is_known, modes.into(v), 0.0)
-        less = self._now(t)[0] - self._greatest
-        if self._varies and "t" in self.problem.diffusion.depends_on:
-            part += self._spread(modes.back(y), less)  # linear in D
+        if self._swings:
+            y = np.where(self._is_known, modes.into(v), 0.0)
+            less = self._now(t)[0] - self._greatest
+            if self._varies:
+                part += self._spread(modes.back(y), less)  # linear in D
         found = np.where(self._is_known, modes.into(part), 0.0)
-        if not self._varies:  # D is then one factor for all modes
+        if self._swings and not self._varies:  # D is then one factor for all modes
             found -= less / self._greatest * modes.rates * y
         if self.problem.exterior == "reflecting":
             found.flat[0] = 0.0  # the mode of the constant: the total is kept
@@ -214,7 +219,7 @@ class DomainRates:
     @property
     def _looks(self) -> np.ndarray:
         """Times at which the diffusivity is evaluated."""
-        count = _LOOKS if "t" in self.problem.diffusion.depends_on else 1
+        count = _LOOKS if self._swings else 1
         return np.linspace(self.problem.t_initial, self.problem.t_final, count)
 
     def _spread(self, v: np.ndarray, d: np.ndarray) -> np.ndarray:

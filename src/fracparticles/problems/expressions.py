@@ -89,7 +89,8 @@ class Coefficient:
         with np.errstate(all="ignore"):
             result = self._evaluated(values)
         try:
-            return np.broadcast_to(np.asarray(result, dtype=float), shape)
+            found = np.asarray(result, dtype=float)
+            return _read_only(found) if found.shape == shape else np.broadcast_to(found, shape)
         except (TypeError, ValueError) as error:
             raise InvalidInput(
                 self.field,
