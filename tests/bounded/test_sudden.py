@@ -14,9 +14,9 @@ from fracparticles.time.sudden import sudden_times
 from sweeps import covering
 
 DOMAINS = {
-    "interval": Interval(alpha=1.5, particles=60),
-    "disc": Disc(1.5, exterior="absorbing"),
-    "square": Square(1.5, exterior="absorbing"),
+    "interval": Interval(alpha=1.5, particles=40),
+    "disc": Disc(1.5, 12, 12, "absorbing"),
+    "square": Square(1.5, 12, "absorbing"),
 }
 TOLERANCE = 1e-8
 

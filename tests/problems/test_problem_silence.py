@@ -22,6 +22,7 @@ from sweeps import covering, few
 LINE = {"alpha": 1.5, "half_width": 40.0, "spacing": 0.1, "t_final": 1.0}
 ON_A_DOMAIN = {"alpha": 1.5, "exterior": "absorbing", "half_width": 1.0, "t_final": 1.0}
 TOLERANCE = 1e-6  # the default of rtol
+TOLERANCES = {"dop853": TOLERANCE, "rkc2": 1e-4}  # steps of order two are many
 
 
 def bell(x: np.ndarray) -> np.ndarray:
@@ -43,12 +44,13 @@ def plain() -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("rate", "integrator"), few([(100, "dop853"), (20, "dop853"), (20, "rkc2"), (10, "rkc2")])
+    ("rate", "integrator"), few([(20, "dop853"), (100, "dop853"), (20, "rkc2"), (10, "rkc2")])
 )
 def test_what_decays_by_many_decades_keeps_its_digits(plain, rate, integrator):
     """The tolerance is of the size of u at the time; each of some `rate` units of time may add one rtol."""
-    u = solved(source=f"-{rate}*u", integrator=integrator)
-    assert np.abs(u * np.exp(rate) - plain).max() < rate * TOLERANCE * plain.max()
+    tolerance = TOLERANCES[integrator]
+    u = solved(source=f"-{rate}*u", integrator=integrator, rtol=tolerance)
+    assert np.abs(u * np.exp(rate) - plain).max() < rate * tolerance * plain.max()
 
 
 def test_what_fades_in_a_krylov_space_keeps_its_digits():
@@ -69,12 +71,13 @@ def test_a_source_that_starts_from_nothing_has_no_unit(size):
 @pytest.mark.parametrize(("integrator", "size"), [("dop853", 1e-300), ("rkc2", 1e-20)])
 def test_a_source_begins_from_next_to_nothing_as_from_nothing(integrator, size):
     fields = {"source": "exp(-x**2) - u**2", "integrator": integrator}
+    fields["rtol"] = TOLERANCES[integrator]
     none, next_to_none = (
         solved(lambda x: 0.0 * x, **fields),
         solved(lambda x: size * bell(x), **fields),
     )
     # The steps differ: each run may be off by its tolerance.
-    assert np.abs(next_to_none - none).max() < 2.0 * TOLERANCE * none.max()
+    assert np.abs(next_to_none - none).max() < 2.0 * fields["rtol"] * none.max()
 
 
 def test_a_source_may_be_infinite_where_u_is_nothing():
@@ -90,17 +93,18 @@ def test_a_source_may_be_infinite_where_u_is_nothing():
 
 
 @pytest.mark.parametrize(("integrator", "width"), covering(["dop853", "rkc2"], [0.1, 0.01, 0.001]))
-def test_a_pulse_is_not_stepped_over(integrator, width):
+def test_a_pulse_is_not_stepped_over(plain, integrator, width):
     fields = {"source": f"where((t > 0.5) & (t < 0.5 + {width}), 1/{width}, 0.0)*exp(-x**2)"}
-    u = solved(**fields, integrator=integrator)
-    alone, late = solved(), solved(t_final=0.5 - 0.5 * width)  # what came in half-way of the pulse
+    tolerance = TOLERANCES[integrator]
+    u = solved(**fields, integrator=integrator, rtol=tolerance)
+    alone, late = plain, solved(t_final=0.5 - 0.5 * width)  # what came in half-way of the pulse
     # The pulse has a width: of second order in it, and what the rule of its middle leaves at the tolerance.
-    assert np.abs(u - alone - late).max() < (0.1 * width**2 + 10.0 * TOLERANCE) * u.max()
+    assert np.abs(u - alone - late).max() < (0.1 * width**2 + 10.0 * tolerance) * u.max()
 
 
-def test_a_pulse_of_the_diffusivity_and_one_of_a_function():
+def test_a_pulse_of_the_diffusivity_and_one_of_a_function(plain):
     moved = solved(diffusivity="where((t > 0.3) & (t < 0.31), 100.0, 0.0)")
-    assert np.abs(moved - solved()).max() < 10.0 * TOLERANCE
+    assert np.abs(moved - plain).max() < 10.0 * TOLERANCE
     by_function = solved(diffusivity=lambda x, t: 100.0 * ((t > 0.3) & (t < 0.31)) + 0.0 * x)
     assert np.abs(moved - by_function).max() < 10.0 * TOLERANCE
 
@@ -241,8 +245,8 @@ def test_what_fades_on_a_domain_keeps_its_digits(domain):
     fields = {**ON_A_DOMAIN, "domain": domain, "particles": particles}
     u0 = Problem(**fields).bounded_domain.values("u", hat)
     plain = solve_problem(Problem(**fields, rtol=1e-9), u0, estimate=False).u.values
-    implicit = {"diffusivity": "1 + 0*t"} if domain == "interval" else {}
-    for more in ({}, implicit):
+    implicit = {"diffusivity": "1 + 0*t"}
+    for more in ({}, implicit) if domain == "interval" else ({},):
         with warnings.catch_warnings():
             warnings.simplefilter("error", AccuracyWarning)
             run = solve_problem(Problem(**fields, **more, source="-20*u"), u0)

@@ -144,7 +144,7 @@ def test_a_manufactured_source_by_a_function(dim, form, order, bound):
 
 def test_a_rotation_carries_a_blob_about_the_origin():
     problem = Problem(
-        alpha=1.5, dim=2, form="DD", order=12, half_width=20.0, spacing=0.25, velocity=("-y", "x"), diffusivity=0.2,
+        alpha=1.5, dim=2, form="DD", order=12, half_width=12.0, spacing=0.25, velocity=("-y", "x"), diffusivity=0.2,
         t_final=np.pi / 2.0,
     )  # fmt: skip
     run = solved(problem, lambda x, y: green(np.hypot(x - 1.5, y), 1.0, 1.5, 2))
@@ -169,12 +169,12 @@ def test_a_linear_problem_is_linear(fields):
 def test_the_ways_of_time_integration_agree(fields):
     every = [
         solved(
-            Problem(**{**LINE, "half_width": 20.0, "rtol": 1e-7}, **fields, integrator=one),
+            Problem(**{**LINE, "half_width": 20.0, "rtol": 1e-5}, **fields, integrator=one),
             lambda x: green(x, 1.0, 1.5),
         ).u.values
         for one in ("rkc2", "dop853")
     ]
-    assert_allclose(*every, atol=1e-6)
+    assert_allclose(*every, atol=1e-4)
 
 
 def test_stiff_and_coarse_in_time_is_stabilised():
@@ -281,7 +281,10 @@ def test_the_checker_of_the_convention_finds_nothing(tmp_path):
 def test_a_linear_field_ends_in_the_stationary_law():
     """After a long time the scale is (D / (alpha theta))^(1/alpha), and stays: nothing grows at the ends."""
     run = solved(
-        Problem(**{**LINE, "spacing": 0.2, "times": (11.0, 21.0), "t_final": 21.0}, velocity="-x")
+        Problem(
+            **{**LINE, "half_width": 25.0, "spacing": 0.2, "times": (11.0, 21.0), "t_final": 21.0},
+            velocity="-x",
+        )
     )
     exact = green(run.x.values, 1.0 / 1.5, 1.5)
     assert error_of(run.isel(t=0), exact) < 1e-6
@@ -298,7 +301,7 @@ def test_a_diffusivity_that_varies_in_space_and_time(form, source_of_time):
     source = f"exp(-t)*({d}*{rate} + {slope}*{flux} - 1/(1 + x**2))"
     fields = {
         "half_width": 100.0,
-        "spacing": 0.05,
+        "spacing": 0.1,
         "t_initial": 0.0,
         "t_final": 1.0,
         "far_terms": None,
@@ -344,7 +347,7 @@ def test_a_diffusivity_that_varies_in_the_plane(form):
 
     problem = Problem(
         alpha=alpha, dim=2, form=form, order=12, diffusivity=f"1 + {rise}*exp(-x**2 - y**2)",
-        source=source, half_width=10.0, spacing=0.2, t_final=0.5, rtol=1e-7,
+        source=source, half_width=8.0, spacing=0.2, t_final=0.5, rtol=1e-6,
     )  # fmt: skip
     run = solved(problem, lambda x, y: exact(x, y, 0.0))
     x, y = np.meshgrid(run.x, run.y, indexing="ij")

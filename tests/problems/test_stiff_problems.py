@@ -108,15 +108,15 @@ def test_many_pulses_are_found_and_a_wave_is_none(waves, places):
 
 
 def wave(t):
-    """On for the first half of each of 17 periods; u = 0 until it is on for the first time."""
-    return np.where(np.sin(34.0 * np.pi * t) > 0.0, 1.0, 0.0)
+    """On for the first half of each of 7 periods; u = 0 until it is on for the first time."""
+    return np.where(np.sin(14.0 * np.pi * t) > 0.0, 1.0, 0.0)
 
 
 @pytest.mark.usefixtures("silent")
 @pytest.mark.parametrize(
     "source",
     [
-        "where(sin(34*pi*t) > 0, 1, 0)",
+        "where(sin(14*pi*t) > 0, 1, 0)",
         lambda x, t: float(wave(float(t))) + 0.0 * x,  # of one time only
     ],
 )
@@ -304,7 +304,7 @@ def test_particles_that_follow_do_not_step_over_a_pulse():
         return green(x, 1.0, 1.5) * np.exp(-(((t - at) / width) ** 2)) / width
 
     (run,) = follow(
-        lambda x: green(x, 1.0, 1.5), 1.0, alpha=1.5, window=(-20.0, 20.0), source=source
+        lambda x: green(x, 1.0, 1.5), 1.0, alpha=1.5, window=(-10.0, 10.0), source=source
     )
     x = run.particles.x
     exact = green(x, 2.0, 1.5) + TOTAL * green(x, 2.0 - at, 1.5)
