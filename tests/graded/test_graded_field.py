@@ -138,7 +138,7 @@ def reference(count, reach, scale, alpha, time, i, columns):
     (30.0, 1.0, 1.1, 1e-30),
     (1e4, 1.0, 1.5, 1e-6),
     (3e4, 1e3, 1.9, 30.0),  # wider than one, and narrower than its panels are long if not told
-], 3))  # fmt: skip
+]))  # fmt: skip
 def test_a_kernel_narrower_than_an_ulp_of_its_place_is_resolved(reach, scale, alpha, time):
     count = 21
     matrix = green_step_of_field(count, reach, scale, alpha, time)

@@ -73,8 +73,8 @@ def test_another_flux_is_another_equation():
 def test_a_gaussian_stays_one(support):
     """Markers of the exact Gaussian at t stay near quantile(g, t); the error falls like eps^4 with S8."""
     profile = Gaussian()
-    x, w = equal_weight(profile, 400)
-    end = run(x, w, MarkerVelocity(SHAPES["S8"], support), dt=0.01, steps=100)
+    x, w = equal_weight(profile, 200)
+    end = run(x, w, MarkerVelocity(SHAPES["S8"], support), dt=0.02, steps=50)
     z = np.linspace(-2.0, 2.0, 81)
     error = np.abs(end.field(z) - profile.value(z, 1.0)).max()
     # S8: F - f = (eps^4 / 32) f'''' to the lowest order (from the transform), and f'''' <= 12 at t = 0.

@@ -14,6 +14,7 @@ from fracparticles.moving.lagrangian import FieldNotPositive, Remeshing, advance
 from fracparticles.schemes import SCHEMES, Setting
 from fracparticles.special.stable import green, mean_radius
 from fracparticles.time.whole_space import evolve
+from sweeps import covering, few
 
 START = 0.5
 
@@ -57,8 +58,7 @@ def test_diffusivity_is_a_factor():
     assert three == pytest.approx(3.0 * one, rel=1e-13)
 
 
-@pytest.mark.parametrize("order", [2, 4])
-@pytest.mark.parametrize("theta", [0.4, 0.8, 1.2])
+@pytest.mark.parametrize(("order", "theta"), covering([2, 4], [0.4, 0.8, 1.2]))
 def test_a_displacement_wave_decays_at_the_symbol_of_dd(order, theta):
     """In a uniform field: -D |k|^alpha eta^(k eps), so that the step is limited as DD's is (the paper: stable)."""
     h, n, alpha = 0.01, 2000, 1.5
@@ -258,7 +258,7 @@ def test_a_field_below_the_accuracy_of_the_sum_needs_a_threshold():
     assert dvm.run(x, np.exp(-x * x), threshold=1e-6, **options).history.eliminated_count > 0
 
 
-@pytest.mark.parametrize(("order", "later"), [(2, 0.5), (4, 0.5), (4, 2.0)])
+@pytest.mark.parametrize(("order", "later"), few([(2, 0.5), (4, 0.5), (4, 2.0)]))
 def test_a_gaussian_is_carried_with_the_threshold_that_the_message_names(order, later):
     x = lattice(20.0, 0.1)
     options = {"spacing": 0.1, "alpha": 1.5, "dt": 2e-3, "steps": round(later / 2e-3)}

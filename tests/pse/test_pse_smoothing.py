@@ -9,6 +9,7 @@ import pytest
 
 from fracparticles import pse
 from fracparticles.errors import AccuracyWarning, InvalidInput
+from sweeps import covering
 
 KERNELS = {
     "Gaussian": (pse.GAUSSIAN_20, 2),
@@ -97,12 +98,10 @@ def test_of_a_stencil_nothing_is_known():
     pse.derivative(x[1:-1], x[1:-1] ** 2, x, x**2, 1.0, 1.0, stencil, 2)
 
 
-@pytest.mark.parametrize(
-    "kernel", [pse.construct_laplacian(2, 2), pse.construct_laplacian(4, 2)], ids=["2", "4"]
-)
-@pytest.mark.parametrize("jitter", [0.0, 0.3])
-def test_the_strengths_that_are_exchanged(kernel, jitter):
+@pytest.mark.parametrize(("order", "jitter"), covering([2, 4], [0.0, 0.3]))
+def test_the_strengths_that_are_exchanged(order, jitter):
     """exp(i k x) on a lattice and beside it: A is -k^2 but for the smoothing, and scattering costs what it costs."""
+    kernel = pse.construct_laplacian(order, 2)
     epsilon, h, verdicts = 0.2, 0.1, set()
     # Four epsilon from the ends a kernel has fallen to exp(-16). The waves run along x.
     long, wide = (h * (np.arange(count) + 0.5) for count in (30.0, 18.0))

@@ -31,19 +31,19 @@ def box(name: str, order: int, n: int = 6, dim: int = 2, **given):
     )
 
 
-@pytest.mark.parametrize(("name", "order"), BOXED)
-@pytest.mark.parametrize("exterior", ["truncated", "open"])
-def test_fast_against_naive(name, order, exterior):
+@pytest.mark.parametrize(("one", "exterior"), covering(BOXED, ["truncated", "open"]))
+def test_fast_against_naive(one, exterior):
+    name, order = one
     u = np.random.default_rng(0).standard_normal(13**2)
     fast = box(name, order, exterior=exterior).apply(u)
     naive = box(name, order, exterior=exterior, summation="naive").apply(u)
     assert np.abs(fast - naive).max() <= 1e-13 * np.abs(naive).max()
 
 
-@pytest.mark.parametrize(("name", "order"), BOXED)
-@pytest.mark.parametrize("dim", [2, 3])
-def test_a_wave_in_the_middle_sees_the_symbol(name, order, dim):
+@pytest.mark.parametrize(("one", "dim"), covering(BOXED, [2, 3]))
+def test_a_wave_in_the_middle_sees_the_symbol(one, dim):
     """With a window that varies slowly A u is symbol(theta) u up to the window's scale to the power -2."""
+    name, order = one
     n, theta = {2: 80, 3: 24}[dim], np.array([0.9, -0.5, 0.3])[:dim]
     alpha = 1.5
     j = np.indices((2 * n + 1,) * dim) - n
@@ -103,10 +103,12 @@ def test_stability_limit(name, order, dim):
 # --- the open exterior ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("name", "order"), [("DD", 2), ("FPSE", 2), ("FPSE", 4)])
-@pytest.mark.parametrize("mode", [0, 1, 2])
-def test_the_open_operator_is_that_of_a_very_wide_lattice(name, order, mode):
+@pytest.mark.parametrize(
+    ("one", "mode"), covering([("DD", 2), ("FPSE", 2), ("FPSE", 4)], [0, 1, 2])
+)
+def test_the_open_operator_is_that_of_a_very_wide_lattice(one, mode):
     """u is beyond the lattice one of the closure's own modes. Schemes without an exchange sum, which would be cut."""
+    name, order = one
     n, wide, dim = 10, 300, 2
     j = (np.indices((2 * wide + 1,) * dim) - wide) / n
     rho = np.maximum(np.sqrt(np.square(j).sum(axis=0)), 0.5)
@@ -163,7 +165,8 @@ def peak_on_the_infinite_lattice(scheme, order, dim, h, alpha=1.5, start=0.5, en
 
 @pytest.mark.parametrize(
     ("scheme", "order", "dim"),
-    [(s, o, 2) for s in ("DD", "FPSE", "KPSE") for o in (2, 4)] + [("DD", 2, 3), ("KPSE", 4, 3)],
+    [(*each, 2) for each in covering(["DD", "FPSE", "KPSE"], [2, 4])]
+    + [("DD", 2, 3), ("KPSE", 4, 3)],
 )
 def test_the_peak_is_that_of_the_infinite_lattice(scheme, order, dim):
     h = 0.3

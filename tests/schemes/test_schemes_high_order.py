@@ -107,18 +107,21 @@ def outside(case: Case) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize(
-    ("scheme", "exterior", "overlaps"),
-    [
-        ("DD", "truncated", (1.0, 1.5, 2.0, 2.9, 4.0)),
-        ("DD", "open", (1.0, 1.5, 2.0, 2.9, 4.0)),
-        ("KPSE", "truncated", (1.0, 1.5, 2.0, 2.9, 4.0)),
-        ("KPSE", "open", (1.0, 1.5, 2.0, 2.9, 4.0)),
-        ("FPSE", "truncated", (1.5, 2.0)),
-        ("FPSE", "open", (1.0, 1.5, 2.0, 2.9, 4.0)),
-    ],
+    ("operator", "order"),
+    covering(
+        [
+            ("DD", "truncated", (1.0, 1.5, 2.0, 2.9, 4.0)),
+            ("DD", "open", (1.0, 1.5, 2.0, 2.9, 4.0)),
+            ("KPSE", "truncated", (1.0, 1.5, 2.0, 2.9, 4.0)),
+            ("KPSE", "open", (1.0, 1.5, 2.0, 2.9, 4.0)),
+            ("FPSE", "truncated", (1.5, 2.0)),
+            ("FPSE", "open", (1.0, 1.5, 2.0, 2.9, 4.0)),
+        ],
+        ORDERS,
+    ),
 )
-@pytest.mark.parametrize("order", ORDERS)
-def test_the_interval_holds_every_eigenvalue_and_all_are_real(scheme, order, exterior, overlaps):
+def test_the_interval_holds_every_eigenvalue_and_all_are_real(operator, order):
+    scheme, exterior, overlaps = operator
     for beta, overlap in covering((0.1, 0.5, 0.9), overlaps):
         beyond, imaginary = outside(on_sixty(scheme, order, beta, overlap, exterior))
         # As in test_spectrum: round-off splits a defective eigenvalue by its square root.

@@ -28,7 +28,7 @@ ROUND_OFF = np.sqrt(np.finfo(float).eps)
 def test_the_interval_holds_every_eigenvalue_and_all_are_real(combination):
     overlaps = OVERLAPS.get(combination[0], (0.5, 1.0, 1.5, 2.0, 2.9, 4.0, 8.0))
     betas = few((0.02, 0.1, 0.5, 0.9, 0.98), 3)
-    for overlap, n, beta in covering(overlaps, (8, 40), betas, together=2):
+    for overlap, n, beta in covering(overlaps, (8, 40), betas):
         case = case_of(combination, beta, overlap, n)
         operator = SCHEMES[case.scheme].operator(case.setting)
         low, high = spectral_interval(case.scheme, case.setting, operator, case.steps)

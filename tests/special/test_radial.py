@@ -24,7 +24,7 @@ from fracparticles.special import (
     tail_mass,
 )
 from known import pieces_of_the_line
-from sweeps import covering
+from sweeps import covering, few
 
 # As in test_stable: a few hundred roundings of 1.1e-16 in a sum of positive terms; 20 times the
 # roundings of the largest part where n = 5 cancels next to r = 1/2.
@@ -87,7 +87,7 @@ def table_values(r: np.ndarray, alpha: float, n: int) -> tuple[np.ndarray, ...]:
 
 @pytest.mark.parametrize(("alpha", "n"), covering(ALPHAS, [2, 3, 4, 5]))
 def test_agrees_with_mpmath(alpha, n):
-    r = np.array(NEAR + MIDDLE + FAR)
+    r = np.array(few(NEAR + MIDDLE + FAR, 9))
     for point, density, outside, inside in zip(r, *table_values(r, alpha, n), strict=True):
         value, beyond = exact(point, alpha, n)
         # The smallest normal number is the end of relative accuracy.
@@ -104,7 +104,7 @@ def test_a_table_next_to_three_halves_is_no_larger_than_another(n, above):
     assert radial.radial_table(1.5 + above, n).density.shape[0] <= other
 
 
-@pytest.mark.parametrize(("alpha", "r"), [(1.0001, 1.0), (1.01, 1.1), (1.03, 0.9)])
+@pytest.mark.parametrize(("alpha", "r"), few([(1.0001, 1.0), (1.01, 1.1), (1.03, 0.9)]))
 def test_agrees_with_the_integral_close_to_one(alpha, r):
     """Where neither series is of use; (58) for n = 2."""
     with mp.workdps(25):

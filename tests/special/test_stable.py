@@ -27,7 +27,7 @@ from fracparticles.special import (
     tail_mass,
 )
 from known import pieces_of_the_line
-from sweeps import at_once, few
+from sweeps import at_once, covering, few
 
 # The worst path is a quadrature: a sum of about 180 positive terms, each with an exponential of an
 # argument up to 40, and then 18 steps of Horner's rule: a few hundred roundings of 1.1e-16.
@@ -75,7 +75,7 @@ def exact(x: float, alpha: float) -> tuple[mp.mpf, mp.mpf]:
 
 @pytest.mark.parametrize("alpha", few(ALPHAS, 6))
 def test_agrees_with_mpmath(alpha):
-    x = np.array(NEAR + MIDDLE + FAR)
+    x = np.array(few(NEAR + MIDDLE + FAR, 13))
     density = reduced_green(x, alpha)
     outside = tail_mass(x, 1.0, alpha)
     inside = central_mass(x, 1.0, alpha)
@@ -86,7 +86,7 @@ def test_agrees_with_mpmath(alpha):
         assert abs(inside[i] - (1 - beyond)) <= TOLERANCE * (1 - beyond), point
 
 
-@pytest.mark.parametrize("alpha", [1.0001, 1.001, 1.05])
+@pytest.mark.parametrize("alpha", few([1.0001, 1.001, 1.05]))
 def test_agrees_with_the_integral_close_to_one(alpha):
     """Where neither series is of use; both sides of 1 are on the second piece of the table."""
     with mp.workdps(30):
@@ -203,8 +203,7 @@ def test_far_tail_neither_overflows_nor_loses_digits():
     assert green(1e300, 1e-300, alpha) == 0.0
 
 
-@pytest.mark.parametrize("alpha", [1.0 + 1e-9, 1.5, 2.0 - 1e-9])
-@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize(("alpha", "dim"), covering([1.0 + 1e-9, 1.5, 2.0 - 1e-9], [1, 2, 3]))
 def test_far_out_the_functions_are_those_of_the_first_term(alpha, dim):
     """Where r is so large that Phi is zero in float64, and G = c t x^(-n-alpha) is not: of 1000 x and t."""
     generator = np.random.default_rng(dim)

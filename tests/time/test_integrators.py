@@ -19,7 +19,7 @@ from fracparticles.schemes import SCHEMES, Setting, dpse
 from fracparticles.schemes.spectrum import dense_matrix
 from fracparticles.special import green
 from fracparticles.time import STEP_POLYNOMIALS, ChebyshevSeries, exponential, power, step
-from sweeps import few
+from sweeps import covering, few
 
 INTEGRATORS = ["euler", "rk2", "rk4"]
 
@@ -156,16 +156,19 @@ def non_normality(beta, order, n=60) -> float:
 
 # A step of GPSE is an Euler step, and the solutions of (29) grow: they are in the next test.
 @pytest.mark.parametrize(
-    ("combination", "integrator"),
-    [
-        pytest.param(parameter.values[0], integrator, id=f"{parameter.id}-{integrator}")
-        for parameter in combinations_without("PSE29")
-        for integrator in INTEGRATORS
-        if parameter.values[0][0] != "GPSE" or integrator == "euler"
-    ],
+    ("scheme", "kind"),
+    covering(
+        [
+            (parameter.values[0], integrator)
+            for parameter in combinations_without("PSE29")
+            for integrator in INTEGRATORS
+            if parameter.values[0][0] != "GPSE" or integrator == "euler"
+        ],
+        ["smooth", "random"],
+    ),
 )
-@pytest.mark.parametrize("kind", ["smooth", "random"])
-def test_series_and_stepping_give_the_same(combination, integrator, kind):
+def test_series_and_stepping_give_the_same(scheme, kind):
+    combination, integrator = scheme
     for beta in few((0.1, 0.5, 0.9)):
         stepping, series, start = both(combination, beta, integrator, 0.9, 400, kind)
         room = 1e-12 * (non_normality(beta, combination[1]) if combination[0] == "DPSE" else 1.0)
@@ -173,9 +176,15 @@ def test_series_and_stepping_give_the_same(combination, integrator, kind):
 
 
 # The step of GPSE is tied to the smoothing length and cannot be unstable here.
-@pytest.mark.parametrize("combination", combinations_without("GPSE"))
-@pytest.mark.parametrize("integrator", ["euler", "rk2", "rk4"])
-@pytest.mark.parametrize("kind", ["point", "random"])
+@pytest.mark.parametrize(
+    ("combination", "integrator", "kind"),
+    covering(
+        [parameter.values[0] for parameter in combinations_without("GPSE")],
+        INTEGRATORS,
+        ["point", "random"],
+        together=2,
+    ),
+)
 def test_they_blow_up_alike(combination, integrator, kind):
     """Beyond the limit the shortest waves grow; relative to them the two agree."""
     with pytest.warns(StabilityWarning):

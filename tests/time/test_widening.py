@@ -41,10 +41,12 @@ def test_six_digits_on_the_line(alpha, points, later):
     assert np.abs(u - exact).sum() <= 1e-6 * exact.sum()
 
 
-@pytest.mark.parametrize(("alpha", "centre"), [(1.05, (3.0, 3.0)), (1.5, (0.05, -4.0))])
-@pytest.mark.parametrize("later", [10.0, 1e6])
-def test_six_digits_in_the_plane_wherever_the_centre_is(alpha, centre, later):
+@pytest.mark.parametrize(
+    ("data", "later"), covering([(1.05, (3.0, 3.0)), (1.5, (0.05, -4.0))], [10.0, 1e6])
+)
+def test_six_digits_in_the_plane_wherever_the_centre_is(data, later):
     """With powers about the middle of the lattice, not of the data, the first was 9e-3 off."""
+    alpha, centre = data
     age = 0.5**alpha
     u, h = evolve_long(blob(240, 0.15, age, alpha, 2, centre), 0.15, alpha, later)
     exact = blob(240, h, age + later, alpha, 2, centre)
@@ -75,7 +77,7 @@ def test_near_the_ends_of_alpha_nothing_grows(alpha, later):
 def test_several_blobs_keep_six_digits_or_are_warned_of(dim, points, h):
     rng = np.random.default_rng(5)
     warned = 0
-    for _ in range(40 if dim == 1 else 6):
+    for _ in range(40 if dim == 1 else 3):
         alpha, later = rng.uniform(1.05, 1.95), 10.0 ** rng.uniform(-1.0, 7.0)
         parts = [(rng.uniform(0.1, 1.0), rng.uniform(-4.0, 4.0, dim), rng.uniform(3.0 * h, 2.0))
                  for _ in range(rng.integers(1, 4))]  # fmt: skip
@@ -90,7 +92,7 @@ def test_several_blobs_keep_six_digits_or_are_warned_of(dim, points, h):
         exact = at(wide, later)
         warned += bool(said)
         assert said or np.abs(u - exact).sum() <= 2e-6 * exact.sum()
-    assert warned <= (8 if dim == 1 else 6)
+    assert warned <= 8
 
 
 @pytest.mark.parametrize(
