@@ -25,7 +25,7 @@ def one_sided(x):
 
 
 @pytest.mark.parametrize(
-    ("given", "at", "alpha"), covering([tip, one_sided], [0.0, 0.25, 0.5], [1.1, 1.9])
+    ("given", "at", "alpha"), covering([tip, one_sided], [0.5, 0.25, 0.0], [1.1, 1.9], together=2)
 )
 def test_a_root_that_only_the_particles_say(given, at, alpha):
     """Straight lines said less than a half of it at first."""
