@@ -153,3 +153,12 @@ def test_what_is_not_finite_or_too_small_is_named_with_place_and_time():
         Coefficient("diffusivity", "1 + x", XT).checked({"x": np.array([0.0, -1.5]), "t": T}, 0.0)
     with pytest.raises(InvalidInput, match=r"nan at x = -2, t = 0\.5"):
         Coefficient("velocity", "sqrt(x)", XT).checked({"x": X, "t": T})
+
+
+@pytest.mark.parametrize("given", ["x", "x*t", 2.0, lambda x: x])
+def test_values_cannot_be_changed(given):
+    """They may be the lattice itself."""
+    found = Coefficient("velocity", given, XT)({"x": X, "t": T})
+    assert found.shape == X.shape
+    with pytest.raises(ValueError, match="read-only"):
+        found += 1.0
