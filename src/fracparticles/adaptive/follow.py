@@ -31,7 +31,7 @@ from fracparticles.adaptive.weights import MOST_NEAR, order_of
 from fracparticles.arguments import FloatArray
 from fracparticles.called import Called
 from fracparticles.errors import AccuracyWarning, InvalidInput, NonFiniteSolution
-from fracparticles.time.sudden import changes_of_what_comes, pulses_at, sudden_times
+from fracparticles.time.sudden import LOOKS, changes_of_what_comes, pulses_at, sudden_times
 
 __all__ = ["Followed", "follow"]
 
@@ -247,10 +247,10 @@ def _sudden(physics: Physics, x: FloatArray, u: FloatArray, end: float) -> list[
         return []
     most = [int(np.abs(u).argmax())]
 
-    def changes(u: FloatArray) -> list[float]:
+    def changes(u: FloatArray, looks: int = LOOKS // 4) -> list[float]:
         known = pulses_at(lambda x, u, t: source(x, t, u), (x[most], u[most]), 0.0, end)
         try:
-            return sudden_times(lambda t: rate(t, u), 0.0, end, known=known)
+            return sudden_times(lambda t: rate(t, u), 0.0, end, known=known, looks=looks)
         except InvalidInput:  # later u may be where the source is finite
             return sorted(t for t in known if 0.0 < t < end)
 
@@ -258,7 +258,7 @@ def _sudden(physics: Physics, x: FloatArray, u: FloatArray, end: float) -> list[
         return physics.source_at(x, t, u)
 
     with np.errstate(all="ignore"):
-        return sorted({*changes(u), *changes_of_what_comes(changes, rate, u, 0.0, end)})
+        return sorted({*changes(u, LOOKS), *changes_of_what_comes(changes, rate, u, 0.0, end)})
 
 
 def _placed_again(state: Followed, place: Place) -> Followed:

@@ -77,16 +77,20 @@ class LengthField:
     x: FloatArray
     lengths: FloatArray
 
-    def __call__(self, x: FloatArray) -> FloatArray:
-        """Return l(x), shape (M,)."""
+    def __post_init__(self) -> None:
         gaps = np.diff(self.x)
         volumes = 0.5 * (np.append(gaps, gaps[-1]) + np.append(gaps[0], gaps))
-        unit = 2.0 ** np.round(np.log2(self.lengths.max()))  # l^4 may be no number in the caller's
-        squares = np.square(self.lengths / unit)
-        mean = np.empty(x.size)
         weights = volumes / (0.5 * math.pi * self.lengths)
-        _means(x / unit, self.x / unit, squares, weights, mean)
-        return np.asarray(unit * mean**-0.25)
+        unit = 2.0 ** np.round(np.log2(self.lengths.max()))  # l^4 may be no number in the caller's
+        samples = self.x / unit, np.square(self.lengths / unit), weights
+        object.__setattr__(self, "_samples", samples)
+        object.__setattr__(self, "_unit", unit)
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Return l(x), shape (M,)."""
+        mean = np.empty(x.size)
+        _means(x / self._unit, *self._samples, mean)  # type: ignore[attr-defined]
+        return np.asarray(self._unit * mean**-0.25)  # type: ignore[attr-defined]
 
 
 def curvature(x: FloatArray, u: FloatArray) -> FloatArray:
