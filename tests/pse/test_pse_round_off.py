@@ -65,3 +65,19 @@ def test_of_a_straight_line_nothing_but_round_off_is_left():
     x = 1e-5 * np.arange(-80.0, 81.0)
     with pytest.warns(AccuracyWarning, match="round-off"):
         pse.derivative([0.0], [1.0], x, 1.0 + x, 1e-5, 3e-5, pse.construct(4, 2), 4)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("unit", "size"), [(1e-60, 1e60), (1e60, 1e-60), (1e-60, 1e-200)])
+def test_no_unit_is_too_small_or_too_large(unit, size):
+    x = 0.05 * np.arange(-80.0, 81.0)
+    f, h = size * np.exp(-x * x), 0.05 * unit
+    kernel = pse.construct(4, 2)
+    pse.derivative(x[POINTS] * unit, f[POINTS], x * unit, f, h, 3.0 * h, kernel, 4)
+
+
+@pytest.mark.filterwarnings("ignore::fracparticles.errors.AccuracyWarning")
+def test_particles_in_one_place_have_no_extent():
+    kernel = pse.construct(2, 2)
+    found = pse.derivative([0.0], [0.0], [1.0, 1.0], [0.0, 1.0], 1.0, 1.0, kernel, 2)
+    assert found == pytest.approx(kernel(np.array([-1.0])))

@@ -191,8 +191,9 @@ class Domain(DomainOperator):
 
         self.values("source", lambda *place: f(*place, 0.0, start) + 0.0 * place[0])
         known = self._pulses(lambda u, *at: f(*at, u), start, time)
-        with np.errstate(all="ignore"):
-            known |= changes_of_what_comes(changes, reaction, start, 0.0, time)
+        if "u" in f.takes:
+            with np.errstate(all="ignore"):
+                known |= changes_of_what_comes(changes, reaction, start, 0.0, time)
         return self._moved(start, time, reaction, g, tolerance, known)
 
     # --- how -----------------------------------------------------------------------------------------

@@ -33,15 +33,10 @@ _HIGHEST = 24  # order of a derivative
 _EPS = float(np.finfo(float).eps)
 _ROUND_OFF = 64.0 * _EPS  # share of the sum of the sizes of all terms
 _WRONG = 0.05  # share of the largest value: a larger error by the smoothing is warned of
-_DIGITS = (
-    1e-9  # of the variation of f: a result that would change f by less is zero but for round-off
-)
+_DIGITS = 1e-9  # of the variation of f: what changes f by less is zero but for round-off
 _ELSEWHERE = 32  # particles at which a result is compared, as it may be zero where it is asked for
 _SEEN = 3.0  # radii: particles farther away count little in any kernel
-_WHOLE = (
-    0.75,
-    1.5,
-)  # the moment, or its ratio at twice the radius and at one, where there are no gaps
+_WHOLE = 0.75, 1.5  # ratio of the moments at twice the radius and at one, where there are no gaps
 
 
 class _Sums(NamedTuple):
@@ -148,17 +143,17 @@ def derivative(
         result = (weights * differences).sum(axis=1) / divisor
         z = np.where(weights == 0.0, 0.0, (particles - x[:, None]) / radius)
         moment = np.einsum("ij,ij->i", weights, z**order) / math.factorial(order)
-        weights /= divisor
         sizes = np.abs(weights) @ np.abs(values) + np.abs(weights).sum(axis=1) * np.abs(at)
+        unit = float(sizes.max(initial=0.0)) or 1.0  # squares in the caller's may be no numbers
         # Of each value, of f(x) in all terms, and of the places, which a kernel like z^beta takes beta times.
         apart = order * float(np.spacing(np.abs(particles).max())) / radius
         parts = (
-            0.5 * _EPS * np.abs(weights * values),
-            0.5 * _EPS * np.abs(weights.sum(axis=1) * at)[:, None],
-            apart * np.abs(weights * differences),
+            0.5 * _EPS * np.abs(weights * (values / unit)),
+            0.5 * _EPS * np.abs(weights.sum(axis=1) * (at / unit))[:, None],
+            apart * np.abs(weights * (differences / unit)),
         )
-        noise = sum(np.square(part).sum(axis=1) for part in parts)
-        return _Sums(result, moment, sizes, np.sqrt(noise))
+        noise = unit * np.sqrt(sum(np.square(part).sum(axis=1) for part in parts))
+        return _Sums(result, moment, sizes / divisor, noise / divisor)
 
     with np.errstate(all="ignore"):
         found = sums(epsilon)
@@ -168,8 +163,9 @@ def derivative(
         some = inner[:: max(1, inner.size // _ELSEWHERE)]
         elsewhere = partial(sums, epsilon, particles[some], values[some])
         varies = float(np.abs(values - values.mean()).max())
-        if varies > _ROUND_OFF * float(np.abs(values).max()):
-            least = _DIGITS * varies / float(np.ptp(particles)) ** order
+        extent = float(np.ptp(particles)) / epsilon
+        if varies > _ROUND_OFF * float(np.abs(values).max()) and extent > 0.0:
+            least = _DIGITS * varies / extent**order / _power(epsilon, order)
             _warn_of_round_off(found, elsewhere, least)
         _warn_of_smoothing(found, sums, _inside(x, particles, epsilon, kernel), epsilon)
     return found.result

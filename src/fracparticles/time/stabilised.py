@@ -52,10 +52,8 @@ class StabilisedStep(ControlledStep):
 
     def advance(self, u: np.ndarray, span: float, start: float = 0.0) -> np.ndarray:
         """Return u after the time `span`, shape (N,); raises `NonFiniteSolution` as `EighthOrderStep.advance`."""
-        done, pace = (
-            0.0,
-            Pace(start, span),
-        )  # counted from the start: beside a large time, no step is short
+        # The time is counted from the start: beside a large one, no step is short.
+        done, pace = 0.0, Pace(start, span)
         t, r = start, self._rate(start, u)
         self._look(t, u, r)
         dt = min(span, self._dt or self._first(t, u, r, span))
