@@ -57,7 +57,7 @@ _WIDE = 100.0
 # (D T)^(1/alpha) over the radius, to the power of the dimension: some 2e6 particles, two minutes.
 _MOST_SPREAD = 1e4
 _MOST_PARTICLES = (
-    4_000_000  # with more, a run takes minutes and ten gigabytes, and each of some trials as much
+    4_000_000  # with more, a run takes minutes and ten gigabytes, and so does each trial
 )
 # The most points of an estimate, by dimension: many estimates are made.
 _POINTS = {1: 1_000_000, 2: 5_000_000, 3: 5_000_000}

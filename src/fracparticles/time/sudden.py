@@ -197,9 +197,7 @@ def changes_of_what_comes(
     """
     try:
         rates = np.array([rate(t, u) for t in irregular_times(start, span, _RATES)])
-    except (
-        Exception
-    ):  # u may not be so small any more, and the caller's function may raise anything there
+    except Exception:  # a function of the caller's may raise anything for a u that it never meets
         return set()
     most = np.take_along_axis(rates, np.abs(rates).argmax(axis=0)[None], axis=0)[0]
     for share in _SHARES:
